@@ -1,7 +1,6 @@
 """Inputs changed by their structure, fast: all faults are told, none is raised, nothing grows."""
 from __future__ import annotations
 
-import logging
 import os
 
 import pytest
@@ -14,12 +13,7 @@ INPUTS = int(os.environ.get("MY_SIMULATIONS_MUTATIONS") or scaled(500, 1_000_000
 """Of each proof: ten of them make 10 million in a long run."""
 
 
-@pytest.fixture(autouse=True)
-def silent():
-    """Log lines cost time, and pytest would keep them all."""
-    logging.disable()
-    yield
-    logging.disable(logging.NOTSET)
+pytestmark = pytest.mark.usefixtures("silent")
 
 
 @pytest.mark.parametrize("name", sorted(READERS))

@@ -8,6 +8,7 @@ from collections import Counter
 from pathlib import Path
 from typing import Dict, List
 
+import pytest
 from proofs import allowance, per_second, scaled, spent
 from test_fuzzing import LONGEST_S, memory, read
 
@@ -55,6 +56,7 @@ def damaged(data: bytes, others: List[bytes], chance: random.Random) -> bytes:
     return data
 
 
+@pytest.mark.usefixtures("silent")
 def test_damaged_files_are_read_or_refused(record, tmp_path):
     seed = scaled(2026, int(time.time()))
     chance, outcomes, slowest = random.Random(seed), Counter(), 0.0
