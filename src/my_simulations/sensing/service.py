@@ -80,7 +80,8 @@ class Service:
         if self._ring is None:
             raise SensingError("this simulation has no shared states: requests must bring rows")
         if at is None:
-            return rows_of(self._ring.raw_poses()), self._ring.step
+            step, _, rows = self._ring.raw_poses()
+            return rows_of(rows), step
         found = self._ring.earlier_links(at)
         if found is None:
             raise SnapshotGoneError(f"state {at} is gone, the simulation runs too far ahead")
