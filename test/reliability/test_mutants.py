@@ -5,6 +5,7 @@ import os
 
 import pytest
 from mutant_doors import DOORS
+from mutant_plugins import Plugins
 from mutant_readers import READERS
 from mutant_run import prove
 from proofs import scaled
@@ -19,6 +20,9 @@ pytestmark = pytest.mark.usefixtures("silent")
 @pytest.mark.parametrize("name", sorted(READERS))
 def test_readers(record, tmp_path, name):
     prove(READERS[name](tmp_path), INPUTS, record, tmp_path / "found")
+
+
+DOORS = {**DOORS, "plugins": Plugins}
 
 
 @pytest.mark.parametrize("name", sorted(DOORS))
