@@ -183,7 +183,8 @@ def _keep(target: Target, data: Any, defect: BaseException, done: Run, folder: P
     frames = traceback.extract_tb(defect.__traceback__)
     ours = [one for one in frames if "my_simulations" in one.filename] or frames
     said = f" ({shape(str(defect))})" if isinstance(defect, AssertionError) else ""
-    place = f"{type(defect).__name__}{said} at {os.path.basename(ours[-1].filename)}:{ours[-1].lineno}"
+    file = os.path.basename(ours[-1].filename)
+    place = f"{type(defect).__name__}{said} at {file}:{ours[-1].lineno}"
     if place in done.faults:
         return
     folder.mkdir(parents=True, exist_ok=True)

@@ -38,7 +38,5 @@ def is_all_finite(value: Any) -> bool:
         return abs(value) <= INFINITE
     if isinstance(value, (list, tuple)):
         return all(map(is_all_finite, value))
-    names = getattr(type(value), "__slots__", None)
-    if names is None:
-        names = getattr(value, "__dict__", ())
+    names: Any = getattr(type(value), "__slots__", getattr(value, "__dict__", ()))
     return all(is_all_finite(getattr(value, name)) for name in names)
