@@ -42,7 +42,7 @@ from my_simulations.objects.yaml_source import read_yaml
 from my_simulations.resources.resolver import Resolver
 from my_simulations.ros.endpoints import answering
 
-INPUTS = int(os.environ.get("MY_SIMULATIONS_FUZZ_INPUTS") or scaled(120, 20000))
+INPUTS = int(os.environ.get("MY_SIMULATIONS_FUZZ_INPUTS") or scaled(60, 20000))
 AT_ONCE = 1000
 LONGEST_S = 1.0
 """Processor time of one input, in seconds."""
