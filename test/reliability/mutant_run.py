@@ -53,6 +53,7 @@ class Target:
             a fault.
         renew: called before each round.
         suffix: of the file that keeps an input.
+        made: how inputs are made, before the name in the table.
     """
 
     name: str
@@ -62,6 +63,7 @@ class Target:
     feed: Callable[[Any], Iterable[Hashable]]
     renew: Callable[[], None] = lambda: None
     suffix: str = ""
+    made: str = "changed inputs: "
 
 
 @dataclass
@@ -189,7 +191,8 @@ def _keep(target: Target, data: Any, defect: BaseException, done: Run, folder: P
         return
     folder.mkdir(parents=True, exist_ok=True)
     content = as_bytes(data)
-    name = f"{target.name.replace(' ', '_')}-{hashlib.sha1(content).hexdigest()[:10]}"
+    digest = hashlib.sha1(content).hexdigest()[:10]
+    name = f"{target.name.replace(' ', '_')}-{digest}"
     path = folder / f"{name}{target.suffix}"
     path.write_bytes(content)
     path.with_suffix(".trace").write_text(
@@ -205,6 +208,8 @@ def shape(text: str) -> str:
 
 def as_bytes(data: Any) -> bytes:
     """An input as it is kept in a file."""
+    if isinstance(data, tuple) and isinstance(data[-1], bytes):
+        data = data[-1]
     if isinstance(data, bytes):
         return data
     if isinstance(data, str):
@@ -221,7 +226,7 @@ def prove(target: Target, inputs: int, record: Callable[..., None], folder: Path
     seed = int(os.environ.get("MY_SIMULATIONS_SEED") or (time.time() if IS_LONG else 2026))
 
     def tell(done: Run) -> None:
-        record(f"changed inputs: {target.name}", **done.figures(),
+        record(f"{target.made}{target.name}", **done.figures(),
                **{name: value() for name, value in more.items()})
 
     with watchdog():

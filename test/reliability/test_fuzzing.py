@@ -2,7 +2,6 @@
 from __future__ import annotations
 
 import asyncio
-import gc
 import json
 import os
 import threading
@@ -18,6 +17,7 @@ import yaml
 from building_plans import two_rooms
 from editor_case import Browser, Refused, arm, box, cases
 from grammars import changed, damaged, json_values, tree_of, words, xml
+from heap import memory
 from hypothesis import HealthCheck, given, seed, settings
 from hypothesis import strategies as st
 from proofs import allowance, per_second, scaled, spent
@@ -85,12 +85,6 @@ def fuzz(strategy: Any, body: Callable[[Any], None]) -> Dict[str, Any]:
     assert worst < LONGEST_S
     return {"inputs": count, "per_second": per_second(count, start),
             "slowest_ms": round(1000 * worst)}
-
-
-def memory() -> int:
-    gc.collect()
-    with open("/proc/self/status", encoding="ascii") as stream:
-        return next(int(line.split()[1]) for line in stream if line.startswith("VmRSS:"))
 
 
 def read(text: str) -> None:
