@@ -3,15 +3,17 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
-from typing import Any, Callable, Dict, List, Optional, Set, Tuple
+from itertools import chain
+from typing import Any, Callable, Dict, Iterator, List, Optional, Set, Tuple
 
 import numpy as np
 
 from ...description.light import Light
 from ...description.surroundings import Scene
 from ...errors import InputError
-from ..api import DEPTH, LABELS, NO_ROW, RGB, Body, CameraSpec, Pictures
+from ..api import DEPTH, LABELS, NO_ROW, RGB, Body, CameraSpec, Pictures, SetScenery
 from ..poses import matrices, matrix
+from ..scenery import Scenery
 from . import distortion, shaders
 from .batches import Batch
 from .context import draws_with_a_card, finisher, new_context
@@ -65,6 +67,8 @@ class Renderer:
         self._sky = self._context.vertex_array(
             self._programs["sky"], [(self._context.buffer(corners.tobytes()), "2f", "at")])
         self._batches: Dict[Tuple[str, int], Batch] = {}
+        self._scenery = Scenery()
+        self._scenic: List[Batch] = []
         self._textures = Textures(self._context, lambda text: self._trouble(text))
         self._lights: List[Light] = []
         self._scene = Scene()
@@ -122,15 +126,36 @@ class Renderer:
         self._kept.forget()
         self._lights, self._scene = lights, scene
 
+    def set_scenery(self, scenery: SetScenery) -> None:
+        """Roads and actors."""
+        if scenery == self._scenery.told:
+            return
+        self._kept.forget()
+        for batch in self._scenic:
+            batch.release()
+        self._scenery = Scenery(scenery, self._trouble)
+        self._scenic = [Batch(self._context, self._programs, part.piece, part.casts_shadow)
+                        for part in self._scenery.parts]
+        for batch, part in zip(self._scenic, self._scenery.parts):
+            batch.add("", part.row, np.eye(4))
+
     def render(self, spec: CameraSpec, frame: np.ndarray, poses: np.ndarray,
-               outputs: Tuple[str, ...], step: int) -> Pictures:
-        """Pictures from a sensor at `frame` (world from sensor), links at `poses`."""
-        drawn = self._kept.get((spec, outputs, frame.tobytes()), poses.tobytes(),
-                               lambda: self._drawn(spec, frame, poses, outputs))
+               outputs: Tuple[str, ...], step: int, ns: int = 0) -> Pictures:
+        """Pictures from a sensor at `frame` (world from sensor), links at `poses`, at `ns`."""
+        placed = self._scenery.extended(poses, ns)
+        drawn = self._kept.get((spec, outputs, frame.tobytes()),
+                               (placed.tobytes(), self._scenery.forms(ns)),
+                               lambda: self._drawn(spec, frame, placed, outputs, ns))
         return Pictures(*drawn, step)
 
+    def _all(self) -> Iterator[Batch]:
+        yield from self._batches.values()
+        yield from self._scenic
+
     def _drawn(self, spec: CameraSpec, frame: np.ndarray, poses: np.ndarray,
-               outputs: Tuple[str, ...]) -> Drawn:
+               outputs: Tuple[str, ...], ns: int) -> Drawn:
+        for part, rows in self._scenery.reshaped(ns):
+            self._scenic[part].reshape(rows)
         view = _VIEW_FROM_SENSOR @ _inverse(frame)
         links = matrices(poses)
         rgb = depth = labels = None
@@ -150,8 +175,8 @@ class Renderer:
     def _place(self, view: np.ndarray, links: np.ndarray, spec: Optional[CameraSpec],
                casters: bool = False) -> None:
         """Say to all batches where they are, leaving out what the camera cannot see."""
-        for batch in self._batches.values():
-            here = np.flatnonzero(batch.rows < len(links))
+        for batch in self._all():
+            here = self._here(batch, links)
             frames = view @ links[batch.rows[here]] @ batch.local[here]
             if casters and not batch.casts_shadow:
                 frames, here = frames[:0], here[:0]
@@ -163,6 +188,10 @@ class Renderer:
                 far_first = np.argsort(frames[:, 2, 3], kind="stable")
                 frames, here = frames[far_first], here[far_first]
             batch.upload(frames, batch.rows[here])
+
+    def _here(self, batch: Batch, links: np.ndarray) -> np.ndarray:
+        """Which instances of a batch have a place."""
+        return np.flatnonzero(batch.rows < len(links) - self._scenery.count)
 
     # Colours.
 
@@ -178,7 +207,7 @@ class Renderer:
         context.enable_only(context.DEPTH_TEST)
         clear: List[Batch] = []
         # Small ones first: walls and grounds are mostly behind them, and need not be lit there.
-        for batch in sorted(self._batches.values(), key=lambda one: one.radius):
+        for batch in sorted(self._all(), key=lambda one: one.radius):
             if batch.surface.clear:
                 clear.append(batch)
             else:
@@ -309,12 +338,12 @@ class Renderer:
 
     def _casters(self, links: np.ndarray) -> Tuple[np.ndarray, np.ndarray, bytes]:
         low, high, places = np.full(3, np.inf), np.full(3, -np.inf), []
-        for key, batch in self._batches.items():
+        for key, batch in chain(self._batches.items(), enumerate(self._scenic)):
             if not batch.casts_shadow:
                 continue
-            here = batch.rows < len(links)
+            here = self._here(batch, links)
             frames = links[batch.rows[here]] @ batch.local[here]
-            places.append(repr((key, batch.radius)).encode() + frames.tobytes())
+            places.append(repr((key, batch.radius, batch.shape)).encode() + frames.tobytes())
             if batch.radius > 1000.0 or not len(frames):  # a ground casts on nothing
                 continue
             center = frames[:, :3, :3] @ batch.center + frames[:, :3, 3]
@@ -330,7 +359,7 @@ class Renderer:
         target.use()
         target.clear(depth=1.0)
         context.enable_only(context.DEPTH_TEST)
-        for batch in self._batches.values():
+        for batch in self._all():
             if batch.casts_shadow:
                 self._draw_plain(batch, "shadow", one.clip)
 
@@ -343,7 +372,7 @@ class Renderer:
         target.clear(depth=1.0)
         depth, labels = target.color_attachments
         context.enable_only(context.DEPTH_TEST)
-        for batch in self._batches.values():
+        for batch in self._all():
             self._draw_plain(batch, "range", clip)
         self._finish()
         away = np.frombuffer(depth.read(alignment=4), np.float32).reshape(spec.height, spec.width)

@@ -1,0 +1,68 @@
+"""The surface of an actor, and how its limbs carry it."""
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Callable, List, Optional
+
+import numpy as np
+
+from ...errors import InputError
+from ...formats.mesh.figures import read_clip, read_figure
+from ...formats.mesh.painted import painted_parts
+from ...geometry import Pose
+from ..api import Figure
+from ..camera.surfaces import Piece, own_surface, piece_of
+from .path import ActorPath
+from .skeleton import Skeleton
+
+
+class FigureShape:
+    """What an actor looks like at a time, as on the editor's page (web/js/view/actors.js).
+
+    Args:
+        figure: the actor and its files.
+        trouble: is told of a skin that cannot be read; the actor is not seen then.
+        viewers: who does not see it, for that sentence.
+    """
+
+    def __init__(self, figure: Figure, trouble: Callable[[str], None], viewers: str) -> None:
+        self._path = ActorPath(figure.actor)
+        self._skeleton: Optional[Skeleton] = None
+        self.pieces: List[Piece] = []
+        if not figure.skin.uri:
+            return
+        try:
+            parts = painted_parts(figure.skin)
+        except InputError as fault:
+            trouble(f"{viewers} do not see the actor {figure.actor.name!r}: {fault}")
+            return
+        found = read_figure(figure.skin.path)
+        if found is not None:
+            clip = read_clip(figure.animation) if figure.animation else None
+            self._skeleton = Skeleton(found, figure.skin.scale[0], clip,
+                                      borrows=bool(figure.animation), on_path=self._path.moves)
+            surfaces = self._skeleton.surfaces(None)
+            parts = [replace(one.part, vertices=vertices, normals=normals)
+                     for one, (vertices, normals) in zip(found.parts, surfaces)]
+        self.pieces = [piece_of(part.vertices, part.normals, part.uv, part.triangles,
+                                own_surface(part, 1.0)) for part in parts]
+
+    def pose_at(self, time: float) -> Pose:
+        """In the world, at a sim time in s."""
+        return self._path.pose_at(time)
+
+    def form_at(self, time: float) -> Optional[float]:
+        """What its shape depends on: s in its animation; None for the shape of the file."""
+        length = None if self._skeleton is None else self._skeleton.duration
+        at = self._path.script_time(time)
+        if length is None or at is None:
+            return None
+        return at % length if length > 0.0 else 0.0
+
+    def rows_at(self, form: Optional[float]) -> List[np.ndarray]:
+        """Rows of `Piece`, one table of each piece."""
+        rows = [piece.rows.copy() for piece in self.pieces]
+        if self._skeleton is not None:
+            for table, (vertices, normals) in zip(rows, self._skeleton.surfaces(form)):
+                table[:, :3], table[:, 3:6] = vertices, normals
+        return rows
