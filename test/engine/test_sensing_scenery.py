@@ -282,6 +282,8 @@ def test_a_skin_whose_bones_are_wrong_is_seen_as_its_file_has_it(view, tmp_path)
     found = view(scenery(figure(tmp_path, wrong, actor())), AHEAD)
     assert found.depth[ahead(0.0, 0.5)] == pytest.approx(4.9, abs=1e-4)
     assert found.depth[ahead(0.0, 1.8)] == pytest.approx(4.9, abs=1e-4)
+    assert view.renderer.said == ["cameras see the actor 'man' in one shape: a skin has a joint "
+                                  "'arm', which no node is"]
 
 
 def test_rays_meet_an_actor_where_it_is_and_as_it_moves(rays, tmp_path):

@@ -13,7 +13,7 @@ import numpy as np
 from ..geometry import Pose
 from .actors.figure_shape import FigureShape
 from .api import PaintedRoad, SetScenery
-from .camera.surfaces import Piece, piece_of, surface_of
+from .surfaces import Piece, piece_of, surface_of
 from .roads import strip
 
 NO_SCENERY = SetScenery()

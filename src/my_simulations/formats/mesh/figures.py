@@ -7,13 +7,13 @@ from __future__ import annotations
 
 import io
 import os
+from contextlib import contextmanager
 from dataclasses import dataclass
 from types import SimpleNamespace
-from typing import Any, Dict, List, Optional, Tuple
+from typing import Any, Dict, Iterator, List, Optional, Tuple
 
 import numpy as np
 
-from ...errors import InputError
 from .collada import unit_of
 from .collada_cleanup import parsed
 from .keyframes import Clip, clip_of
@@ -23,8 +23,6 @@ from .part import MOST_TRIANGLES, MeshError
 
 _MOST_BONES = 4
 """Of a vertex; as many as the editor's page heeds."""
-_FAULTS = (MeshError, InputError, LookupError, TypeError, ValueError, AttributeError, OSError,
-           ImportError, RecursionError, OverflowError)
 
 
 @dataclass(frozen=True)
@@ -72,27 +70,31 @@ class FigureFile:
 def read_figure(path: str) -> Optional[FigureFile]:
     """The figure in a COLLADA file; None for other files, or one without surfaces.
 
-    For files that `load_mesh` has read before, which reports their faults: None for what is only
-    wrong in skins and animations.
+    For files that `load_mesh` has read before, which reports faults of their shape.
+
+    Raises:
+        MeshError: a fault of a skin or an animation.
     """
     root = _root_of(path)
-    try:
-        return None if root is None else _Reader(root, os.path.dirname(path)).figure()
-    except _FAULTS:
+    if root is None:
         return None
+    with _told():
+        return _Reader(root, os.path.dirname(path)).figure()
 
 
 def read_clip(path: str) -> Optional[Tuple[NodeTree, Clip]]:
-    """The animation of a COLLADA file, and what it moves; None where there is none."""
+    """The animation of a COLLADA file, and what it moves; None where there is none.
+
+    Raises:
+        MeshError: it cannot be read.
+    """
     root = _root_of(path)
-    try:
-        if root is None:
-            return None
+    if root is None:
+        return None
+    with _told():
         tree = NodeTree(root)
         clip = clip_of(root, tree)
-        return None if clip is None else (tree, clip)
-    except _FAULTS:
-        return None
+    return None if clip is None else (tree, clip)
 
 
 def _root_of(path: str) -> Any:
@@ -101,8 +103,19 @@ def _root_of(path: str) -> Any:
     try:
         with open(path, "rb") as stream:
             return parsed(stream.read())
-    except (OSError, MeshError):
-        return None
+    except OSError as fault:
+        raise MeshError(f"cannot be read: {fault.strerror}") from None
+
+
+@contextmanager
+def _told() -> Iterator[None]:
+    """Faults of the file, which is not checked before it is read, as what they are."""
+    try:
+        yield
+    except (LookupError, TypeError, ValueError, AttributeError, RecursionError, StopIteration,
+            OverflowError) as fault:
+        raise MeshError("its skin or animation cannot be read: "
+                        f"{type(fault).__name__}: {fault}") from None
 
 
 class _Reader:

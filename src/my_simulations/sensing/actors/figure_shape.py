@@ -8,10 +8,12 @@ import numpy as np
 
 from ...errors import InputError
 from ...formats.mesh.figures import read_clip, read_figure
-from ...formats.mesh.painted import painted_parts
+from ...formats.mesh.loading import load_mesh
+from ...formats.mesh.painted import PaintedPart, painted_parts
+from ...formats.mesh.part import MeshError
 from ...geometry import Pose
 from ..api import Figure
-from ..camera.surfaces import Piece, own_surface, piece_of
+from ..surfaces import Piece, own_surface, piece_of
 from .path import ActorPath
 from .skeleton import Skeleton
 
@@ -32,20 +34,31 @@ class FigureShape:
         if not figure.skin.uri:
             return
         try:
-            parts = painted_parts(figure.skin)
+            load_mesh(figure.skin)   # within limits, and it tells faults of the file
         except InputError as fault:
             trouble(f"{viewers} do not see the actor {figure.actor.name!r}: {fault}")
             return
-        found = read_figure(figure.skin.path)
-        if found is not None:
-            clip = read_clip(figure.animation) if figure.animation else None
-            self._skeleton = Skeleton(found, figure.skin.scale[0], clip,
-                                      borrows=bool(figure.animation), on_path=self._path.moves)
-            surfaces = self._skeleton.surfaces(None)
-            parts = [replace(one.part, vertices=vertices, normals=normals)
-                     for one, (vertices, normals) in zip(found.parts, surfaces)]
+        parts: List[PaintedPart] = []
+        try:
+            parts = self._hung(figure)
+        except MeshError as fault:
+            trouble(f"{viewers} see the actor {figure.actor.name!r} in one shape: {fault}")
         self.pieces = [piece_of(part.vertices, part.normals, part.uv, part.triangles,
-                                own_surface(part, 1.0)) for part in parts]
+                                own_surface(part, 1.0))
+                       for part in parts or painted_parts(figure.skin)]
+
+    def _hung(self, figure: Figure) -> List[PaintedPart]:
+        """The parts that bones carry; none of a file without."""
+        found = read_figure(figure.skin.path)
+        if found is None:
+            return []
+        clip = read_clip(figure.animation) if figure.animation else None
+        skeleton = Skeleton(found, figure.skin.scale[0], clip, borrows=bool(figure.animation),
+                            on_path=self._path.moves)
+        surfaces = skeleton.surfaces(None)
+        self._skeleton = skeleton
+        return [replace(one.part, vertices=vertices, normals=normals)
+                for one, (vertices, normals) in zip(found.parts, surfaces)]
 
     def pose_at(self, time: float) -> Pose:
         """In the world, at a sim time in s."""

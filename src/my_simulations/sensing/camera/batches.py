@@ -8,7 +8,7 @@ import numpy as np
 from ..api import NO_ROW
 from .shaders import MOST_LAYERS
 from .sky import linear
-from .surfaces import Piece, Surface
+from ..surfaces import Piece, Surface
 
 _INSTANCE: Any = np.dtype([("rows", "<f4", (3, 4)), ("link", "<i4")])
 

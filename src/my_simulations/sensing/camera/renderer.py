@@ -28,7 +28,7 @@ from .lamps import (
     shadow_view,
 )
 from .sky import linear, sky_uniforms
-from .surfaces import pieces_of
+from ..surfaces import pieces_of
 from .uploaded_textures import Textures
 
 _VIEW_FROM_SENSOR = np.array([[0.0, -1, 0, 0], [0, 0, 1, 0], [-1, 0, 0, 0], [0, 0, 0, 1]])

@@ -6,11 +6,11 @@ from typing import Any, List, Optional, Tuple
 
 import numpy as np
 
-from ...appearance.looks import Look
-from ...appearance.palette import DULLEST, GREY, GROUND
-from ...appearance.terrain_layers import TerrainLayer
-from ...description.shapes import SOLIDS, Color, Heightmap, Mesh, Plane, Visual
-from ..tessellation import triangles_of
+from ..appearance.looks import Look
+from ..appearance.palette import DULLEST, GREY, GROUND
+from ..appearance.terrain_layers import TerrainLayer
+from ..description.shapes import SOLIDS, Color, Heightmap, Mesh, Plane, Visual
+from .tessellation import triangles_of
 
 _OF_MESH: Color = (0.784, 0.784, 0.784, 1.0)
 _DULL: Color = (0.0, 0.0, 0.0, 1.0)
@@ -70,8 +70,8 @@ def pieces_of(visual: Visual, look: Optional[Look]) -> List[Piece]:
                                        or look.texture or look.pattern)
     if isinstance(shape, SOLIDS):
         # A world without a mesh has its first picture earlier.
-        from ...formats.mesh.loading import load_solid
-        from ...formats.mesh.painted import flat, painted_parts, smooth
+        from ..formats.mesh.loading import load_solid
+        from ..formats.mesh.painted import flat, painted_parts, smooth
 
         parts = (painted_parts(shape) if isinstance(shape, Mesh)
                  else [smooth(load_solid(shape))] if isinstance(shape, Heightmap)
