@@ -13,8 +13,8 @@ import numpy as np
 from ..geometry import Pose
 from .actors.figure_shape import FigureShape
 from .api import PaintedRoad, SetScenery
-from .surfaces import Piece, piece_of, surface_of
 from .roads import strip
+from .surfaces import Piece, piece_of, surface_of
 
 NO_SCENERY = SetScenery()
 

@@ -6,9 +6,9 @@ from typing import Any, Dict, List, Tuple, Union
 import numpy as np
 
 from ..api import NO_ROW
+from ..surfaces import Piece, Surface
 from .shaders import MOST_LAYERS
 from .sky import linear
-from ..surfaces import Piece, Surface
 
 _INSTANCE: Any = np.dtype([("rows", "<f4", (3, 4)), ("link", "<i4")])
 

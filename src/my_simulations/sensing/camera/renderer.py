@@ -14,6 +14,7 @@ from ...errors import InputError
 from ..api import DEPTH, LABELS, NO_ROW, RGB, Body, CameraSpec, Pictures, SetScenery
 from ..poses import matrices, matrix
 from ..scenery import Scenery
+from ..surfaces import pieces_of
 from . import distortion, shaders
 from .batches import Batch
 from .context import draws_with_a_card, finisher, new_context
@@ -28,7 +29,6 @@ from .lamps import (
     shadow_view,
 )
 from .sky import linear, sky_uniforms
-from ..surfaces import pieces_of
 from .uploaded_textures import Textures
 
 _VIEW_FROM_SENSOR = np.array([[0.0, -1, 0, 0], [0, 0, 1, 0], [-1, 0, 0, 0], [0, 0, 0, 1]])

@@ -1,7 +1,7 @@
-"""Skins of COLLADA that tests see: a rod of two bones, whose upper half swings, in centimetres."""
+"""A skin that tests see, in COLLADA: a rod of two bones whose upper half swings; centimetres."""
 from __future__ import annotations
 
-from typing import Sequence
+from typing import Sequence, Tuple
 
 HEAD = """<?xml version="1.0"?>
 <COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1">
@@ -51,30 +51,43 @@ def animation(times: Sequence[float], matrices: Sequence[str], node: str = "uppe
             f"<channel source='#a-s' target='{node}/transform'/></animation></library_animations>")
 
 
-def rod(color: str = "1 0 0", moves: str = "", root: str = STILL) -> str:
-    """A rod of 20 x 20 cm: the lower bone holds it from z = 0 to 100 cm, the upper one from there
-    to 200 cm, where another block of the same skin hangs on it alone.
+def influences(*vertices: Sequence[Tuple[int, int]]) -> str:
+    """Bone and number of the weight, of each vertex."""
+    flat = " ".join(f"{bone} {weight}" for vertex in vertices for bone, weight in vertex)
+    return (f"<vcount>{' '.join(str(len(one)) for one in vertices)}</vcount><v>{flat}</v>")
 
-    `moves`: `animation` of the bones `lower` and `upper`; `root`: matrix of the lower one.
+
+BLENDED = ((0, 1), (1, 2))
+"""A quarter follows the lower bone, the rest the upper one."""
+
+
+def rod(color: str = "1 0 0", moves: str = "", root: str = STILL,
+        blended: Sequence[Tuple[int, int]] = BLENDED) -> str:
+    """A rod of 20 x 20 cm in blocks: one from z = 0 to 90 cm hangs on the lower bone, one from 110
+    to 200 cm on the upper one, which is 100 cm up, and a small one behind the gap on both.
+
+    `moves`: `animation` of the bones `lower` and `upper`; `root`: matrix of the lower one;
+    `blended`: bones and weights (0: 1, 1: 0.25, 2: 0.75, 3: 0.1) of the small block.
     """
-    places = box((-10, 10), (-10, 10), (0, 90)) + " " + box((-10, 10), (-10, 10), (110, 200))
-    second = " ".join(str(int(n) + 8) for n in TRIANGLES.split())
+    places = " ".join([box((-10, 10), (-10, 10), (0, 90)), box((-10, 10), (-10, 10), (110, 200)),
+                       box((20, 30), (-5, 5), (95, 105))])
+    faces = " ".join(str(int(n) + first) for first in (0, 8, 16) for n in TRIANGLES.split())
     down = "1 0 0 0 0 1 0 0 0 0 1 -100 0 0 0 1"
+    held = influences(*[[(0, 0)]] * 8, *[[(1, 0)]] * 8, *[blended] * 8)
     return (HEAD + look(color) + '<library_geometries><geometry id="g"><mesh>'
-            + source("p", "float", 48, places, 3)
+            + source("p", "float", 72, places, 3)
             + '<vertices id="v"><input semantic="POSITION" source="#p"/></vertices>'
-            '<triangles count="24" material="paint"><input semantic="VERTEX" source="#v" offset="0"'
-            f"/><p>{TRIANGLES} {second}</p></triangles></mesh></geometry></library_geometries>"
+            '<triangles count="36" material="paint"><input semantic="VERTEX" source="#v" offset="0"'
+            f"/><p>{faces}</p></triangles></mesh></geometry></library_geometries>"
             '<library_controllers><controller id="c"><skin source="#g">'
             f"<bind_shape_matrix>{STILL}</bind_shape_matrix>"
             + source("j", "Name", 2, "low high", 1, "name")
             + source("i", "float", 32, f"{STILL} {down}", 16, "float4x4")
-            + source("w", "float", 1, "1", 1)
+            + source("w", "float", 4, "1 0.25 0.75 0.1", 1)
             + '<joints><input semantic="JOINT" source="#j"/><input semantic="INV_BIND_MATRIX" '
-            'source="#i"/></joints><vertex_weights count="16"><input semantic="JOINT" source="#j" '
-            'offset="0"/><input semantic="WEIGHT" source="#w" offset="1"/><vcount>'
-            + " ".join(["1"] * 16) + "</vcount><v>" + " ".join(["0 0"] * 8 + ["1 0"] * 8)
-            + "</v></vertex_weights></skin></controller></library_controllers>"
+            'source="#i"/></joints><vertex_weights count="24"><input semantic="JOINT" source="#j" '
+            'offset="0"/><input semantic="WEIGHT" source="#w" offset="1"/>' + held
+            + "</vertex_weights></skin></controller></library_controllers>"
             '<library_visual_scenes><visual_scene id="s"><node id="lower" sid="low" name="lower" '
             f'type="JOINT"><matrix sid="transform">{root}</matrix><node id="upper" sid="high" '
             f'name="upper" type="JOINT"><matrix sid="transform">{RAISED}</matrix></node></node>'
