@@ -77,18 +77,18 @@ class Scenery:
         if not self.count:
             return poses
         places = [[*pose.position, *pose.orientation]
-                  for pose in (shape.pose_at(ns * 1e-9) for shape, _ in reversed(self._figures))]
+                  for pose in (shape.pose_at(ns / 1e9) for shape, _ in reversed(self._figures))]
         return np.concatenate([poses, np.array(places).reshape(-1, 7), self._fixed])
 
     def forms(self, ns: int) -> bytes:
         """What shapes depend on: equal for two times at which all have the same."""
-        return repr([shape.form_at(ns * 1e-9) for shape, _ in self._figures]).encode()
+        return repr([shape.form_at(ns / 1e9) for shape, _ in self._figures]).encode()
 
     def reshaped(self, ns: int) -> List[Tuple[int, np.ndarray]]:
         """The parts that have another shape than at the last call, with the rows of `Piece`."""
         found: List[Tuple[int, np.ndarray]] = []
         for n, (shape, first) in enumerate(self._figures):
-            form = shape.form_at(ns * 1e-9)
+            form = shape.form_at(ns / 1e9)
             if form != self._forms[n]:
                 self._forms[n] = form
                 found += enumerate(shape.rows_at(form), first)

@@ -23,6 +23,8 @@ from .part import MOST_TRIANGLES, MeshError
 
 _MOST_BONES = 4
 """Of a vertex; as many as the editor's page heeds."""
+_LARGEST = 64 << 20
+"""Bytes of a file with bones: nobody else has limited what reading an animation takes."""
 
 
 @dataclass(frozen=True)
@@ -101,6 +103,8 @@ def _root_of(path: str) -> Any:
     if not path.lower().endswith(".dae"):
         return None
     try:
+        if os.path.getsize(path) > _LARGEST:
+            raise MeshError(f"it is larger than {_LARGEST >> 20} MB")
         with open(path, "rb") as stream:
             return parsed(stream.read())
     except OSError as fault:
@@ -185,7 +189,10 @@ def _shapes_of(root: Any) -> Any:
                                             "library_controllers", "library_nodes",
                                             "library_visual_scenes", "scene"):
             plain.remove(child)
-    return collada.Collada(io.BytesIO(etree.tostring(plain)), ignore=[collada.DaeError])
+    try:
+        return collada.Collada(io.BytesIO(etree.tostring(plain)), ignore=[collada.DaeError])
+    except collada.DaeError as fault:
+        raise MeshError(f"its surfaces cannot be read: {fault.msg}") from None
 
 
 class _Binding:

@@ -83,7 +83,10 @@ def clip_of(root: Any, tree: NodeTree) -> Optional[Clip]:
 
 
 def _joined(group: "List[_NodeKeys]") -> Keys:
-    places, turns, scales = decomposed(np.array([one.matrices for one in group]).swapaxes(0, 1))
+    matrices = np.array([one.matrices for one in group]).swapaxes(0, 1)
+    if not (np.isfinite(matrices).all() and np.isfinite(group[0].times).all()):
+        raise ValueError("keys that are not finite numbers")
+    places, turns, scales = decomposed(matrices)
     return Keys(group[0].times, np.array([one.node for one in group]), places, turns, scales,
                 np.array([one.turned for one in group]))
 
@@ -129,6 +132,10 @@ class _NodeKeys:
         self.times = np.unique(np.concatenate([one.times for one in channels]))
         by_sid = {sid: kind for sid, kind, _ in rest}
         self.turned = any(by_sid.get(one.sid) in ("matrix", "rotate") for one in channels)
+        if len(channels) == len(rest) == 1 and rest[0][:2] == (channels[0].sid, "matrix") \
+                and channels[0].member is None and len(channels[0].times) == len(self.times):
+            self.matrices = channels[0].values.reshape(-1, 4, 4)  # as nearly all files have it
+            return
         made = []
         for time in self.times:
             placings = [(sid, kind, values.copy()) for sid, kind, values in rest]

@@ -56,6 +56,8 @@ class FigureShape:
         skeleton = Skeleton(found, figure.skin.scale[0], clip, borrows=bool(figure.animation),
                             on_path=self._path.moves)
         surfaces = skeleton.surfaces(None)
+        if not all(np.isfinite(vertices).all() for vertices, _ in surfaces):
+            raise MeshError("its bones are not at finite places")
         self._skeleton = skeleton
         return [replace(one.part, vertices=vertices, normals=normals)
                 for one, (vertices, normals) in zip(found.parts, surfaces)]

@@ -1,7 +1,7 @@
 """Where the surfaces of a figure are, in its own frame, as its bones carry them."""
 from __future__ import annotations
 
-from typing import List, Optional, Tuple
+from typing import Dict, List, Optional, Tuple
 
 import numpy as np
 
@@ -76,9 +76,9 @@ class Skeleton:
         return world
 
 
-def _shared(theirs: NodeTree, ours: NodeTree) -> "dict[int, int]":
+def _shared(theirs: NodeTree, ours: NodeTree) -> Dict[int, int]:
     """Number of our node by that of theirs of the same name."""
-    numbers: "dict[str, int]" = {}
+    numbers: Dict[str, int] = {}
     for n, name in enumerate(ours.names):
         numbers.setdefault(name, n)
     return {n: numbers[name] for n, name in enumerate(theirs.names) if name and name in numbers}
@@ -92,9 +92,10 @@ def _skinned(part: FigurePart, world: np.ndarray, factor: float) -> Surface:
         turned = shape.normals @ frame[:3, :3].T
         return (shape.vertices @ frame[:3, :3].T + frame[:3, 3]) * factor, _unit(turned)
     bones = (world[skin.nodes] @ skin.inverses)[:, :3].reshape(-1, 12)
-    blended = np.zeros((len(shape.vertices), 12))
-    for n in range(skin.index.shape[1]):
-        blended += bones[skin.index[:, n]] * skin.weights[:, n, None]
+    blended = np.take(bones, skin.index[:, 0], axis=0) * skin.weights[:, :1]
+    for n in range(1, skin.index.shape[1]):
+        held = np.flatnonzero(skin.weights[:, n])   # most vertices have a bone or two
+        blended[held] += np.take(bones, skin.index[held, n], axis=0) * skin.weights[held, n, None]
     frames = blended.reshape(-1, 3, 4)
     vertices = np.einsum("nij,nj->ni", frames[:, :, :3], shape.vertices) + frames[:, :, 3]
     return vertices * factor, _unit(np.einsum("nij,nj->ni", frames[:, :, :3], shape.normals))
