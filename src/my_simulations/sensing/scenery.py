@@ -82,6 +82,8 @@ class Scenery:
 
     def forms(self, ns: int) -> bytes:
         """What shapes depend on: equal for two times at which all have the same."""
+        if not self._figures:
+            return b""
         return repr([shape.form_at(ns / 1e9) for shape, _ in self._figures]).encode()
 
     def reshaped(self, ns: int) -> List[Tuple[int, np.ndarray]]:
