@@ -12,7 +12,7 @@ from ...description.light import Light
 from ...description.surroundings import Scene
 from ...errors import InputError
 from ..api import DEPTH, LABELS, NO_ROW, RGB, Body, CameraSpec, Pictures, SetScenery
-from ..poses import matrices, matrix
+from ..poses import inverse, matrices, matrix
 from ..scenery import Scenery
 from ..surfaces import pieces_of
 from . import distortion, shaders
@@ -29,6 +29,7 @@ from .lamps import (
     shadow_view,
 )
 from .sky import linear, sky_uniforms
+from .targets import Targets
 from .uploaded_textures import Textures
 
 _VIEW_FROM_SENSOR = np.array([[0.0, -1, 0, 0], [0, 0, 1, 0], [-1, 0, 0, 0], [0, 0, 0, 1]])
@@ -72,7 +73,7 @@ class Renderer:
         self._textures = Textures(self._context, lambda text: self._trouble(text))
         self._lights: List[Light] = []
         self._scene = Scene()
-        self._targets: Dict[Tuple[str, int, int, int], Any] = {}
+        self._targets = Targets(self._context)
         self._maps = [self._context.depth_texture((SHADOW_SIZE, SHADOW_SIZE))
                       for _ in range(shaders.MOST_SHADOWS)]
         for one in self._maps:
@@ -156,7 +157,7 @@ class Renderer:
                outputs: Tuple[str, ...], ns: int) -> Drawn:
         for part, rows in self._scenery.reshaped(ns):
             self._scenic[part].reshape(rows)
-        view = _VIEW_FROM_SENSOR @ _inverse(frame)
+        view = _VIEW_FROM_SENSOR @ inverse(frame)
         links = matrices(poses)
         rgb = depth = labels = None
         clip = projection(spec)
@@ -199,7 +200,7 @@ class Renderer:
                   shadows: List[Tuple[int, ShadowView]]) -> np.ndarray:
         context = self._context
         samples = spec.samples or self._smooth
-        target = self._target("rgb", spec.width, spec.height, samples)
+        target = self._targets.get("rgb", spec.width, spec.height, samples)
         target.use()
         background = self._scene.background[:3]
         target.clear(*background, 1.0, depth=1.0)
@@ -217,7 +218,7 @@ class Renderer:
         if clear:
             self._draw_clear(clear, target, lighting)
         if samples > 1:
-            whole = self._target("rgb", spec.width, spec.height, 1)
+            whole = self._targets.get("rgb", spec.width, spec.height, 1)
             context.copy_framebuffer(whole, target)
             target = whole
         self._finish()
@@ -240,7 +241,7 @@ class Renderer:
         maps = np.zeros((shaders.MOST_SHADOWS, 4, 4), np.float32)
         pixels = np.zeros(shaders.MOST_SHADOWS, np.float32)
         for n, (_, one) in enumerate(shadows):
-            maps[n] = (one.clip @ one.view @ _inverse(view)).T
+            maps[n] = (one.clip @ one.view @ inverse(view)).T
             pixels[n] = one.pixel
         values = {"clip": clip.T, "ambient": np.array(self._scene.ambient[:3]), "up": view[:3, 2],
                   "shadow_from_view": maps, "shadow_pixel": pixels,
@@ -367,7 +368,7 @@ class Renderer:
 
     def _draw_ranges(self, spec: CameraSpec, clip: np.ndarray) -> Tuple[np.ndarray, np.ndarray]:
         context = self._context
-        target = self._target("range", spec.width, spec.height, 1)
+        target = self._targets.get("range", spec.width, spec.height, 1)
         target.use()
         target.clear(depth=1.0)
         depth, labels = target.color_attachments
@@ -397,22 +398,6 @@ class Renderer:
         _set(self._programs[name], "clip", clip.T)
         batch.draw(name)
 
-    def _target(self, kind: str, width: int, height: int, samples: int) -> Any:
-        key = (kind, width, height, samples)
-        found = self._targets.get(key)
-        if found is None:
-            context, size = self._context, (width, height)
-            if kind == "range":
-                found = context.framebuffer(
-                    [context.texture(size, 1, dtype="f4"), context.texture(size, 1, dtype="i4")],
-                    context.depth_renderbuffer(size))
-            else:
-                many = samples if samples > 1 else 0
-                found = context.framebuffer([context.renderbuffer(size, 4, samples=many)],
-                                            context.depth_renderbuffer(size, samples=many))
-            self._targets[key] = found
-        return found
-
     def _distort(self, spec: CameraSpec, rgb: Optional[np.ndarray], depth: Optional[np.ndarray],
                  labels: Optional[np.ndarray]) -> Tuple[Optional[np.ndarray], ...]:
         if spec not in self._lenses:
@@ -421,14 +406,6 @@ class Renderer:
         return (None if rgb is None else distortion.blended(rgb, column, row),
                 None if depth is None else distortion.nearest(depth, column, row, np.inf),
                 None if labels is None else distortion.nearest(labels, column, row, NO_ROW))
-
-
-def _inverse(frame: np.ndarray) -> np.ndarray:
-    """Of a rigid transform."""
-    made = np.eye(4)
-    made[:3, :3] = frame[:3, :3].T
-    made[:3, 3] = -frame[:3, :3].T @ frame[:3, 3]
-    return made
 
 
 def _write(member: Any, values: bytes) -> None:
