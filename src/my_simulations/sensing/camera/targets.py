@@ -12,7 +12,7 @@ class Targets:
         self._made: Dict[Tuple[str, int, int, int], Any] = {}
 
     def get(self, kind: str, width: int, height: int, samples: int) -> Any:
-        """A buffer of `range` (depth and labels) or `rgb`; `samples` of each pixel of the latter."""
+        """A buffer of `range` (depth and labels) or `rgb`, that of `samples` a pixel."""
         key = (kind, width, height, samples)
         found = self._made.get(key)
         if found is None:
