@@ -176,6 +176,13 @@ def test_faults_of_a_skin_are_told(read, wrong, right, message):
         read(text.replace("</skin>", "</morph>") if right.startswith("<morph") else text)
 
 
+def test_a_file_is_read_once_until_it_changes_and_its_xml_is_given_back(read, tmp_path):
+    first = read(rod())
+    assert read_figure(str(tmp_path / "skin.dae")) is first and first.clip is None
+    assert not first.tree.elements and not first.tree.by_id
+    assert read(swinging()).clip is not None
+
+
 def test_other_files_have_no_figure(read):
     assert read("solid", "skin.stl") is None
     assert read(rod().replace('<instance_controller url="#c">', "<b>").replace(

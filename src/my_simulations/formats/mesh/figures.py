@@ -9,6 +9,7 @@ import io
 import os
 from contextlib import contextmanager
 from dataclasses import dataclass
+from functools import lru_cache
 from types import SimpleNamespace
 from typing import Any, Dict, Iterator, List, Optional, Tuple
 
@@ -77,11 +78,7 @@ def read_figure(path: str) -> Optional[FigureFile]:
     Raises:
         MeshError: a fault of a skin or an animation.
     """
-    root = _root_of(path)
-    if root is None:
-        return None
-    with _told():
-        return _Reader(root, os.path.dirname(path)).figure()
+    return _figure(path, _changed(path)) if _is_collada(path) else None
 
 
 def read_clip(path: str) -> Optional[Tuple[NodeTree, Clip]]:
@@ -90,21 +87,46 @@ def read_clip(path: str) -> Optional[Tuple[NodeTree, Clip]]:
     Raises:
         MeshError: it cannot be read.
     """
+    return _moves(path, _changed(path)) if _is_collada(path) else None
+
+
+def _is_collada(path: str) -> bool:
+    return path.lower().endswith(".dae")
+
+
+def _changed(path: str) -> Tuple[int, int]:
+    try:
+        status = os.stat(path)
+    except OSError as fault:
+        raise MeshError(f"cannot be read: {fault.strerror}") from None
+    if status.st_size > _LARGEST:
+        raise MeshError(f"it is larger than {_LARGEST >> 20} MB")
+    return status.st_mtime_ns, status.st_size
+
+
+@lru_cache(maxsize=8)
+def _figure(path: str, _changed_at: Tuple[int, int]) -> Optional[FigureFile]:
+    """Kept, as a crowd wears a few skins."""
     root = _root_of(path)
-    if root is None:
-        return None
+    with _told():
+        found = _Reader(root, os.path.dirname(path)).figure()
+    if found is not None:
+        found.tree.release()
+    return found
+
+
+@lru_cache(maxsize=8)
+def _moves(path: str, _changed_at: Tuple[int, int]) -> Optional[Tuple[NodeTree, Clip]]:
+    root = _root_of(path)
     with _told():
         tree = NodeTree(root)
         clip = clip_of(root, tree)
+    tree.release()
     return None if clip is None else (tree, clip)
 
 
 def _root_of(path: str) -> Any:
-    if not path.lower().endswith(".dae"):
-        return None
     try:
-        if os.path.getsize(path) > _LARGEST:
-            raise MeshError(f"it is larger than {_LARGEST >> 20} MB")
         with open(path, "rb") as stream:
             return parsed(stream.read())
     except OSError as fault:

@@ -32,6 +32,7 @@ class NodeTree:
         parents: number of the one that it hangs on, -1 for none.
         by_id: all elements of the file.
         numbers: of nodes by id.
+        rest: (n, 4, 4) where nodes are in their parents, as the file has them.
     """
 
     def __init__(self, root: Any) -> None:
@@ -46,6 +47,13 @@ class NodeTree:
                  else next(root.iter("{*}visual_scene"), None))
         for child in () if scene is None else scene.iterchildren("{*}node"):
             self._walk(child, -1, 0)
+        self.rest: Array = np.array([local_matrix(self.placings(n))
+                                     for n in range(len(self.elements))]).reshape(-1, 4, 4)
+
+    def release(self) -> None:
+        """Give the XML back, which is most of what this takes."""
+        self.elements.clear()
+        self.by_id.clear()
 
     def _walk(self, element: Any, parent: int, depth: int) -> None:
         if len(self.elements) >= _MOST_NODES or depth > _DEEPEST:
@@ -96,11 +104,6 @@ class NodeTree:
         return [(one.get("sid") or "", one.tag.rsplit("}", 1)[-1], floats(one))
                 for one in self.elements[number].iterchildren(*(f"{{*}}{kind}"
                                                                 for kind in PLACINGS))]
-
-    def rest(self) -> Array:
-        """(n, 4, 4) where nodes are in their parents, as the file has them."""
-        made = [local_matrix(self.placings(n)) for n in range(len(self.elements))]
-        return np.array(made).reshape(-1, 4, 4)
 
 
 def local_matrix(placings: Sequence[Placing]) -> Array:

@@ -30,7 +30,7 @@ class Skeleton:
                  clip: Optional[Tuple[NodeTree, Clip]] = None, borrows: bool = False,
                  on_path: bool = False) -> None:
         self._figure, self._factor = figure, scale * figure.unit
-        self._rest = decomposed(figure.tree.rest())
+        self._rest = decomposed(figure.tree.rest)
         self._moves: List[Tuple[int, np.ndarray, np.ndarray]] = []   # keys, their columns, nodes
         self._root = figure.tree.root_joint if on_path else None
         if not borrows:
