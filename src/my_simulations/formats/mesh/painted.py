@@ -199,6 +199,8 @@ def corners_of(primitive: Any, mirrored: bool = False,
     if not len(primitive) or primitive.vertex is None:
         return None
     triangles = primitive.triangleset() if hasattr(primitive, "triangleset") else primitive
+    if triangles.vertex_index.shape[1] != 3:
+        return None  # lines
     order = slice(None, None, -1) if mirrored else slice(None)
     index = triangles.vertex_index[:, order].reshape(-1)
     normals = uv = None
