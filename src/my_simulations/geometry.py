@@ -153,6 +153,20 @@ def transform(pose: Pose, point: Vec3) -> Vec3:
     return add(pose.position, rotate(pose.orientation, point))
 
 
+def slerp(a: Quat, b: Quat, part: float) -> Quat:
+    """The rotation at a part (0..1) of the shorter way from `a` to `b`."""
+    cosine = sum(x * y for x, y in zip(a, b))
+    sign = -1.0 if cosine < 0.0 else 1.0
+    angle = math.acos(min(abs(cosine), 1.0))
+    start, end = 1.0 - part, part
+    if angle >= 1e-6:
+        start, end = (math.sin(start * angle) / math.sin(angle),
+                      math.sin(end * angle) / math.sin(angle))
+    end *= sign
+    return normalised((start * a[0] + end * b[0], start * a[1] + end * b[1],
+                       start * a[2] + end * b[2], start * a[3] + end * b[3]))
+
+
 def quat_from_rpy(roll: float, pitch: float, yaw: float) -> Quat:
     """Fixed-axis roll, pitch, yaw (R = Rz Ry Rx), as in URDF and SDF."""
     cr, sr = math.cos(roll / 2), math.sin(roll / 2)

@@ -30,7 +30,7 @@ def tidied(data: bytes) -> Any:
     Raises:
         MeshError: not COLLADA, or invalid numbers.
     """
-    root = _parsed(data)
+    root = parsed(data)
     document = _Document(root)
     document.replace_controllers()
     for child in list(root):
@@ -43,7 +43,12 @@ def tidied(data: bytes) -> Any:
     return root
 
 
-def _parsed(data: bytes) -> Any:
+def parsed(data: bytes) -> Any:
+    """The `<COLLADA>` element of a file, its elements in COLLADA's namespace.
+
+    Raises:
+        MeshError: not COLLADA.
+    """
     from lxml import etree
 
     if b"<!ENTITY" in data:
