@@ -207,6 +207,10 @@ def test_what_does_not_fit_a_type_is_refused_with_its_place(protocol, value, exp
         protocol.types.check(value, expected, "place")
 
 
+def test_a_notice_with_a_number_may_be_answered(protocol):
+    protocol.check_reply("presence", None)
+
+
 @pytest.mark.parametrize("value, expected", [
     (1, "number"), (1.5, "number"), (None, "string?"), ("a", "'a'|'b'"), ([1, 2, 3], "vec3"),
     ({"a": [0] * 7}, "{pose}"), ([], "string[]"), ({}, "object"), ([{}], "any"),
