@@ -193,17 +193,35 @@ def test_home_comes_back_from_wherever_the_mouse_was(open_page, place):
     editor.page.keyboard.press("Escape")
 
 
+def draw_after(editor, change):
+    """Waits for the first picture after a change; the page does, for it counts a moment only."""
+    editor.get(f"""(async () => {{
+        {change};
+        while (editor.view.fps === 0) await new Promise(requestAnimationFrame);
+    }})()""")
+
+
 def test_collisions_of_infinite_planes_are_not_laid_over_everything(open_page):
     editor = open_page.first
     assert "ground_plane" in editor.names()
     corner = {"x": 700, "y": 690, "width": 40, "height": 30}
     before = editor.settled_picture(corner)
-    # The page itself waits: a picture counts for a moment only.
-    editor.get("""(async () => {
-        editor.actions.toggleOverlay('collisions');
-        while (editor.view.fps === 0) await new Promise(requestAnimationFrame);
-    })()""")
+    draw_after(editor, "editor.actions.toggleOverlay('collisions')")
     assert editor.settled_picture(corner) == before
+
+
+def test_a_picture_without_new_shadows_is_as_large_as_one_with_them(open_page):
+    editor = open_page.first
+    editor.rest()
+    height = editor.get("document.querySelector('#view').clientHeight")
+    assert height % 2 == 1, "pictures at rest, drawn 1.5 times as large, have half a pixel more"
+    draw_after(editor, "editor.view.redraw()")
+    editor.rest()
+    drawn, there = editor.get("""(() => {
+        const canvas = document.querySelector('.view-canvas'), gl = canvas.getContext('webgl2');
+        return [[...gl.getParameter(gl.VIEWPORT)], [0, 0, canvas.width, canvas.height]];
+    })()""")
+    assert drawn == there
 
 
 def test_the_building_editor_has_the_window_and_shows_the_world_in_its_plan(open_page):
