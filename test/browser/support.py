@@ -129,13 +129,16 @@ class Browser:
 
 
 class Editor:
-    """One page with the editor; `faults` are errors of its scripts."""
+    """One page with the editor; `faults` are errors of its scripts.
+
+    Its user has asked for less motion: a second of flight to a view costs that of processor.
+    """
 
     def __init__(self, browser, url, size=(WIDTH, HEIGHT), color_scheme="dark", wait=True,
-                 **options):
+                 motion="reduce", **options):
         self.context = browser.new_context(viewport={"width": size[0], "height": size[1]},
                                            color_scheme=color_scheme, accept_downloads=True,
-                                           **options)
+                                           reduced_motion=motion, **options)
         self.context.set_default_timeout(1000.0 * SECONDS)
         self.context.add_init_script(CLEARING)
         self.page = self.context.new_page()

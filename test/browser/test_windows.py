@@ -169,12 +169,24 @@ def test_numbers_are_shown_while_dragging(open_page):
 
 
 def test_a_face_of_the_cube_is_a_view_and_home_comes_back(open_page):
-    editor = open_page("#select=box")  # no view: the page begins at its home
+    # No view: the page begins at its home.
+    editor = open_page("#select=box", motion="no-preference")
     home = editor.get("editor.view.camera")
     editor.page.get_by_role("group", name="Orientation").get_by_text("Top").dispatch_event("click")
     wait_for(lambda: editor.get("editor.view.camera.pitch") < -1.5, "the view from above")
     editor.page.keyboard.press("Home")
     wait_for(lambda: editor.get("editor.view.camera.position") == approx(home["position"]), "home")
+
+
+def test_the_camera_flies_unless_the_user_wants_less_motion(open_page):
+    editor = open_page.first
+    arrives_at_once = "(editor.actions.viewFrom('top'), editor.view.camera.pitch < -1.5)"
+    assert editor.get(arrives_at_once)
+    editor.page.keyboard.press("Home")
+    editor.page.emulate_media(reduced_motion="no-preference")
+    assert not editor.get(arrives_at_once)
+    wait_for(lambda: editor.get("editor.view.camera.pitch") < -1.5, "the view from above")
+    editor.page.emulate_media(reduced_motion="reduce")
 
 
 @pytest.mark.parametrize("place", ["menu", "row", "tool", "tab"])
