@@ -7,13 +7,23 @@ handles single poses only, where tuples are faster and cost neither memory nor s
 from __future__ import annotations
 
 import math
-from typing import NamedTuple, Tuple
+from typing import Any, NamedTuple, Tuple
 
 Vec3 = Tuple[float, float, float]
 Quat = Tuple[float, float, float, float]
 
 ZERO3: Vec3 = (0.0, 0.0, 0.0)
 IDENTITY_QUAT: Quat = (0.0, 0.0, 0.0, 1.0)
+
+
+def is_finite_number(value: Any) -> bool:
+    """Whether a value of JSON or YAML is a finite number; integers that no double holds are not."""
+    if isinstance(value, bool) or not isinstance(value, (int, float)):
+        return False
+    try:
+        return math.isfinite(value)
+    except OverflowError:
+        return False
 
 
 class Pose(NamedTuple):
@@ -141,6 +151,20 @@ def inverse(pose: Pose) -> Pose:
 def transform(pose: Pose, point: Vec3) -> Vec3:
     """A point of the child frame, in the parent frame."""
     return add(pose.position, rotate(pose.orientation, point))
+
+
+def slerp(a: Quat, b: Quat, part: float) -> Quat:
+    """The rotation at a part (0..1) of the shorter way from `a` to `b`."""
+    cosine = sum(x * y for x, y in zip(a, b))
+    sign = -1.0 if cosine < 0.0 else 1.0
+    angle = math.acos(min(abs(cosine), 1.0))
+    start, end = 1.0 - part, part
+    if angle >= 1e-6:
+        start, end = (math.sin(start * angle) / math.sin(angle),
+                      math.sin(end * angle) / math.sin(angle))
+    end *= sign
+    return normalised((start * a[0] + end * b[0], start * a[1] + end * b[1],
+                       start * a[2] + end * b[2], start * a[3] + end * b[3]))
 
 
 def quat_from_rpy(roll: float, pitch: float, yaw: float) -> Quat:

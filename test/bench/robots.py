@@ -11,7 +11,6 @@ fails on a slow machine.
 from __future__ import annotations
 
 import collections
-import os
 import pathlib
 import random
 import re
@@ -59,15 +58,6 @@ class Shares:
         sim = max(1e-3, rospy.get_rostime().to_sec() - self._sim)
         node, engine, others = ((b - a) / sim for a, b in zip(self._before, self._read()))
         return node, engine, others, sim / wall
-
-
-def run_time(pid: int) -> float:
-    """Processor time of the threads that a process has now, s; to the nanosecond."""
-    total = 0
-    for task in os.listdir(f"/proc/{pid}/task"):
-        with open(f"/proc/{pid}/task/{task}/schedstat", encoding="ascii") as stream:
-            total += int(stream.read().split()[0])
-    return total * 1e-9
 
 
 def spawn(count: int, laser: bool = True,
@@ -131,9 +121,9 @@ def drive() -> List[Row]:
                 if plugins:
                     wait(lambda plugins=plugins: len(heard) == len(plugins), 30, "odometry")
                 time.sleep(TURN_SETTLE)
-                used, sim = run_time(server.process.pid), rospy.get_rostime().to_sec()
+                used, sim = processor([server.process.pid]), rospy.get_rostime().to_sec()
                 time.sleep(TURN)
-                turns[-1].append((run_time(server.process.pid) - used)
+                turns[-1].append((processor([server.process.pid]) - used)
                                  / max(1e-3, rospy.get_rostime().to_sec() - sim))
                 rospy.ServiceProxy("/gazebo/delete_model", DeleteModel)("r0")
     alone, both = ([100.0 * (turn[n] - turn[0]) for turn in turns] for n in (1, 2))

@@ -116,10 +116,6 @@ def _summed(pids: List[int], file: str, head: str) -> float:
 
 
 def processor(pids: List[int]) -> float:
-    """Processor time some processes have had, s."""
-    ticks = 0
-    for pid in pids:
-        with open(f"/proc/{pid}/stat", encoding="ascii") as stream:
-            fields = stream.read().rsplit(")", 1)[1].split()
-        ticks += int(fields[11]) + int(fields[12])
-    return ticks / os.sysconf("SC_CLK_TCK")
+    """Processor time some processes have had, s, with that of threads that have ended."""
+    # The clock that clock_getcpuclockid(3) names; in ns, where /proc counts ticks of 10 ms.
+    return sum(time.clock_gettime((~pid << 3) | 2) for pid in pids)

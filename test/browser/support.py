@@ -26,8 +26,9 @@ CLEARING = f"""if (window.name === '{ANEW}') {{
   sessionStorage.clear();
 }}"""
 """Runs before the scripts of a page, and after the last of the page before it."""
-WEBGL_FLAGS = ("--use-angle=swiftshader", "--enable-unsafe-swiftshader")
-"""SwiftShader computes WebGL, and draws all of the page."""
+WEBGL_FLAGS = ("--use-angle=swiftshader", "--enable-unsafe-swiftshader",
+               "--disable-gpu-compositing")
+"""SwiftShader computes WebGL only: to compose the page as well would take twice as long."""
 WIDTH, HEIGHT = 1366, 768
 """A small laptop's screen."""
 
@@ -128,13 +129,16 @@ class Browser:
 
 
 class Editor:
-    """One page with the editor; `faults` are errors of its scripts."""
+    """One page with the editor; `faults` are errors of its scripts.
+
+    Its user has asked for less motion: a second of flight to a view costs that of processor.
+    """
 
     def __init__(self, browser, url, size=(WIDTH, HEIGHT), color_scheme="dark", wait=True,
-                 **options):
+                 motion="reduce", **options):
         self.context = browser.new_context(viewport={"width": size[0], "height": size[1]},
                                            color_scheme=color_scheme, accept_downloads=True,
-                                           **options)
+                                           reduced_motion=motion, **options)
         self.context.set_default_timeout(1000.0 * SECONDS)
         self.context.add_init_script(CLEARING)
         self.page = self.context.new_page()

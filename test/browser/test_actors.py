@@ -3,9 +3,18 @@ from __future__ import annotations
 
 import io
 
+import numpy as np
 import pytest
 from PIL import Image
 from support import wait_for
+from walking_figures import QUARTER, RAISED, STILL, animation, rod, swinging
+
+from my_simulations.description.actor import Actor, Animation, Trajectory, Waypoint
+from my_simulations.description.shapes import Mesh
+from my_simulations.geometry import Pose, quat_from_rpy
+from my_simulations.sensing.actors.figure_shape import FigureShape
+from my_simulations.sensing.api import Figure
+from my_simulations.sensing.poses import matrix
 
 HALF = 30
 """cm; the skin is a red cube about its own origin that shines, so that no light changes it."""
@@ -91,3 +100,104 @@ def test_a_missing_skin_is_told_once(editor):
     editor.get("editor.store.emit('document')")
     editor.rest()
     assert editor.get(told) == 1
+
+
+AWAY = STILL.replace("1 0 0 0", "1 0 0 50", 1)
+SKINS = {
+    "rod.dae": rod(), "swinging.dae": swinging(seconds=1.5),
+    "going.dae": rod(moves=animation((0.0, 1.0, 2.5), (STILL, AWAY, STILL), "lower")),
+    "mover.dae": rod(moves=animation((0.5, 1.7), (RAISED, QUARTER.replace("100", "300")))),
+}
+PATH = [Waypoint(0.0, Pose((1.0, 0.0, 0.0))),
+        Waypoint(2.0, Pose((1.0, 4.0, 0.5), quat_from_rpy(0.0, 0.3, 2.0)))]
+FIGURES = {
+    "still": Actor("still", Pose((0.0, 1.0, 0.0), quat_from_rpy(0.1, 0.2, 0.3)), "rod.dae", 0.5),
+    "swinging": Actor("swinging", Pose((3.0, 0.0, 0.0)), "swinging.dae"),
+    "late": Actor("late", Pose((3.0, 0.0, 0.0)), "swinging.dae", delay_start=1.0),
+    "never": Actor("never", Pose((3.0, 0.0, 0.0)), "swinging.dae", auto_start=False),
+    "going": Actor("going", Pose(), "going.dae"),
+    "walking": Actor("walking", Pose(), "going.dae", 1.5, trajectories=[
+        Trajectory(0, "walk", waypoints=PATH)]),
+    "borrowing": Actor("borrowing", Pose(), "swinging.dae",
+                       animations=[Animation("fall", "mover.dae")], loop=False,
+                       trajectories=[Trajectory(0, "fall", waypoints=PATH)]),
+    "vain": Actor("vain", Pose(), "swinging.dae", animations=[Animation("none", "rod.dae")]),
+}
+TIMES = (0.0, 0.4, 1.0, 1.6, 2.2, 3.9, 10.3)
+
+VERTICES = """async ({actor, times}) => {
+  const [{Figure}, {Meshes}, {sourceOf}] = await Promise.all(
+    ['actors', 'mesh_files', 'mesh_files'].map((name) => import(`/js/view/${name}.js`)));
+  const meshes = new Meshes((problem) => { throw new Error(problem); });
+  const figure = new Figure(actor);
+  figure.dress(await meshes.figure(sourceOf(actor.geometry)),
+    figure.foreign && await meshes.figure(figure.foreign));
+  return times.map((time) => {
+    figure.show(time);
+    figure.group.updateMatrixWorld(true);
+    const found = [];
+    figure.group.traverse((object) => {
+      if (!object.isMesh) return;
+      const at = object.position.clone();
+      for (let n = 0; n < object.geometry.attributes.position.count; n++) {
+        object.getVertexPosition(n, at).applyMatrix4(object.matrixWorld);
+        found.push([at.x, at.y, at.z]);
+      }
+    });
+    return found;
+  });
+}"""
+
+
+def element(actor):
+    """An actor as a world file has it."""
+    def pose(at):
+        roll_pitch_yaw = {
+            name: f"{x} {y} {z}" for name, (x, y, z) in {
+                "still": (0.1, 0.2, 0.3), "end": (0.0, 0.3, 2.0), "level": (0, 0, 0)}.items()}
+        turn = ("end" if at is PATH[1].pose else "still" if actor.name == "still" else "level")
+        return f"<pose>{' '.join(map(str, at.position))} {roll_pitch_yaw[turn]}</pose>"
+
+    points = "".join(f"<waypoint><time>{one.time}</time>{pose(one.pose)}</waypoint>"
+                     for one in PATH)
+    path = "".join(f"<trajectory id='{one.id}' type='{one.type}'>{points}</trajectory>"
+                   for one in actor.trajectories)
+    animations = "".join(f"<animation name='{one.name}'><filename>{one.filename}</filename>"
+                         "</animation>" for one in actor.animations)
+    return (f"<actor name='{actor.name}'>{pose(actor.pose)}<skin><filename>{actor.skin}</filename>"
+            f"<scale>{actor.skin_scale}</scale></skin>{animations}<script>"
+            f"<loop>{str(actor.loop).lower()}</loop><delay_start>{actor.delay_start}</delay_start>"
+            f"<auto_start>{str(actor.auto_start).lower()}</auto_start>{path}</script></actor>")
+
+
+def seen_by_cameras(folder, actor, time):
+    """The places of the vertices that cameras and rays see."""
+    animation = actor.animations[0].filename if actor.animations else ""
+    shape = FigureShape(Figure(actor, Mesh(actor.skin, str(folder / actor.skin),
+                                           (actor.skin_scale,) * 3),
+                               animation and str(folder / animation)), pytest.fail, "cameras")
+    frame = matrix(shape.pose_at(time))
+    return np.concatenate([rows[:, :3] @ frame[:3, :3].T + frame[:3, 3]
+                           for rows in shape.rows_at(shape.form_at(time))])
+
+
+def test_the_page_and_cameras_have_actors_in_the_same_shape_at_the_same_place(
+        launch, browser, tmp_path):
+    folder = tmp_path / "figures"
+    folder.mkdir()
+    for name, text in SKINS.items():
+        (folder / name).write_text(text)
+    (folder / "figures.world").write_text(
+        "<sdf version='1.6'><world name='figures'>"
+        + "".join(element(one) for one in FIGURES.values()) + "</world></sdf>")
+    page = browser.open(launch(str(folder / "figures.world")).url)
+    documents = {one["name"]: one for one in page.get("editor.store.document.actors")}
+    assert set(documents) == set(FIGURES)
+    for name, actor in FIGURES.items():
+        shown = page.page.evaluate(VERTICES, {"actor": documents[name], "times": TIMES})
+        for time, points in zip(TIMES, shown):
+            # Both have all corners; each of one is one of the other.
+            ours, theirs = seen_by_cameras(folder, actor, time), np.array(points)
+            apart = np.linalg.norm(ours[:, None] - theirs[None], axis=2)
+            assert max(apart.min(axis=0).max(), apart.min(axis=1).max()) < 1e-4, (name, time)
+    page.close()

@@ -169,12 +169,24 @@ def test_numbers_are_shown_while_dragging(open_page):
 
 
 def test_a_face_of_the_cube_is_a_view_and_home_comes_back(open_page):
-    editor = open_page("#select=box")  # no view: the page begins at its home
+    # No view: the page begins at its home.
+    editor = open_page("#select=box", motion="no-preference")
     home = editor.get("editor.view.camera")
     editor.page.get_by_role("group", name="Orientation").get_by_text("Top").dispatch_event("click")
     wait_for(lambda: editor.get("editor.view.camera.pitch") < -1.5, "the view from above")
     editor.page.keyboard.press("Home")
     wait_for(lambda: editor.get("editor.view.camera.position") == approx(home["position"]), "home")
+
+
+def test_the_camera_flies_unless_the_user_wants_less_motion(open_page):
+    editor = open_page.first
+    arrives_at_once = "(editor.actions.viewFrom('top'), editor.view.camera.pitch < -1.5)"
+    assert editor.get(arrives_at_once)
+    editor.page.keyboard.press("Home")
+    editor.page.emulate_media(reduced_motion="no-preference")
+    assert not editor.get(arrives_at_once)
+    wait_for(lambda: editor.get("editor.view.camera.pitch") < -1.5, "the view from above")
+    editor.page.emulate_media(reduced_motion="reduce")
 
 
 @pytest.mark.parametrize("place", ["menu", "row", "tool", "tab"])
@@ -193,17 +205,35 @@ def test_home_comes_back_from_wherever_the_mouse_was(open_page, place):
     editor.page.keyboard.press("Escape")
 
 
+def draw_after(editor, change):
+    """Waits for the first picture after a change; the page does, for it counts a moment only."""
+    editor.get(f"""(async () => {{
+        {change};
+        while (editor.view.fps === 0) await new Promise(requestAnimationFrame);
+    }})()""")
+
+
 def test_collisions_of_infinite_planes_are_not_laid_over_everything(open_page):
     editor = open_page.first
     assert "ground_plane" in editor.names()
     corner = {"x": 700, "y": 690, "width": 40, "height": 30}
     before = editor.settled_picture(corner)
-    # The page itself waits: a picture counts for a moment only.
-    editor.get("""(async () => {
-        editor.actions.toggleOverlay('collisions');
-        while (editor.view.fps === 0) await new Promise(requestAnimationFrame);
-    })()""")
+    draw_after(editor, "editor.actions.toggleOverlay('collisions')")
     assert editor.settled_picture(corner) == before
+
+
+def test_a_picture_without_new_shadows_is_as_large_as_one_with_them(open_page):
+    editor = open_page.first
+    editor.rest()
+    height = editor.get("document.querySelector('#view').clientHeight")
+    assert height % 2 == 1, "pictures at rest, drawn 1.5 times as large, have half a pixel more"
+    draw_after(editor, "editor.view.redraw()")
+    editor.rest()
+    drawn, there = editor.get("""(() => {
+        const canvas = document.querySelector('.view-canvas'), gl = canvas.getContext('webgl2');
+        return [[...gl.getParameter(gl.VIEWPORT)], [0, 0, canvas.width, canvas.height]];
+    })()""")
+    assert drawn == there
 
 
 def test_the_building_editor_has_the_window_and_shows_the_world_in_its_plan(open_page):

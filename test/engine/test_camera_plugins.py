@@ -8,6 +8,7 @@ import signal
 import numpy as np
 import pytest
 from plugin_case import PluginCase, kept, until
+from walking_figures import rod
 
 from my_simulations.description.world import World
 from my_simulations.engine.kinematic_backend import KinematicBackend
@@ -21,7 +22,8 @@ WORLD = """<sdf version="1.7"><world name="w">
   <visual name="v"><geometry><box><size>0.2 1 1</size></box></geometry>
     <material><script><name>Gazebo/Red</name></script></material></visual>
 </link></model>
-<model name="eyes"><static>1</static><link name="head">{sensors}</link></model></world></sdf>"""
+<model name="eyes"><static>1</static><link name="head">{sensors}</link></model>{more}
+</world></sdf>"""
 CAMERA = """<sensor name="cam" type="depth"><update_rate>{rate}</update_rate>
 <camera><horizontal_fov>1.2</horizontal_fov><image><width>160</width><height>120</height></image>
 <clip><near>0.05</near><far>20</far></clip></camera>
@@ -35,8 +37,8 @@ FOCAL = 80.0 / math.tan(0.6)
 
 
 class Case(PluginCase):
-    def __init__(self, sensors):
-        world, _ = read_any(WORLD.format(sensors=sensors), Resolver(), "test.world")
+    def __init__(self, sensors, more=""):
+        world, _ = read_any(WORLD.format(sensors=sensors, more=more), Resolver(), "test.world")
         assert isinstance(world, World)
         super().__init__(world, KinematicBackend)
 
@@ -145,3 +147,31 @@ def test_what_is_painted_anew_is_seen_anew(case):
     one.host.settle()
     seen = one.after(100, "cam/image_raw", 2)[1]
     assert pixels(seen, np.uint8)[60, 80].tolist() == [0, 0, 0]
+
+
+GPU_LASER = LASER.replace('name="laser" type="ray"', 'name="sight" type="gpu_ray"').replace(
+    "libgazebo_ros_laser.so", "libgazebo_ros_gpu_laser.so").replace("scan<", "sight<")
+WALK = """<road name="road"><width>0.4</width><point>0 -1 -0.5</point><point>9 -1 -0.5</point>
+<material><script><name>Gazebo/GreenGlow</name></script></material></road>
+<actor name="man"><skin><filename>{skin}</filename></skin><script><loop>0</loop>
+<trajectory id="0" type="walk"><waypoint><time>0</time><pose>1.1 0 -0.5 0 0 0</pose></waypoint>
+<waypoint><time>0.6</time><pose>1.7 0 -0.5 0 0 0</pose></waypoint></trajectory></script></actor>"""
+
+
+def test_cameras_and_gpu_lasers_see_an_actor_where_it_is_at_their_stamp_and_lasers_see_none(
+        case, tmp_path):
+    (tmp_path / "rod.dae").write_text(rod())
+    one = case(CAMERA.format(rate=10) + LASER + GPU_LASER, WALK.format(skin=tmp_path / "rod.dae"))
+    for n in range(1, 5):
+        one.after(100, "sight", n)
+        stamp = n * 100_000_000
+        near = 1.1 + 0.1 * n - 0.1   # of a rod of 20 cm, at 1 m/s
+        assert one.last("sight", stamp).ranges[10] == pytest.approx(near, abs=1e-4)
+        assert one.last("scan", stamp).ranges[10] == pytest.approx(2.0, abs=1e-4)
+        depth = pixels(one.last("cam/depth/image_raw", stamp), np.float32)[..., 0]
+        assert depth[60, 80] == pytest.approx(near, abs=2e-4)
+    rgb = pixels(one.graph.on("cam/image_raw")[0], np.uint8)
+    assert rgb[60, 80].tolist() == [255, 0, 0]
+    # 2 m ahead, 1 m to the right, 0.49 m down
+    at = round(59.5 + FOCAL * 0.49 / 2.0), round(79.5 + FOCAL * 1.0 / 2.0)
+    assert rgb[at][1] > 150 > 100 > max(rgb[at][0], rgb[at][2])

@@ -5,6 +5,7 @@ import math
 
 import numpy as np
 import pytest
+from walking_figures import rod
 
 import my_simulations
 from my_simulations.errors import CommandError
@@ -57,6 +58,29 @@ def test_the_same_world_gives_the_same_picture_after_a_reset(world):
     world.spawn(RED_BOX, pose=[2, 0, 0.5])
     again = world.render([0, -1, 1], look_at=[2, 0, 0.5])
     assert (again.rgb == first.rgb).all() and again.time == first.time == 0.0
+
+
+def test_an_actor_is_where_it_is_at_the_time_of_the_picture(tmp_path):
+    (tmp_path / "rod.dae").write_text(rod())
+    (tmp_path / "walk.world").write_text(
+        "<sdf version='1.6'><world name='w'><actor name='man'><skin><filename>rod.dae</filename>"
+        "</skin><script><loop>0</loop><trajectory id='0' type='walk'><waypoint><time>0</time>"
+        "<pose>0 -2 0 0 0 0</pose></waypoint><waypoint><time>2</time><pose>0 2 0 0 0 0</pose>"
+        "</waypoint></trajectory></script></actor></world></sdf>")
+    with my_simulations.open_world(str(tmp_path / "walk.world")) as world:
+        def column():
+            seen = world.render([-5, 0, 0.5], width=200, height=20, hfov=math.pi / 2)
+            red = (seen.rgb[10] == (255, 0, 0)).all(axis=1)
+            return seen.time, np.nonzero(red)[0].mean()
+
+        found = []
+        for _ in range(3):
+            found.append(column())
+            world.step(500)
+        for time, middle in found:
+            assert middle == pytest.approx(99.5 - 100.0 * (2.0 * time - 2.0) / 4.9, abs=1.2)
+        world.reset()
+        assert column() == found[0]
 
 
 @pytest.mark.parametrize(("change", "message"), [

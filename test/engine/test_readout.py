@@ -7,7 +7,7 @@ import pybullet
 from conftest import Lab, arm, ball, box, ground, inertial_of_box
 
 from my_simulations.description.model import JointAxis, Link, Model
-from my_simulations.engine.commands import Restart
+from my_simulations.engine.commands import JointMotor, Restart, SetMotors
 from my_simulations.geometry import Pose
 
 
@@ -73,6 +73,15 @@ def test_poses_are_read_only_when_something_may_have_moved(lab):
     lab.backend.step(0, 1)
     assert lab.backend.read_poses() and lab.backend.read()
     assert not lab.backend.read_poses()
+
+
+def test_a_motor_moves_nothing_before_the_next_step(lab):
+    model = lab.load(arm("revolute", JointAxis((0, 0, 1))))
+    lab.steps(1)
+    lab.apply(SetMotors((JointMotor(lab.joint_rows[model, "hinge"], 2.0, 100.0),)))
+    assert not lab.backend.read()
+    lab.backend.step(lab.step, 1)
+    assert lab.backend.read()
 
 
 def test_a_pose_that_is_no_number_is_put_back_also_when_only_poses_are_read(lab):

@@ -2,15 +2,27 @@
 from __future__ import annotations
 
 import json
+import logging
 import os
 import time
-from typing import Any, Callable, Dict
+import warnings
+from typing import Any, Callable, Dict, Iterator
 
 import pytest
 from proofs import IS_LONG
 
 RECORDS = "MY_SIMULATIONS_RELIABILITY"
 """Environment variable: file that gets a line of JSON for each proof."""
+
+
+@pytest.fixture
+def silent() -> Iterator[None]:
+    """No log lines and warnings: pytest keeps all of a test, which would count as its growth."""
+    logging.disable()
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        yield
+    logging.disable(logging.NOTSET)
 
 
 @pytest.fixture

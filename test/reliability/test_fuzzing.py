@@ -2,7 +2,6 @@
 from __future__ import annotations
 
 import asyncio
-import gc
 import json
 import os
 import threading
@@ -18,6 +17,7 @@ import yaml
 from building_plans import two_rooms
 from editor_case import Browser, Refused, arm, box, cases
 from grammars import changed, damaged, json_values, tree_of, words, xml
+from heap import memory
 from hypothesis import HealthCheck, given, seed, settings
 from hypothesis import strategies as st
 from proofs import allowance, per_second, scaled, spent
@@ -42,7 +42,7 @@ from my_simulations.objects.yaml_source import read_yaml
 from my_simulations.resources.resolver import Resolver
 from my_simulations.ros.endpoints import answering
 
-INPUTS = int(os.environ.get("MY_SIMULATIONS_FUZZ_INPUTS") or scaled(120, 20000))
+INPUTS = int(os.environ.get("MY_SIMULATIONS_FUZZ_INPUTS") or scaled(60, 20000))
 AT_ONCE = 1000
 LONGEST_S = 1.0
 """Processor time of one input, in seconds."""
@@ -85,12 +85,6 @@ def fuzz(strategy: Any, body: Callable[[Any], None]) -> Dict[str, Any]:
     assert worst < LONGEST_S
     return {"inputs": count, "per_second": per_second(count, start),
             "slowest_ms": round(1000 * worst)}
-
-
-def memory() -> int:
-    gc.collect()
-    with open("/proc/self/status", encoding="ascii") as stream:
-        return next(int(line.split()[1]) for line in stream if line.startswith("VmRSS:"))
 
 
 def read(text: str) -> None:
@@ -160,7 +154,7 @@ def test_meshes(record, tmp_path):
         except InputError as fault:
             assert fault.issues
             return
-        assert len(data.faces) and data.faces.max() < len(data.vertices)
+        assert len(data.triangles) and data.triangles.max() < len(data.vertices)
 
     load("")
     record("fuzzing: DAE", **fuzz(collada(), load))

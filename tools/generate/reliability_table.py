@@ -21,16 +21,23 @@ TESTS = PAGE.parents[1] / "test"
 
 
 def rows(records: List[Dict[str, Any]], before: str = "") -> str:
-    """A table of the last record of each proof; of others the rows of the table `before`."""
-    lines = {line.split(" | ")[0][2:]: line for line in before.splitlines()[2:] if _has_test(line)}
+    """A table of the last record of each proof; of others the rows of the table `before`.
+
+    A line below it adds up the inputs of all proofs that make some.
+    """
+    lines = {line.split(" | ")[0][2:]: line for line in before.splitlines()[2:]
+             if line.startswith("| ") and _has_test(line)}
     for record in records:
         figures = ", ".join(f"{name.replace('_', ' ')} {value}"
                             for name, value in record["figures"].items())
         test = record["test"].replace("test/reliability/", "")
         lines[record["proof"]] = (
             f"| {record['proof']} | {figures} | {record['seconds']} s | `{test}` |")
+    inputs = [int(found.group(1)) for line in lines.values()
+              if (found := re.search(r"\binputs (\d+)", line))]
+    total = f"Inputs in all: {sum(inputs)}, of {len(inputs)} proofs."
     return "\n".join(["| proof | figures | took | test |", "|---|---|---|---|",
-                      *(lines[proof] for proof in sorted(lines))])
+                      *(lines[proof] for proof in sorted(lines)), *(["", total] if inputs else [])])
 
 
 def _has_test(line: str) -> bool:

@@ -11,6 +11,7 @@ from dataclasses import MISSING, asdict, fields
 from typing import Any, Callable, Dict, List, Optional, Tuple, Type, Union
 
 from ..errors import InputError, Issue, error
+from ..geometry import is_finite_number
 from ..xml_characters import forbidden_character
 from .building_plan import Floor, FloorImage, Level, Opening, Plan, Roof, Stairs, Wall
 
@@ -35,7 +36,7 @@ Kind = Callable[[Any], Any]
 
 
 def _number(value: Any) -> float:
-    if isinstance(value, bool) or not isinstance(value, (int, float)) or not math.isfinite(value):
+    if not is_finite_number(value):
         raise _UnexpectedValueError("a number")
     if abs(value) > FARTHEST:
         raise _UnexpectedValueError(f"a number within {FARTHEST:g}")
@@ -166,7 +167,7 @@ def plan_from_text(text: Union[str, bytes], file: str = "") -> Plan:
         raise InputError([error("plan-not-json", "the plan is not valid JSON: "
                                                  f"{fault.msg}", file=file,
                                 line=fault.lineno, column=fault.colno)]) from None
-    except (UnicodeDecodeError, RecursionError) as fault:
+    except (ValueError, RecursionError) as fault:  # no UTF-8; an integer without an end
         raise InputError([error("plan-not-json", f"the plan is not valid JSON: {fault}",
                                 file=file)]) from None
     return plan_from_json(tree, file)

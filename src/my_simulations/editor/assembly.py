@@ -41,6 +41,7 @@ class Assembly:
     Attributes:
         application: serves pages and sockets.
         routes: the handlers of messages, by type.
+        sockets: what they come through.
 
     Raises:
         CommandError: the page is not installed.
@@ -71,10 +72,10 @@ class Assembly:
             **Watching(self.hub, self._topics.live).routes(), **self._topics.routes(),
             **BuildingRequests(self.hub, library, self._pool, self._files).routes(),
         }
-        sockets = Sockets(self.hub, self.routes, self._leave, options.check_outgoing)
+        self.sockets = Sockets(self.hub, self.routes, self._leave, options.check_outgoing)
         self.application = web.Application(middlewares=[guard.middleware],
                                            client_max_size=protocol.limits["upload_bytes"])
-        self.application.add_routes([web.get("/ws", sockets.serve), *pages.routes()])
+        self.application.add_routes([web.get("/ws", self.sockets.serve), *pages.routes()])
         self._tasks: "List[asyncio.Future[Any]]" = []
 
     def start(self) -> None:

@@ -45,6 +45,7 @@ SIZE = _PAGE + (SLOTS + POSE_SLOTS) * _SLOT_WORDS * 8
 # Words of the control page. The first group is the engine's, the second the simulator's.
 (STEP, LATEST, HEARTBEAT, STATUS, LATEST_POSES, POSES_ARE_NEWER, PROGRESS, CLOCK_SETS) = range(8)
 DEMAND_NS, BELL, POSE_DEMAND_NS = 8, 9, 10
+HELD_STEP = 11   # the engine's: the step at which nothing had moved since the newest slot; or 0
 CREDITS, CONSUMERS = 16, 8   # the first credit word, and how many there are
 
 NO_LIMIT = 1 << 62
@@ -195,6 +196,7 @@ class RingWriter:
         the commands have been carried out.
         """
         sequence = self.words[LATEST] + 1
+        self.words[HELD_STEP] = 0
         self.words[self.memory.slot(sequence) + APPLIED] = 0  # until the rest is whole
         self._fill(self.memory.slot(sequence), sequence, step, clock, links, joints)
         self.words[self.memory.slot(sequence) + APPLIED] = applied
@@ -206,10 +208,15 @@ class RingWriter:
     def write_poses(self, step: int, clock: Clock, links: Buffer) -> None:
         """Write where the links are; their twists, and the joints, may be older."""
         number = self.words[LATEST_POSES] + 1
+        self.words[HELD_STEP] = 0
         self._fill(self.memory.pose_slot(number), number, step, clock, links, b"")
         self.words[LATEST_POSES] = number
         self.words[POSES_ARE_NEWER] = 1
         self.words[STEP] = step
+
+    def hold(self, step: int) -> None:
+        """Nothing has moved from what was written last until this step."""
+        self.words[HELD_STEP] = step
 
     def _fill(self, slot: int, number: int, step: int, clock: Clock, links: Buffer,
               joints: Buffer) -> None:
@@ -265,10 +272,8 @@ class RingReader:
         while True:
             sequence = self.words[LATEST]
             slot = self.memory.slot(sequence)
-            words = self.words
-            clock = Clock(words[slot + EPOCH_STEP], words[slot + EPOCH_NS], words[slot + STEP_PS])
-            step = words[STEP]
-            if words[LATEST] == sequence:
+            clock, step = self._clock_of(slot), self.words[STEP]
+            if self.words[LATEST] == sequence:
                 return step, clock
 
     def clock_now(self) -> "tuple[int, int, Clock]":
@@ -308,15 +313,27 @@ class RingReader:
             if self._is_whole(slot, sequence):
                 return sequence, links
 
-    def raw_poses(self) -> bytes:
-        """The used link rows, poses of the newest kind; the twists in them may be older."""
-        while self.words[POSES_ARE_NEWER]:
-            number = self.words[LATEST_POSES]
-            slot = self.memory.pose_slot(number)
+    def raw_poses(self) -> "tuple[int, Clock, bytes]":
+        """The used link rows, poses of the newest kind; the twists in them may be older.
+
+        Returns:
+            The step at which they were so (the last one at which they are known to have been),
+            the clock that belongs to it, and the rows.
+        """
+        while True:
+            # Before the slot: if that is newer than this step, its own step is greater.
+            held = self.words[HELD_STEP]
+            newer = self.words[POSES_ARE_NEWER]
+            number = self.words[LATEST_POSES if newer else LATEST]
+            slot = self.memory.pose_slot(number) if newer else self.memory.slot(number)
+            step, clock = self.words[slot + SLOT_STEP], self._clock_of(slot)
             links = self._links_of(slot)
             if self._is_whole(slot, number):
-                return links
-        return self.raw_links()[1]
+                return max(step, held), clock, links
+
+    def _clock_of(self, slot: int) -> Clock:
+        words = self.words
+        return Clock(words[slot + EPOCH_STEP], words[slot + EPOCH_NS], words[slot + STEP_PS])
 
     def _links_of(self, slot: int) -> bytes:
         at = (slot + HEAD_WORDS) * 8

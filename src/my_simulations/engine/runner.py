@@ -335,6 +335,8 @@ class Runner:
             self._posed_at = max(self._posed_at + poses * 1e-9, now - _MAKE_UP_S)
             if self._backend.read_poses():
                 self._writer.write_poses(self._step, self._clock, self._backend.tables()[0])
+            else:
+                self._writer.hold(self._step)
             self._report_events()
         if self._words[BELL] and now - self._rung_at >= 0.0005:
             self._rung_at = now
@@ -345,6 +347,7 @@ class Runner:
         self._words[STATUS] = STATUS_RUNNING if self._moving else STATUS_PAUSED
         changed = self._backend.read()
         if not (changed or force):
+            self._writer.hold(self._step)
             return self._words[LATEST]
         links, joints = self._backend.tables()
         sequence = self._writer.write(self._step, self._clock, links, joints, self._applied)

@@ -13,6 +13,9 @@ MOST_VALUES = 100_000
 LARGEST = 8 << 20
 """Largest file in bytes."""
 
+_LONGEST_NUMBER = 1000
+"""Characters; to read millions of digits, or to write them in a message, would take hours."""
+
 
 class GuardedLoader(yaml.SafeLoader):
     """Raises yaml.MarkedYAMLError, with line and column, for all that it does not accept.
@@ -70,6 +73,9 @@ class GuardedLoader(yaml.SafeLoader):
         if bad:
             raise _fault(f"text contains the character {bad}, which an XML file cannot hold",
                          node.start_mark)
+        if (isinstance(node, yaml.ScalarNode) and len(node.value) > _LONGEST_NUMBER
+                and node.tag.endswith((":int", ":float"))):
+            raise _fault(f"a number of more than {_LONGEST_NUMBER} characters", node.start_mark)
         try:
             return super().construct_object(node, deep)
         except (ValueError, ArithmeticError, LookupError, TypeError,

@@ -1,8 +1,10 @@
 """What a `<plugin>` element says: its children, by name and type."""
 from __future__ import annotations
 
+import math
 from typing import Any, Callable, List, Mapping, Optional, Tuple, TypeVar
 
+from ..description.model import INFINITE
 from ..geometry import IDENTITY_QUAT, Quat, Vec3, quat_from_rpy
 
 T = TypeVar("T")
@@ -52,12 +54,16 @@ class Parameters:
         return str(self._root.get(name, default))
 
     def number(self, name: str, default: float) -> float:
-        """A number."""
-        return self._read(name, default, float, "a number")
+        """A number; one beyond SDF's "no limit", +-1e16, or infinite, is that."""
+        return self._read(name, default, _number, "a number")
+
+    def positive(self, name: str, default: float) -> float:
+        """A number above 0, of what is divided by; at least a billionth."""
+        return self._read(name, default, _positive, "a number above 0")
 
     def integer(self, name: str, default: int) -> int:
         """A whole number."""
-        return self._read(name, default, lambda text: int(float(text)), "a whole number")
+        return self._read(name, default, lambda text: int(_number(text)), "a whole number")
 
     def flag(self, name: str, default: bool) -> bool:
         """true or false, 1 or 0, in any letters."""
@@ -88,8 +94,22 @@ class Parameters:
             return default
 
 
+def _number(text: str) -> float:
+    value = float(text)
+    if math.isnan(value):
+        raise ValueError
+    return max(-INFINITE, min(INFINITE, value))
+
+
+def _positive(text: str) -> float:
+    value = _number(text)
+    if value < 1e-9:
+        raise ValueError
+    return value
+
+
 def _three(text: str) -> Tuple[float, float, float]:
-    x, y, z = map(float, text.split())
+    x, y, z = map(_number, text.split())
     return (x, y, z)
 
 

@@ -75,7 +75,7 @@ class SensingRequests:
              call: Callable[[RayReturns, int], None], ns: int) -> None:
         """Cast rays, after the answer to those before has been handed over."""
         self._end_scan(self._scan)
-        scan = self._scan = _Scan(self._scene.cast(mount, fan, visuals), call, ns)
+        scan = self._scan = _Scan(self._scene.cast(mount, fan, visuals, ns), call, ns)
         scan.future.add_done_callback(lambda _: self._hear(lambda: self._end_scan(scan)))
 
     def _hear(self, call: Callable[[], None]) -> None:
@@ -127,7 +127,8 @@ class SensingRequests:
             if stream not in self._shots or not self._shots[stream].first:
                 self._leave_out()
             return False
-        futures = self._scene.render([(mount, view.camera, view.outputs) for mount, view in views])
+        futures = self._scene.render(
+            [(mount, view.camera, view.outputs) for mount, view in views], ns)
         first = not (wait or stream in self._warm)
         shot = self._shots[stream] = _Shot(futures, _ignore if first else call, ns, stream, first)
 

@@ -98,8 +98,8 @@ class Photographer:
         checked_camera(camera, outputs)
         row, offset = self._simulator.states.mounting(frame)
         mount = Mount(row, compose(offset, pose))
-        time = self._simulator.clock.sim_ns * 1e-9
-        (future,) = self._scene.render([(mount, camera, tuple(outputs))])
+        ns = self._simulator.clock.sim_ns
+        (future,) = self._scene.render([(mount, camera, tuple(outputs))], ns)
         try:
             found = future.result(_PATIENCE_S)
         except SensingError as fault:
@@ -108,7 +108,7 @@ class Photographer:
             raise CommandError(f"no picture within {_PATIENCE_S:g} s") from fault
         numbers, names = self._links()
         labels = None if found.labels is None else _numbered(found.labels, numbers)
-        return Picture(time, found.rgb, found.depth, labels, names)
+        return Picture(ns * 1e-9, found.rgb, found.depth, labels, names)
 
     def _links(self) -> Tuple[Dict[int, int], Tuple[str, ...]]:
         """Numbers of links in the order of `names`, by row; and the names."""

@@ -18,6 +18,7 @@ from typing import Any, Callable, Deque, Dict, List, Optional
 
 import rospy
 from rospy.exceptions import TransportTerminated
+from rospy.impl.tcpros_pubsub import QueuedConnection
 from rospy.impl.transport import Transport
 
 _LOOK_S = 0.1   # between two looks for connections that were closed
@@ -136,20 +137,24 @@ class _Writer:
 _WRITER = _Writer()
 
 
-def direct(publisher: rospy.Publisher) -> Callable[[Any], None]:
-    """Have a publisher write at once; returns what publishes a message of its type.
+class _Ended:
+    """Stands for the transport of a `QueuedConnection` whose thread is to end."""
 
-    Raises rospy.ROSException, from that, once the publisher is closed.
+    done = True
+
+
+def direct(publisher: rospy.Publisher) -> Callable[[Any], None]:
+    """Have a publisher that has published nothing yet write at once.
+
+    Returns:
+        What publishes a message of its type; raises rospy.ROSException once the publisher is
+        closed.
     """
     implementation = publisher.impl
-    if "add_connection" not in vars(implementation):  # else another publisher of the topic has
-        most, add = implementation.queue_size or 0, implementation.add_connection
-
-        def add_connection(transport: Transport) -> bool:
-            return bool(add(DirectConnection(transport, most)))
-
-        implementation.add_connection = add_connection
+    most = implementation.queue_size or 0
     implementation.set_queue_size(None)
+    if "add_connection" not in vars(implementation):  # else another publisher of the topic has
+        _connect_directly(implementation, most)
 
     buffer = BytesIO()
 
@@ -166,6 +171,34 @@ def direct(publisher: rospy.Publisher) -> Callable[[Any], None]:
                 implementation.message_data_sent += len(data)
                 _send(data, implementation.connections)
     return publish
+
+
+def _connect_directly(implementation: Any, most: int) -> None:
+    """Wrap the connections of a topic's publishers, those to come and those that are there.
+
+    Subscribers that wait for a topic, as all nodes of a launch file for /clock, come as soon as its
+    publisher is registered.
+    """
+    add = implementation.add_connection
+
+    def add_connection(transport: Transport) -> bool:
+        return bool(add(DirectConnection(transport, most)))
+
+    implementation.add_connection = add_connection
+    with implementation.c_lock:
+        implementation.connections = [DirectConnection(_without_thread(one), most)
+                                      for one in implementation.connections]
+
+
+def _without_thread(connection: Any) -> Any:
+    """The transport of a connection on which nothing was sent; the thread of its queue ends."""
+    if not isinstance(connection, QueuedConnection):
+        return connection
+    transport = connection._connection
+    with connection._lock:
+        connection._connection = _Ended()
+        connection._cond_data_available.notify()
+    return transport
 
 
 def _packed(buffer: BytesIO, message: Any, number: int) -> bytes:

@@ -13,9 +13,11 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Callable, Dict, List, Optional, Protocol, Tuple, Union
 
 from ..appearance.looks import Look
+from ..description.actor import Actor
 from ..description.light import Light
 from ..description.model import Model
-from ..description.surroundings import Scene
+from ..description.shapes import Mesh
+from ..description.surroundings import Road, Scene
 from ..errors import SimulationError
 from ..geometry import IDENTITY, Pose
 
@@ -160,12 +162,16 @@ class Mount:
 
 @dataclass(frozen=True)
 class CastRays:
-    """Ask for ranges. Answered with `RayReturns`."""
+    """Ask for ranges. Answered with `RayReturns`.
+
+    `ns`: sim time of the state, where actors are taken from.
+    """
 
     mount: Mount
     rays: Union[RayFan, RayBundle]
     sees: str = COLLISIONS
     at: At = None
+    ns: int = 0
 
 
 @dataclass(frozen=True)
@@ -181,12 +187,16 @@ class CastBatch:
 
 @dataclass(frozen=True)
 class RenderCamera:
-    """Ask for pictures of one moment. Answered with `Pictures`."""
+    """Ask for pictures of one moment. Answered with `Pictures`.
+
+    `ns`: sim time of the state, where actors are taken from.
+    """
 
     mount: Mount
     camera: CameraSpec
     outputs: Tuple[str, ...] = (RGB,)
     at: At = None
+    ns: int = 0
 
 
 @dataclass(frozen=True)
@@ -255,12 +265,44 @@ class Body:
 
 
 @dataclass(frozen=True)
+class PaintedRoad:
+    """A road, and what it looks like."""
+
+    road: Road
+    look: Look
+
+
+@dataclass(frozen=True)
+class Figure:
+    """An actor, and the files that it is made of.
+
+    Attributes:
+        actor: where it goes.
+        skin: its surface.
+        animation: path of the file that moves its limbs; "" for the skin's own.
+    """
+
+    actor: Actor
+    skin: Mesh
+    animation: str = ""
+
+
+@dataclass(frozen=True)
+class SetScenery:
+    """These are the roads and actors now: what belongs to no model, and cameras and rays see."""
+
+    roads: Tuple[PaintedRoad, ...] = ()
+    figures: Tuple[Figure, ...] = ()
+
+
+@dataclass(frozen=True)
 class LoadScene:
     """Everything there is to see; replaces what there was."""
 
     bodies: List[Body] = field(default_factory=list)
     lights: List[Light] = field(default_factory=list)
     scene: Scene = field(default_factory=Scene)
+    scenery: SetScenery = SetScenery()
 
 
 @dataclass(frozen=True)
@@ -285,7 +327,7 @@ class SetLights:
     scene: Scene = field(default_factory=Scene)
 
 
-Change = Union[LoadScene, AddBody, RemoveBody, SetLights]
+Change = Union[LoadScene, AddBody, RemoveBody, SetLights, SetScenery]
 Request = Union[CastRays, CastBatch, RenderCamera]
 
 

@@ -68,3 +68,11 @@ def matrix(pose: Pose) -> np.ndarray:
     made: np.ndarray = matrices(np.array([[*pose.position, *pose.orientation]]))[0]
     made.flags.writeable = False
     return made
+
+
+def inverse(frame: np.ndarray) -> np.ndarray:
+    """Of a rigid transform, (4, 4)."""
+    made = np.eye(4)
+    made[:3, :3] = frame[:3, :3].T
+    made[:3, 3] = -frame[:3, :3].T @ frame[:3, 3]
+    return made

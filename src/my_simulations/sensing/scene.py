@@ -1,16 +1,34 @@
-"""What there is to see: bodies by name, lights, surroundings; kept on both sides of the pipe."""
+"""What there is to see: bodies by name, lights, surroundings, scenery; known on both sides."""
 from __future__ import annotations
 
 from typing import TYPE_CHECKING, Dict, List, Tuple
 
 from ..appearance.looks import Look
+from ..description.actor import Actor
 from ..description.light import Light
 from ..description.model import Model
+from ..description.shapes import Mesh
 from ..description.surroundings import Scene
-from .api import AddBody, Body, Change, LoadScene, RemoveBody, SetLights
+from ..description.world import World
+from ..resources.resolver import ResourceNotFoundError
+from .api import (
+    AddBody,
+    Body,
+    Change,
+    Figure,
+    LoadScene,
+    PaintedRoad,
+    RemoveBody,
+    SetLights,
+    SetScenery,
+)
 
 if TYPE_CHECKING:
     from ..appearance.materials import Materials
+    from ..resources.resolver import Resolver
+
+_LOADED = (".dae", ".stl", ".stla", ".stlb", ".obj", ".glb", ".gltf")
+"""What the editor's page reads; of them only COLLADA has animations."""
 
 
 def body(name: str, model: Model, first_link_row: int, materials: "Materials") -> Body:
@@ -24,6 +42,28 @@ def body(name: str, model: Model, first_link_row: int, materials: "Materials") -
     return Body(name, model, first_link_row, looks)
 
 
+def scenery(world: World, materials: "Materials", resolver: "Resolver") -> SetScenery:
+    """Roads with their materials resolved, and actors with their files found."""
+    return SetScenery(
+        tuple(PaintedRoad(road, materials.look(road.material) or Look(pattern="road"))
+              for road in world.roads),
+        tuple(_figure(actor, resolver) for actor in world.actors))
+
+
+def _figure(actor: Actor, resolver: "Resolver") -> Figure:
+    """The page's rule: the first animation counts, of another COLLADA file than the skin."""
+    def path_of(uri: str) -> str:
+        try:
+            return resolver.resolve(uri, actor.base_dir) if uri else ""
+        except ResourceNotFoundError:
+            return ""
+
+    skin = Mesh(actor.skin, path_of(actor.skin), (actor.skin_scale,) * 3)
+    animation = path_of(actor.animations[0].filename) if actor.animations else ""
+    foreign = animation.lower().endswith(_LOADED) and animation != skin.path
+    return Figure(actor, skin, animation if foreign else "")
+
+
 class SceneState:
     """Changes, summed up."""
 
@@ -31,6 +71,7 @@ class SceneState:
         self.bodies: Dict[str, Body] = {}
         self.lights: List[Light] = []
         self.scene = Scene()
+        self.scenery = SetScenery()
 
     def apply(self, change: Change) -> None:
         """Take a change in."""
@@ -40,10 +81,13 @@ class SceneState:
             self.bodies.pop(change.name, None)
         elif isinstance(change, SetLights):
             self.lights, self.scene = change.lights, change.scene
+        elif isinstance(change, SetScenery):
+            self.scenery = change
         else:
             self.bodies = {one.name: one for one in change.bodies}
             self.lights, self.scene = change.lights, change.scene
+            self.scenery = change.scenery
 
     def whole(self) -> LoadScene:
         """The one change that makes this of nothing."""
-        return LoadScene(list(self.bodies.values()), self.lights, self.scene)
+        return LoadScene(list(self.bodies.values()), self.lights, self.scene, self.scenery)

@@ -15,6 +15,7 @@ from .api import (
     COLLISIONS,
     READY,
     TROUBLE,
+    VISUALS,
     WORLD_ROW,
     At,
     Body,
@@ -80,7 +81,8 @@ class Service:
         if self._ring is None:
             raise SensingError("this simulation has no shared states: requests must bring rows")
         if at is None:
-            return rows_of(self._ring.raw_poses()), self._ring.step
+            step, _, rows = self._ring.raw_poses()
+            return rows_of(rows), step
         found = self._ring.earlier_links(at)
         if found is None:
             raise SnapshotGoneError(f"state {at} is gone, the simulation runs too far ahead")
@@ -160,6 +162,8 @@ class _Rays:
             for name, body in self._world.bodies.items():
                 if before.get(name) is not body:
                     self._add(scene, sees, body)
+            if sees == VISUALS:
+                scene.set_scenery(self._world.scenery)
 
     def answer(self, request: Union[CastRays, CastBatch],
                state: State) -> Union[RayReturns, List[Union[RayReturns, SensingError]]]:
@@ -183,7 +187,7 @@ class _Rays:
             origins = np.asarray(rays.origins, dtype=np.float64) @ frame[:3, :3].T + frame[:3, 3]
         else:
             directions, origins = self._fan(rays), frame[:3, 3]
-        scene.move(poses)
+        scene.move(poses, request.ns)
         if not len(directions):
             return RayReturns(np.zeros(0), np.zeros(0, np.float32), np.zeros(0, np.int32), step)
         ranges, retro, rows = scene.cast(origins, directions @ frame[:3, :3].T, rays.near,
@@ -208,6 +212,8 @@ class _Rays:
         scene = self._scenes[sees] = RayScene(self._embree, self._trouble)
         for body in self._world.bodies.values():
             self._add(scene, sees, body)
+        if sees == VISUALS:
+            scene.set_scenery(self._world.scenery)
         return scene
 
     @staticmethod
@@ -247,6 +253,7 @@ class _Camera:
             if before.get(name) is not body:
                 self._renderer.add(body)
         self._renderer.set_lights(self._world.lights, self._world.scene)
+        self._renderer.set_scenery(self._world.scenery)
 
     def answer(self, request: RenderCamera, state: State) -> Pictures:
         if self._renderer is None:
@@ -256,10 +263,11 @@ class _Camera:
             for body in self._world.bodies.values():
                 self._renderer.add(body)
             self._renderer.set_lights(self._world.lights, self._world.scene)
+            self._renderer.set_scenery(self._world.scenery)
         poses, step = state
         frame = sensor_frame(request.mount, poses)
         pictures: Pictures = self._renderer.render(request.camera, frame, poses, request.outputs,
-                                                   step)
+                                                   step, request.ns)
         return pictures
 
 

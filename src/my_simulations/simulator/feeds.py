@@ -3,7 +3,7 @@ from __future__ import annotations
 
 from typing import Dict, Optional, Tuple
 
-from ..engine.ring import BELL, DEMAND_NS, LINK_WIDTH, POSE_DEMAND_NS
+from ..engine.ring import BELL, DEMAND_NS, LINK_WIDTH, POSE_DEMAND_NS, Clock
 from .row_layout import RowLayout, layout_of
 from .session import Session
 
@@ -52,10 +52,13 @@ class StateFeed:
         """Step and rows of an earlier snapshot; None if it was overwritten."""
         return self._session.ring.earlier_links(sequence)
 
-    def poses(self) -> Tuple[RowLayout, bytes]:
-        """The layout, and rows as in `states`, of which only the poses are current."""
+    def poses(self) -> Tuple[RowLayout, int, Clock, bytes]:
+        """The layout, and rows as in `states`, of which only the poses are current.
+
+        Between them the step at which links were there, and the clock that belongs to it.
+        """
         with self._session.registry_lock:
-            return self._current_layout(), self._session.ring.raw_poses()
+            return (self._current_layout(), *self._session.ring.raw_poses())
 
     @property
     def latest(self) -> int:

@@ -49,20 +49,30 @@ class SceneSensing:
         self._known: Dict[str, Entity] = {}
         self._revision = -1
         self._surroundings: Tuple[Any, ...] = ()
+        self._scenery: Tuple[List[Any], List[Any]] = ([], [])
+        self._resolver: Any = None
 
-    def cast(self, mount: Mount, fan: RayFan, visuals: bool) -> "Future[RayReturns]":
-        """Ranges as of now, once `send` is called. `visuals`: rays see what is drawn, else what
-        collides.
+    def cast(self, mount: Mount, fan: RayFan, visuals: bool, ns: int) -> "Future[RayReturns]":
+        """Ranges as of now, once `send` is called.
 
         What several sensors ask for in one moment travels as one request.
+
+        Args:
+            mount: where the sensor is.
+            fan: its rays.
+            visuals: they see what is drawn, else what collides.
+            ns: sim time, now.
         """
         self._running()
+        if visuals:
+            self._tell_scenery()
         now = self._now()
         future: "Future[RayReturns]" = Future()
         if now != self._cast_at:
             self.send()
             self._cast_at = now
-        self._casts.append((CastRays(mount, fan, VISUALS if visuals else COLLISIONS), future))
+        self._casts.append((CastRays(mount, fan, VISUALS if visuals else COLLISIONS, ns=ns),
+                            future))
         return future
 
     def send(self) -> None:
@@ -74,11 +84,12 @@ class SceneSensing:
         batch = CastBatch(tuple(cast for cast, _ in casts), self._cast_at)
         self._running().cast_all(batch).add_done_callback(lambda done: _hand_out(done, futures))
 
-    def render(self, shots: Sequence[Shot]) -> "List[Future[Pictures]]":
-        """Pictures as of now, one of each shot."""
+    def render(self, shots: Sequence[Shot], ns: int) -> "List[Future[Pictures]]":
+        """Pictures as of now, one of each shot; `ns`: sim time, now."""
         process, now = self._running(), self._now()
         self._tell_surroundings()
-        return [process.render(RenderCamera(mount, camera, outputs, now))
+        self._tell_scenery()
+        return [process.render(RenderCamera(mount, camera, outputs, now, ns))
                 for mount, camera, outputs in shots]
 
     def _now(self) -> bytes:
@@ -97,7 +108,7 @@ class SceneSensing:
             from ..resources.resolver import Resolver
             from ..sensing.process import SensingProcess
 
-            resolver = Resolver.from_environment()
+            resolver = self._resolver = Resolver.from_environment()
             self._materials = Materials(resolver, TextureFiles(resolver))
             process = self._process = SensingProcess()
             process.on_trouble(lambda text: self._log(warning("sensing", text)))
@@ -128,6 +139,18 @@ class SceneSensing:
                 or self._surroundings[1] is not scene:
             self._surroundings = (lights, scene)
             self._process.change(SetLights(list(lights), scene))
+
+    def _tell_scenery(self) -> None:
+        """Roads and actors, where others are in the world than before."""
+        world = self._simulator.world
+        if self._scenery[0] is world.roads and self._scenery[1] is world.actors:
+            return
+        before, self._scenery = self._scenery, (world.roads, world.actors)
+        if any((*before, *self._scenery)):
+            from ..sensing.scene import scenery
+
+            assert self._process is not None
+            self._process.change(scenery(world, self._materials, self._resolver))
 
 
 def _hand_out(done: "Future[List[Union[RayReturns, SensingError]]]",

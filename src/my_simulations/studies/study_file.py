@@ -182,10 +182,11 @@ class StudyReader(ValueReader):
     def _expressions(self, top: Mapping[str, Any], key: str, conditions: bool = False
                      ) -> Tuple[Tuple[str, Expression], ...]:
         found = []
+        varied = top.get("vary")
         for name, text in self.mapping(top.get(key), (key,)).items():
             path = (key, name)
             name_of_column(self, name, path)
-            if name in (top.get("vary") or ()):
+            if isinstance(varied, Mapping) and name in varied:
                 self.fault(path, f"'{name}' is varied, too; use another name", code="study-key")
             try:
                 expression = parse(self.text(text, path) or "0 == 0")

@@ -6,6 +6,7 @@ import math
 from typing import Any, Dict, List, Mapping, Sequence, Tuple
 
 from ..errors import Issue, error
+from ..geometry import is_finite_number
 from ..objects.yaml_source import KeyPath, Source
 from ..resources.resolver import Resolver, ResourceNotFoundError
 from ..resources.world_lookup import advice_on, find_world
@@ -54,8 +55,7 @@ class ValueReader:
     def number(self, value: Any, path: KeyPath, *, least: float = -math.inf,
                most: float = math.inf, above: float = -math.inf) -> float:
         """A finite number in a range."""
-        if isinstance(value, bool) or not isinstance(value, (int, float)) \
-                or not math.isfinite(value):
+        if not is_finite_number(value):
             self.fault(path, f"'{_shown(path)}' must be a number, is {kind_of(value)}")
         elif not least <= value <= most or value <= above:
             bounds = f"above {above:g}" if above > -math.inf else f"at least {least:g}"

@@ -45,6 +45,7 @@ def test_numbers_are_not_used_twice_even_after_the_last_item_is_gone():
     (("levels", 0, "walls", 3, "start"), [0], "levels[0].walls[3].start"),
     (("levels", 0, "walls", 0, "height"), 0, "levels[0].walls[0].height"),
     (("levels", 0, "walls", 0, "height"), float("nan"), "levels[0].walls[0].height"),
+    (("levels", 0, "walls", 0, "height"), 10 ** 400, "levels[0].walls[0].height"),
     (("levels", 0, "walls", 0, "thickness"), 1e9, "levels[0].walls[0].thickness"),
     (("levels", 0, "walls", 0, "color"), "red", "levels[0].walls[0].color"),
     (("levels", 0, "walls", 0, "id"), -1, "levels[0].walls[0].id"),
@@ -84,7 +85,8 @@ def test_two_walls_of_one_number_are_refused():
     assert [issue.code for issue in faults(tree)] == ["plan-id-repeated"]
 
 
-@pytest.mark.parametrize("text", [b"", b"{", b"\xff\xfe\x00", b"[1, 2]", b"null", b"[" * 100000])
+@pytest.mark.parametrize("text", [b"", b"{", b"\xff\xfe\x00", b"[1, 2]", b"null", b"[" * 100000,
+                                  b'{"format": ' + b"9" * 5000 + b"}"])
 def test_a_text_that_is_no_plan_is_refused(text):
     with pytest.raises(InputError):
         plan_from_text(text, "building.json")

@@ -194,6 +194,7 @@ def test_the_frames_layout_is_that_of_the_file(data):
 
 @pytest.mark.parametrize("value, expected", [
     (1, "string"), ("x", "number"), (float("nan"), "number"), (True, "number"), (1.5, "integer"),
+    (10 ** 400, "number"), (10 ** 400, "integer"),
     (True, "integer"), (1, "boolean"), ([], "object"), ([1, 2], "vec3"), ([1, 2, "x"], "vec3"),
     ("x", "vec3"), ({"a": [1]}, "{vec3}"), ([], "{vec3}"), ("x", "'a'|'b'"), (None, "string"),
     ({"url": None, "pattern": None, "scale": [1, 1], "more": 1}, "Texture"),
@@ -204,6 +205,10 @@ def test_the_frames_layout_is_that_of_the_file(data):
 def test_what_does_not_fit_a_type_is_refused_with_its_place(protocol, value, expected):
     with pytest.raises(ProtocolError, match="place"):
         protocol.types.check(value, expected, "place")
+
+
+def test_a_notice_with_a_number_may_be_answered(protocol):
+    protocol.check_reply("presence", None)
 
 
 @pytest.mark.parametrize("value, expected", [

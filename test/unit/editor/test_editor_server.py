@@ -146,7 +146,9 @@ def test_what_is_no_message_is_refused_and_the_connection_lives(case):
     async def talk(browser):
         for text in ("nonsense", "[]", "{}", '{"type": "nix"}', '{"type": "edit"}',
                      '{"type": "step", "steps": NaN, "id": 2}', '{"type": 5}',
-                     '{"type": "edit", "id": "one", "op": {}}', "[" * 100000):
+                     '{"type": "edit", "id": "one", "op": {}}', "[" * 100000,
+                     '{"type": "undo", "id": 1e999}', '{"type": "undo", "id": true}',
+                     '{"type": "undo", "id": 1' + 400 * "0" + "}"):
             count = sum(push["type"] == "issue" for push in browser.pushes)
             await browser.socket.send_str(text)
             await browser.until(

@@ -103,6 +103,17 @@ def test_what_no_browser_can_show_is_said():
         view(Image(height=1, width=1, encoding="yuv422", step=2, data=b"\0\0"))
 
 
+@pytest.mark.parametrize("sizes", [
+    {"width": 2 ** 32 - 1, "height": 0, "step": 0}, {"width": 2 ** 32 - 1, "height": 2 ** 32 - 1},
+    {"width": 0, "height": 1, "step": 12}, {"width": 4, "height": 1, "step": 11},
+    {"width": 4, "height": 1, "step": 12, "data": bytes(11)},
+    {"width": 4, "height": 1, "step": 12, "data": bytes(13)}])
+@pytest.mark.parametrize("encoding", ["rgb8", "mono8", "32FC1"])
+def test_pictures_whose_sizes_do_not_fit_their_bytes_are_refused(encoding, sizes):
+    with pytest.raises(UnviewableError, match="bytes for"):
+        view(Image(encoding=encoding, **{"data": b"", **sizes}))
+
+
 def cloud(records, fields, height=1):
     return PointCloud2(
         height=height, width=len(records) // height, point_step=records.dtype.itemsize,
@@ -121,6 +132,20 @@ def test_a_cloud_gives_points_and_colours_without_what_is_no_point():
     points = np.frombuffer(payload, "<f4", 9).reshape(3, 3)
     assert points.tolist() == [[1, 7, 0], [2, 7, 0], [4, 7, 0]]
     assert payload[36:39] == bytes((0x0A, 0x0B, 0x0C))
+
+
+def test_intensities_that_are_no_numbers_do_not_take_the_colours_of_others():
+    records = np.zeros(4, np.dtype([(name, "<f4") for name in ("x", "y", "z", "intensity")]))
+    records["intensity"] = [1.0, 3.0, math.nan, math.inf]
+    fields, payload = view(cloud(records, {name: 7 for name in records.dtype.names}))
+    assert fields["colored"] and list(payload[48::3]) == [50, 255, 50, 255]
+
+
+def test_a_turn_that_no_quaternion_can_be_is_none():
+    odometry = Odometry()
+    odometry.pose.pose.orientation.x = 1e308
+    odometry.pose.pose.orientation.w = 1e308
+    assert view(odometry)[0]["pose"][3:] == [0.0, 0.0, 0.0, 1.0]
 
 
 def test_of_a_large_cloud_points_are_left_out_evenly():

@@ -97,15 +97,30 @@ def test_the_step_count_runs_ahead_of_the_states_while_nothing_moves():
 def test_newer_poses_are_seen_beside_the_last_snapshot_until_the_next_one():
     writer, reader = _pair()
     writer.write(1, CLOCK, _links([1.0] * 13), b"")
-    assert reader.raw_poses() == _links([1.0] * 13)
+    assert reader.raw_poses()[2] == _links([1.0] * 13)
     for step in range(2, 2 + 3 * ring.POSE_SLOTS):
         before = reader.changes
         writer.write_poses(step, CLOCK, _links([float(step)] * 13))
-        assert reader.raw_poses() == _links([float(step)] * 13)
+        assert reader.raw_poses()[2] == _links([float(step)] * 13)
         assert reader.changes > before and reader.step == step
     assert reader.raw_links() == (1, _links([1.0] * 13))
     writer.write(99, CLOCK, _links([99.0] * 13), b"")
-    assert reader.raw_poses() == _links([99.0] * 13)
+    assert reader.raw_poses()[2] == _links([99.0] * 13)
+
+
+def test_poses_come_with_the_step_and_the_clock_at_which_they_were_so():
+    writer, reader = _pair()
+    writer.write(10, CLOCK, _links([1.0] * 13), b"")
+    writer.set_step(50)
+    assert reader.raw_poses()[:2] == (10, CLOCK)
+    writer.hold(50)
+    assert reader.raw_poses()[0] == 50
+    writer.write_poses(60, CLOCK, _links([2.0] * 13))
+    writer.set_step(70)
+    assert reader.raw_poses()[:2] == (60, CLOCK)
+    again = Clock(0, 0, picoseconds(0.002))
+    writer.write(0, again, _links([3.0] * 13), b"")
+    assert reader.raw_poses()[:2] == (0, again)
 
 
 def test_poses_whose_writer_died_in_the_middle_are_not_seen():
@@ -114,4 +129,4 @@ def test_poses_whose_writer_died_in_the_middle_are_not_seen():
     writer.write_poses(2, CLOCK, _links([2.0] * 13))
     slot = writer.memory.pose_slot(2)
     writer.words[slot + ring.SEQ_BEGIN] = 2
-    assert reader.raw_poses() == _links([2.0] * 13)
+    assert reader.raw_poses()[2] == _links([2.0] * 13)

@@ -80,6 +80,14 @@ NOT_SHAPE = {
     "a newer namespace": ("2005/11", "2008/03"),
     "a scene that is not there": ('visual_scene url="#s"', 'visual_scene url="#gone"'),
     "no extent of the vertices": ('offset="0"', ""),
+    "an instance of a node without a target, where none may be":
+        ("<library_visual_scenes>", "<library_visual_scenes><instance_node/>"),
+    "an instance of a node that is not there, where none may be":
+        ("<library_visual_scenes>", '<library_visual_scenes><instance_node url="#gone"/>'),
+    "a node outside of libraries": (
+        '<node id="n">', '<node id="n"><instance_node url="#odd"/>'),
+    "a polygon with a hole and no outline": (
+        "<triangles", f"<polygons>{VERTEX}<ph><h>0 1 2</h></ph></polygons><triangles"),
 }
 
 
@@ -88,6 +96,8 @@ def test_what_is_not_shape_does_not_keep_a_collada_file_from_being_read(tmp_path
     changes = [NOT_SHAPE[what]]
     if what == "numbers of four":
         changes.append(('stride="3"', 'stride="4"'))
+    if what == "a node outside of libraries":
+        changes.append(("</COLLADA>", '<node id="odd"><odd/></node></COLLADA>'))
     data = load_mesh(written(tmp_path, "a.dae", collada(*changes)))
     assert data.triangles.shape == (1, 3)
     assert corners_of(data) == CORNERS

@@ -5,6 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from walking_figures import rod
 
 from my_simulations.description.shapes import Mesh
 from my_simulations.errors import InputError
@@ -28,6 +29,45 @@ def test_a_picture_of_a_collada_file_is_found_beside_it():
 def test_a_collada_colour_is_its_diffuse():
     (part,) = painted_parts(mesh(MODELS / "lab_table.dae"))
     assert part.color == pytest.approx((0.72, 0.6, 0.42, 1.0), abs=0.01) and part.picture is None
+
+
+BESIDE = {
+    "extra": ("</instance_geometry>",
+              "</instance_geometry><extra><technique profile='X'/></extra>"),
+    "a camera": ("<visual_scene id='s'>", "<visual_scene id='s'><node id='eye'>"
+                                          "<instance_camera url='#c'/></node>"),
+    "a light": ("<visual_scene id='s'>", "<visual_scene id='s'><node id='lamp'>"
+                                         "<instance_light url='#l'/></node>"),
+    "lines": ("<triangles ", "<lines count='1' material='p'><input semantic='VERTEX' source='#v' "
+                             "offset='0'/><p>0 1</p></lines><triangles "),
+}
+LIBRARIES = ("<library_cameras><camera id='c'><optics><technique_common><perspective>"
+             "<xfov>40</xfov><znear>1</znear><zfar>9</zfar></perspective></technique_common></optics></camera>"
+             "</library_cameras><library_lights><light id='l'><technique_common><point><color>1 1 1"
+             "</color></point></technique_common></light></library_lights>")
+
+
+@pytest.mark.parametrize("what", BESIDE)
+def test_what_stands_beside_a_mesh_costs_no_colour(tmp_path, what):
+    colored = rod().replace("<emission><color>1 0 0 1</color></emission><diffuse><color>0 0 0 1",
+                            "<diffuse><color>0 0.5 0 1").replace('"', "'")
+    start = colored.index("<instance_controller")
+    colored = (colored[:start] + "<instance_geometry url='#g'><bind_material><technique_common>"
+               "<instance_material symbol='paint' target='#m'/></technique_common></bind_material>"
+               "</instance_geometry></node></visual_scene></library_visual_scenes>" + LIBRARIES
+               + "<scene><instance_visual_scene url='#s'/></scene></COLLADA>")
+    wrong, right = BESIDE[what]
+    assert wrong in colored
+    (tmp_path / "mesh.dae").write_text(colored.replace(wrong, right))
+    (part,) = painted_parts(mesh(tmp_path / "mesh.dae"))
+    assert part.color == (0.0, 0.5, 0.0, 1.0) and len(part.triangles) == 36
+
+
+def test_a_skin_that_stands_still_has_its_colours(tmp_path):
+    (tmp_path / "skin.dae").write_text(rod("0.2 0.4 0.6"))
+    (part,) = painted_parts(mesh(tmp_path / "skin.dae"))
+    assert part.emission == (0.2, 0.4, 0.6, 1.0)
+    assert np.ptp(part.vertices, axis=0) == pytest.approx((0.4, 0.2, 2.0))
 
 
 @pytest.mark.parametrize("scale", [(1.0, 1.0, 1.0), (2.0, 1.0, -0.5)])

@@ -24,6 +24,8 @@ FAULTS = {
     "bad-date": (b"lamp:\n  model: !!timestamp 2020-13-45\n", 2, "/lamp/model", "invalid"),
     "bad-timestamp": (b"lamp:\n  model: !!timestamp x\n", 2, "/lamp/model", "invalid timestamp"),
     "bad-number": (b"lamp:\n  position: [!!int abc, 0, 0]\n", 2, "/lamp/position", "invalid int"),
+    "endless-hex": (b"lamp:\n  model: 0x" + b"f" * 5000, 2, "/lamp/model", "more than 1000"),
+    "endless-number": (b"lamp:\n  model: " + b"9" * 5000, 2, "/lamp/model", "more than 1000"),
     "bad-bool": (b"lamp:\n  model: !!bool maybe\n", 2, "/lamp/model", "invalid bool"),
     "bad-binary": (b"lamp:\n  model: !!binary \xc3\xa4\n", 2, "/lamp/model", "base64"),
     "list-as-key": (b"lamp:\n  ? [a]\n  : 1\n", 2, "/lamp", "unhashable"),

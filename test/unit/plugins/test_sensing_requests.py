@@ -18,14 +18,15 @@ class Sensing:
     def __init__(self):
         self.asked = []
 
-    def render(self, views):
+    def render(self, views, ns):
+        self.at = ns
         self.asked.append([Future() for _ in views])
         return self.asked[-1]
 
     def send(self):
         self.sent = True
 
-    def cast(self, mount, fan, visuals):
+    def cast(self, mount, fan, visuals, ns):
         self.asked.append(Future())
         return self.asked[-1]
 
@@ -60,7 +61,7 @@ class Case:
 
 def test_a_picture_is_handed_over_with_its_moment():
     case = Case()
-    assert case.shoot(5)
+    assert case.shoot(5) and case.sensing.at == 5
     case.sensing.asked[0][0].set_result("picture")
     assert not case.seen
     case.deliver()

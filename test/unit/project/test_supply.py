@@ -61,6 +61,9 @@ def test_the_figures_of_proofs_become_a_table():
               "seconds": 21, "figures": {"models": 53}}
     text = table.rows([{**record, "seconds": 1}, record])
     assert text.splitlines()[2:] == ["| soak | models 53 | 21 s | `test_soak.py::test_x` |"]
+    fuzzed = [{**record, "proof": name, "figures": {"inputs": 500, "slowest_ms": 3}}
+              for name in ("one", "other")]
+    assert table.rows(fuzzed).endswith("|\n\nInputs in all: 1000, of 2 proofs.")
     page = (REPOSITORY / "doc" / "reliability.md").read_text(encoding="utf-8")
     assert text in table.with_table(page, "short runs", text)
     before = table.table_of(page, "short runs")

@@ -4,16 +4,21 @@ from __future__ import annotations
 import io
 import socket
 import struct
+import threading
 import time
+from types import SimpleNamespace
 
 import pytest
 from genpy import Time
 from geometry_msgs.msg import TransformStamped
+from rosgraph_msgs.msg import Clock
 from rospy.exceptions import TransportTerminated
+from rospy.impl.tcpros_base import TCPROSTransport, TCPROSTransportProtocol
+from rospy.topics import _PublisherImpl
 from tf2_msgs.msg import TFMessage
 
 from my_simulations.geometry import Pose
-from my_simulations.ros.direct_connection import DirectConnection
+from my_simulations.ros.direct_connection import DirectConnection, direct
 from my_simulations.ros.plugins.packed_transforms import PackedTransforms
 
 MESSAGE = 100_000
@@ -111,6 +116,25 @@ def test_a_slow_subscriber_that_ends_is_closed(pair):
     while not transport.done:
         assert time.monotonic() < deadline, "nobody closed the connection"
         time.sleep(0.002)
+
+
+def test_a_subscriber_that_was_there_first_has_no_thread_either(pair):
+    transport, theirs = pair
+    publisher = SimpleNamespace(impl=_PublisherImpl("/clock", Clock))
+    publisher.impl.set_queue_size(10)
+    connected = TCPROSTransport(TCPROSTransportProtocol("/clock", Clock), "/clock")
+    connected.set_socket(transport.socket, "subscriber")
+    threads = set(threading.enumerate())
+    publisher.impl.add_connection(connected)
+    queues = set(threading.enumerate()) - threads
+    assert len(queues) == 1  # rospy's
+
+    publish = direct(publisher)
+    publish(Clock(Time(3, 4)))
+    assert theirs.recv(100) == struct.pack("<III", 8, 3, 4)
+    queue, = queues
+    queue.join(60.0)
+    assert not queue.is_alive()
 
 
 def test_packed_transforms_are_what_a_message_is():

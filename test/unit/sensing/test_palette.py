@@ -14,7 +14,7 @@ from my_simulations.appearance.textures import TextureFiles
 from my_simulations.description.shapes import Box, Material, Plane, Visual
 from my_simulations.resources.resolver import Resolver
 from my_simulations.sensing.camera.pictures import draw_pattern
-from my_simulations.sensing.camera.surfaces import pieces_of
+from my_simulations.sensing.surfaces import pieces_of
 
 REPOSITORY = pathlib.Path(__file__).resolve().parents[3]
 

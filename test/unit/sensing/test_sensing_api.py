@@ -9,12 +9,23 @@ import sys
 import numpy as np
 import pytest
 
+from my_simulations.appearance.looks import Look
 from my_simulations.appearance.materials import Materials
 from my_simulations.appearance.textures import TextureFiles
+from my_simulations.description.actor import Actor, Animation
 from my_simulations.description.light import Light
 from my_simulations.description.model import Link, Model
-from my_simulations.description.shapes import Box, Cone, Cylinder, Material, Sphere, Visual
-from my_simulations.description.surroundings import Scene
+from my_simulations.description.shapes import (
+    Box,
+    Cone,
+    Cylinder,
+    Material,
+    Mesh,
+    Sphere,
+    Visual,
+)
+from my_simulations.description.surroundings import Road, Scene
+from my_simulations.description.world import World
 from my_simulations.geometry import Pose, compose, quat_from_rpy
 from my_simulations.resources.resolver import Resolver
 from my_simulations.sensing import scene
@@ -24,9 +35,11 @@ from my_simulations.sensing.api import (
     CameraSpec,
     Distortion,
     LoadScene,
+    PaintedRoad,
     RayReturns,
     RemoveBody,
     SetLights,
+    SetScenery,
 )
 from my_simulations.sensing.camera.distortion import blended, distorted, nearest, sources
 from my_simulations.sensing.camera.pictures import draw_pattern, read_picture
@@ -63,6 +76,11 @@ def test_changes_sum_up():
     state.apply(RemoveBody("a"))
     state.apply(RemoveBody("a"))
     assert list(state.bodies) == ["b"]
+    told = SetScenery((PaintedRoad(Road("r"), Look()),))
+    state.apply(told)
+    assert state.whole().scenery == told
+    state.apply(state.whole())
+    assert state.scenery == told and list(state.bodies) == ["b"]
 
 
 def test_a_body_brings_the_look_of_each_visual_that_has_a_material():
@@ -156,3 +174,42 @@ def test_what_rays_have_met_comes_whole_between_processes_and_is_the_caller_s_ow
         one, other = getattr(came, name), getattr(sent, name)
         assert one.dtype == other.dtype and one.tolist() == other.tolist() and one.flags.writeable
     assert came.step == 7
+
+
+def world_of(*actors, roads=()):
+    return World(actors=list(actors), roads=list(roads))
+
+
+@pytest.fixture
+def resolved(tmp_path):
+    for name in ("man.dae", "run.dae", "run.bvh"):
+        (tmp_path / name).write_text("")
+    resolver = Resolver()
+
+    def of(world):
+        return scene.scenery(world, Materials(resolver, TextureFiles(resolver)), resolver)
+    return of
+
+
+def test_the_files_of_an_actor_are_found_beside_its_world(resolved, tmp_path):
+    [man] = resolved(world_of(Actor("man", skin="man.dae", skin_scale=2.0,
+                                    base_dir=str(tmp_path)))).figures
+    assert man.skin == Mesh("man.dae", str(tmp_path / "man.dae"), (2.0, 2.0, 2.0))
+    [lost, bare] = resolved(world_of(Actor("lost", skin="other.dae", base_dir=str(tmp_path)),
+                                     Actor("bare"))).figures
+    assert (lost.skin.uri, lost.skin.path) == ("other.dae", "") and bare.skin.uri == ""
+
+
+@pytest.mark.parametrize(("files", "expected"), [
+    (["run.dae", "man.dae"], "run.dae"),   # the first counts
+    (["man.dae"], ""), (["run.bvh"], ""), (["gone.dae"], ""), ([], "")])
+def test_limbs_move_by_the_first_animation_of_another_file(resolved, tmp_path, files, expected):
+    [man] = resolved(world_of(Actor("man", skin="man.dae", base_dir=str(tmp_path), animations=[
+        Animation("a", file) for file in files]))).figures
+    assert man.animation == (str(tmp_path / expected) if expected else "")
+
+
+def test_a_road_is_asphalt_unless_it_says_otherwise(resolved):
+    green = Material(diffuse=(0.0, 1.0, 0.0, 1.0))
+    plain, painted = resolved(world_of(roads=[Road("a"), Road("b", material=green)])).roads
+    assert plain.look == Look(pattern="road") and painted.look.diffuse == (0.0, 1.0, 0.0, 1.0)

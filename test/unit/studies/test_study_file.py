@@ -89,6 +89,8 @@ def test_the_least_study_is_a_duration(tmp_path):
     ("duration: 1\nworld: none.world\n", 2, "/world", "no world file 'none.world'"),
     ("duration: 1\nvary:\n  w: {set: world, values: [none.world]}\n", 3, "/vary/w/values",
      "no world file 'none.world'"),
+    ("duration: 1" + 400 * "0" + "\n", 1, "/duration", "must be a number"),
+    ("duration: 1\nvary: 2\nmeasure:\n  z: final(pose.b.z)\n", 2, "/vary", "must be a mapping"),
     ("[1]\n", 0, "", "must be a mapping")])
 def test_a_fault_is_told_with_its_line_and_key(tmp_path, text, line, xpath, said):
     (found,) = faults(tmp_path, text)

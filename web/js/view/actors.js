@@ -71,7 +71,8 @@ class Gait {
   }
 }
 
-class Figure {
+/** An actor as it is drawn. */
+export class Figure {
   group = new Group();
   path;
   #actor;

@@ -20,6 +20,8 @@ export const savedConfiguration = () => remembered.get('configuration', null);
 
 const FLIGHT = 500;
 const TURN_FLIGHT = 1000;
+/** Whether the user has asked the system for less motion: views then change at once. */
+const calm = () => globalThis.matchMedia?.('(prefers-reduced-motion: reduce)').matches ?? false;
 const WALK_SPEED = {ahead: 1, aside: 0.8};
 
 export class CameraRig {
@@ -145,6 +147,10 @@ export class CameraRig {
 
   /** Flies to a view. @param {View} to */
   fly(to, duration = FLIGHT) {
+    if (calm()) {
+      this.set(to);
+      return;
+    }
     this.#flight = {from: this.view, to, began: performance.now(), duration};
     this.#stage.invalidate();
   }

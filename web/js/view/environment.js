@@ -7,6 +7,7 @@ import {originScale} from '../camera_math.js';
 import {ContactShadows} from './contact_shadows.js';
 import {GroundGrid, makeOrigin} from './ground_grid.js';
 import {groundHeight} from './ground.js';
+import {roadStrip} from './road_strip.js';
 import {colorOf} from './three_convert.js';
 import {Gradient, WorldSky, leavesBackground} from './sky.js';
 /** @import {Materials} from './materials.js' */
@@ -26,30 +27,8 @@ function fogOf(fog) {
 }
 
 /** @param {Road} road */
-function ribbon({points, width}) {
-  /** @type {number[]} */
-  const corners = [];
-  /** @type {number[]} */
-  const uvs = [];
-  /** @type {number[]} */
-  const triangles = [];
-  let along = 0;
-  points.forEach((point, index) => {
-    const before = points[Math.max(index - 1, 0)];
-    const after = points[Math.min(index + 1, points.length - 1)];
-    const [dx, dy] = [after[0] - before[0], after[1] - before[1]];
-    const norm = Math.hypot(dx, dy) || 1;
-    const side = [(-dy / norm) * width / 2, (dx / norm) * width / 2];
-    along += index ? Math.hypot(point[0] - before[0], point[1] - before[1]) / width : 0;
-    for (const [sign, u] of [[1, 0], [-1, 1]]) {
-      corners.push(point[0] + sign * side[0], point[1] + sign * side[1], point[2] + 0.01);
-      uvs.push(u, along);
-    }
-    if (index) {
-      const at = 2 * index;
-      triangles.push(at - 2, at - 1, at, at, at - 1, at + 1);
-    }
-  });
+function ribbon(road) {
+  const {corners, uvs, triangles} = roadStrip(road);
   const geometry = new BufferGeometry();
   geometry.setAttribute('position', new BufferAttribute(new Float32Array(corners), 3));
   geometry.setAttribute('uv', new BufferAttribute(new Float32Array(uvs), 2));

@@ -338,8 +338,11 @@ export class Stage {
   }
 
   #applySize() {
-    this.renderer.setPixelRatio(Math.min(globalThis.devicePixelRatio ?? 1, 2) * this.#quality);
-    this.renderer.setSize(this.width, this.height, false);
+    this.renderer.setDrawingBufferSize(this.width, this.height,
+      Math.min(globalThis.devicePixelRatio ?? 1, 2) * this.#quality);
+    // three rounds half a pixel up until the next shadow, and down from then on: without this, pictures
+    // with and without new shadows would differ in size.
+    this.renderer.setRenderTarget(null);
   }
 }
 

@@ -2,14 +2,13 @@
 from __future__ import annotations
 
 import functools
-import math
 import typing
 from dataclasses import MISSING, fields, is_dataclass, replace
 from typing import Any, Callable, Dict, Hashable, List, Sequence, Type, TypeVar, Union
 
 from ...description.shapes import Empty, Geometry
 from ...errors import CommandError
-from ...geometry import Pose, normalised
+from ...geometry import Pose, is_finite_number, normalised
 from ..scene.plain_json import HIDDEN
 from ..scene.scene_json import NAMES
 
@@ -162,13 +161,13 @@ def _floats(value: Any, count: int, path: str) -> List[float]:
 
 
 def _float(value: Any, path: str) -> float:
-    if isinstance(value, bool) or not isinstance(value, (int, float)) or not math.isfinite(value):
+    if not is_finite_number(value):
         raise CommandError(f"{path} must be a finite number, found {value!r:.60}")
     return float(value)
 
 
 def _int(value: Any, path: str) -> int:
-    if isinstance(value, bool) or not isinstance(value, (int, float)) or value != int(value):
+    if not is_finite_number(value) or value != int(value):
         raise CommandError(f"{path} must be an integer, found {value!r:.60}")
     return int(value)
 

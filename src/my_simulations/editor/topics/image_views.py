@@ -52,12 +52,16 @@ def compressed_image(message: Any) -> View:
 
 
 def _rows(message: Any, kind: str, channels: int) -> Any:
-    """Pixels (height, width, channels)."""
+    """Pixels (height, width, channels). Raises ValueError for sizes that do not fit each other."""
     import numpy as np
 
     item: Any = np.dtype((">" if message.is_bigendian else "<") + kind)
     row = message.width * channels * item.itemsize
     step = message.step or row
+    # Without pixels a width may be anything, and what is made of it takes any memory.
+    if not row or not message.height or step < row or len(message.data) != message.height * step:
+        raise ValueError(f"{len(message.data)} bytes for {message.width} x {message.height} pixels"
+                         f" in rows of {step} bytes")
     rows = np.frombuffer(message.data, "u1", message.height * step).reshape(message.height, step)
     pixels = np.ascontiguousarray(rows[:, :row]).view(item)
     return pixels.reshape(message.height, message.width, channels)

@@ -39,13 +39,16 @@ class Viewer:
 
     def view(self) -> Tuple[str, float, View]:
         """Frame, stamp in s, view. Raises SimulationError for what cannot be shown."""
+        import numpy as np
+
         message = self._newest
         try:
             if self._kept is not None:
                 return "", 0.0, (self._kept.fields(), b"")
             frame, stamp = _header(message)
-            return frame, stamp, self._make(message)
-        except (AttributeError, ValueError, TypeError, IndexError) as fault:
+            with np.errstate(all="ignore"):  # numbers that are none are no rarity here
+                return frame, stamp, self._make(message)
+        except (AttributeError, ValueError, TypeError, LookupError, ArithmeticError) as fault:
             raise UnviewableError(f"the message is not as its type says: {fault}") from fault
 
 

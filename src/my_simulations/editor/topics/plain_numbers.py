@@ -25,4 +25,5 @@ def rotation(turn: Any) -> List[float]:
     """A geometry_msgs/Quaternion of unit length."""
     parts = [number(part) for part in (turn.x, turn.y, turn.z, turn.w)]
     length = math.sqrt(sum(part * part for part in parts))
-    return [part / length for part in parts] if length > 1e-6 else [0.0, 0.0, 0.0, 1.0]
+    return ([part / length for part in parts] if 1e-6 < length < math.inf
+            else [0.0, 0.0, 0.0, 1.0])

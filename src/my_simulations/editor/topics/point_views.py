@@ -69,9 +69,11 @@ def _view(points: Any, rgb: Optional[Any], intensity: Optional[Any],
                           axis=1).astype("u1").tobytes()
     elif intensity is not None:
         values = intensity[::every][valid]
-        low, high = (values.min(), values.max()) if len(values) else (0.0, 0.0)
-        if np.isfinite(low) and high > low:
-            grey = ((values - low) / (high - low) * 205.0 + 50.0).astype("u1")
+        known = values[np.isfinite(values)].astype("f8")
+        low, high = (known.min(), known.max()) if len(known) else (0.0, 0.0)
+        if high > low:
+            shares = np.nan_to_num((values - low) / (high - low), nan=0.0)
+            grey = (shares.clip(0.0, 1.0) * 205.0 + 50.0).astype("u1")
             colors = np.repeat(grey[:, None], 3, axis=1).tobytes()
     return {"type": "points", "count": len(points), "of": int(total),
             "colored": bool(colors)}, points.tobytes() + colors

@@ -17,16 +17,17 @@ class PoseReader:
         self._ids: Any = None
 
     def read(self, revision: int, real_time: float) -> Optional[Poses]:
-        """All poses of now, marked with a wall time in s.
+        """The newest poses, with the step and sim time at which links were there.
+
+        `real_time`: wall time in s to mark them with.
 
         None while the world's names are not those of `revision`.
         """
         import numpy as np
 
-        layout, raw = self._simulator.feed.poses()
+        layout, step, clock, raw = self._simulator.feed.poses()
         if layout.revision != revision:
             return None
-        step, clock = self._simulator.clock.now()
         if layout is not self._layout:
             self._layout = layout
             self._ids = np.fromiter((row for row, _ in layout.link_places), dtype=np.int64,

@@ -2,12 +2,12 @@
 from __future__ import annotations
 
 import json
-import math
 import os
 import re
 from typing import Any, Callable, Dict, FrozenSet, Iterable, List, Optional, Tuple
 
 from ...errors import CommandError
+from ...geometry import is_finite_number
 from ...xml_characters import check_tree
 
 OPERATION = "Operation"
@@ -18,6 +18,8 @@ _SOME = "some "
 _SUSPICIOUS = re.compile(r"\\u(00[01]|d[89a-f]|fff[ef])|[\ud800-\udfff\ufffe\uffff]", re.IGNORECASE)
 """In JSON text: what may be a character that XML cannot hold. Others need no second look."""
 _DEEPEST = 32
+_LARGEST_INTEGER = 2 ** 53
+"""Larger ones a page cannot tell apart (JavaScript)."""
 
 Test = Callable[[Any], bool]
 
@@ -28,15 +30,11 @@ class ProtocolError(CommandError):
     code = "protocol"
 
 
-def _is_number(value: Any) -> bool:
-    return isinstance(value, (int, float)) and not isinstance(value, bool) and math.isfinite(value)
-
-
 _PLAIN: Dict[str, Tuple[Test, str]] = {
     "string": (lambda value: isinstance(value, str), "a string"),
-    "number": (_is_number, "a finite number"),
-    "integer": (lambda value: isinstance(value, int) and not isinstance(value, bool),
-                "an integer"),
+    "number": (is_finite_number, "a finite number"),
+    "integer": (lambda value: isinstance(value, int) and not isinstance(value, bool)
+                and abs(value) <= _LARGEST_INTEGER, "an integer"),
     "boolean": (lambda value: isinstance(value, bool), "true or false"),
     "object": (lambda value: isinstance(value, dict), "an object"),
     "any": (lambda value: True, "anything"),
@@ -216,7 +214,7 @@ class Protocol:
         if fields is None:
             if kind not in self._data["requests"]:
                 raise ProtocolError(f"unknown request {kind!r}")
-            if not _is_number(message.get("id")):
+            if not is_finite_number(message.get("id")):
                 raise ProtocolError(f"{kind}: a request needs a number `id`")
             fields = self._data["requests"][kind]["fields"]
         self._incoming.fields(message, fields, kind, ("type", "id"))
@@ -231,6 +229,8 @@ class Protocol:
 
     def check_reply(self, kind: str, value: Any) -> None:
         """Raises ProtocolError for an answer that the protocol does not promise."""
+        if kind in self._data["notices"]:
+            return  # one with a number is answered, with nothing
         expected = self._data["requests"][kind]["reply"]
         if isinstance(expected, dict):
             self.types.fields(value, expected, f"reply to {kind}")

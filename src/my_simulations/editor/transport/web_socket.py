@@ -8,6 +8,7 @@ from typing import Any, Callable, Dict, Optional
 from aiohttp import WSMsgType, web
 
 from ...errors import CommandError, InputError
+from ...geometry import is_finite_number
 from .browser_client import Client
 from .error_messages import issue_document, issues_of
 from .hub import Hub
@@ -77,7 +78,7 @@ class Sockets:
         try:
             message = self._hub.protocol.parse(text)
             found = message.get("id")
-            number = found if isinstance(found, (int, float)) else None
+            number = found if is_finite_number(found) else None
             self._hub.protocol.check_texts(message, text)
             self._hub.protocol.check_message(message)
             value = await self._answer(client, message)

@@ -85,7 +85,8 @@ class BulletBackend:
         self._seams = SeamContacts(self._rolling)
         self._sliding = Sliding()
         self._waker = WakeUp(self._bodies, self._touched)
-        self._forces = Forces(self._waker.around,
+        driver = WakeUp(self._bodies, self._driven)
+        self._forces = Forces(driver.around,
                               lambda rows: self._motors.yield_to(rows))
         self._friction = FrictionBalance(self._on_misfit)
         self._spin = GyroscopicRigid(lambda: self._forces.wrenched_links)
@@ -97,8 +98,8 @@ class BulletBackend:
         self._stop = SurfaceStop()
         self._mover = StateSetter(self._rows, self._axes, self._readout, self._waker,
                                   self._forces, self._spin, self._holds)
-        self._motors = JointMotors(self._axes, self._waker.around)
-        self._planar = PlanarMotion(self._models, self._mover.model_pose, self._waker.around)
+        self._motors = JointMotors(self._axes, driver.around)
+        self._planar = PlanarMotion(self._models, self._mover.model_pose, driver.around)
         self._wrenches = JointWrenches(self._models, self._forces, self._sliding)
         # What acts around the steps, in the order in which it does.
         helpers = (self._friction, self._settling, self._forces, self._decay, self._planar,
@@ -109,9 +110,9 @@ class BulletBackend:
         self._keepers = (*helpers, self._ties, self._motors, self._wrenches,
                          self._readout, self._loop)
         # Whom it concerns that a command, or a force that begins, reaches a body.
-        self._hearers = (self._readout.touch, *(part.touched for part in (
+        self._hearers = tuple(part.touched for part in (
             self._loop, self._friction, self._settling, self._residual, self._rolling,
-            self._sliding, self._stop, self._landing, self._seams)))
+            self._sliding, self._stop, self._landing, self._seams))
         self._events: List[Event] = []
         self._starts = InitialStateCache(self._readout)
         self._put_off: Optional[List[Start]] = None
@@ -393,7 +394,14 @@ class BulletBackend:
         self._forces.drop(command.force_ids)
 
     def _touched(self, body: Body) -> None:
-        """A command reached a body."""
+        """A command reached a body: it may be elsewhere."""
+        self._readout.touch(body)
+        for hear in self._hearers:
+            hear(body)
+
+    def _driven(self, body: Body) -> None:
+        """A force or a motor acts on a body from the next step on: it is where it was."""
+        self._readout.woken(body)
         for hear in self._hearers:
             hear(body)
 

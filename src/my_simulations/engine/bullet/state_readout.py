@@ -86,9 +86,13 @@ class StateReadout:
             table.clear()
 
     def touch(self, body: Body) -> None:
-        """The body may have moved: read it until it rests again."""
-        body.still = 0
+        """The body was put elsewhere or given another velocity: read it until it rests again."""
         self._touched[body.uid] = body
+        self.woken(body)
+
+    def woken(self, body: Body) -> None:
+        """The body may move from the next step on; as it is now, it was read already."""
+        body.still = 0
         self._resting.pop(body.uid, None)
         self._guards.pop(body.uid, None)
         if body.rigid:

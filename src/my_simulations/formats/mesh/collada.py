@@ -46,6 +46,10 @@ def _loaded(text: bytes) -> Any:
         return collada.Collada(io.BytesIO(text))
     except collada.DaeError as fault:
         raise ValueError(fault.msg) from None
+    except RecursionError:
+        raise
+    except RuntimeError:  # pycollada raises again what nobody has raised
+        raise ValueError("an element stands where COLLADA has no such element") from None
 
 
 def _line_of_fault(root: Any) -> int:
@@ -80,7 +84,7 @@ def unit_of(document: Any, root: Any) -> float:
 def instances(document: Any) -> Iterator[Tuple[Tuple[str, ...], Any]]:
     """(names, bound geometry) of every instance in the scene."""
     import numpy as np
-    from collada.scene import GeometryNode
+    from collada.scene import ControllerNode, GeometryNode
 
     scene = document.scene or (document.scenes[0] if len(document.scenes) else None)
     if scene is None:
@@ -99,7 +103,10 @@ def instances(document: Any) -> Iterator[Tuple[Tuple[str, ...], Any]]:
         if isinstance(node, GeometryNode):
             for bound in node.objects("geometry", above):
                 yield (*_names(bound.original), *names), bound
-        else:
+        elif isinstance(node, ControllerNode):  # a skin, in the shape in which it was bound
+            for bound in node.objects("controller", above):
+                yield (*_names(bound.geometry.original), *names), bound.geometry
+        elif hasattr(node, "children"):  # not a camera, a light or an <extra>
             names = (*_names(getattr(node, "node", node)), *names)
             matrix = above @ node.matrix
             waiting += [(c, matrix, names, depth + 1) for c in reversed(node.children)]

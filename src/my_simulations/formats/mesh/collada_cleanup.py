@@ -30,19 +30,25 @@ def tidied(data: bytes) -> Any:
     Raises:
         MeshError: not COLLADA, or invalid numbers.
     """
-    root = _parsed(data)
+    root = parsed(data)
     document = _Document(root)
     document.replace_controllers()
     for child in list(root):
         if _local(child) not in _LIBRARIES:
             root.remove(child)
+    document.find_ids()  # what was removed is no target any more
     document.tidy_nodes()
     document.share_nodes()
     document.tidy_geometries()
     return root
 
 
-def _parsed(data: bytes) -> Any:
+def parsed(data: bytes) -> Any:
+    """The `<COLLADA>` element of a file, its elements in COLLADA's namespace.
+
+    Raises:
+        MeshError: not COLLADA.
+    """
     from lxml import etree
 
     if b"<!ENTITY" in data:
@@ -65,8 +71,13 @@ def _parsed(data: bytes) -> Any:
 class _Document:
     def __init__(self, root: Any) -> None:
         self._root = root
-        self._by_id: Dict[str, Any] = {e.get("id"): e for e in root.iter() if e.get("id")}
+        self._by_id: Dict[str, Any] = {}
         self._used: List[Any] = []
+        self.find_ids()
+
+    def find_ids(self) -> None:
+        """Know the elements that references may point to."""
+        self._by_id = {e.get("id"): e for e in self._root.iter() if e.get("id")}
 
     def replace_controllers(self) -> None:
         """Replace instances of skins and morphs by their geometry, in its bind shape."""
@@ -117,7 +128,12 @@ class _Document:
     def share_nodes(self) -> None:
         """Copy nodes that are instantiated several times to where pycollada searches for them."""
         library = _made(self._root, "library_nodes")
-        wanted: Set[str] = {i.get("url")[1:] for i in self._root.iter("{*}instance_node")}
+        wanted: Set[str] = set()
+        for instance in list(self._root.iter("{*}instance_node")):
+            if self._is_there(instance, "instance_node"):
+                wanted.add(instance.get("url")[1:])
+            else:  # one outside of a node, which nothing has looked at
+                instance.getparent().remove(instance)
         for name in sorted(wanted):
             if _local(self._by_id[name].getparent()) != "library_nodes":
                 library.append(copy.deepcopy(self._by_id[name]))
@@ -190,7 +206,11 @@ def _set_xyz(array: Any, accessor: Any) -> None:
 def _tidy_primitive(primitive: Any, positions: Dict[str, Any]) -> bool:
     """Check the indices of a primitive; False if it has no faces."""
     for holed in list(primitive.iterfind("{*}ph")):  # holes are not cut
-        primitive.replace(holed, holed.find("{*}p"))
+        outline = holed.find("{*}p")
+        if outline is None:
+            primitive.remove(holed)
+        else:
+            primitive.replace(holed, outline)
     lists = primitive.findall("{*}p") + primitive.findall("{*}vcount")
     for element in lists:
         bad = _NO_INDEX.search(element.text or "")

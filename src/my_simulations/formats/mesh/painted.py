@@ -123,23 +123,40 @@ def _unit_rows(rows: Array) -> Array:
     return unit
 
 
-def _indexed(corners: Array, normals: Optional[Array], uv: Optional[Array],
-             paint: Paint) -> PaintedPart:
-    """Merge equal corners of triangles into shared vertices."""
+def indexed(corners: Array, normals: Optional[Array], uv: Optional[Array], paint: Paint,
+            sources: Optional[Array] = None) -> Tuple[PaintedPart, Array]:
+    """Merge equal corners of triangles into shared vertices.
+
+    Args:
+        corners: (3 m, 3), m.
+        normals: (3 m, 3) or None for those of the triangles.
+        uv: (3 m, 2) or None.
+        paint: of the triangles.
+        sources: (3 m,), numbers; corners of different ones stay apart.
+
+    Returns:
+        The part, and for each of its vertices the number of a corner that it was made of.
+    """
     if normals is None or len(normals) != len(corners):
         faces = corners.reshape(-1, 3, 3)
         normals = np.cross(faces[:, 1] - faces[:, 0], faces[:, 2] - faces[:, 0]).repeat(3, axis=0)
     if uv is None or len(uv) != len(corners):
         uv = np.zeros((len(corners), 2))
+    columns = [corners, _unit_rows(np.asarray(normals)), uv[:, :2]]
     rows = np.ascontiguousarray(
-        np.column_stack([corners, _unit_rows(np.asarray(normals)), uv[:, :2]]).astype(np.float32)
+        np.column_stack(columns if sources is None else [*columns, sources]).astype(np.float32)
         + 0.0
     )
     _, first, inverse = np.unique(rows.view([("", rows.dtype)] * rows.shape[1]).ravel(),
                                   return_index=True, return_inverse=True)
     kept = rows[first].astype(np.float64)
-    return PaintedPart(np.asarray(corners, dtype=np.float64)[first], kept[:, 3:6], kept[:, 6:],
-                       inverse.reshape(-1, 3).astype(np.int32), *paint)
+    return PaintedPart(np.asarray(corners, dtype=np.float64)[first], kept[:, 3:6], kept[:, 6:8],
+                       inverse.reshape(-1, 3).astype(np.int32), *paint), first
+
+
+def _indexed(corners: Array, normals: Optional[Array], uv: Optional[Array],
+             paint: Paint) -> PaintedPart:
+    return indexed(corners, normals, uv, paint)[0]
 
 
 def _collada(mesh: Mesh) -> List[PaintedPart]:
@@ -164,21 +181,39 @@ def _collada(mesh: Mesh) -> List[PaintedPart]:
 
 def _of_primitive(primitive: Any, unit: float, mirrored: bool, folder: str,
                   ) -> Optional[PaintedPart]:
+    found = corners_of(primitive, mirrored)
+    if found is None:
+        return None
+    _, corners, normals, uv, material = found
+    return _indexed(corners * unit, normals, uv, effect_of(material, folder))
+
+
+def corners_of(primitive: Any, mirrored: bool = False,
+               ) -> "Optional[Tuple[Array, Array, Optional[Array], Optional[Array], Any]]":
+    """The corners of the triangles of a bound primitive of pycollada; None where it has none.
+
+    Returns:
+        Vertex indices (3 m,), places (3 m, 3) in the file's unit, normals, texture coordinates,
+        and the material.
+    """
     if not len(primitive) or primitive.vertex is None:
         return None
     triangles = primitive.triangleset() if hasattr(primitive, "triangleset") else primitive
+    if triangles.vertex_index.shape[1] != 3:
+        return None  # lines
     order = slice(None, None, -1) if mirrored else slice(None)
-    corners = triangles.vertex[triangles.vertex_index[:, order]].reshape(-1, 3) * unit
+    index = triangles.vertex_index[:, order].reshape(-1)
     normals = uv = None
     if triangles.normal is not None and triangles.normal_index is not None:
         normals = triangles.normal[triangles.normal_index[:, order]].reshape(-1, 3)
     if triangles.texcoordset:
         uv = triangles.texcoordset[0][triangles.texcoord_indexset[0][:, order]]
         uv = uv.reshape(-1, uv.shape[-1])
-    return _indexed(corners, normals, uv, _effect(triangles.material, folder))
+    return index, triangles.vertex[index], normals, uv, triangles.material
 
 
-def _effect(material: Any, folder: str) -> Paint:
+def effect_of(material: Any, folder: str) -> Paint:
+    """What a material of pycollada looks like; `folder`: where its pictures are looked for."""
     effect = getattr(material, "effect", None)
     diffuse, emission = getattr(effect, "diffuse", None), _glow(getattr(effect, "emission", None))
     if diffuse is None:

@@ -79,7 +79,7 @@ SPHERICAL = Table("spherical_coordinates", SphericalCoordinates, {
 SURROUNDINGS: Mapping[str, Entry] = {
     "gui": Part(use=SHOWN),
     "scene": Nested("scene", SCENE, required=("ambient", "background", "shadows"), use=SHOWN),
-    "actor": Part(use=SHOWN, told=True), "road": Part(use=KEPT, told=True),
+    "actor": Part(use=SHOWN, told=True), "road": Part(use=SHOWN, told=True),
     "wind": Nested("wind", WIND, required=("linear_velocity",), use=KEPT, told=True),
     "atmosphere": Nested("atmosphere", ATMOSPHERE, required=("@type",), use=KEPT),
     "spherical_coordinates": Nested("spherical_coordinates", SPHERICAL, required=(

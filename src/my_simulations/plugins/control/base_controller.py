@@ -88,7 +88,7 @@ class BaseController(Controller):
             if s.flag("publish_cmd", False) else None
         self.command = STANDING
         self._heard_ns: Optional[int] = None
-        self.subscribe("cmd_vel", "geometry_msgs/Twist", self._hear)
+        self.subscribe("cmd_vel", "geometry_msgs/Twist", self._hear, checks=True)
         self._pose: Planar = STANDING
 
     def start(self) -> None:

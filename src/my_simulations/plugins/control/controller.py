@@ -5,6 +5,7 @@ from typing import Any, Callable, Dict, List
 
 from ...engine.commands import PidGains
 from ..context import Context, Ending, Handle, Publication
+from ..finite_messages import finite_only
 from .hardware import Hardware, HardwareJoint
 from .settings import Settings
 from .tuning import tunable
@@ -61,8 +62,15 @@ class Controller:
         self._handles.append(made)
         return made
 
-    def subscribe(self, topic: str, kind: str, call: Callable[[Any], None]) -> None:
-        """Hear a topic below its name; while it does not run, the user is told of commands."""
+    def subscribe(self, topic: str, kind: str, call: Callable[[Any], None],
+                  checks: bool = False) -> None:
+        """Hear a topic below its name; while it does not run, the user is told of commands.
+
+        Messages with NaN or infinity are passed over, unless `call` itself checks its messages.
+        """
+        if not checks:
+            call = finite_only(self.context, f"{self.name}/{topic}", call)
+
         def heard(message: Any) -> None:
             if self.state == RUNNING:
                 call(message)

@@ -64,7 +64,8 @@ class JointTrajectory(Controller):
         self._begun = 0.0
         self._seen: List[_Tracked] = []
         self._seen_at, self._seen_of = -1, self._splines
-        self.subscribe("command", "trajectory_msgs/JointTrajectory", self._hear)
+        self.subscribe("command", "trajectory_msgs/JointTrajectory", self._hear,
+                       checks=True)
         self._state = self.publish("state", "control_msgs/JointTrajectoryControllerState")
         self._action = ActionServer(self.context, f"{self.name}/follow_joint_trajectory", _ACTION,
                                     self._asked, self._cancelled)

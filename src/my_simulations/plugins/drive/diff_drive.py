@@ -23,8 +23,8 @@ class DiffDrive(OdometryDrive):
         """Read parameters; take the motors."""
         context, p = self.context, self.context.parameters
         context.use_namespace(namespace_or(p, context.model))
-        self._separation = p.number("wheelSeparation", 0.34)
-        self._radius = p.number("wheelDiameter", 0.15) / 2.0
+        self._separation = p.positive("wheelSeparation", 0.34)
+        self._radius = p.positive("wheelDiameter", 0.15) / 2.0
         self._acceleration = p.number("wheelAcceleration", 0.0)
         self._torque = p.number("wheelTorque", 5.0)
         self._encoder = p.choice("odometrySource", {"encoder": True, "world": False}, False)

@@ -40,9 +40,9 @@ class Kobuki(Plugin):
         context.use_namespace(namespace_or(p, ""))
         self._wheels = [context.joint(_needed(p, f"{side}_wheel_joint_name"))
                         for side in ("left", "right")]
-        self._separation = float(_needed(p, "wheel_separation"))
-        self._radius = float(_needed(p, "wheel_diameter")) / 2.0
-        self._torque = float(_needed(p, "torque"))
+        self._separation = _needed_number(p, "wheel_separation")
+        self._radius = _needed_number(p, "wheel_diameter") / 2.0
+        self._torque = _needed_number(p, "torque")
         self._imu_link, self._imu = self._sensor(_needed(p, "imu_name"))
         self._odometer = Odometer(context, "odom", "odom", "base_footprint", _COVARIANCE)
         self._broadcasts = p.flag("publish_tf", False)
@@ -153,7 +153,7 @@ class KobukiEvents:
         context = self._context
         self._cliffs = {side: sensor_named(base, _needed(p, f"cliff_sensor_{side}_name"))
                         for side in _SIDES}
-        self._edge = float(_needed(p, "cliff_detection_threshold"))
+        self._edge = _needed_number(p, "cliff_detection_threshold")
         self._bumper = sensor_named(base, _needed(p, "bumper_name"))[0]
         self._drops = {side: sensor_named(base, _needed(p, f"wheel_drop_{side}_sensor_name"))[0]
                        for side in ("left", "right")}
@@ -263,4 +263,12 @@ def _needed(p: Any, name: str) -> str:
     found: str = p.text(name)
     if not found:
         raise PluginError(f"it has no <{name}>")
+    return found
+
+
+def _needed_number(p: Any, name: str) -> float:
+    """A number above 0. Raises PluginError."""
+    text, found = _needed(p, name), float(p.positive(name, 0.0))
+    if not found:
+        raise PluginError(f"<{name}> must be a number above 0, it is {text!r}")
     return found

@@ -19,8 +19,8 @@ class SkidSteerDrive(Plugin):
         """Read parameters; take the motors."""
         context, p = self.context, self.context.parameters
         context.use_namespace(namespace_or(p, ""))
-        self._separation = p.number("wheelSeparation", 0.4)
-        self._radius = p.number("wheelDiameter", 0.15) / 2.0
+        self._separation = p.positive("wheelSeparation", 0.4)
+        self._radius = p.positive("wheelDiameter", 0.15) / 2.0
         self._torque = p.number("torque", 5.0)
         self._joints = [context.joint(p.text(f"{corner}Joint", _default(corner)))
                         for corner in _CORNERS]

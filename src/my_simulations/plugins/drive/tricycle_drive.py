@@ -28,7 +28,7 @@ class TricycleDrive(OdometryDrive):
         """Read parameters; take the motors."""
         context, p = self.context, self.context.parameters
         context.use_namespace(namespace_or(p, context.model))
-        self._radius = p.number("actuatedWheelDiameter", 0.15) / 2.0
+        self._radius = p.positive("actuatedWheelDiameter", 0.15) / 2.0
         self._torque = p.number("wheelTorque", 5.0)
         self._acceleration = p.number("wheelAcceleration", 0.0)
         self._deceleration = p.number("wheelDeceleration", self._acceleration)
@@ -41,8 +41,8 @@ class TricycleDrive(OdometryDrive):
         left = context.joint(p.text("encoderWheelLeftJoint", "left_wheel_joint"))
         right = context.joint(p.text("encoderWheelRightJoint", "right_wheel_joint"))
         self._counter = WheelCounter(*self._by_side(left, right),
-                                     p.number("encoderWheelDiameter", 0.15) / 2.0,
-                                     p.number("encoderWheelSeparation", 0.5))
+                                     p.positive("encoderWheelDiameter", 0.15) / 2.0,
+                                     p.positive("encoderWheelSeparation", 0.5))
         self._odometer = Odometer(context, p.text("odometryTopic", "odom"),
                                   p.text("odometryFrame", "odom"),
                                   p.text("robotBaseFrame", "base_link"))

@@ -5,6 +5,7 @@ from typing import Any, Sequence
 
 from ...geometry import compose, inverse
 from ..context import Context, Joint
+from ..finite_messages import finite_only
 from ..frames import prefixed, stamped
 
 
@@ -20,7 +21,7 @@ class VelocityCommand:
         """`timeout`: s of sim time after which a command counts no more; negative for never."""
         self._context, self._timeout = context, timeout
         self.stop()
-        context.subscribe(topic, "geometry_msgs/Twist", self._hear)
+        context.subscribe(topic, "geometry_msgs/Twist", finite_only(context, topic, self._hear))
 
     def stop(self) -> None:
         """As if none had come."""

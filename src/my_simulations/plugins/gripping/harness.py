@@ -29,6 +29,7 @@ from ...geometry import (
 )
 from ..base import Plugin
 from ..context import PluginError
+from ..finite_messages import finite_only
 from ..parameters import Parameters
 
 _OMEGA = 2.0 * math.pi * 10.0   # rad/s of the straps
@@ -83,7 +84,8 @@ class Harness(Plugin):
         self._mass = sum(link.inertial.mass for link in context.description.links)
         self._inertia = self._about_the_link()
         above = f"/{context.model}/harness"
-        context.subscribe(f"{above}/velocity", "std_msgs/Float32", self._hear_rate)
+        context.subscribe(f"{above}/velocity", "std_msgs/Float32",
+                          finite_only(context, f"{above}/velocity", self._hear_rate))
         context.subscribe(f"{above}/detach", "std_msgs/Bool", self._hear_detach)
         self.reset()
         context.every(0.0, self.update)

@@ -197,8 +197,8 @@ class Baro(_OfLink):
 
 
 def pressure(altitude: float, qnh: float) -> float:
-    """hPa at a height (m) of the standard atmosphere, with `qnh` at sea level."""
-    return float((1.0 - altitude / _SCALE_HEIGHT) ** _EXPONENT * qnh)
+    """hPa at a height (m) of the standard atmosphere, with `qnh` at sea level; 0 above it."""
+    return float(max(0.0, 1.0 - altitude / _SCALE_HEIGHT) ** _EXPONENT * qnh)
 
 
 class Sonar(RayPlugin):

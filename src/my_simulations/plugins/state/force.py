@@ -5,6 +5,7 @@ from typing import Any
 
 from ...geometry import ZERO3, Vec3
 from ..base import Plugin
+from ..finite_messages import finite_only
 from ..parameters import namespace_or
 
 
@@ -18,7 +19,8 @@ class Force(Plugin):
         self._body = context.link(p.text("bodyName")).name
         self._force: Vec3 = ZERO3
         self._torque: Vec3 = ZERO3
-        context.subscribe(p.text("topicName"), "geometry_msgs/Wrench", self._hear)
+        topic = p.text("topicName")
+        context.subscribe(topic, "geometry_msgs/Wrench", finite_only(context, topic, self._hear))
 
     def reset(self) -> None:
         """The wrench goes on, as in Gazebo."""

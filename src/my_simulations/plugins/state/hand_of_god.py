@@ -37,7 +37,7 @@ class HandOfGod(Plugin):
             raise PluginError("it has no <linkName>")
         self._link = context.link(name)
         self._frame = p.text("frameId", "hog")
-        self._stiffness = (p.number("kl", 200.0), p.number("ka", 200.0))
+        self._stiffness = (max(0.0, p.number("kl", 200.0)), max(0.0, p.number("ka", 200.0)))
         inertial = self._link.inertial
         self._damping = (2.0 * math.sqrt(self._stiffness[0] * inertial.mass),
                          2.0 * math.sqrt(self._stiffness[1] * inertial.ixx))

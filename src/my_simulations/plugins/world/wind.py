@@ -14,6 +14,7 @@ from ...description.model import Link, Model
 from ...geometry import Vec3, scale, subtract
 from ..base import Plugin
 from ..context import PluginError
+from ..finite_messages import finite_only
 from ..noise import WhiteNoise
 from ..parameters import Parameters
 
@@ -43,7 +44,8 @@ class Wind(Plugin):
         self._magnitude = self._lag(_child(across, "magnitude"), "amplitude_percent", "magnitude")
         self._direction = self._lag(_child(across, "direction"), "amplitude", "direction")
         self._vertical = self._lag(p.children("vertical")[:1], "", "vertical")
-        context.subscribe("/gazebo/wind", "geometry_msgs/Vector3", self._hear)
+        context.subscribe("/gazebo/wind", "geometry_msgs/Vector3",
+                          finite_only(context, "/gazebo/wind", self._hear))
         self._given: Optional[Vec3] = None
         self._pushed: List[str] = []
         self.reset()

@@ -5,9 +5,10 @@ from typing import Any, Dict, List, Tuple, Union
 
 import numpy as np
 
+from ..api import NO_ROW
+from ..surfaces import Piece, Surface
 from .shaders import MOST_LAYERS
 from .sky import linear
-from .surfaces import Piece, Surface
 
 _INSTANCE: Any = np.dtype([("rows", "<f4", (3, 4)), ("link", "<i4")])
 
@@ -19,16 +20,15 @@ class Batch:
         owners: name of the model of each instance.
         uniforms: of its surface.
         rows: link row of each; local: (n, 4, 4) link from shape.
+        shape: another number for another shape.
     """
 
     def __init__(self, context: Any, programs: Dict[str, Any], piece: Piece, shadows: bool) -> None:
         self.surface: Surface = piece.surface
         self.uniforms = _uniforms(piece.surface)
         self.casts_shadow = shadows and not piece.surface.clear
-        places: np.ndarray = piece.rows[:, :3].astype(np.float64)
-        low, high = places.min(axis=0), places.max(axis=0)
-        self.center = (low + high) / 2
-        self.radius = float(np.linalg.norm(places - self.center, axis=1).max())
+        self.center, self.radius = _bounds(piece.rows)
+        self.shape = 0
         self.owners: List[str] = []
         self.rows = np.zeros(0, dtype=np.int64)
         self.local = np.zeros((0, 4, 4))
@@ -52,6 +52,12 @@ class Batch:
         self.owners = [one for one in self.owners if one != owner]
         self.rows, self.local = self.rows[kept], self.local[kept]
 
+    def reshape(self, rows: np.ndarray) -> None:
+        """Give the vertices other places and normals; `rows` as in `Piece`."""
+        self.center, self.radius = _bounds(rows)
+        self.shape += 1
+        self._vertices.write(rows.tobytes())
+
     def upload(self, frames: np.ndarray, rows: np.ndarray) -> None:
         """Say where it is to be drawn: (n, 4, 4) view from shape, and the link rows."""
         self.count = len(frames)
@@ -59,7 +65,7 @@ class Batch:
             return
         table = np.empty(self.count, dtype=_INSTANCE)
         table["rows"] = frames[:, :3]
-        table["link"] = rows
+        table["link"] = np.maximum(rows, NO_ROW)  # scenery is no link
         if self._instances is None or self._instances.size < table.nbytes:
             self._release_arrays()
             self._instances = self._context.buffer(reserve=table.nbytes * 2, dynamic=True)
@@ -89,6 +95,13 @@ class Batch:
         self._release_arrays()
         self._vertices.release()
         self._index.release()
+
+
+def _bounds(rows: np.ndarray) -> Tuple[np.ndarray, float]:
+    """Centre and radius of a ball about all vertices."""
+    places: np.ndarray = rows[:, :3].astype(np.float64)
+    center: np.ndarray = (places.min(axis=0) + places.max(axis=0)) / 2
+    return center, float(np.linalg.norm(places - center, axis=1).max())
 
 
 def _uniforms(surface: Surface) -> Dict[str, Union[float, bytes, Tuple[float, ...]]]:

@@ -3,15 +3,18 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
-from typing import Any, Callable, Dict, List, Optional, Set, Tuple
+from itertools import chain
+from typing import Any, Callable, Dict, Iterator, List, Optional, Set, Tuple
 
 import numpy as np
 
 from ...description.light import Light
 from ...description.surroundings import Scene
 from ...errors import InputError
-from ..api import DEPTH, LABELS, NO_ROW, RGB, Body, CameraSpec, Pictures
-from ..poses import matrices, matrix
+from ..api import DEPTH, LABELS, NO_ROW, RGB, Body, CameraSpec, Pictures, SetScenery
+from ..poses import inverse, matrices, matrix
+from ..scenery import Scenery
+from ..surfaces import pieces_of
 from . import distortion, shaders
 from .batches import Batch
 from .context import draws_with_a_card, finisher, new_context
@@ -26,7 +29,7 @@ from .lamps import (
     shadow_view,
 )
 from .sky import linear, sky_uniforms
-from .surfaces import pieces_of
+from .targets import Targets
 from .uploaded_textures import Textures
 
 _VIEW_FROM_SENSOR = np.array([[0.0, -1, 0, 0], [0, 0, 1, 0], [-1, 0, 0, 0], [0, 0, 0, 1]])
@@ -65,10 +68,12 @@ class Renderer:
         self._sky = self._context.vertex_array(
             self._programs["sky"], [(self._context.buffer(corners.tobytes()), "2f", "at")])
         self._batches: Dict[Tuple[str, int], Batch] = {}
+        self._scenery = Scenery()
+        self._scenic: List[Batch] = []
         self._textures = Textures(self._context, lambda text: self._trouble(text))
         self._lights: List[Light] = []
         self._scene = Scene()
-        self._targets: Dict[Tuple[str, int, int, int], Any] = {}
+        self._targets = Targets(self._context)
         self._maps = [self._context.depth_texture((SHADOW_SIZE, SHADOW_SIZE))
                       for _ in range(shaders.MOST_SHADOWS)]
         for one in self._maps:
@@ -122,16 +127,37 @@ class Renderer:
         self._kept.forget()
         self._lights, self._scene = lights, scene
 
+    def set_scenery(self, scenery: SetScenery) -> None:
+        """Roads and actors."""
+        if scenery == self._scenery.told:
+            return
+        self._kept.forget()
+        for batch in self._scenic:
+            batch.release()
+        self._scenery = Scenery(scenery, self._trouble)
+        self._scenic = [Batch(self._context, self._programs, part.piece, part.casts_shadow)
+                        for part in self._scenery.parts]
+        for batch, part in zip(self._scenic, self._scenery.parts):
+            batch.add("", part.row, np.eye(4))
+
     def render(self, spec: CameraSpec, frame: np.ndarray, poses: np.ndarray,
-               outputs: Tuple[str, ...], step: int) -> Pictures:
-        """Pictures from a sensor at `frame` (world from sensor), links at `poses`."""
-        drawn = self._kept.get((spec, outputs, frame.tobytes()), poses.tobytes(),
-                               lambda: self._drawn(spec, frame, poses, outputs))
+               outputs: Tuple[str, ...], step: int, ns: int = 0) -> Pictures:
+        """Pictures from a sensor at `frame` (world from sensor), links at `poses`, at `ns`."""
+        placed = self._scenery.extended(poses, ns)
+        drawn = self._kept.get((spec, outputs, frame.tobytes()),
+                               (placed.tobytes(), self._scenery.forms(ns)),
+                               lambda: self._drawn(spec, frame, placed, outputs, ns))
         return Pictures(*drawn, step)
 
+    def _all(self) -> Iterator[Batch]:
+        yield from self._batches.values()
+        yield from self._scenic
+
     def _drawn(self, spec: CameraSpec, frame: np.ndarray, poses: np.ndarray,
-               outputs: Tuple[str, ...]) -> Drawn:
-        view = _VIEW_FROM_SENSOR @ _inverse(frame)
+               outputs: Tuple[str, ...], ns: int) -> Drawn:
+        for part, rows in self._scenery.reshaped(ns):
+            self._scenic[part].reshape(rows)
+        view = _VIEW_FROM_SENSOR @ inverse(frame)
         links = matrices(poses)
         rgb = depth = labels = None
         clip = projection(spec)
@@ -150,8 +176,8 @@ class Renderer:
     def _place(self, view: np.ndarray, links: np.ndarray, spec: Optional[CameraSpec],
                casters: bool = False) -> None:
         """Say to all batches where they are, leaving out what the camera cannot see."""
-        for batch in self._batches.values():
-            here = np.flatnonzero(batch.rows < len(links))
+        for batch in self._all():
+            here = self._here(batch, links)
             frames = view @ links[batch.rows[here]] @ batch.local[here]
             if casters and not batch.casts_shadow:
                 frames, here = frames[:0], here[:0]
@@ -164,13 +190,17 @@ class Renderer:
                 frames, here = frames[far_first], here[far_first]
             batch.upload(frames, batch.rows[here])
 
+    def _here(self, batch: Batch, links: np.ndarray) -> np.ndarray:
+        """Which instances of a batch have a place."""
+        return np.flatnonzero(batch.rows < len(links) - self._scenery.count)
+
     # Colours.
 
     def _draw_rgb(self, spec: CameraSpec, view: np.ndarray, clip: np.ndarray,
                   shadows: List[Tuple[int, ShadowView]]) -> np.ndarray:
         context = self._context
         samples = spec.samples or self._smooth
-        target = self._target("rgb", spec.width, spec.height, samples)
+        target = self._targets.get("rgb", spec.width, spec.height, samples)
         target.use()
         background = self._scene.background[:3]
         target.clear(*background, 1.0, depth=1.0)
@@ -178,7 +208,7 @@ class Renderer:
         context.enable_only(context.DEPTH_TEST)
         clear: List[Batch] = []
         # Small ones first: walls and grounds are mostly behind them, and need not be lit there.
-        for batch in sorted(self._batches.values(), key=lambda one: one.radius):
+        for batch in sorted(self._all(), key=lambda one: one.radius):
             if batch.surface.clear:
                 clear.append(batch)
             else:
@@ -188,7 +218,7 @@ class Renderer:
         if clear:
             self._draw_clear(clear, target, lighting)
         if samples > 1:
-            whole = self._target("rgb", spec.width, spec.height, 1)
+            whole = self._targets.get("rgb", spec.width, spec.height, 1)
             context.copy_framebuffer(whole, target)
             target = whole
         self._finish()
@@ -211,7 +241,7 @@ class Renderer:
         maps = np.zeros((shaders.MOST_SHADOWS, 4, 4), np.float32)
         pixels = np.zeros(shaders.MOST_SHADOWS, np.float32)
         for n, (_, one) in enumerate(shadows):
-            maps[n] = (one.clip @ one.view @ _inverse(view)).T
+            maps[n] = (one.clip @ one.view @ inverse(view)).T
             pixels[n] = one.pixel
         values = {"clip": clip.T, "ambient": np.array(self._scene.ambient[:3]), "up": view[:3, 2],
                   "shadow_from_view": maps, "shadow_pixel": pixels,
@@ -309,12 +339,12 @@ class Renderer:
 
     def _casters(self, links: np.ndarray) -> Tuple[np.ndarray, np.ndarray, bytes]:
         low, high, places = np.full(3, np.inf), np.full(3, -np.inf), []
-        for key, batch in self._batches.items():
+        for key, batch in chain(self._batches.items(), enumerate(self._scenic)):
             if not batch.casts_shadow:
                 continue
-            here = batch.rows < len(links)
+            here = self._here(batch, links)
             frames = links[batch.rows[here]] @ batch.local[here]
-            places.append(repr((key, batch.radius)).encode() + frames.tobytes())
+            places.append(repr((key, batch.radius, batch.shape)).encode() + frames.tobytes())
             if batch.radius > 1000.0 or not len(frames):  # a ground casts on nothing
                 continue
             center = frames[:, :3, :3] @ batch.center + frames[:, :3, 3]
@@ -330,7 +360,7 @@ class Renderer:
         target.use()
         target.clear(depth=1.0)
         context.enable_only(context.DEPTH_TEST)
-        for batch in self._batches.values():
+        for batch in self._all():
             if batch.casts_shadow:
                 self._draw_plain(batch, "shadow", one.clip)
 
@@ -338,12 +368,12 @@ class Renderer:
 
     def _draw_ranges(self, spec: CameraSpec, clip: np.ndarray) -> Tuple[np.ndarray, np.ndarray]:
         context = self._context
-        target = self._target("range", spec.width, spec.height, 1)
+        target = self._targets.get("range", spec.width, spec.height, 1)
         target.use()
         target.clear(depth=1.0)
         depth, labels = target.color_attachments
         context.enable_only(context.DEPTH_TEST)
-        for batch in self._batches.values():
+        for batch in self._all():
             self._draw_plain(batch, "range", clip)
         self._finish()
         away = np.frombuffer(depth.read(alignment=4), np.float32).reshape(spec.height, spec.width)
@@ -368,22 +398,6 @@ class Renderer:
         _set(self._programs[name], "clip", clip.T)
         batch.draw(name)
 
-    def _target(self, kind: str, width: int, height: int, samples: int) -> Any:
-        key = (kind, width, height, samples)
-        found = self._targets.get(key)
-        if found is None:
-            context, size = self._context, (width, height)
-            if kind == "range":
-                found = context.framebuffer(
-                    [context.texture(size, 1, dtype="f4"), context.texture(size, 1, dtype="i4")],
-                    context.depth_renderbuffer(size))
-            else:
-                many = samples if samples > 1 else 0
-                found = context.framebuffer([context.renderbuffer(size, 4, samples=many)],
-                                            context.depth_renderbuffer(size, samples=many))
-            self._targets[key] = found
-        return found
-
     def _distort(self, spec: CameraSpec, rgb: Optional[np.ndarray], depth: Optional[np.ndarray],
                  labels: Optional[np.ndarray]) -> Tuple[Optional[np.ndarray], ...]:
         if spec not in self._lenses:
@@ -392,14 +406,6 @@ class Renderer:
         return (None if rgb is None else distortion.blended(rgb, column, row),
                 None if depth is None else distortion.nearest(depth, column, row, np.inf),
                 None if labels is None else distortion.nearest(labels, column, row, NO_ROW))
-
-
-def _inverse(frame: np.ndarray) -> np.ndarray:
-    """Of a rigid transform."""
-    made = np.eye(4)
-    made[:3, :3] = frame[:3, :3].T
-    made[:3, 3] = -frame[:3, :3].T @ frame[:3, 3]
-    return made
 
 
 def _write(member: Any, values: bytes) -> None:

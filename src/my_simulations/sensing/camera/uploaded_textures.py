@@ -7,7 +7,7 @@ import numpy as np
 
 from ...appearance.palette import GREY
 from ...appearance.terrain_layers import TerrainLayer
-from .surfaces import Surface
+from ..surfaces import Surface
 
 _SRGB = 0x8C43  # GL_SRGB8_ALPHA8
 

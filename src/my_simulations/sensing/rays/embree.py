@@ -100,9 +100,20 @@ class Embree:
         self.rtcSetSceneBuildQuality(made, MEDIUM_QUALITY)  # no slower to make than the low one
         return made
 
-    def attach(self, scene: int, kind: int, buffers: "Tuple[Tuple[int, int, Any], ...]") -> None:
-        """Add a geometry; `buffers` are (kind, format, contiguous array of rows)."""
-        geometry = self.rtcNewGeometry(self.device, kind)
+    def reshape(self, geometry: int, buffer: int, vertices: Any) -> None:
+        """Give a geometry other vertices, float32 (n, 3); `buffer`: the address of the old ones."""
+        ctypes.memmove(buffer, vertices.ctypes.data, vertices.nbytes)
+        self.rtcUpdateGeometryBuffer(geometry, VERTEX, 0)
+        self.rtcCommitGeometry(geometry)
+
+    def attach(self, scene: int, kind: int, buffers: "Tuple[Tuple[int, int, Any], ...]",
+               ) -> Tuple[int, int]:
+        """Add a geometry; `buffers` are (kind, format, contiguous array of rows).
+
+        Returns:
+            The geometry and the address of its last buffer, as long as the scene has it.
+        """
+        geometry, to = self.rtcNewGeometry(self.device, kind), 0
         for use, form, rows in buffers:
             to = self.rtcSetNewGeometryBuffer(geometry, use, 0, form, rows.strides[0], len(rows))
             if not to:
@@ -111,6 +122,7 @@ class Embree:
         self.rtcCommitGeometry(geometry)
         self.rtcAttachGeometry(scene, geometry)
         self.rtcReleaseGeometry(geometry)
+        return geometry, to
 
 
 def library_path() -> Optional[str]:

@@ -14,8 +14,9 @@ import numpy as np
 from ...description.shapes import Capsule, Ellipsoid, Geometry, Plane, Sphere
 from ...errors import InputError
 from ...geometry import Pose
-from ..api import NO_ROW
+from ..api import NO_ROW, SetScenery
 from ..poses import matrices, matrix, transforms
+from ..scenery import Scenery
 from ..tessellation import sides, tapered, triangles_of
 from .embree import (
     BODY,
@@ -45,6 +46,7 @@ from .embree import (
 
 _ALIGNED = 64
 _PARALLEL = -1e-300
+_STILL = np.eye(4)
 
 
 @dataclass(frozen=True)
@@ -102,6 +104,9 @@ class RayScene:
         self._top = embree.scene(dynamic=True)
         self._parts: Dict[str, _Parts] = {}
         self._models: Dict[str, _Model] = {}
+        self._scenery = Scenery()
+        self._scenic: List[_Instance] = []
+        self._surfaces: List[Tuple[int, int]] = []   # Embree's, of each part of the scenery
         self._changed = True
         self._array: Optional[Tuple[ctypes.c_void_p, int]] = None  # handle, number in the scene
         self._which = np.zeros(0, dtype=np.uint32)                 # its tables: read by Embree
@@ -110,6 +115,7 @@ class RayScene:
         self._most_row = NO_ROW
         self._last = np.zeros((0, 7))
         self._poses = np.zeros((0, 7))
+        self._ns = -1
         self._buffer = _packets(PACKET)
 
     def add(self, name: str, links: Sequence[Tuple[int, Sequence[RayShape]]]) -> None:
@@ -143,6 +149,35 @@ class RayScene:
         """Everything has gone."""
         for name in list(self._models):
             self.remove(name)
+        self.set_scenery(SetScenery())
+
+    def set_scenery(self, scenery: SetScenery) -> None:
+        """Roads and actors; they are seen once `move` has given them a place."""
+        if scenery == self._scenery.told:
+            return
+        for instance in self._scenic:
+            self._embree.rtcReleaseScene(self._parts.pop(instance.key).scene)
+        self._scenic, self._surfaces = [], []
+        self._scenery = Scenery(scenery, self._trouble, "rays")
+        for n, part in enumerate(self._scenery.parts):
+            scene = self._embree.scene(dynamic=True)
+            kind, (vertices, triangles) = _triangles(_STILL, part.piece.rows[:, :3],
+                                                     part.piece.triangles)
+            self._surfaces.append(self._embree.attach(scene, kind, (triangles, vertices)))
+            self._embree.rtcCommitScene(scene)
+            self._embree.check()
+            self._scenic.append(_Instance(part.row, f"scenery {n}"))
+            self._parts[f"scenery {n}"] = _Parts(scene, [0.0])
+        self._changed = True
+
+    def _reshape(self, ns: int) -> bool:
+        """Give scenery the shape that it has at a sim time; whether it had another."""
+        found = self._scenery.reshaped(ns)
+        for part, rows in found:
+            vertices = np.ascontiguousarray(rows[:, :3])
+            self._embree.reshape(*self._surfaces[part], vertices)
+            self._embree.rtcCommitScene(self._parts[self._scenic[part].key].scene)
+        return bool(found)
 
     def _instantiate(self, row: int, shapes: Tuple[RayShape, ...]) -> _Instance:
         key = repr(shapes)
@@ -168,27 +203,33 @@ class RayScene:
         self._embree.check()
         return _Parts(scene, retro)
 
-    def move(self, poses: np.ndarray) -> None:
-        """Put every link where (n, 7) poses of link rows say; a link without a row is not seen."""
-        if poses is self._poses and not self._changed:
+    def move(self, poses: np.ndarray, ns: int = 0) -> None:
+        """Put every link where (n, 7) poses of link rows say, and actors where they are at `ns`.
+
+        A link without a row is not seen.
+        """
+        if poses is self._poses and ns == self._ns and not self._changed:
             return  # another sensor in the same state
         if self._changed:
             self._index()
+        reshaped = bool(self._scenic) and self._reshape(ns)
+        placed = self._scenery.extended(poses, ns)
         if self._most_row < len(poses):
-            now: Any = poses.take(self._rows, axis=0)
+            now: Any = placed.take(self._rows, axis=0)
         else:
             here = self._rows < len(poses)
             now = np.full((len(self._rows), 7), np.nan)
-            now[here] = poses[self._rows[here]]
+            now[here] = placed[self._rows[here]]
         moved = np.flatnonzero((now != self._last).any(axis=1))
-        if len(moved) or self._changed:
+        if len(moved) or self._changed or reshaped:
             self._place(moved, now)
             self._embree.rtcCommitScene(self._top)
-        self._last, self._changed, self._poses = now, False, poses
+        self._last, self._changed, self._poses, self._ns = now, False, poses, ns
 
     def _index(self) -> None:
         """Tables by place in the array of instances, after a change of the scene."""
         instances = [one for model in self._models.values() for one in model.instances]
+        instances += self._scenic
         scenes = {key: n for n, key in enumerate(self._parts)}
         self._rows = np.array([one.row for one in instances], dtype=np.int64)
         self._most_row = int(self._rows.max(initial=NO_ROW))
@@ -200,7 +241,9 @@ class RayScene:
             first_retro[key] = len(retro)
             retro += parts.retro
         # What has met nothing has numbers of -1: the last ones of these tables.
-        self._row_of = np.array([*(one.row for one in instances), NO_ROW], dtype=np.int32)
+        # Scenery has a row below that, and is no link either.
+        self._row_of = np.array([*(max(one.row, NO_ROW) for one in instances), NO_ROW],
+                                dtype=np.int32)
         self._first_retro = np.array([*(first_retro[one.key] for one in instances),
                                       len(retro) + 1], dtype=np.int64)
         self._retro = np.array([*retro, 0.0], dtype=np.float32)

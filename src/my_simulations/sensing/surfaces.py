@@ -6,11 +6,11 @@ from typing import Any, List, Optional, Tuple
 
 import numpy as np
 
-from ...appearance.looks import Look
-from ...appearance.palette import DULLEST, GREY, GROUND
-from ...appearance.terrain_layers import TerrainLayer
-from ...description.shapes import SOLIDS, Color, Heightmap, Mesh, Plane, Visual
-from ..tessellation import triangles_of
+from ..appearance.looks import Look
+from ..appearance.palette import DULLEST, GREY, GROUND
+from ..appearance.terrain_layers import TerrainLayer
+from ..description.shapes import SOLIDS, Color, Heightmap, Mesh, Plane, Visual
+from .tessellation import triangles_of
 
 _OF_MESH: Color = (0.784, 0.784, 0.784, 1.0)
 _DULL: Color = (0.0, 0.0, 0.0, 1.0)
@@ -70,18 +70,16 @@ def pieces_of(visual: Visual, look: Optional[Look]) -> List[Piece]:
                                        or look.texture or look.pattern)
     if isinstance(shape, SOLIDS):
         # A world without a mesh has its first picture earlier.
-        from ...formats.mesh.loading import load_solid
-        from ...formats.mesh.painted import flat, painted_parts, smooth
+        from ..formats.mesh.loading import load_solid
+        from ..formats.mesh.painted import flat, painted_parts, smooth
 
         parts = (painted_parts(shape) if isinstance(shape, Mesh)
                  else [smooth(load_solid(shape))] if isinstance(shape, Heightmap)
                  else [flat(load_solid(shape))])
         if look is not None and look.layers and isinstance(shape, Heightmap):
             return [_terrain(parts[0], look.layers, shape.position[2], opacity)]
-        return [_piece(part.vertices, part.normals, part.uv, part.triangles,
-                       surface_of(look, opacity) if speaks else
-                       Surface(part.color or _OF_MESH, emissive=part.emission or _DULL,
-                               picture=part.picture, opacity=opacity, alpha_test=_HOLE))
+        return [piece_of(part.vertices, part.normals, part.uv, part.triangles,
+                         surface_of(look, opacity) if speaks else own_surface(part, opacity))
                 for part in parts]
     made = triangles_of(shape, _SIDES)
     if made is None or made.normals is None or made.uv is None:
@@ -89,17 +87,24 @@ def pieces_of(visual: Visual, look: Optional[Look]) -> List[Piece]:
     surface = surface_of(look, opacity)
     if isinstance(shape, Plane):
         surface = replace(surface, brightness=GROUND)
-    return [_piece(made.vertices, made.normals, made.uv, made.triangles, surface)]
+    return [piece_of(made.vertices, made.normals, made.uv, made.triangles, surface)]
 
 
 def _terrain(part: Any, layers: Tuple[TerrainLayer, ...], base: float, opacity: float) -> Piece:
     corner = part.vertices[:, 0].min(), part.vertices[:, 1].max()
-    return _piece(part.vertices, part.normals, part.vertices[:, :2] - corner, part.triangles,
-                  Surface(layers=layers, base=base, opacity=opacity))
+    return piece_of(part.vertices, part.normals, part.vertices[:, :2] - corner, part.triangles,
+                    Surface(layers=layers, base=base, opacity=opacity))
 
 
-def _piece(vertices: np.ndarray, normals: np.ndarray, uv: np.ndarray, triangles: np.ndarray,
-           surface: Surface) -> Piece:
+def own_surface(part: Any, opacity: float) -> Surface:
+    """What a part of a mesh (`formats.mesh.painted`) looks like by its file."""
+    return Surface(part.color or _OF_MESH, emissive=part.emission or _DULL, picture=part.picture,
+                   opacity=opacity, alpha_test=_HOLE)
+
+
+def piece_of(vertices: np.ndarray, normals: np.ndarray, uv: np.ndarray, triangles: np.ndarray,
+             surface: Surface) -> Piece:
+    """Vertices, normals and texture coordinates of each corner, in the renderer's form."""
     rows = np.column_stack([vertices, normals, uv]).astype(np.float32)
     return Piece(np.ascontiguousarray(rows), np.ascontiguousarray(triangles, dtype=np.int32),
                  surface)

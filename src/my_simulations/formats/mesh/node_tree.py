@@ -1,0 +1,136 @@
+"""The nodes of a COLLADA file's scene, and where they are in each other."""
+from __future__ import annotations
+
+import math
+from typing import Any, Dict, List, Optional, Sequence, Tuple
+
+import numpy as np
+
+from .part import MeshError
+
+_MOST_NODES, _DEEPEST = 20_000, 100
+PLACINGS = ("matrix", "translate", "rotate", "scale")
+"""Elements that say where a node is; others (lookat, skew) are not heeded."""
+
+Array = Any  # a NumPy array; its shape is documented at each use
+Placing = Tuple[str, str, Array]
+"""Its sid, its kind, its numbers."""
+
+
+def floats(element: Any) -> Array:
+    """The numbers in an element."""
+    return np.array("".join(element.itertext()).split(), dtype=np.float64)
+
+
+class NodeTree:
+    """Nodes, each after the one that it hangs on.
+
+    Attributes:
+        elements: XML of each.
+        names: by which animations of other files find it: the sid of a joint, else the name.
+        joints: whether it is a joint.
+        parents: number of the one that it hangs on, -1 for none.
+        by_id: all elements of the file.
+        numbers: of nodes by id.
+        rest: (n, 4, 4) where nodes are in their parents, as the file has them.
+    """
+
+    def __init__(self, root: Any) -> None:
+        self.by_id: Dict[str, Any] = {one.get("id"): one for one in root.iter() if one.get("id")}
+        self.elements: List[Any] = []
+        self.names: List[str] = []
+        self.joints: List[bool] = []
+        self.parents: List[int] = []
+        self.numbers: Dict[str, int] = {}
+        instance = root.find("{*}scene/{*}instance_visual_scene")
+        scene = (self.by_id.get(instance.get("url", "#")[1:]) if instance is not None
+                 else next(root.iter("{*}visual_scene"), None))
+        for child in () if scene is None else scene.iterchildren("{*}node"):
+            self._walk(child, -1, 0)
+        self.rest: Array = np.array([local_matrix(self.placings(n))
+                                     for n in range(len(self.elements))]).reshape(-1, 4, 4)
+
+    def release(self) -> None:
+        """Give the XML back, which is most of what this takes."""
+        self.elements.clear()
+        self.by_id.clear()
+
+    def _walk(self, element: Any, parent: int, depth: int) -> None:
+        if len(self.elements) >= _MOST_NODES or depth > _DEEPEST:
+            raise MeshError("its nodes form a cycle or are nested too deeply", element.sourceline)
+        number = len(self.elements)
+        joint = element.get("type") == "JOINT"
+        self.elements.append(element)
+        self.names.append((element.get("sid") if joint else element.get("name")) or "")
+        self.joints.append(joint)
+        self.parents.append(parent)
+        self.numbers.setdefault(element.get("id") or "", number)
+        for child in element.iterchildren("{*}node", "{*}instance_node"):
+            if child.tag.endswith("instance_node"):
+                child = self.by_id.get(child.get("url", "#")[1:])
+            if child is not None:
+                self._walk(child, number, depth + 1)
+
+    def bone(self, name: str, roots: Sequence[int]) -> int:
+        """The node that a skin calls by a name, below `roots` first.
+
+        Raises:
+            MeshError: there is none.
+        """
+        below = [n for n in range(len(self.elements)) if not roots or self._is_below(n, roots)]
+        for numbers in (below, range(len(self.elements))):
+            for key in ("sid", "id", "name"):
+                for n in numbers:
+                    if self.elements[n].get(key) == name:
+                        return n
+        raise MeshError(f"a skin has a joint {name!r}, which no node is")
+
+    def _is_below(self, number: int, roots: Sequence[int]) -> bool:
+        while number >= 0:
+            if number in roots:
+                return True
+            number = self.parents[number]
+        return False
+
+    @property
+    def root_joint(self) -> Optional[int]:
+        """The joint that hangs on none."""
+        return next((n for n, joint in enumerate(self.joints)
+                     if joint and not (self.parents[n] >= 0 and self.joints[self.parents[n]])),
+                    None)
+
+    def placings(self, number: int) -> List[Placing]:
+        """What says where a node is, in its order."""
+        return [(one.get("sid") or "", one.tag.rsplit("}", 1)[-1], floats(one))
+                for one in self.elements[number].iterchildren(*(f"{{*}}{kind}"
+                                                                for kind in PLACINGS))]
+
+
+def local_matrix(placings: Sequence[Placing]) -> Array:
+    """(4, 4), parent from node.
+
+    Raises:
+        ValueError: one has not its count of numbers.
+    """
+    made = np.eye(4)
+    for _, kind, values in placings:
+        one = np.eye(4)
+        if kind == "matrix":
+            one = values.reshape(4, 4)
+        elif kind == "translate":
+            one[:3, 3] = values.reshape(3)
+        elif kind == "scale":
+            one[:3, :3] = np.diag(values.reshape(3))
+        else:
+            one[:3, :3] = _about(values.reshape(4))
+        made = made @ one
+    return made
+
+
+def _about(values: Array) -> Array:
+    """A turn about an axis by degrees."""
+    x, y, z = values[:3] / (np.linalg.norm(values[:3]) or 1.0)
+    cosine, sine = math.cos(math.radians(values[3])), math.sin(math.radians(values[3]))
+    across = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+    turn: Array = np.eye(3) + sine * across + (1.0 - cosine) * (across @ across)
+    return turn

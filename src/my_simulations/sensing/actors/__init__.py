@@ -1,0 +1,1 @@
+"""Actors: where they are and what shape they have at a time."""

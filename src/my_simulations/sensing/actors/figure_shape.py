@@ -1,0 +1,83 @@
+"""The surface of an actor, and how its limbs carry it."""
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Callable, List, Optional
+
+import numpy as np
+
+from ...errors import InputError
+from ...formats.mesh.figures import read_clip, read_figure
+from ...formats.mesh.loading import load_mesh
+from ...formats.mesh.painted import PaintedPart, painted_parts
+from ...formats.mesh.part import MeshError
+from ...geometry import Pose
+from ..api import Figure
+from ..surfaces import Piece, own_surface, piece_of
+from .path import ActorPath
+from .skeleton import Skeleton
+
+
+class FigureShape:
+    """What an actor looks like at a time, as on the editor's page (web/js/view/actors.js).
+
+    Args:
+        figure: the actor and its files.
+        trouble: is told of a skin that cannot be read; the actor is not seen then.
+        viewers: who does not see it, for that sentence.
+    """
+
+    def __init__(self, figure: Figure, trouble: Callable[[str], None], viewers: str) -> None:
+        self._path = ActorPath(figure.actor)
+        self._skeleton: Optional[Skeleton] = None
+        self.pieces: List[Piece] = []
+        if not figure.skin.uri:
+            return
+        try:
+            load_mesh(figure.skin)   # within limits, and it tells faults of the file
+        except InputError as fault:
+            trouble(f"{viewers} do not see the actor {figure.actor.name!r}: {fault}")
+            return
+        parts: List[PaintedPart] = []
+        try:
+            parts = self._hung(figure)
+        except MeshError as fault:
+            trouble(f"{viewers} see the actor {figure.actor.name!r} in one shape: {fault}")
+        self.pieces = [piece_of(part.vertices, part.normals, part.uv, part.triangles,
+                                own_surface(part, 1.0))
+                       for part in parts or painted_parts(figure.skin)]
+
+    def _hung(self, figure: Figure) -> List[PaintedPart]:
+        """The parts that bones carry; none of a file without."""
+        found = read_figure(figure.skin.path)
+        if found is None:
+            return []
+        clip = read_clip(figure.animation) if figure.animation else None
+        skeleton = Skeleton(found, figure.skin.scale[0], clip, borrows=bool(figure.animation),
+                            on_path=self._path.moves)
+        surfaces = skeleton.surfaces(None)
+        if not all(np.isfinite(vertices).all() for vertices, _ in surfaces):
+            raise MeshError("its bones are not at finite places")
+        self._skeleton = skeleton
+        return [replace(one.part, vertices=vertices, normals=normals)
+                for one, (vertices, normals) in zip(found.parts, surfaces)]
+
+    def pose_at(self, time: float) -> Pose:
+        """In the world, at a sim time in s."""
+        return self._path.pose_at(time)
+
+    def form_at(self, time: float) -> Optional[float]:
+        """What its shape depends on: s in its animation; None for the shape of the file."""
+        length = None if self._skeleton is None else self._skeleton.duration
+        at = self._path.script_time(time)
+        if length is None or at is None:
+            return None
+        return at % length if length > 0.0 else 0.0
+
+    def rows_at(self, form: Optional[float]) -> List[np.ndarray]:
+        """Rows of `Piece`, one table of each piece."""
+        rows = [piece.rows.copy() for piece in self.pieces]
+        if self._skeleton is not None:
+            for table, (vertices, normals) in zip(rows, self._skeleton.surfaces(form)):
+                table[:, :3], table[:, 3:6] = vertices, normals
+        return rows

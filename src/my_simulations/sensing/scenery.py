@@ -1,0 +1,97 @@
+"""Roads and actors, which belong to no model: surfaces at places of their own.
+
+The n-th of them is at the row -1 - n of a table of poses: `extended` puts theirs behind those of
+the links, so that whoever places links places them, too.
+"""
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Callable, List, Optional, Tuple
+
+import numpy as np
+
+from ..geometry import Pose
+from .actors.figure_shape import FigureShape
+from .api import PaintedRoad, SetScenery
+from .roads import strip
+from .surfaces import Piece, piece_of, surface_of
+
+NO_SCENERY = SetScenery()
+
+
+def _untold(text: str) -> None:
+    """Nobody is told."""
+
+
+@dataclass(frozen=True)
+class ScenicPart:
+    """Triangles of one surface; `row`: where its place is in an extended table."""
+
+    piece: Piece
+    row: int
+    casts_shadow: bool
+
+
+class Scenery:
+    """What there is, for one viewer.
+
+    Args:
+        scenery: roads and actors.
+        trouble: is told of skins that cannot be read.
+        viewers: who does not see them, for that sentence.
+    """
+
+    def __init__(self, scenery: SetScenery = NO_SCENERY,
+                 trouble: Callable[[str], None] = _untold, viewers: str = "cameras") -> None:
+        self.told = scenery
+        self.parts: List[ScenicPart] = []
+        self._figures: List[Tuple[FigureShape, int]] = []   # with the number of its first part
+        self._forms: List[Optional[float]] = []
+        fixed = [self._lay(road, -1 - n) for n, road in enumerate(scenery.roads)]
+        for figure in scenery.figures:
+            shape = FigureShape(figure, trouble, viewers)
+            row = -1 - len(fixed) - len(self._figures)
+            self._figures.append((shape, len(self.parts)))
+            self._forms.append(None)
+            self.parts += [ScenicPart(piece, row, True) for piece in shape.pieces]
+        self._fixed = np.array([[*pose.position, *pose.orientation] for pose in reversed(fixed)]
+                               ).reshape(-1, 7)
+
+    def _lay(self, road: PaintedRoad, row: int) -> Pose:
+        made = strip(road.road)
+        at = Pose(road.road.points[0]) if made is not None else Pose()
+        if made is not None:
+            row = -1 - len(self.parts)
+            piece = piece_of(made.vertices - np.array(at.position), made.normals, made.uv,
+                             made.triangles, surface_of(road.look, 1.0))
+            self.parts.append(ScenicPart(piece, row, False))
+        return at
+
+    @property
+    def count(self) -> int:
+        """Rows behind those of the links."""
+        return len(self._fixed) + len(self._figures)
+
+    def extended(self, poses: np.ndarray, ns: int) -> np.ndarray:
+        """(n, 7) poses of links, and behind them the places of all this at a sim time, ns."""
+        if not self.count:
+            return poses
+        places = [[*pose.position, *pose.orientation]
+                  for pose in (shape.pose_at(ns / 1e9) for shape, _ in reversed(self._figures))]
+        return np.concatenate([poses, np.array(places).reshape(-1, 7), self._fixed])
+
+    def forms(self, ns: int) -> bytes:
+        """What shapes depend on: equal for two times at which all have the same."""
+        if not self._figures:
+            return b""
+        return repr([shape.form_at(ns / 1e9) for shape, _ in self._figures]).encode()
+
+    def reshaped(self, ns: int) -> List[Tuple[int, np.ndarray]]:
+        """The parts that have another shape than at the last call, with the rows of `Piece`."""
+        found: List[Tuple[int, np.ndarray]] = []
+        for n, (shape, first) in enumerate(self._figures):
+            form = shape.form_at(ns / 1e9)
+            if form != self._forms[n]:
+                self._forms[n] = form
+                found += enumerate(shape.rows_at(form), first)
+        return found
