@@ -212,11 +212,12 @@ MENU = """() => new Promise((done) => {
   button.addEventListener('pointerdown', () => {
     const began = performance.now();
     const look = () => (document.querySelector('.popup')
-      ? requestAnimationFrame(() => done(performance.now() - began)) : setTimeout(look));
+      ? requestAnimationFrame(() => requestAnimationFrame(() => done(performance.now() - began)))
+      : setTimeout(look));
     look();
   }, {once: true});
 })"""
-"""Resolves with the ms from the press on the first menu to the first picture with it."""
+"""Resolves with the ms from the press on the first menu until the page with it has been drawn."""
 
 
 def picture_costs(page: Any, seconds: float) -> Tuple[float, float, float]:
@@ -256,7 +257,12 @@ def moving() -> List[Row]:
             time.sleep(0.25)
         tasks = page.evaluate("window.tasks")
         late = page.evaluate("window.late")
-        menu = [_menu(page) for _ in range(7)]
+        menu, at_once = [], []
+        for _ in range(7):
+            # What sinks is out of sight after 20 s, and then pictures would be quick.
+            page.evaluate("window.editor.actions.resetPoses(), null")
+            menu.append(_menu(page, _travel))
+            at_once.append(_menu(page, lambda page, x, y: page.mouse.move(x, y)))
     longest = max(tasks, default=0.0)
     opens = statistics.median(menu)
     return [("1000 moving boxes, software GL: pictures", f"{pictures:.1f} /s", "6 /s",
@@ -270,16 +276,32 @@ def moving() -> List[Row]:
             ("1000 moving boxes, software GL: mouse heard after",
              f"{statistics.median(late):.0f} ms median, {max(late):.0f} ms most", "-", True),
             ("1000 moving boxes, software GL: a menu opens",
-             f"{opens:.0f} ms median, {max(menu):.0f} ms most", "100 ms", opens <= 100)]
+             f"{opens:.0f} ms median, {max(menu):.0f} ms most", "100 ms", opens <= 100),
+            ("the same, when the mouse has jumped there from the view",
+             f"{statistics.median(at_once):.0f} ms median, {max(at_once):.0f} ms most", "-", True)]
 
 
-def _menu(page: Any) -> float:
+def _travel(page: Any, x: float, y: float) -> None:
+    """Move the mouse from the middle of the view as a quick hand does: 0.4 s, and 0.1 s of rest."""
+    for n in range(26):
+        share = 10 * (n / 25) ** 3 - 15 * (n / 25) ** 4 + 6 * (n / 25) ** 5  # of least jerk
+        page.mouse.move(700 + share * (x - 700), 400 + share * (y - 400))
+        time.sleep(0.016)
+    time.sleep(0.1)
+
+
+def _menu(page: Any, go: Callable[[Any, float, float], None]) -> float:
     """Press on a menu with the mouse; ms until it is seen."""
     box = page.locator("#menubar [role=menuitem]").first.bounding_box()
     page.evaluate(f"window.opening = ({MENU})(), null")
-    page.mouse.click(box["x"] + 8, box["y"] + 8)
+    go(page, box["x"] + 8, box["y"] + 8)
+    page.mouse.down()
+    page.mouse.up()
     took = float(page.evaluate("window.opening"))
     page.keyboard.press("Escape")
+    page.mouse.move(700, 400)
+    time.sleep(0.5)
+    wait(lambda: page.evaluate("window.editor.view.fps > 0"), 60, "pictures as before")
     return took
 
 

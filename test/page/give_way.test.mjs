@@ -16,7 +16,14 @@ test('a movement is waited for shorter than a press, and takes nothing from it',
   way.pictured(140, 1000);
   way.hand('press', 1000);
   way.hand('move', 1010);
-  assert.deepEqual([way.waits(1100), way.waits(1201)], [true, false]);
+  assert.deepEqual([way.waits(1199), way.waits(1201)], [true, false]);
+});
+
+test('a hand that rests on what it will press is waited for', () => {
+  const way = new GiveWay();
+  way.pictured(140, 1000);
+  way.hand('move', 1000);
+  assert.deepEqual([way.waits(1150), way.waits(1170)], [true, false]);
 });
 
 test('quick pictures wait for nobody', () => {

@@ -13,6 +13,7 @@ ends an engine that hangs.
 """
 from __future__ import annotations
 
+import contextlib
 import ctypes
 import sys
 import threading
@@ -134,7 +135,7 @@ class CallWatch:
             if not abandoned:
                 self._call = None
             if mine.interrupted:
-                _raise_in(mine.thread, None)  # it has come back by itself in this moment
+                _forget_interruptions()  # it has come back by itself in this moment
             return abandoned
 
     def _watch(self) -> None:
@@ -150,6 +151,7 @@ class CallWatch:
                     continue
                 self._call = None
             self._abandon(call.subject, call.why + call.where)
+            _forget_interruptions()
 
     def _interrupt(self, call: _Call) -> None:
         why = call.overdue()
@@ -178,7 +180,23 @@ def _innermost(thread: int) -> Tuple[str, str]:
     return next((name for name in modules if name.startswith(_OWN_PARTS)), ""), at
 
 
-def _raise_in(thread: int, kind: Optional[type]) -> None:
-    """Raise an exception in another thread, once it runs Python again; None takes it back."""
-    ctypes.pythonapi.PyThreadState_SetAsyncExc(
-        ctypes.c_ulong(thread), ctypes.py_object(kind) if kind is not None else None)
+def _raise_in(thread: int, kind: type) -> None:
+    """Raise an exception in another thread, or in this one, once it runs Python again."""
+    ctypes.pythonapi.PyThreadState_SetAsyncExc(ctypes.c_ulong(thread), ctypes.py_object(kind))
+
+
+class _Forgotten(BaseException):
+    """Raised to be caught at once."""
+
+
+def _forget_interruptions() -> None:
+    """Have no exception pending in this thread; one of a thread that waits, it finds later.
+
+    As long as one is pending anywhere, CPython looks for it at each call and jump, and to take one
+    back does not end that: calls take up to twice as long, and until 3.11 a function that is traced
+    (debuggers, coverage) never begins. Only an exception that arrives ends it.
+    """
+    with contextlib.suppress(_Forgotten):
+        _raise_in(threading.get_ident(), _Forgotten)
+        while True:
+            pass

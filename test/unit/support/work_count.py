@@ -10,7 +10,7 @@ def lines_run(call: Callable[[], object]) -> int:
     """How many lines this thread runs during a call, in all functions below it.
 
     Each turn of a loop counts, also of one in a single line. Events of single bytecodes would tell
-    more; but CPython 3.11.2 may loop for ever in a specialised call while it sends them.
+    more, and Python 3.12 leaves some out.
     """
     count = 0
 

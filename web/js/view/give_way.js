@@ -5,8 +5,11 @@
 
 /** Milliseconds from which on a picture is slow. */
 const SLOW = 45;
-/** Milliseconds for which the next picture waits after a press and while the mouse moves. */
-const WAIT = {press: 200, move: 60};
+/**
+ * Milliseconds for which the next picture waits after a press and after a movement of the mouse: a hand
+ * rests for 0.1 s on what it is about to press.
+ */
+const WAIT = {press: 200, move: 160};
 /** Milliseconds that the last picture stays at most: what moves must not seem to stand. */
 const STALEST = 400;
 
