@@ -185,7 +185,7 @@ def _raise_in(thread: int, kind: type) -> None:
     ctypes.pythonapi.PyThreadState_SetAsyncExc(ctypes.c_ulong(thread), ctypes.py_object(kind))
 
 
-class _Forgotten(BaseException):
+class _ForgottenError(BaseException):
     """Raised to be caught at once."""
 
 
@@ -196,7 +196,7 @@ def _forget_interruptions() -> None:
     back does not end that: calls take up to twice as long, and until 3.11 a function that is traced
     (debuggers, coverage) never begins. Only an exception that arrives ends it.
     """
-    with contextlib.suppress(_Forgotten):
-        _raise_in(threading.get_ident(), _Forgotten)
+    with contextlib.suppress(_ForgottenError):
+        _raise_in(threading.get_ident(), _ForgottenError)
         while True:
             pass

@@ -86,6 +86,8 @@ NOT_SHAPE = {
         ("<library_visual_scenes>", '<library_visual_scenes><instance_node url="#gone"/>'),
     "a node outside of libraries": (
         '<node id="n">', '<node id="n"><instance_node url="#odd"/>'),
+    "two nodes of one name, one of them where none may be": (
+        '<node id="n">', '<node id="other"><instance_node url="#odd"/></node><node id="n">'),
     "a polygon with a hole and no outline": (
         "<triangles", f"<polygons>{VERTEX}<ph><h>0 1 2</h></ph></polygons><triangles"),
 }
@@ -98,6 +100,10 @@ def test_what_is_not_shape_does_not_keep_a_collada_file_from_being_read(tmp_path
         changes.append(('stride="3"', 'stride="4"'))
     if what == "a node outside of libraries":
         changes.append(("</COLLADA>", '<node id="odd"><odd/></node></COLLADA>'))
+    if what == "two nodes of one name, one of them where none may be":
+        changes.append(("<library_visual_scenes>", '<library_nodes><node id="odd">'
+                        '<instance_geometry url="#gone"><node id="odd"/></instance_geometry></node>'
+                        "</library_nodes><library_visual_scenes>"))
     data = load_mesh(written(tmp_path, "a.dae", collada(*changes)))
     assert data.triangles.shape == (1, 3)
     assert corners_of(data) == CORNERS

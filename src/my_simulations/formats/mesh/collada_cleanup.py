@@ -127,6 +127,7 @@ class _Document:
 
     def share_nodes(self) -> None:
         """Copy nodes that are instantiated several times to where pycollada searches for them."""
+        self.find_ids()  # of two nodes with one name, the one may have been removed
         library = _made(self._root, "library_nodes")
         wanted: Set[str] = set()
         for instance in list(self._root.iter("{*}instance_node")):
