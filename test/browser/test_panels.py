@@ -563,6 +563,25 @@ def test_a_mesh_that_is_dropped_becomes_a_body_of_the_density_asked_for(editor):
     assert mass == approx(500 * 4 / 3 * math.pi * 0.25 ** 3, rel=0.01)
 
 
+def test_an_import_that_takes_long_says_so_and_is_not_left_by_escape(editor):
+    drop(editor, "slow.stl", trimesh.creation.box((1, 1, 1)).export(file_type="stl"),
+         (-1.0, 0.0, 0.0))
+    asked = editor.page.get_by_role("dialog", name="Import Mesh")
+    editor.get("""(() => { const {connection} = editor, ask = connection.request.bind(connection);
+        connection.request = async (kind, ...rest) => {
+          if (kind === 'import_model') await new Promise((go) => { window.goOn = go; });
+          return ask(kind, ...rest);
+        }; })()""")
+    asked.get_by_role("button", name="Import").click()
+    asked.get_by_role("alert").get_by_text("Working ...").wait_for()
+    editor.page.keyboard.press("Escape")
+    asked.get_by_role("button", name="Close").click()
+    assert asked.is_visible()
+    editor.get("window.goOn()")
+    wait_for(lambda: "slow" in editor.names(), "the body")
+    asked.wait_for(state="detached")
+
+
 def test_a_model_s_own_panel_sets_mass_size_and_colour(editor):
     editor.place("Box", (0.0, 0.0, 0.0))
     editor.until("editor.store.selection.join() === 'unit_box'", "the selection")

@@ -5,6 +5,10 @@ import {RequestError} from '../connection.js';
 import {closestTo, elementsOf, h} from './dom.js';
 import {icon} from './icons.js';
 
+/** What is said when a button's work takes longer than a glance, ms, or somebody wants to leave it. */
+const AT_WORK = 'Working ...';
+const GLANCE = 400;
+
 let numbers = 0;
 
 /** What is open, the last one on top. @type {Dialog[]} */
@@ -75,7 +79,7 @@ export class Dialog {
           type: 'button',
           class: 'plain',
           'aria-label': 'Close',
-          onclick: () => this.close(undefined),
+          onclick: () => this.#leave(),
         },
         icon('close', 16),
       ),
@@ -83,12 +87,12 @@ export class Dialog {
     this.element = h('dialog', {class: `dialog ${name}`, 'aria-labelledby': id}, head, form);
     this.element.addEventListener('cancel', (event) => {
       event.preventDefault();
-      this.close(undefined);
+      this.#leave();
     });
     this.element.addEventListener('keydown', (event) => {
       if (event.key === 'Escape' && !event.defaultPrevented) {
         event.preventDefault();
-        this.close(undefined);
+        this.#leave();
       }
       // The page's hotkeys are not for what is typed here.
       event.stopPropagation();
@@ -106,6 +110,7 @@ export class Dialog {
 
   #note;
   #buttons;
+  #atWork = false;
   /** What has the focus first. @type {HTMLElement|undefined} */
   #first;
   /** The button that has the focus first. @type {HTMLButtonElement|undefined} */
@@ -135,6 +140,12 @@ export class Dialog {
     if (lost && opened.at(-1) === this) this.#first?.focus();
   }
 
+  /** As Cancel does; what a button has begun is seen to its end. */
+  #leave() {
+    if (this.#atWork) this.say(AT_WORK);
+    else this.close(undefined);
+  }
+
   /** @param {unknown} value */
   close(value) {
     if (!this.element.isConnected) return;
@@ -162,19 +173,24 @@ export class Dialog {
       this.close(button.value);
       return;
     }
-    this.#buttons.forEach((element) => {
-      element.disabled = true;
-    });
+    this.#setAtWork(true);
+    const told = setTimeout(() => this.say(AT_WORK), GLANCE);
     try {
       const answer = await button.run();
       if (answer !== false) this.close(answer ?? button.value);
+      else if (this.#note.textContent === AT_WORK) this.say('');
     } catch (fault) {
       this.say(faultText(fault));
     } finally {
-      this.#buttons.forEach((element) => {
-        element.disabled = false;
-      });
+      clearTimeout(told);
+      this.#setAtWork(false);
     }
+  }
+
+  /** @param {boolean} atWork */
+  #setAtWork(atWork) {
+    this.#atWork = atWork;
+    for (const element of this.#buttons) element.disabled = atWork;
   }
 }
 
