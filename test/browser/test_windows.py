@@ -164,6 +164,9 @@ def test_numbers_are_shown_while_dragging(open_page):
     editor.page.mouse.down()
     editor.page.mouse.move(x + 40, y, steps=5)
     wait_for(lambda: "moved" in editor.page.locator(".readout").inner_text(), "the numbers")
+    numbers = editor.page.locator(".readout").bounding_box()
+    hints = editor.page.get_by_role("note", name="Hints").bounding_box()
+    assert numbers["y"] + numbers["height"] <= hints["y"]   # a newcomer has both
     editor.page.mouse.up()
     editor.page.locator(".readout").wait_for(state="hidden")
 
