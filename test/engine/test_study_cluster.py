@@ -71,10 +71,14 @@ class Cluster:
         self.start("scheduler", "--protocol", "tls", "--host", "127.0.0.1", "--port", "0",
                    "--no-dashboard", "--scheduler-file", str(self.file))
         deadline = time.monotonic() + START_S
-        while not self.file.exists():
+        while True:   # the file is there before all of it is written
+            told = re.search(r'"tls://([\d.:]+)"', self.file.read_text()) \
+                if self.file.exists() else None
+            if told is not None:
+                break
             assert time.monotonic() < deadline and self.processes[0].poll() is None
             time.sleep(0.05)
-        self.address = re.search(r'"tls://([\d.:]+)"', self.file.read_text())[1]
+        self.address = told[1]
 
     def start(self, kind, *words):
         log = open(self.folder / f"{kind}-{len(self.processes)}.txt", "w")
