@@ -198,12 +198,21 @@ export class JointsPanel {
       const none = known && GAIN_NAMES.every((name) => !gains[name]);
       idle.textContent = none && mode !== 'force' ? ALL_ZERO : '';
     };
+    // What the simulator told before it has taken an edit must not undo what is typed meanwhile.
+    let underWay = 0;
     /** @param {number} value */
     const send = async (value) => {
       say('');
-      const outcome = await this.page.actions.edit(
-        {kind: 'joint', joint: scoped, mode, value, ...(known ? {gains} : {})}, {quiet: true});
-      if (!outcome.ok) say(outcome.issues[0].message);
+      const sent = known ? {gains: {...gains}} : {};
+      underWay += 1;
+      try {
+        const outcome = await this.page.actions.edit(
+          {kind: 'joint', joint: scoped, mode, value, ...sent}, {quiet: true});
+        if (outcome.ok) row.drive = {...row.drive, mode, value, ...sent};
+        else say(outcome.issues[0].message);
+      } finally {
+        underWay -= 1;
+      }
       row.show(row.drive);
     };
     /**
@@ -236,6 +245,7 @@ export class JointsPanel {
       /** Shows what the simulator says it drives the joint with. */
       show(drive) {
         this.drive = drive;
+        if (underWay) return;
         const mine = drive?.mode === mode ? drive : null;
         if (mine?.gains) known = true;
         Object.assign(gains, mine?.gains);
