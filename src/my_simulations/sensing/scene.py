@@ -4,6 +4,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Dict, List, Tuple
 
 from ..appearance.looks import Look
+from ..appearance.mesh_formats import PAGE_FORMATS
 from ..description.actor import Actor
 from ..description.light import Light
 from ..description.model import Model
@@ -26,9 +27,6 @@ from .api import (
 if TYPE_CHECKING:
     from ..appearance.materials import Materials
     from ..resources.resolver import Resolver
-
-_LOADED = (".dae", ".stl", ".stla", ".stlb", ".obj", ".glb", ".gltf")
-"""What the editor's page reads; of them only COLLADA has animations."""
 
 
 def body(name: str, model: Model, first_link_row: int, materials: "Materials") -> Body:
@@ -60,7 +58,7 @@ def _figure(actor: Actor, resolver: "Resolver") -> Figure:
 
     skin = Mesh(actor.skin, path_of(actor.skin), (actor.skin_scale,) * 3)
     animation = path_of(actor.animations[0].filename) if actor.animations else ""
-    foreign = animation.lower().endswith(_LOADED) and animation != skin.path
+    foreign = animation.lower().endswith(tuple(PAGE_FORMATS)) and animation != skin.path
     return Figure(actor, skin, animation if foreign else "")
 
 

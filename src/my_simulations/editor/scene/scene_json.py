@@ -4,6 +4,7 @@ from __future__ import annotations
 import os
 from typing import Any, Dict, Sequence
 
+from ...appearance.mesh_formats import PAGE_FORMATS
 from ...description.actor import Actor
 from ...description.light import Light
 from ...description.model import Joint, Link, Model
@@ -39,8 +40,6 @@ NAMES = {Box: "box", Sphere: "sphere", Cylinder: "cylinder", Capsule: "capsule",
 """`type` of a geometry; what is not here is "empty"."""
 
 _SCALABLE = (Box, Sphere, Cylinder, Capsule, Cone, Ellipsoid, Mesh, Polyline)
-_LOADED = {".dae": "dae", ".stl": "stl", ".stla": "stl", ".stlb": "stl", ".obj": "obj",
-           ".glb": "glb", ".gltf": "gltf"}
 
 
 class Documents:
@@ -151,8 +150,8 @@ class Documents:
         if url is None and extension in MESHES:
             return {"url": None, "format": None,
                     "problem": f"{mesh.uri} lies outside of all model and resource folders"}
-        if url is not None and extension in _LOADED:
-            return {"url": url, "format": _LOADED[extension],
+        if url is not None and extension in PAGE_FORMATS:
+            return {"url": url, "format": PAGE_FORMATS[extension],
                     "fallback": self.solids.url(mesh)}
         return {"url": self.solids.url(mesh), "format": "stl", "submesh": "", "center": False}
 
