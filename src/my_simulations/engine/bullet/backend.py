@@ -396,12 +396,14 @@ class BulletBackend:
     def _touched(self, body: Body) -> None:
         """A command reached a body: it may be elsewhere."""
         self._readout.touch(body)
-        for hear in self._hearers:
-            hear(body)
+        self._tell(body)
 
     def _driven(self, body: Body) -> None:
         """A force or a motor acts on a body from the next step on: it is where it was."""
         self._readout.woken(body)
+        self._tell(body)
+
+    def _tell(self, body: Body) -> None:
         for hear in self._hearers:
             hear(body)
 
