@@ -41,8 +41,8 @@ attempt() {
   shift 2
   printf '+ %s\n' "$*" >"$LOG"
   # Not through a pipe: a process that is left running would keep it open.
-  MY_SIMULATIONS_TEST_RUN=$MARK timeout --foreground -k 20 "$limit" "$@" \
-    </dev/null >>"$LOG" 2>&1 || status=$?
+  MY_SIMULATIONS_TEST_RUN=$MARK "$VENV/bin/python3" -I -S "$CLONE/tools/lib/adopt.py" \
+    timeout --foreground -k 20 "$limit" "$@" </dev/null >>"$LOG" 2>&1 || status=$?
   [ "$status" -ne 124 ] || printf 'not done after %s s\n' "$limit" >>"$LOG"
   end_leftovers
   return "$status"
