@@ -5,6 +5,7 @@ PASSED=0
 FAILED=0
 FAULTS=()         # the names of what failed, for the end
 MARK="$$.$(date +%s)."   # every lane adds its number (lanes.sh)
+ADOPT="$(dirname -- "$(realpath -- "${BASH_SOURCE[0]}")")/adopt.py"
 RESULTS=          # folder of the result files, set once the workspace is known
 
 # marked: the processes that a check started, told by a variable in their environment.
@@ -41,7 +42,7 @@ attempt() {
   shift 2
   printf '+ %s\n' "$*" >"$LOG"
   # Not through a pipe: a process that is left running would keep it open.
-  MY_SIMULATIONS_TEST_RUN=$MARK "$VENV/bin/python3" -I -S "$CLONE/tools/lib/adopt.py" \
+  MY_SIMULATIONS_TEST_RUN=$MARK python3 -I -S "$ADOPT" \
     timeout --foreground -k 20 "$limit" "$@" </dev/null >>"$LOG" 2>&1 || status=$?
   [ "$status" -ne 124 ] || printf 'not done after %s s\n' "$limit" >>"$LOG"
   end_leftovers

@@ -496,7 +496,7 @@ def test_check_that_takes_too_long_is_ended_with_all_it_started(clone, tmp_path)
     script = ("LOGS=$HOME; STEPS=1; begin slow; status=0\n"
               "attempt slow 1 bash -c 'setsid sleep 600 & sleep 600' || status=$?\n"
               "echo; echo status $status left $(marked | wc -l)")
-    done = shell(clone, script, tmp_path / "home", VENV=sys.prefix)
+    done = shell(clone, script, tmp_path / "home")
     assert done.stdout.splitlines()[-1] == "status 124 left 0", done.stdout + done.stderr
     assert "not done after 1 s" in (tmp_path / "home" / "slow.log").read_text()
 
@@ -508,7 +508,7 @@ def test_processor_time_of_programs_that_lost_their_parent_is_counted(clone, tmp
               f"orphan() {{ begin orphan; attempt orphan 50 bash -c "
               f"'setsid {sys.executable} {tmp_path}/busy.py & exit 0'; judge orphan 0 0 0; }}\n"
               "PROCESSOR_TIME=0; queue orphan; run_queue; echo; echo $PROCESSOR_MS")
-    done = shell(clone, script, tmp_path / "home", VENV=sys.prefix)
+    done = shell(clone, script, tmp_path / "home")
     assert int(done.stdout.splitlines()[-1]) > 270, done.stdout + done.stderr
 
 
