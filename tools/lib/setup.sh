@@ -378,10 +378,18 @@ build_workspace() {
     logged catkin_make "Mend what the log names, in the package it names, and run $COMMAND again. \
 'Could not find a package configuration file' names a package that Debian may have: apt-cache search." \
       catkin_make -C "$WORKSPACE" -j"$(nproc)" -DPYTHON_EXECUTABLE="$VENV/bin/python3"
+    compile_sources
     printf '%s' "$stamp" >"$stamped"
     finish
   fi
   source_setup "$setup"
+}
+
+# compile_sources: bytecode of our own modules, so that the first start of a node does not
+# wait for it, nor every start of a user who may not write here or has set PYTHONDONTWRITEBYTECODE.
+compile_sources() {
+  # It is only a matter of speed: a folder that cannot be written is none of its faults.
+  "$VENV/bin/python3" -m compileall -q "$CLONE/src" "$CLONE/compat" >/dev/null 2>&1 || true
 }
 
 # use_loopback: if the host name does not resolve, as in bare containers, use the loopback address

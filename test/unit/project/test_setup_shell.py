@@ -1,6 +1,7 @@
 """The shell behind tools/run and tools/test: which workspace, what is linked, what is counted."""
 from __future__ import annotations
 
+import importlib.util
 import os
 import shlex
 import shutil
@@ -499,6 +500,16 @@ def test_check_that_takes_too_long_is_ended_with_all_it_started(clone, tmp_path)
     done = shell(clone, script, tmp_path / "home")
     assert done.stdout.splitlines()[-1] == "status 124 left 0", done.stdout + done.stderr
     assert "not done after 1 s" in (tmp_path / "home" / "slow.log").read_text()
+
+
+def test_modules_are_compiled_before_a_user_who_may_not_write_needs_them(clone, tmp_path):
+    module = clone / "src" / "module.py"
+    module.parent.mkdir(exist_ok=True)
+    module.write_text("NUMBER = 1\n")
+    made = Path(importlib.util.cache_from_source(str(module)))
+    script = ". \"$CLONE/tools/lib/setup.sh\"; compile_sources; echo done"
+    done = shell(clone, script, tmp_path / "home", VENV=sys.prefix, PYTHONDONTWRITEBYTECODE="1")
+    assert done.stdout.endswith("done\n") and made.exists(), done.stderr
 
 
 def test_processor_time_of_programs_that_lost_their_parent_is_counted(clone, tmp_path):
