@@ -22,6 +22,8 @@ ROUTES = {
     "GET /protocol.json": "protocol.json",
     "GET /{part}/{inside}": "js/main.js",
     "GET /three/{inside}": "three/build/three.module.js",
+    "GET /v/{stamp}/{part}/{inside}": "v/0123456789abcdef/js/main.js",
+    "GET /v/{stamp}/three/{inside}": "v/0123456789abcdef/three/build/three.module.js",
     "GET /resource/{root}/{inside}": "resource/0123456789/a.png",
     "GET /solid/{id}.stl": "solid/x.stl",
     "GET /thumb/{id}.png": "thumb/0123456789abcdef.png",

@@ -286,6 +286,9 @@ def test_a_saved_configuration_is_how_the_next_visit_begins(open_page):
         choose(editor, "File", item)
         editor.page.reload()
         editor.wait_for_world()
+        fetched = editor.get("performance.getEntriesByType('resource').filter(file =>"
+                             " /[.](js|css)$/.test(file.name) && file.transferSize > 0).length")
+        assert fetched == 0
         wait_for(lambda where=position: editor.get("editor.view.camera.position") == approx(where),
                  f"the camera after {item}")
         assert editor.get("editor.store.overlays.scene.grid") is grid

@@ -13,8 +13,8 @@ from .editor_options import EditorOptions
 from .transport import address_file
 from .transport.access_guard import Guard
 from .transport.browser_client import encoded
-from .transport.http_pages import PageFiles
 from .transport.listening import keep_address, listening, url_of
+from .transport.page_files import PageFiles
 
 _WAIT_S = 10.0
 _AGAIN = 1012
@@ -35,7 +35,7 @@ class LoadingServer:
 
     def __init__(self, options: EditorOptions) -> None:
         self.guard = Guard(options)
-        self._files = PageFiles(options.web)
+        self._files = PageFiles(options.web, options.cache_dir)
         self._listener = listening(options)
         self.url = url_of(self._listener, options.host, self.guard.token)
         self.public_url = address_file.without_token(self.url)

@@ -3,6 +3,9 @@ from __future__ import annotations
 
 import asyncio
 import os
+import re
+import shutil
+import stat
 
 import aiohttp
 import pytest
@@ -10,6 +13,8 @@ from editor_case import Browser, box, cases
 
 from my_simulations.description.shapes import Mesh
 from my_simulations.editor.editor_options import is_loopback
+from my_simulations.editor.transport.http_pages import Pages
+from my_simulations.editor.transport.page_files import PageFiles
 from my_simulations.resources.resolver import Resolver
 
 PNG = b"\x89PNG\r\n\x1a\n" + b"\0" * 32
@@ -48,6 +53,47 @@ def test_the_page_comes_with_careful_headers(case):
     assert "default-src 'self'" in policy and "'unsafe-eval'" not in policy
     assert "script-src 'self' 'unsafe-inline'" not in policy
     assert headers["X-Content-Type-Options"] == "nosniff"
+
+
+def page_folder(tmp_path):
+    """A page of one module."""
+    folder = tmp_path / "page"
+    (folder / "js").mkdir(parents=True)
+    (folder / "js" / "main.js").write_text("one();")
+    shutil.copy(os.path.join(Pages.own_folder(), "protocol.json"), folder)
+    (folder / "index.html").write_text('<script type="module" src="/js/main.js"></script>')
+    return folder
+
+
+def main_script(url):
+    """The address that the page gives to its script."""
+    return url + re.search('src="/(.*?)"', request(url)[2].decode())[1]
+
+
+def test_files_of_the_page_are_kept_by_browsers_until_one_has_changed(case, tmp_path):
+    folder = page_folder(tmp_path)
+    url = case(web=str(folder)).url
+    first = main_script(url)
+    _, headers, body = request(first)
+    assert "immutable" in headers["Cache-Control"] and body == b"one();"
+    assert main_script(url) == first
+    (folder / "js" / "main.js").write_text("other();")
+    second = main_script(url)
+    assert second != first and request(second)[2] == b"other();"
+
+
+def test_addresses_of_the_page_are_the_same_after_a_start_and_another_users_are_others(tmp_path):
+    folder = str(page_folder(tmp_path))
+    stamps = [PageFiles(folder, str(tmp_path / home)).stamp() for home in ("a", "a", "b")]
+    assert stamps[0] == stamps[1] != stamps[2]
+    key, = (tmp_path / "a").rglob("page_key")
+    assert stat.S_IMODE(key.stat().st_mode) == 0o600
+
+
+@pytest.mark.parametrize("address", ["js/main.js", "v/0123456789abcdef/js/main.js"])
+def test_files_of_the_page_at_other_addresses_are_asked_for_again(case, tmp_path, address):
+    status, headers, _ = request(case(web=str(page_folder(tmp_path))).url + address)
+    assert status == 200 and headers["Cache-Control"] == "no-cache"
 
 
 def test_the_protocol_comes_with_the_page(case):
@@ -114,7 +160,8 @@ def test_loopback_addresses_are_known():
 
 @pytest.mark.parametrize("path", [
     "/js/../../package.xml", "/js/..%2f..%2fpackage.xml", "/js/%2e%2e/%2e%2e/package.xml",
-    "/css//etc/passwd", "/three/../../../package.xml", "/resource/x/../../etc/passwd",
+    "/css//etc/passwd", "/v/x/js/../../../package.xml", "/v/x/js/%2e%2e/%2e%2e/package.xml",
+    "/three/../../../package.xml", "/v/x/three/../../x.js", "/resource/x/../../etc/passwd",
     "/resource//etc/passwd", "/solid/../x.stl", "/thumb/../../x.png", "/export/..%2fx.world",
     "/js/%00", "/js/x%00.js", "/three/%00", "/css/a%00b.css", "/resource/x/%00.png",
     "/solid/%00.stl", "/thumb/%00.png", "/export/%00", "/%00",

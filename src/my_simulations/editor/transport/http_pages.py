@@ -1,24 +1,20 @@
-"""HTTP: the page, its modules, meshes and textures, thumbnails, uploads and downloads."""
+"""HTTP: the page with meshes and textures, thumbnails, uploads and downloads."""
 from __future__ import annotations
 
-import base64
-import hashlib
 import os
 import re
-from typing import Callable, List, Optional
+from typing import Callable, List
 
 from aiohttp import hdrs, web
 
 from ...errors import CommandError, InputError
-from ...resources.package_files import own_directory
 from ...simulator.safe_file import write_whole
 from ..editor_options import EditorOptions
-from ..scene.content_types import BYTES, PAGE, page_type, resource_type
+from ..scene.content_types import BYTES
 from ..scene.scene_json import Documents
 from ..scene.served_files import SERVED
+from .page_files import PageFiles, file_response
 
-_SCRIPT = re.compile(r"<script\b(?![^>]*\bsrc=)[^>]*>(.*?)</script>", re.DOTALL | re.IGNORECASE)
-_HOST = re.compile(r"[\w.-]+(:\d+)?\Z|\[[0-9a-fA-F:.]+\](:\d+)?\Z")
 _THUMB = re.compile(r"[0-9a-f]{16,64}\Z")
 _THUMB_BYTES = 2 << 20
 _PNG = b"\x89PNG\r\n\x1a\n"
@@ -26,52 +22,6 @@ _NAME = re.compile(r"[\w][\w .()+-]{0,120}\Z")
 _UPLOADED = SERVED | {".sdf", ".urdf", ".world", ".xml"}
 
 Export = Callable[[str], "tuple[bytes, str]"]
-
-
-class PageFiles:
-    """Routes of the page itself: its HTML, modules and libraries.
-
-    Args:
-        page: the page's folder; "" for the package's own.
-    """
-
-    def __init__(self, page: str) -> None:
-        self.web = page or Pages.own_folder()
-        self._modules = node_modules(self.web)
-
-    def routes(self) -> List[web.RouteDef]:
-        """For the application."""
-        return [
-            web.get("/", self._index), web.get("/protocol.json", self._protocol),
-            web.get("/{part:js|css|img}/{inside:.+}", self._part),
-            web.get("/three/{inside:.+}", self._three),
-        ]
-
-    async def _index(self, request: web.Request) -> web.StreamResponse:
-        path = os.path.join(self.web, "index.html")
-        try:
-            with open(path, encoding="utf-8") as stream:
-                text = stream.read()
-        except OSError:
-            raise web.HTTPNotFound(text="the editor's page is not installed\n") from None
-        response = web.Response(text=text, content_type="text/html")
-        response.headers["Content-Security-Policy"] = _policy(text, request.host)
-        response.headers[hdrs.CACHE_CONTROL] = "no-cache"
-        return response
-
-    async def _protocol(self, _request: web.Request) -> web.StreamResponse:
-        return _page_file(os.path.join(self.web, "protocol.json"))
-
-    async def _part(self, request: web.Request) -> web.StreamResponse:
-        folder = os.path.join(self.web, request.match_info["part"])
-        return _page_file(_inside(folder, request.match_info["inside"]))
-
-    async def _three(self, request: web.Request) -> web.StreamResponse:
-        if not self._modules:
-            raise web.HTTPNotFound(text="three is not installed: run tools/run, or `npm ci` in "
-                                        "the folder web\n")
-        folder = os.path.join(self._modules, "three")
-        return _page_file(_inside(folder, request.match_info["inside"]))
 
 
 class Pages(PageFiles):
@@ -87,17 +37,12 @@ class Pages(PageFiles):
 
     def __init__(self, options: EditorOptions, page: str, documents: Documents,
                  upload_bytes: int, export: Export) -> None:
-        super().__init__(page)
+        super().__init__(page, options.cache_dir)
         self._documents = documents
         self._upload_bytes = upload_bytes
         self._export = export
         self._thumbs = os.path.join(options.cache_dir, "thumbnails")
         self._uploads = os.path.join(os.path.dirname(options.data_dir), "uploads")
-
-    @staticmethod
-    def own_folder() -> str:
-        """The page of this package."""
-        return os.path.join(own_directory(), "web")
 
     def routes(self) -> List[web.RouteDef]:
         """For the application."""
@@ -112,7 +57,7 @@ class Pages(PageFiles):
     async def _resource(self, request: web.Request) -> web.StreamResponse:
         path = self._documents.served.path(request.match_info["root"],
                                            request.match_info["inside"])
-        return _file(path)
+        return file_response(path)
 
     async def _solid(self, request: web.Request) -> web.StreamResponse:
         import asyncio
@@ -133,7 +78,7 @@ class Pages(PageFiles):
             raise web.HTTPNotFound
         path = os.path.join(self._thumbs, known + ".png")
         # A picture that was not drawn yet is no fault: the page draws it then.
-        return _file(path) if os.path.isfile(path) else web.Response(
+        return file_response(path) if os.path.isfile(path) else web.Response(
             status=204, headers={hdrs.CACHE_CONTROL: "no-store"})
 
     async def _put_thumb(self, request: web.Request) -> web.StreamResponse:
@@ -170,52 +115,6 @@ class Pages(PageFiles):
             raise web.HTTPNotFound(text=f"{fault}\n") from None
         return web.Response(body=data, content_type=BYTES, headers={
             hdrs.CONTENT_DISPOSITION: f'attachment; filename="{name}"'})
-
-
-def node_modules(page: str) -> str:
-    """The folder that holds `three`; "" where it is not installed."""
-    places = [os.environ.get("MY_SIMULATIONS_NODE_MODULES", ""),
-              os.path.join(page, "node_modules")]
-    for prefix in os.environ.get("CMAKE_PREFIX_PATH", "").split(os.pathsep):
-        places.append(os.path.join(prefix, "share", "my_simulations", "node_modules"))
-        places.append(os.path.join(os.path.dirname(prefix), ".my_simulations", "node_modules"))
-    return next((place for place in places
-                 if place and os.path.isdir(os.path.join(place, "three"))), "")
-
-
-def _policy(html: str, host: str) -> str:
-    """What the page may load: our own files, the scripts that stand in it, and our own socket."""
-    hashes = "".join(
-        " 'sha256-" + base64.b64encode(hashlib.sha256(text.encode()).digest()).decode() + "'"
-        for text in _SCRIPT.findall(html))
-    # 'self' means no web socket in older browsers. A host that is no plain name is not passed on.
-    own = f" ws://{host} wss://{host}" if _HOST.match(host) else ""
-    return (f"default-src 'self'; script-src 'self'{hashes}; style-src 'self' 'unsafe-inline'; "
-            f"img-src 'self' data: blob:; connect-src 'self' data: blob:{own}; "
-            "worker-src 'self' blob:; object-src 'none'; base-uri 'none'; "
-            "frame-ancestors 'none'; form-action 'none'")
-
-
-def _inside(folder: str, inside: str) -> Optional[str]:
-    """A file of the page below a folder; None else."""
-    if "\0" in inside:
-        return None
-    real = os.path.realpath(folder)
-    path = os.path.realpath(os.path.join(real, inside))
-    if not path.startswith(real + os.sep) or os.path.splitext(path)[1].lower() not in PAGE:
-        return None
-    return path
-
-
-def _page_file(path: Optional[str]) -> web.StreamResponse:
-    return _file(path, page_type(path or ""))
-
-
-def _file(path: Optional[str], kind: str = "") -> web.StreamResponse:
-    if path is None or not os.path.isfile(path):
-        raise web.HTTPNotFound
-    return web.FileResponse(path, headers={hdrs.CACHE_CONTROL: "no-cache",
-                                           hdrs.CONTENT_TYPE: kind or resource_type(path)})
 
 
 async def _body(request: web.Request, largest: int) -> bytes:

@@ -1,0 +1,161 @@
+"""HTTP: the page itself, with its modules and libraries."""
+from __future__ import annotations
+
+import base64
+import hashlib
+import os
+import re
+from typing import Iterator, List, Optional, Tuple
+
+from aiohttp import hdrs, web
+
+from ...resources.package_files import own_directory
+from ..scene.content_types import PAGE, page_type, resource_type
+from .page_key import page_key
+
+_SCRIPT = re.compile(r"<script\b(?![^>]*\bsrc=)[^>]*>(.*?)</script>", re.DOTALL | re.IGNORECASE)
+_HOST = re.compile(r"[\w.-]+(:\d+)?\Z|\[[0-9a-fA-F:.]+\](:\d+)?\Z")
+_ADDRESS = re.compile(r'"/(js|css|img|three)/')
+_CHECKED = "no-cache"
+_FOR_GOOD = "private, max-age=31536000, immutable"
+"""RFC 8246: what has this address never changes, so a browser need not ask for it again."""
+
+
+class PageFiles:
+    """Routes of the page itself: its HTML, modules and libraries.
+
+    The HTML names them by addresses that change with the files, `/v/STAMP/js/main.js`: a browser
+    that has them asks for none of them when the page is opened again.
+
+    Args:
+        page: the page's folder; "" for the package's own.
+        cache_dir: keeps the key that addresses are made with.
+    """
+
+    def __init__(self, page: str, cache_dir: str) -> None:
+        self.web = page or self.own_folder()
+        self._node_modules = node_modules(self.web)
+        self._key = page_key(cache_dir)
+        self._stamp = ""
+
+    @staticmethod
+    def own_folder() -> str:
+        """The page of this package."""
+        return os.path.join(own_directory(), "web")
+
+    def routes(self) -> List[web.RouteDef]:
+        """For the application."""
+        return [
+            web.get("/", self._index), web.get("/protocol.json", self._protocol),
+            web.get("/{part:js|css|img}/{inside:.+}", self._part),
+            web.get("/three/{inside:.+}", self._three),
+            web.get("/v/{stamp}/{part:js|css|img}/{inside:.+}", self._part),
+            web.get("/v/{stamp}/three/{inside:.+}", self._three),
+        ]
+
+    async def _index(self, request: web.Request) -> web.StreamResponse:
+        path = os.path.join(self.web, "index.html")
+        try:
+            with open(path, encoding="utf-8") as stream:
+                text = stream.read()
+        except OSError:
+            raise web.HTTPNotFound(text="the editor's page is not installed\n") from None
+        self._stamp = self.stamp()
+        text = _ADDRESS.sub(rf'"/v/{self._stamp}/\1/', text)
+        response = web.Response(text=text, content_type="text/html")
+        response.headers["Content-Security-Policy"] = _policy(text, request.host)
+        response.headers[hdrs.CACHE_CONTROL] = _CHECKED
+        return response
+
+    async def _protocol(self, request: web.Request) -> web.StreamResponse:
+        return self._page_file(request, os.path.join(self.web, "protocol.json"))
+
+    async def _part(self, request: web.Request) -> web.StreamResponse:
+        folder = os.path.join(self.web, request.match_info["part"])
+        return self._page_file(request, _inside(folder, request.match_info["inside"]))
+
+    async def _three(self, request: web.Request) -> web.StreamResponse:
+        if not self._node_modules:
+            raise web.HTTPNotFound(text="three is not installed: run tools/run, or `npm ci` in "
+                                        "the folder web\n")
+        folder = os.path.join(self._node_modules, "three")
+        return self._page_file(request, _inside(folder, request.match_info["inside"]))
+
+    def _page_file(self, request: web.Request, path: Optional[str]) -> web.StreamResponse:
+        response = file_response(path, page_type(path or ""))
+        stamp = request.match_info.get("stamp")
+        if stamp is not None:
+            # A page that was opened while the world was loading was given by another server.
+            self._stamp = self._stamp or self.stamp()
+            if stamp == self._stamp:
+                response.headers[hdrs.CACHE_CONTROL] = _FOR_GOOD
+        return response
+
+    def stamp(self) -> str:
+        """Equal as long as no file has another name, size or time; nobody but this user knows it."""
+        state = hashlib.sha256(self._key)
+        for path, found in sorted(self._files()):
+            state.update(f"{path}\0{found.st_size}\0{found.st_mtime_ns}\0".encode())
+        return state.hexdigest()[:16]
+
+    def _files(self) -> Iterator[Tuple[str, os.stat_result]]:
+        waiting = [os.path.join(self.web, part) for part in ("js", "css", "img")]
+        if self._node_modules:
+            three = os.path.join(self._node_modules, "three")
+            waiting += [os.path.join(three, "build"), os.path.join(three, "package.json")]
+        while waiting:
+            path = waiting.pop()
+            try:
+                if os.path.isdir(path):
+                    waiting += [os.path.join(path, name) for name in os.listdir(path)]
+                else:
+                    yield path, os.stat(path)
+            except OSError:     # gone since it was listed, or there is no such folder
+                continue
+
+
+def node_modules(page: str) -> str:
+    """The folder that holds `three`; "" where it is not installed."""
+    places = [os.environ.get("MY_SIMULATIONS_NODE_MODULES", ""),
+              os.path.join(page, "node_modules")]
+    for prefix in os.environ.get("CMAKE_PREFIX_PATH", "").split(os.pathsep):
+        places.append(os.path.join(prefix, "share", "my_simulations", "node_modules"))
+        places.append(os.path.join(os.path.dirname(prefix), ".my_simulations", "node_modules"))
+    return next((place for place in places
+                 if place and os.path.isdir(os.path.join(place, "three"))), "")
+
+
+def _policy(html: str, host: str) -> str:
+    """What the page may load: our own files, the scripts that stand in it, and our own socket."""
+    hashes = "".join(
+        " 'sha256-" + base64.b64encode(hashlib.sha256(text.encode()).digest()).decode() + "'"
+        for text in _SCRIPT.findall(html))
+    # 'self' means no web socket in older browsers. A host that is no plain name is not passed on.
+    own = f" ws://{host} wss://{host}" if _HOST.match(host) else ""
+    return (f"default-src 'self'; script-src 'self'{hashes}; style-src 'self' 'unsafe-inline'; "
+            f"img-src 'self' data: blob:; connect-src 'self' data: blob:{own}; "
+            "worker-src 'self' blob:; object-src 'none'; base-uri 'none'; "
+            "frame-ancestors 'none'; form-action 'none'")
+
+
+def _inside(folder: str, inside: str) -> Optional[str]:
+    """A file of the page below a folder; None else."""
+    if "\0" in inside:
+        return None
+    real = os.path.realpath(folder)
+    path = os.path.realpath(os.path.join(real, inside))
+    if not path.startswith(real + os.sep) or os.path.splitext(path)[1].lower() not in PAGE:
+        return None
+    return path
+
+
+def file_response(path: Optional[str], kind: str = "") -> web.StreamResponse:
+    """A file, to be asked for each time whether it has changed.
+
+    Raises:
+        web.HTTPNotFound: `path` is None or no file.
+    """
+    if path is None or not os.path.isfile(path):
+        raise web.HTTPNotFound
+    return web.FileResponse(path, headers={hdrs.CACHE_CONTROL: _CHECKED,
+                                           hdrs.CONTENT_TYPE: kind or resource_type(path)})
