@@ -12,7 +12,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 from random import Random
-from typing import Any, Callable, Dict, Hashable, Iterable, Iterator, List, Optional, Set
+from typing import Any, Callable, Dict, Hashable, Iterable, Iterator, List, Optional, Set, Tuple
 
 from heap import memory
 from proofs import IS_LONG, allowance, per_second, spent
@@ -105,14 +105,14 @@ def run(target: Target, inputs: int, seed: int, folder: Path,
     """
     done, used, start = Run(), allowance(), spent()
     seen: Set[int] = set()
-    grown: List[Any] = []
+    grown: List[Tuple[Any, int]] = []
     before, told, number, most = 0, time.monotonic(), 0, MOST_GROWN
     settled = 0
     while done.inputs < inputs and used() < 1.0 and len(done.faults) < MOST_FAULTS:
         chance = Random(f"{seed} {number}")
         number += 1
         target.renew()
-        corpus = target.seeds + chance.sample(grown, len(grown) // 2)
+        corpus = target.seeds + [one for one, _ in chance.sample(grown, len(grown) // 2)]
         for _ in range(min(AT_ONCE, inputs - done.inputs)):
             if done.inputs % 64 == 0 and used() >= 1.0:
                 break
@@ -128,7 +128,7 @@ def run(target: Target, inputs: int, seed: int, folder: Path,
                 seen |= new
                 if not isinstance(data, (str, bytes)) or len(data) < LARGEST:
                     _put(made, corpus, len(target.seeds) + most, chance)
-                    _put(made, grown, most, chance)
+                    _keep_small((made, len(as_bytes(data))), grown, most, chance)
             if not before and max(used(), done.inputs / inputs) > SETTLED:
                 before, most, settled = memory(), len(grown), done.inputs
         done.features = len(seen)
@@ -149,6 +149,20 @@ def _put(made: Any, into: List[Any], most: int, chance: Random) -> None:
         into.append(made)
     elif into:
         into[chance.randrange(len(into) // 2, len(into))] = made
+
+
+def _keep_small(made: Tuple[Any, int], into: List[Tuple[Any, int]], most: int,
+                chance: Random) -> None:
+    """As `_put`, for an input and its size; one that is replaced was as large, or larger.
+
+    What is kept grows else with its inputs, and looks like memory that a reader does not give back.
+    """
+    if len(into) < most:
+        into.append(made)
+    elif into:
+        old = chance.randrange(len(into) // 2, len(into))
+        if made[1] <= into[old][1]:
+            into[old] = made
 
 
 def _fed(target: Target, data: Any, done: Run, folder: Path, seed: int) -> Iterable[Hashable]:

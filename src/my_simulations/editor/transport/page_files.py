@@ -92,7 +92,7 @@ class PageFiles:
         return response
 
     def stamp(self) -> str:
-        """Equal as long as no file has another name, size or time; nobody but this user knows it."""
+        """Equal as long as no file has another name, size or time; only this user knows it."""
         state = hashlib.sha256(self._key)
         for path, found in sorted(self._files()):
             state.update(f"{path}\0{found.st_size}\0{found.st_mtime_ns}\0".encode())
