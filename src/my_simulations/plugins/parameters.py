@@ -5,7 +5,7 @@ import math
 from typing import Any, Callable, List, Mapping, Optional, Tuple, TypeVar
 
 from ..description.model import INFINITE
-from ..geometry import IDENTITY_QUAT, Quat, Vec3, quat_from_rpy
+from ..geometry import IDENTITY_QUAT, Pose, Quat, Vec3, quat_from_rpy
 
 T = TypeVar("T")
 
@@ -79,6 +79,10 @@ class Parameters:
         return self._read(name, default, lambda text: quat_from_rpy(*_three(text)),
                           "three numbers")
 
+    def pose(self, name: str) -> Pose:
+        """Three numbers and roll, pitch and yaw in rad; that of the origin where there is none."""
+        return self._read(name, Pose(), _pose, "six numbers")
+
     def choice(self, name: str, options: Mapping[str, T], default: T) -> T:
         """One of some words."""
         return self._read(name, default, lambda text: options[text], " or ".join(options))
@@ -111,6 +115,11 @@ def _positive(text: str) -> float:
 def _three(text: str) -> Tuple[float, float, float]:
     x, y, z = map(_number, text.split())
     return (x, y, z)
+
+
+def _pose(text: str) -> Pose:
+    x, y, z, roll, pitch, yaw = map(_number, text.split())
+    return Pose((x, y, z), quat_from_rpy(roll, pitch, yaw))
 
 
 def namespace_or(parameters: Parameters, default: Optional[str]) -> str:

@@ -72,6 +72,16 @@ def test_a_model_that_is_let_go_falls_and_hangs_again_after_a_reset():
     assert context.pushes["link"] == ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
 
 
+@pytest.mark.parametrize("pose, way", [("0 0 0 0 1.5707963 0", (40.0, 0.0, 0.0)),
+                                       ("a", (0.0, 0.0, 40.0)), ("1 2 3", (0.0, 0.0, 40.0))])
+def test_a_harness_pulls_along_its_joints_axis_also_where_the_pose_is_no_pose(pose, way):
+    context = hanging(UP.replace("<parent>", f"<pose>{pose}</pose><parent>"))
+    context.links["link"].pose = Pose(tuple(-part / 400.0 for part in way))
+    context.advance(0.001)
+    assert context.pushes["link"][0] == pytest.approx(way, abs=1e-4)
+    assert any("<pose>" in text for text in context.said) == (len(pose.split()) != 6)
+
+
 def test_a_harness_without_a_joint_is_told():
     with pytest.raises(PluginError, match="<joint>"):
         hanging("<winch/>")

@@ -22,7 +22,6 @@ from ...geometry import (
     dot,
     multiply,
     norm,
-    quat_from_rpy,
     rotate,
     scale,
     subtract,
@@ -97,8 +96,7 @@ class Harness(Plugin):
         slides = joint.attribute("type") == "prismatic" and bool(axes)
         axis = axes[0] if slides else Parameters("")
         way = axis.vector("xyz", (0.0, 0.0, 1.0))
-        numbers = [float(one) for one in joint.text("pose").split()]
-        turn = quat_from_rpy(*numbers[3:6]) if len(numbers) == 6 else (0.0, 0.0, 0.0, 1.0)
+        turn = joint.pose("pose").orientation
         self._axis_in_link = rotate(turn, scale(way, 1.0 / (norm(way) or 1.0)))
         self._slides = slides
         limits, dynamics = axis.children("limit"), axis.children("dynamics")
