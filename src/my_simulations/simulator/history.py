@@ -40,6 +40,7 @@ class History:
         self._undone: List[Step] = []
         self._number = 0
         self._saved: Optional[int] = 0
+        self._base = 0  # number of the newest step that was forgotten
 
     @property
     def undo_labels(self) -> List[str]:
@@ -79,7 +80,7 @@ class History:
 
     @property
     def _top(self) -> int:
-        return self._done[-1].number if self._done else 0
+        return self._done[-1].number if self._done else self._base
 
     def do(self, label: str, operation: Operation, author: str = "") -> None:
         """Carry out an operation and record it, with its author; clears the steps to redo.
@@ -92,7 +93,8 @@ class History:
             self._done.append(Step(label, inverse, self._number, author))
             self._undone.clear()
             if len(self._done) > LONGEST:
-                if self._saved is not None and self._saved < self._done.pop(0).number:
+                self._base = self._done.pop(0).number
+                if self._saved is not None and self._saved < self._base:
                     self._saved = None  # cannot be reached any more
 
     def undo(self, to: int = 0) -> str:
@@ -117,6 +119,7 @@ class History:
         with self._lock:
             self._done.clear()
             self._undone.clear()
+            self._base = 0
             self._saved = None if dirty else 0
 
     def _move(self, source: List[Step], target: List[Step], to: int, verb: str) -> str:

@@ -13,7 +13,7 @@ from my_simulations.description.light import Light
 from my_simulations.description.model import Model
 from my_simulations.errors import CommandError
 from my_simulations.geometry import STILL, Pose
-from my_simulations.simulator.history import History
+from my_simulations.simulator.history import LONGEST, History
 from my_simulations.simulator.operations import (
     AddLight,
     AddModel,
@@ -208,3 +208,24 @@ def test_pages_hear_of_the_order_of_models_and_lights(edited):
         await browser.until(lambda: names(browser, "lights") == ["z", "l", "m"])
 
     made.browse(edit)
+
+
+@pytest.mark.parametrize("dirty", [False, True])
+def test_the_oldest_steps_are_forgotten_also_of_a_world_that_was_never_saved(case, dirty):
+    sim = case(box("a")).sim
+    history = History(sim)
+    history.clear(dirty)
+    for n in range(LONGEST + 20):
+        history.do(f"light {n}", AddLight(Light(f"l{n}")))
+    assert len(history.undo_labels) == LONGEST
+
+
+def test_a_world_that_was_saved_at_the_oldest_step_is_unchanged_once_all_others_are_undone(case):
+    sim = case(box("a")).sim
+    history = History(sim)
+    history.do("light", AddLight(Light("first")))
+    history.saved()
+    for n in range(LONGEST):
+        history.do(f"light {n}", AddLight(Light(f"l{n}")))
+    history.undo(LONGEST - 1)
+    assert not history.dirty
