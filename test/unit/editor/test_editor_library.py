@@ -10,7 +10,7 @@ import threading
 
 import pytest
 from building_plans import two_rooms
-from editor_case import Refused, arm, box, cases
+from editor_case import Browser, Refused, arm, box, cases
 
 from my_simulations.building.plan_json import plan_to_json
 from my_simulations.editor.logs.state_log import MAGIC, LogReader, LogWriter
@@ -319,6 +319,20 @@ def test_a_log_ends_where_steps_made_at_once_have_led(case):
                             and browser.link_pose("a")[0] == pytest.approx(1.2, abs=1e-6))
 
     made.browse(leap)
+
+
+def test_a_page_that_comes_while_a_log_is_recorded_is_told_and_one_that_comes_back_sees_the_world(
+        case):
+    made = case(box("a"))
+
+    async def come(first):
+        assert first.last("log")["state"] == "idle"
+        await first.ask("log_start", name="shared")
+        second = await Browser.open(first.session, made.url)
+        assert second.last("log")["state"] == "recording" and second.last("log")["name"] == "shared"
+        assert (await second.ask("log_stop"))["name"] == "shared"
+
+    made.browse(come)
 
 
 def test_a_log_is_recorded_listed_and_played_to_one_browser(case):

@@ -61,6 +61,7 @@ class Logs:
         self._fetching: "Optional[asyncio.Future[Any]]" = None
         self._disk = ThreadPoolExecutor(1, "editor logs")
         hub.on_tick.append(self._tick)
+        hub.greetings.append(self.state)
 
     def routes(self) -> Dict[str, Route]:
         """By type of request."""

@@ -39,6 +39,11 @@ class Hub:
         documents: makes documents.
         protocol: gives the rates.
         check: hold what is sent to the protocol.
+
+    Attributes:
+        clients: by number.
+        on_tick: hear of each look at the world: its poses, None where none moved, and revision.
+        greetings: each makes a push for a client that comes, or comes back.
     """
 
     def __init__(self, simulator: Simulator, documents: Documents, protocol: Protocol,
@@ -48,6 +53,7 @@ class Hub:
         self.documents = documents
         self.clients: Dict[int, Client] = {}
         self.on_tick: List[Callable[[Optional[Poses], int], None]] = []
+        self.greetings: List[Callable[[], Dict[str, Any]]] = []
         self.clock = RealTime(simulator)
         self._check = check
         self._mirror = Mirror(simulator, documents)
@@ -138,6 +144,8 @@ class Hub:
         self.push(self.clock.read(), [client])
         for issue in list(self._issues) if new else ():
             self.push({"type": "issue", "issue": issue_document(issue)}, [client])
+        for greeting in self.greetings:
+            self.push(greeting(), [client])
         self._nudged.set()
 
     async def whole(self) -> Dict[str, Any]:
