@@ -1,6 +1,10 @@
 """Several people at one world: who is here, who holds what, whose edits are undone."""
 from __future__ import annotations
 
+import json
+import os
+import struct
+
 import pytest
 from editor_case import Browser, box, cases
 
@@ -119,5 +123,28 @@ def test_a_hand_that_lets_go_without_release_leaves_what_another_holds(case):
         await first.tell("drag_end")
         await second.until(lambda: people(second)["Guest 1"]["held"] == [])
         assert made.sim.states.model_state("a")[0].position[0] == pytest.approx(2.0)
+
+    made.browse(leave)
+
+
+def frame(kind, payload):
+    """A frame of a web socket's client (RFC 6455, 5.2) with a mask of zeros."""
+    assert len(payload) < 126
+    return bytes((0x80 | kind, 0x80 | len(payload))) + bytes(4) + payload
+
+
+def test_what_comes_with_the_farewell_is_done_before_what_its_client_held_falls(case):
+    made = case(box("a"))
+
+    async def leave(first):
+        second = await another(first, made.url)
+        await first.until(lambda: "Guest 2" in people(first))
+        drag = {"type": "drag", "names": ["a"], "poses": [FARTHER]}
+        wire = second.socket.get_extra_info("socket")
+        os.write(wire.fileno(),
+                 frame(1, json.dumps(drag).encode()) + frame(8, struct.pack(">H", 1000)))
+        await first.until(lambda: "Guest 2" not in people(first))
+        await first.ask("step", steps=1)    # in the same thread as the end of the drag
+        assert made.sim.states.model_state("a")[0].position[0] == pytest.approx(0.0)
 
     made.browse(leave)

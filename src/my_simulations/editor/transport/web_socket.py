@@ -17,6 +17,8 @@ from .protocol import ProtocolError
 Handler = Callable[[Client, Dict[str, Any]], Any]
 
 _SILENCE_S = 20.0
+_LAST_S = 2.0
+"""How long the last requests of a client that has gone may take before it is forgotten."""
 """Pings this often; a browser that answers none of them has gone."""
 
 
@@ -70,7 +72,12 @@ class Sockets:
             pump.cancel()
             del self._hub.clients[client.number]
             self._hub.listen(-1)
-            self._on_leave(client)
+            try:
+                # What came with the farewell is carried out, before what its client held falls.
+                if tasks:
+                    await asyncio.wait(tasks, timeout=_LAST_S)
+            finally:
+                self._on_leave(client)
         return socket
 
     async def _handle(self, client: Client, text: str) -> None:
