@@ -134,6 +134,13 @@ def test_friction_of_a_lumped_link_stays_with_its_own_collisions():
     assert [c.surface.mu for c in model.links[0].collisions] == [0.9, 0.1]
 
 
+def test_a_link_is_kinematic_with_what_is_lumped_into_it():
+    model, _ = robot_of(
+        robot_link("a") + robot_link("b") + robot_joint("j", "a", "b")
+        + '<gazebo reference="b"><kinematic>true</kinematic></gazebo>')
+    assert model.links[0].kinematic
+
+
 def test_a_massless_lumped_link_adds_its_shapes_and_no_mass():
     model, issues = robot_of(robot_link("a") + robot_link("b", SHAPES) + robot_joint("j", "a", "b"))
     assert model.links[0].inertial.mass == 1

@@ -254,6 +254,7 @@ class _RobotReader:
         if to.self_collide is None:
             to.self_collide = link.self_collide
         to.gravity = to.gravity and link.gravity
+        to.kinematic = to.kinematic or link.kinematic
         to.linear_decay = to.linear_decay or link.linear_decay
         to.angular_decay = to.angular_decay or link.angular_decay
 
