@@ -203,18 +203,25 @@ class RemoveModel(Command):
     model_id: int
 
 
+GONE = "is not there any more"
+"""Ends the refusal of a command about what was removed in the meantime."""
+
+
 @dataclass(frozen=True)
 class SetModelState(Command):
     """Move all links of a model rigidly so that its frame has `pose`; joints keep their positions.
 
     Every link gets the rigid body's velocity, v + w x r. With `frame`, pose and twist are given in
-    it (the frame's own velocity is not added). `twist` None keeps the velocities, rotated.
+    it (the frame's own velocity is not added). `twist` None keeps the velocities, rotated. `of`:
+    ids of further models that must be there, as the one whose link the frame is: rows of a model
+    that has gone may be another's.
     """
 
     model_id: int
     pose: Pose
     twist: Optional[Twist] = None
     frame: Optional[Frame] = None
+    of: Tuple[int, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -223,19 +230,25 @@ class SetLinkState(Command):
 
     A link of an articulated body moves the whole body with its joint positions, because reduced
     coordinates have no poses of single links. A body with a joint to the world cannot be moved.
+    `of`: ids of the models whose rows are named, as in SetModelState.
     """
 
     row: int
     pose: Pose
     twist: Optional[Twist] = None
     frame: Optional[Frame] = None
+    of: Tuple[int, ...] = ()
 
 
 @dataclass(frozen=True)
 class SetJoints(Command):
-    """Set positions (and rates) of joint axes by row; the links below move with them."""
+    """Set positions (and rates) of joint axes by row; the links below move with them.
+
+    `of`: ids of the models whose rows are named, as in SetModelState.
+    """
 
     joints: Tuple[Tuple[int, float, float], ...]
+    of: Tuple[int, ...] = ()
 
 
 @dataclass(frozen=True)

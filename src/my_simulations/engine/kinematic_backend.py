@@ -3,12 +3,13 @@ from __future__ import annotations
 
 import struct
 from dataclasses import replace
-from typing import Any, Callable, Dict, List, Tuple
+from typing import Any, Callable, Dict, Iterable, List, Tuple
 
 from ..description.model import Model
 from ..geometry import Pose, Quat, add, compose, inverse, multiply, normalised, scale
 from .api import CommandRefusedError, Event
 from .commands import (
+    GONE,
     AddTimedForces,
     Clear,
     ClearTimedForces,
@@ -68,9 +69,7 @@ class KinematicBackend:
             Restart: self._restart,
             SetModelState: self._set_model,
             SetLinkState: self._set_link,
-            SetJoints: lambda c: self.joints.update(
-                {row: (at, rate) for row, at, rate in c.joints}
-            ),
+            SetJoints: self._set_joints,
             SetAxes: self._set_axes,
             PinModels: self._hold,
             SetMotors: lambda c: self.motors.update({motor.row: motor for motor in c.motors}),
@@ -178,7 +177,17 @@ class KinematicBackend:
                 self.joints[row] = (self.joints[row][0] + motor.rate * span, motor.rate)
                 self._dirty = True
 
+    def _check(self, model_ids: Iterable[int]) -> None:
+        for model_id in model_ids:
+            if model_id not in self.models:
+                raise CommandRefusedError(f"the model {GONE}")
+
+    def _set_joints(self, command: SetJoints) -> None:
+        self._check(command.of)
+        self.joints.update({row: (at, rate) for row, at, rate in command.joints})
+
     def _set_link(self, command: SetLinkState) -> None:
+        self._check(command.of)
         self.links[command.row] = LinkState(
             command.pose, command.twist or self.links[command.row].twist)
 
@@ -208,7 +217,7 @@ class KinematicBackend:
 
     def _remove(self, model_id: int) -> None:
         if model_id not in self.models:
-            raise CommandRefusedError("the model is not there any more")
+            raise CommandRefusedError(f"the model {GONE}")
         model, first_link, first_joint, _ = self.models.pop(model_id)
         for n in range(len(model.links)):
             del self.links[first_link + n]
@@ -220,8 +229,7 @@ class KinematicBackend:
                 del self.connected[name]
 
     def _set_model(self, command: SetModelState) -> None:
-        if command.model_id not in self.models:
-            raise CommandRefusedError("the model is not there any more")
+        self._check((command.model_id, *command.of))
         model, first, _, static = self.models[command.model_id]
         wanted = command.pose
         if command.frame is not None:

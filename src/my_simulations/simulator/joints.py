@@ -5,7 +5,7 @@ from dataclasses import replace
 from typing import Dict, List, Optional, Sequence, Tuple
 
 from ..description.model import Joint
-from ..engine.commands import JointWrench, ReadJointWrenches, SetAxes, SetJoints
+from ..engine.commands import Command, JointWrench, ReadJointWrenches, SetAxes, SetJoints
 from .models import Models
 from .session import Session
 
@@ -59,10 +59,13 @@ class Joints:
             UnknownEntityError: a joint does not exist.
             CommandError: the engine rejected a position.
         """
-        with self._session.registry_lock:
-            rows = tuple((self._session.registry.joint_row(name), value, 0.0)
-                         for name, value in positions.items())
-        self._session.call(SetJoints(rows))
+        def look_up() -> Command:
+            found = [self._session.registry.movable_joint(name) for name in positions]
+            return SetJoints(tuple((row, value, 0.0)
+                                   for (_, row), value in zip(found, positions.values())),
+                             tuple(sorted({entity.model_id for entity, _ in found})))
+
+        self._session.move(look_up)
 
     def edit(self, name: str, joint: Joint) -> None:
         """Change the axes (limits, friction, damping, spring, motor) or the type of a joint.

@@ -27,7 +27,7 @@ from .drives import Drives
 from .initial_state import initial_commands
 from .inter_model_joints import DeletedModel, InterModelJoints
 from .order_slot import OrderSlot
-from .registry import Entity
+from .registry import Entity, NameTakenError
 from .session import Session, check_name
 from .wrenches import Wrenches
 
@@ -210,7 +210,7 @@ class Models:
         registry = self._session.registry
         old = registry.model(name) if name in registry else None
         if old is not None and not may_replace:
-            raise CommandError(f"a model named '{name}' already exists")
+            raise NameTakenError(f"a model named '{name}' already exists")
         return old
 
     def _world_pose(self, model: Model, pose: Optional[Pose], frame: str) -> Pose:

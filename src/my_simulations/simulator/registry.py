@@ -44,6 +44,10 @@ class UnknownEntityError(CommandError):
     """A model, link, joint or light that does not exist."""
 
 
+class NameTakenError(CommandError):
+    """Something of that name is in the world already."""
+
+
 class UnknownFrameError(CommandError):
     """A reference frame that is neither the world nor an entity."""
 
@@ -291,11 +295,15 @@ class Registry:
 
     def joint_row(self, name: str) -> int:
         """The row of a movable joint by plain or scoped name. Raises UnknownEntityError."""
+        return self.movable_joint(name)[1]
+
+    def movable_joint(self, name: str) -> Tuple[Entity, int]:
+        """Model and row of a movable joint. Raises UnknownEntityError."""
         for entity, joint, number in self._joints_named(name):
             row = entity.axis_row(joint.name, number)
             if row is not None:
                 self._joint_taken(name, entity)
-                return row
+                return entity, row
         raise UnknownEntityError(f"unknown movable joint '{name}'" + self._nearest_joint(name))
 
     def joint(self, name: str) -> Tuple[Entity, Joint, int]:

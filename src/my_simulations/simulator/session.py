@@ -10,15 +10,18 @@ from ..description.model import Model
 from ..description.shapes import MeshTable
 from ..description.world import World
 from ..engine.api import Reply
-from ..engine.commands import Command
+from ..engine.commands import GONE, Command
 from ..engine.ring import JOINTS, LINKS, RingReader, Snapshot
 from ..engine.ring_rows import axis_rows
 from ..errors import CommandError, Issue, warning
 from ..geometry import Pose
 from ..xml_characters import check_characters
-from .registry import Entity, Registry
+from .registry import Entity, NameTakenError, Registry
 from .row_allocator import RowAllocator
 from .supervisor import Supervisor
+
+_CHANGE_S = 1.0
+"""How long a change of models is waited for before something that it concerns is refused."""
 
 
 class Session:
@@ -53,6 +56,35 @@ class Session:
     def call(self, command: Command) -> Reply:
         """Send an engine command and wait for its reply; see `Supervisor.call` for errors."""
         return self.supervisor.call(command)
+
+    def move(self, look_up: Callable[[], Command]) -> None:
+        """Call what `look_up` makes of the registry, which is locked meanwhile.
+
+        Where a model has gone in between, it is looked up again: it may have been replaced by an
+        edit, and keeps its name then. Raises CommandError, and what `look_up` raises.
+        """
+        with self.registry_lock:
+            command = look_up()
+        while True:
+            try:
+                self.call(command)
+                return
+            except CommandError as fault:
+                again = self._looked_up_again(look_up) if GONE in str(fault) else command
+                if again == command:
+                    raise
+                command = again
+
+    def _looked_up_again(self, look_up: Callable[[], Command]) -> Command:
+        # Who replaces a model tells the engine first, and the registry next. Not for ever: the
+        # change may itself wait for a plugin that moves something.
+        held = self.structure_lock.acquire(timeout=_CHANGE_S)
+        try:
+            with self.registry_lock:
+                return look_up()
+        finally:
+            if held:
+                self.structure_lock.release()
 
     @property
     def ring(self) -> RingReader:
@@ -96,7 +128,7 @@ class Session:
     def check_name_is_free(self, name: str) -> None:
         """Raises CommandError if a model or light has that name. Requires `registry_lock`."""
         if name in self.registry or any(light.name == name for light in self.world.lights):
-            raise CommandError(f"a model or light named '{name}' already exists")
+            raise NameTakenError(f"a model or light named '{name}' already exists")
 
     def set_world_fields(self, **fields: Any) -> None:
         """Replace fields of the description that the engine does not simulate."""

@@ -5,7 +5,7 @@ snapshot shows their effect. All parts are safe from any thread.
 """
 from __future__ import annotations
 
-from typing import Callable, Dict, List, Optional
+from typing import Callable, ContextManager, Dict, List, Optional
 
 from ..description.shapes import MeshTable
 from ..description.world import World
@@ -71,8 +71,8 @@ class Simulator:
         self._session = session = Session(world, supervisor, log)
         self._world_meshes = meshes or {}
         self.clock = SimClock(session, paused, steps)
-        self.physics = WorldPhysics(session)
         self.wrenches = Wrenches(session)
+        self.physics = WorldPhysics(session, self.clock, self.wrenches)
         self.drives = Drives(session)
         self.appointments = Appointments(session)
         self.models = Models(session, self.wrenches, self.drives, ConvexParts(
@@ -88,6 +88,14 @@ class Simulator:
     def world(self) -> World:
         """The description: models as loaded; lights, scene and the like as last set."""
         return self._session.world
+
+    @property
+    def changing(self) -> ContextManager[bool]:
+        """Hold it to read something and write it changed as one: others' changes wait.
+
+        Not for plugins: who removes a model waits for those of the model.
+        """
+        return self._session.structure_lock
 
     @property
     def engine_pid(self) -> int:

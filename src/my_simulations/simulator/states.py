@@ -1,11 +1,13 @@
 """Poses, twists and contacts of a running world: read from snapshots, set by commands."""
 from __future__ import annotations
 
-from typing import Dict, List, Tuple
+from typing import Dict, List, Optional, Tuple
 
 from ..engine.commands import (
     Batch,
+    Command,
     Contact,
+    Frame,
     Pause,
     Ping,
     ReadContacts,
@@ -122,25 +124,39 @@ class States:
         pose = usable(pose, twist)
         with session.registry_lock:
             entity = session.registry.model(name)
-            anchor = session.registry.frame(frame)
             if not entity.link_names:
+                anchor = session.registry.frame(frame)
                 if anchor is not None:
                     pose = compose(anchor.state(session.snapshot())[0], pose)
                 entity.pose = pose
                 session.registry.revision += 1
                 return
-        pose, twist, reference = in_frame(pose, twist, anchor)
-        session.call(SetModelState(entity.model_id, pose, twist, reference))
+
+        def look_up() -> Command:
+            found, anchor = session.registry.model(name), session.registry.frame(frame)
+            at, speed, reference = in_frame(pose, twist, anchor)
+            return SetModelState(found.model_id, at, speed, reference, self._owner(reference))
+
+        session.move(look_up)
 
     def set_link_state(self, name: str, pose: Pose, twist: Twist, frame: str = "") -> None:
         """Move a link (see `engine.commands.SetLinkState`). Raises CommandError."""
         session = self._session
         pose = usable(pose, twist)
-        with session.registry_lock:
-            row = session.link_row(name)
-            anchor = session.registry.frame(frame)
-        pose, twist, reference = in_frame(pose, twist, anchor)
-        session.call(SetLinkState(row, pose, twist, reference))
+
+        def look_up() -> Command:
+            (entity, number), anchor = session.registry.link(name), session.registry.frame(frame)
+            at, speed, reference = in_frame(pose, twist, anchor)
+            return SetLinkState(entity.first_link_row + number, at, speed, reference,
+                                (entity.model_id, *self._owner(reference)))
+
+        session.move(look_up)
+
+    def _owner(self, frame: Optional[Frame]) -> Tuple[int, ...]:
+        """The id of the model whose link a frame is. Requires the registry lock."""
+        return () if frame is None else tuple(
+            entity.model_id for entity in self._session.registry.entities()
+            if entity.has_link_row(frame.row))
 
     def restore(self, state: WorldState, clock: bool = True) -> None:
         """Restore poses, velocities, joints and, with `clock`, the time; models added since stay.

@@ -94,13 +94,13 @@ def test_the_address_with_the_token_is_in_a_file_for_its_user_alone(guarded):
     folder = os.path.join(cache, "editor")
     assert stat.S_IMODE(os.stat(folder).st_mode) == 0o700
     files = [os.path.join(folder, name) for name in os.listdir(folder)]
-    assert len(files) == 2
+    assert len(files) == 3    # for programs, for browsers, and the key of the page's addresses
     assert all(stat.S_IMODE(os.stat(path).st_mode) == 0o600 for path in files)
     page = address_file.page(base, cache)
     with open(page[len("file://"):], encoding="utf-8") as stream:
         assert f'content="0;url={made.url}"' in stream.read()
     made.server.stop()
-    assert os.listdir(folder) == [] and address_file.whole(base, cache) == base
+    assert os.listdir(folder) == ["page_key"] and address_file.whole(base, cache) == base
 
 
 def test_an_address_is_read_for_the_very_server_only(tmp_path):

@@ -11,6 +11,7 @@ from ...geometry import Pose, pose_is_finite
 from ..api import CommandRefusedError, EngineBrokenError, Event
 from ..body_plan import BodyPlanError, open_joints
 from ..commands import (
+    GONE,
     AddTimedForces,
     Clear,
     ClearTimedForces,
@@ -120,9 +121,8 @@ class BulletBackend:
         self._appliers: Dict[Type[Command], Callable[[Any], object]] = {
             LoadModel: self._load, RemoveModel: self._remove, Clear: self._clear,
             Restart: self._restart,
-            SetModelState: lambda command: self._mover.set_model(
-                command, self._entry(command.model_id)),
-            SetLinkState: self._mover.set_link, SetJoints: self._mover.set_joints,
+            SetModelState: self._set_model, SetLinkState: self._set_link,
+            SetJoints: self._set_joints,
             SetAxes: self._set_axes, PinModels: self._hold,
             ConnectModels: self._connect,
             DisconnectModels: self._disconnect,
@@ -355,10 +355,24 @@ class BulletBackend:
 
     def _entry(self, model_id: int) -> Entry:
         if model_id not in self._models:
-            raise CommandRefusedError("the model is not there any more")
+            raise CommandRefusedError(f"the model {GONE}")
         return self._models[model_id]
 
     # -- states ----------------------------------------------------------------------------------
+
+    def _set_model(self, command: SetModelState) -> None:
+        entry, *_ = map(self._entry, (command.model_id, *command.of))
+        self._mover.set_model(command, entry)
+
+    def _set_link(self, command: SetLinkState) -> None:
+        for model_id in command.of:
+            self._entry(model_id)
+        self._mover.set_link(command)
+
+    def _set_joints(self, command: SetJoints) -> None:
+        for model_id in command.of:
+            self._entry(model_id)
+        self._mover.set_joints(command)
 
     def _set_axes(self, command: SetAxes) -> None:
         entry = self._entry(command.model_id)

@@ -8,7 +8,7 @@ from contextlib import contextmanager
 from typing import Iterator
 
 from ...errors import CommandError
-from ...simulator.registry import UnknownEntityError, UnknownFrameError
+from ...simulator.registry import NameTakenError, UnknownEntityError, UnknownFrameError
 
 
 @contextmanager
@@ -28,3 +28,16 @@ def gazebo_prefix(entity: str, frame: str = "") -> Iterator[None]:
         raise CommandError(f"{entity}, {fault}") from fault
     except UnknownFrameError as fault:
         raise CommandError(f"{frame}, {fault}" if frame else str(fault)) from fault
+
+
+@contextmanager
+def told_if_taken(entity: str) -> Iterator[None]:
+    """Gazebo's status message where a name is taken; `entity` as "model 'x'".
+
+    Raises:
+        CommandError: the error in Gazebo's words.
+    """
+    try:
+        yield
+    except NameTakenError as fault:
+        raise CommandError(f"Failure - entity already exists. ({entity})") from fault

@@ -59,6 +59,10 @@ class JointServices:
 
     def set(self, request: Any, _response: Any) -> str:
         """Set joint properties; arrays have one element per axis, empty ones change nothing."""
+        with self._simulator.changing:
+            return self._set(request)
+
+    def _set(self, request: Any) -> str:
         config = request.ode_joint_config
         with gazebo_prefix(NO_JOINT):
             owner, joint, _ = self._simulator.joints.find(request.joint_name)

@@ -35,6 +35,10 @@ class LightServices:
 
     def set(self, request: Any, _response: Any) -> str:
         """Change a light; colours, attenuations, direction and pose of zeros are left unchanged."""
+        with self._simulator.changing:
+            return self._set(request)
+
+    def _set(self, request: Any) -> str:
         light = self._light(request.light_name)
         changes: Dict[str, Any] = {"cast_shadows": request.cast_shadows}
         for field in ("diffuse", "specular"):

@@ -16,7 +16,7 @@ from ...resources.resolver import Resolver
 from ...simulator.simulator import Simulator
 from ...simulator.spawn_advice import arrival_advice
 from ..message_conversion import LENGTH, pose_from_message, within
-from .entity_errors import gazebo_prefix
+from .entity_errors import gazebo_prefix, told_if_taken
 from .spawn_request import (
     FILE_ATTRIBUTE,
     LAUNCH_ATTRIBUTE,
@@ -152,7 +152,7 @@ class ModelServices:
             return self._adopt(model)
         where = compose(initial, model.pose)
         within(where.position, LENGTH, "m", "position of the model")
-        with gazebo_prefix("", NO_FRAME):
+        with gazebo_prefix("", NO_FRAME), told_if_taken(f"model {model.name!r}"):
             self._simulator.models.spawn(model, where, frame, meshes, replace, launched=launched)
         self._changed()
         self._report(arrival_advice(self._simulator, model.name, meshes))
@@ -184,7 +184,7 @@ class ModelServices:
                              pose=compose(initial, light.pose))
         if any(one.name == light.name for one in self._simulator.lights.all()):
             raise CommandError(f"Failure - entity already exists. (light {light.name!r})")
-        with gazebo_prefix("", NO_FRAME):
+        with gazebo_prefix("", NO_FRAME), told_if_taken(f"light {light.name!r}"):
             self._simulator.lights.add(light, frame)
         return "Successfully spawned entity"
 

@@ -80,11 +80,16 @@ def change(simulator: Simulator, values: Mapping[str, Value]) -> None:
     Raises:
         CommandError: a value is out of range; nothing has changed.
     """
+    with simulator.changing:
+        _change(simulator, values)
+
+
+def _change(simulator: Simulator, values: Mapping[str, Value]) -> None:
     wanted = {**present(simulator), **values}
     step = wanted["time_step"]
     if not is_finite(step) or not SHORTEST_STEP <= step <= 10.0:
         raise CommandError(f"time_step must be between {SHORTEST_STEP:g} and 10 s, is {step:g}")
-    rate = between(wanted["max_update_rate"], 0.0, FASTEST, "max_update_rate", "Hz")
+    rate = between(wanted["max_update_rate"], -FASTEST, FASTEST, "max_update_rate", "Hz")
     gravity: Vec3 = tuple(  # type: ignore[assignment]
         between(wanted[f"gravity_{axis}"], -STRONGEST_GRAVITY, STRONGEST_GRAVITY,
                 f"gravity.{axis}", "m/s^2") for axis in "xyz")
@@ -93,5 +98,5 @@ def change(simulator: Simulator, values: Mapping[str, Value]) -> None:
                            for parameter in ODE if parameter.name in values}
     physics = simulator.physics.settings
     simulator.physics.set(
-        replace(physics, max_step_size=step, real_time_update_rate=rate,
+        replace(physics, max_step_size=step, real_time_update_rate=max(0.0, rate),
                 ode=replace(physics.ode, **ode)), gravity)

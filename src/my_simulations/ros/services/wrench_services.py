@@ -52,8 +52,9 @@ class WrenchServices:
     def clear_efforts(self, request: Any, _response: Any) -> str:
         """Clear all efforts on a joint; an unscoped name means that of every model (Gazebo)."""
         name = request.joint_name
-        scoped = [f"{model}::{name}" for model in self._simulator.models.names()
-                  if any(joint.name == name for joint in self._simulator.models.get(model).joints)]
+        scoped = [f"{entity.model.name}::{name}"
+                  for entity in self._simulator.models.inventory()[1]
+                  if any(joint.name == name for joint in entity.model.joints)]
         for joint in scoped or [name]:
             try:
                 self._simulator.wrenches.clear_efforts(joint)
