@@ -105,6 +105,14 @@ test('drags are dropped on a congested line', async () => {
   assert.equal(socket.sent.length, 2);
 });
 
+test('what ends a drag or asks for the next picture is sent on a congested line too', async () => {
+  const {connection, socket} = await connected();
+  socket.bufferedAmount = 1e6;
+  connection.send('drag_end');
+  connection.send('viewed', {topic: '/camera'});
+  assert.deepEqual(socket.sent.slice(1).map(({type}) => type), ['drag_end', 'viewed']);
+});
+
 test('waiting doubles up to four seconds', () => {
   assert.deepEqual([0, 1, 2, 9].map(backOff), [250, 500, 1000, 4000]);
 });

@@ -152,13 +152,15 @@ export class Connection extends Emitter {
   }
 
   /**
-   * Sends what is not answered (live drags); dropped while the line is down or congested.
+   * Sends what is not answered; dropped while the line is down. On a congested line live drags are
+   * dropped too: the next one says it all.
    * @template {keyof Notices} T
    * @param {T} type
    * @param {Notices[T]} [fields]
    */
   send(type, fields) {
-    if (this.#socket?.readyState !== OPEN || this.#socket.bufferedAmount > 65536) return;
+    if (this.#socket?.readyState !== OPEN) return;
+    if (type === 'drag' && this.#socket.bufferedAmount > 65536) return;
     this.#socket.send(JSON.stringify({type, .../** @type {object} */ (fields ?? {})}));
   }
 
