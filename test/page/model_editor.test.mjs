@@ -2,7 +2,8 @@ import assert from 'node:assert/strict';
 import {test} from 'node:test';
 import {createActions} from '../../web/js/actions.js';
 import {
-  axesOf, axisOr, connection, isLinkOf, jointText, JOINT_TYPES, linkMoves, linkRemovals, pluginText, stepsSince,
+  axesOf, axisOr, connection, isLinkOf, jointText, JOINT_TYPES, linkMoves, linkRemovals, newestToUndo,
+  pluginText, renamedModel, stepsSince,
 } from '../../web/js/model_editor/model_edits.js';
 import {SOLID_SHAPES, solidModel} from '../../web/js/model_editor/solids.js';
 import {Store} from '../../web/js/store.js';
@@ -91,4 +92,15 @@ test('Delete takes the chosen link of the edited model, not the model', async ()
   store.select(['a::link']);
   await actions.remove();
   assert.deepEqual(connection.requests.at(-1)[1].op, {kind: 'remove_part', target: 'a::link'});
+});
+
+test('the steps of a model that is discarded are undone, and none before them', async () => {
+  for (const [steps, to] of [[1, undefined], [2, 1], [5, 4]]) assert.equal(newestToUndo(steps), to);
+});
+
+test('a model that got another name is known by its links, also where nobody selected it', () => {
+  const [a, b, c] = ['a', 'b', 'c'].map((name, n) => model(name, n + 1));
+  const links = a.links.map(({name}) => name).join();
+  assert.equal(renamedModel([b, {...a, name: 'new'}], links, new Set(['a', 'b'])).name, 'new');
+  assert.equal(renamedModel([b, c], links, new Set(['a', 'b', 'c'])), undefined);
 });

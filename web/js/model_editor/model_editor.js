@@ -6,7 +6,7 @@ import {ask} from '../panels/dialog.js';
 import {byId} from '../panels/dom.js';
 import {styled} from '../panels/stylesheet.js';
 import {ConnectTool} from './connect_tool.js';
-import {stepsSince} from './model_edits.js';
+import {linkNames, newestToUndo, renamedModel, stepsSince} from './model_edits.js';
 import {ModelFiles} from './model_files.js';
 import {Palette} from './model_palette.js';
 /** @import {Actions} from '../actions.js' */
@@ -44,6 +44,8 @@ export class ModelEditor {
   #ends = [];
   /** Names of the links of the model when it was last seen, to know it under another name. */
   #links = '';
+  /** Names of the models that were there then. @type {Set<string>} */
+  #names = new Set();
 
   /** The model that is edited, once it has a first link. @returns {Model|undefined} */
   get model() {
@@ -119,7 +121,7 @@ export class ModelEditor {
 
   async #discard() {
     const {steps} = this;
-    if (steps > 0) await this.actions.undo(steps > 1 ? steps : undefined);
+    if (steps > 0) await this.actions.undo(newestToUndo(steps));
   }
 
   async #end() {
@@ -138,8 +140,7 @@ export class ModelEditor {
     const {store, model} = this;
     if (!store.modelEditing) return;
     if (!model && store.modelEditing.name) {
-      const renamed = store.document?.models.find((one) =>
-        one.links.map((link) => link.name).join() === this.#links && store.selection.includes(one.name));
+      const renamed = renamedModel(store.document?.models ?? [], this.#links, this.#names);
       store.setModelEditing({name: renamed?.name ?? null});
       return;
     }
@@ -148,7 +149,10 @@ export class ModelEditor {
 
   #show() {
     const {model} = this;
-    if (model) this.#links = model.links.map((link) => link.name).join();
+    if (model) {
+      this.#links = linkNames(model);
+      this.#names = new Set(this.store.document?.models.map(({name}) => name));
+    }
     this.#overlay(model?.name ?? null);
     this.#palette?.update();
   }

@@ -63,3 +63,21 @@ export const pluginText = ({plugins}) => plugins.map(({xml}) => xml.trim()).join
  * @param {number} mark    its length before
  */
 export const stepsSince = (undo, mark) => Math.max(undo.length - mark, 0);
+
+/**
+ * What `undo` takes to undo so many steps: the index of the oldest of them, nothing for one.
+ * @param {number} steps
+ */
+export const newestToUndo = (steps) => (steps > 1 ? steps - 1 : undefined);
+
+/**
+ * The model that has another name now, or none: that of the same links which was not there before.
+ * @param {Pick<Model, 'name'|'links'>[]} models
+ * @param {string} links         names of its links
+ * @param {Set<string>} before   names of the models before
+ */
+export const renamedModel = (models, links, before) => models.find((one) =>
+  !before.has(one.name) && linkNames(one) === links);
+
+/** @param {Pick<Model, 'links'>} model */
+export const linkNames = ({links}) => links.map(({name}) => name).join();
