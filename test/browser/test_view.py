@@ -188,6 +188,23 @@ def test_while_physics_runs_a_drag_moves_the_body_and_then_lets_it_fall(editor, 
     editor.until("editor.store.history.undo[0].startsWith('Translate')", "the drag in the history")
 
 
+def test_a_drag_ends_with_its_button_also_while_another_is_down(editor):
+    insert(editor, "box", standing(0, 0))
+    editor.get("editor.store.select(['box']), editor.actions.translateMode()")
+    x, y = pixel_of(editor, "box")
+    mouse = editor.page.mouse
+    mouse.move(x - 40, y + 20)
+    mouse.down()
+    mouse.move(x + 60, y + 30, steps=6)
+    mouse.down(button="right")
+    mouse.up()
+    editor.until("editor.store.history.undo[0].startsWith('Translate')", "the end of the drag")
+    there = at_rest(editor, "box")
+    mouse.up(button="right")
+    mouse.move(x - 200, y + 60, steps=6)
+    assert at_rest(editor, "box") == approx(there, abs=1)
+
+
 def test_escape_during_a_drag_brings_the_body_back(editor):
     insert(editor, "box", standing(0, 0))
     editor.get("editor.store.select(['box']), editor.actions.translateMode()")

@@ -1,5 +1,6 @@
 /** Mouse and keyboard on the sheet, handed to the tool in metres of the plan. */
 import {hotkey} from '../hotkeys.js';
+import {isDown} from '../mouse_buttons.js';
 import {isModalOpen} from '../panels/dialog.js';
 import {isTextInput} from '../panels/dom.js';
 import {menuList, openPopup} from '../panels/popup.js';
@@ -26,6 +27,15 @@ export function listenToMouse({session, canvas, draw}) {
   });
   /** @type {[number, number]|null} */
   let panning = null;
+  let drawing = false;
+  /** @param {PointerEvent} event */
+  const released = (event) => {
+    if (!isDown(event, 1)) panning = null;
+    if (!drawing || isDown(event, 0)) return;
+    drawing = false;
+    session.tool.release(mouseOf(event));
+    draw();
+  };
   sheet.addEventListener('pointerdown', (event) => {
     sheet.focus({preventScroll: true});
     sheet.setPointerCapture(event.pointerId);
@@ -33,11 +43,13 @@ export function listenToMouse({session, canvas, draw}) {
       event.preventDefault();
       panning = [event.clientX, event.clientY];
     } else if (event.button === 0) {
+      drawing = true;
       session.tool.press(mouseOf(event));
     }
     draw();
   });
   sheet.addEventListener('pointermove', (event) => {
+    released(event);
     if (panning) {
       canvas.pan(event.clientX - panning[0], event.clientY - panning[1]);
       panning = [event.clientX, event.clientY];
@@ -46,12 +58,12 @@ export function listenToMouse({session, canvas, draw}) {
     session.tool.move(mouseOf(event));
   });
   sheet.addEventListener('pointerup', (event) => {
-    if (event.button === 1) panning = null;
-    else if (event.button === 0) session.tool.release(mouseOf(event));
+    released(event);
     draw();
   });
   sheet.addEventListener('pointercancel', () => {
     panning = null;
+    drawing = false;
     session.tool.cancel();
   });
   sheet.addEventListener('dblclick', (event) => {
@@ -169,8 +181,13 @@ export function listenToKeys(element, {session, files, exit, draw}) {
     return true;
   }
 
+  const forget = () => { typed = ''; };   // a click has ended the wall that it was typed for
   window.addEventListener('keydown', pressed, true);
-  return () => window.removeEventListener('keydown', pressed, true);
+  element.addEventListener('pointerdown', forget, true);
+  return () => {
+    window.removeEventListener('keydown', pressed, true);
+    element.removeEventListener('pointerdown', forget, true);
+  };
 }
 
 /** @param {KeyboardEvent} event */

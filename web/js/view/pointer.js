@@ -1,4 +1,5 @@
 /** The mouse and the held keys over the view: who gets a drag, and what a click means. */
+import {isDown} from '../mouse_buttons.js';
 import {closestTo} from '../panels/dom.js';
 import {Touch, TOUCH_PIXELS} from './touch.js';
 /** @import {Vec3} from '../pose.js' */
@@ -151,6 +152,10 @@ export class Pointer {
       this.#hover(event);
       return;
     }
+    if (!isDown(event, press.button)) {
+      this.#end(event, press);
+      return;
+    }
     const dx = event.clientX - press.lastX;
     const dy = event.clientY - press.lastY;
     press.lastX = event.clientX;
@@ -189,7 +194,11 @@ export class Pointer {
   #up(event) {
     if (this.#touch.up(event)) return;
     const press = this.#press;
-    if (!press || event.button !== press.button) return;
+    if (press && !isDown(event, press.button)) this.#end(event, press);
+  }
+
+  /** @param {PointerEvent} event @param {Press} press */
+  #end(event, press) {
     this.#press = null;
     const {store, manipulator, placer, faceSnap, forces, selector, pivotMark} = this.#parts;
     pivotMark.hide();
