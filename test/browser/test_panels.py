@@ -273,9 +273,13 @@ def test_a_file_is_replaced_only_after_a_question(editor, node):
     dialog.get_by_role("button", name="Save", exact=True).click()
     question.get_by_role("button", name="Overwrite").click()
     wait_for(lambda: "unit_box" in open(path, encoding="utf-8").read(), "the new content")
+    card = editor.page.locator(".notice", has_text="Saved")
+    card.wait_for(state="visible")
+    card.wait_for(state="detached")
     with_box(editor, (2.0, 1.0))
     editor.page.keyboard.press("Control+s")
     wait_for(lambda: "unit_box_0" in open(path, encoding="utf-8").read(), "Ctrl+S")
+    card.wait_for(state="visible")
 
 
 def test_unsaved_changes_are_asked_for_before_another_world_is_opened(editor, node):

@@ -60,7 +60,7 @@ export class Notices {
     this.entries.length = Math.min(this.entries.length, KEPT);
     if (!this.#list.hidden) this.#showList();
     else if (issue.severity !== 'note') this.#markUnseen(this.unseen + 1);
-    if (!again) this.#card(issue);
+    if (!again || !this.#renew()) this.#card(issue);
   }
 
   /**
@@ -84,6 +84,9 @@ export class Notices {
     this.badge.textContent = count > 99 ? '99+' : String(count);
   }
 
+  /** Lets the newest card stay on; false where it has gone. @type {() => boolean} */
+  #renew = () => false;
+
   /** @param {Issue} issue */
   #card(issue) {
     const severity = issue.severity ?? 'error';
@@ -104,6 +107,11 @@ export class Notices {
     card.addEventListener('pointerleave', () => {
       timer = setTimeout(close, 3000);
     });
+    this.#renew = () => {
+      clearTimeout(timer);
+      timer = setTimeout(close, SECONDS[severity] * 1000);
+      return card.isConnected;
+    };
     this.element.append(card);
     while (this.element.childElementCount > CARDS) this.element.firstElementChild?.remove();
   }

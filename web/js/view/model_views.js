@@ -50,9 +50,9 @@ export class Models {
     this.#batches = batches;
     this.#stock = stock;
     this.#stage = stage;
-    store.listen('document', () => this.rebuildAll());
+    store.listen('document', () => this.#whileHolding(() => this.rebuildAll()));
     store.listen('entity', ({detail: {name, kind, value}}) => {
-      if (kind === 'model') this.#replace(name, value);
+      if (kind === 'model') this.#whileHolding(() => this.#replace(name, value));
     });
     store.listen('poses', ({detail: ids}) => this.#followFrame(ids));
   }
@@ -257,6 +257,23 @@ export class Models {
     if (model) this.#build(name, model);
     this.#changed(null);
   }
+
+  /**
+   * Changes models; of links that are not those of the same model then the hand lets go: their ids may
+   * be another's soon.
+   * @param {() => void} change
+   */
+  #whileHolding(change) {
+    const holders = [...this.#held.keys()].map((id) => /** @type {const} */ ([id, this.#holder(id)]));
+    change();
+    for (const [id, holder] of holders) {
+      if (!holder || this.#holder(id) !== holder) this.#held.delete(id);
+    }
+    for (const name of this.#stretched.keys()) if (!this.#views.has(name)) this.#stretched.delete(name);
+  }
+
+  /** @param {number} id  of a link */
+  #holder(id) { return this.#byLink.get(id)?.document.name; }
 
   /** @param {string} name @param {Model} model */
   #build(name, model) {
