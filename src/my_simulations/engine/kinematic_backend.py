@@ -9,7 +9,6 @@ from ..description.model import Model
 from ..geometry import Pose, Quat, add, compose, inverse, multiply, normalised, scale
 from .api import CommandRefusedError, Event
 from .commands import (
-    GONE,
     AddTimedForces,
     Clear,
     ClearTimedForces,
@@ -180,7 +179,7 @@ class KinematicBackend:
     def _check(self, model_ids: Iterable[int]) -> None:
         for model_id in model_ids:
             if model_id not in self.models:
-                raise CommandRefusedError(f"the model {GONE}")
+                raise CommandRefusedError("the model is not there any more")
 
     def _set_joints(self, command: SetJoints) -> None:
         self._check(command.of)
@@ -217,7 +216,7 @@ class KinematicBackend:
 
     def _remove(self, model_id: int) -> None:
         if model_id not in self.models:
-            raise CommandRefusedError(f"the model {GONE}")
+            raise CommandRefusedError("the model is not there any more")
         model, first_link, first_joint, _ = self.models.pop(model_id)
         for n in range(len(model.links)):
             del self.links[first_link + n]

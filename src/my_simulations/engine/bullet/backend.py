@@ -11,7 +11,6 @@ from ...geometry import Pose, pose_is_finite
 from ..api import CommandRefusedError, EngineBrokenError, Event
 from ..body_plan import BodyPlanError, open_joints
 from ..commands import (
-    GONE,
     AddTimedForces,
     Clear,
     ClearTimedForces,
@@ -355,7 +354,7 @@ class BulletBackend:
 
     def _entry(self, model_id: int) -> Entry:
         if model_id not in self._models:
-            raise CommandRefusedError(f"the model {GONE}")
+            raise CommandRefusedError("the model is not there any more")
         return self._models[model_id]
 
     # -- states ----------------------------------------------------------------------------------

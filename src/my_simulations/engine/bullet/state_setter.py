@@ -20,7 +20,7 @@ from ...geometry import (
     subtract,
 )
 from ..api import CommandRefusedError
-from ..commands import GONE, Frame, LinkState, SetJoints, SetLinkState, SetModelState
+from ..commands import Frame, LinkState, SetJoints, SetLinkState, SetModelState
 from . import bodies
 from .bodies import Axis, Body, Part
 from .forces import Forces
@@ -78,7 +78,7 @@ class StateSetter:
     def set_link(self, command: SetLinkState) -> None:
         """Move the body of a link. Raises CommandRefusedError."""
         if command.row not in self._rows:
-            raise CommandRefusedError(f"the link {GONE}")
+            raise CommandRefusedError("the link is not there any more")
         self._readout.read()
         body, part = self._rows[command.row]
         if not body.rigid and body.base is None:
@@ -93,7 +93,7 @@ class StateSetter:
         """Set joint axes; all are checked before the first moves. Raises CommandRefusedError."""
         for row, position, rate in command.joints:
             if row not in self._axes:
-                raise CommandRefusedError(f"the joint {GONE}")
+                raise CommandRefusedError("the joint is not there any more")
             if not (abs(position) < 1e12 and abs(rate) < 1e12):
                 raise CommandRefusedError("the joint position is not finite")
         for row, position, rate in command.joints:
@@ -123,7 +123,7 @@ class StateSetter:
         if frame is None:
             return pose, twist
         if frame.row not in self._rows:
-            raise CommandRefusedError(f"the reference frame {GONE}")
+            raise CommandRefusedError("the reference frame is not there any more")
         at = compose(self.link_state(frame.row).pose, frame.offset)
         if twist is not None:
             twist = Twist(rotate(at.orientation, twist.linear),
