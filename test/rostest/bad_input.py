@@ -165,7 +165,6 @@ REFUSED = [
     ("set_light_properties", {"attenuation_linear": -1.0}, "attenuation_linear"),
 
     *numbers("set_physics_properties", ["time_step", "max_update_rate"], ABSURD),
-    ("set_physics_properties", {"max_update_rate": -1.0}, "max_update_rate"),
     *numbers("set_physics_properties", axes("gravity"), ABSURD, "gravity"),
     *numbers("set_physics_properties", [f"ode_config.{name}" for name in ODE], ABSURD),
     *[("set_physics_properties", {"time_step": step}, "time_step") for step in (0.0, -0.001, 11.0)],
