@@ -11,12 +11,9 @@ import html
 import json
 import os
 import re
-import tempfile
 from typing import List
 
-from ..editor_options import cache_folder
-
-_FOLDER = "editor"
+from .private_file import private_folder, write_private
 
 
 def without_token(address: str) -> str:
@@ -29,9 +26,6 @@ def write(address: str, cache_dir: str = "") -> List[str]:
 
     Raises OSError.
     """
-    folder = _folder(cache_dir)
-    os.makedirs(folder, mode=0o700, exist_ok=True)
-    os.chmod(folder, 0o700)
     shown = html.escape(address, quote=True)
     texts = {
         _path(address, ".json", cache_dir): json.dumps({"address": address}),
@@ -41,10 +35,7 @@ def write(address: str, cache_dir: str = "") -> List[str]:
             f'<a href="{shown}">World editor</a>\n'),
     }
     for path, text in texts.items():
-        handle, temporary = tempfile.mkstemp(dir=folder)  # readable by its user alone
-        with os.fdopen(handle, "w", encoding="utf-8") as stream:
-            stream.write(text)
-        os.replace(temporary, path)
+        write_private(path, text.encode())
     return list(texts)
 
 
@@ -73,10 +64,6 @@ def page(address: str, cache_dir: str = "") -> str:
     return f"file://{path}" if os.path.isfile(path) else ""
 
 
-def _folder(cache_dir: str) -> str:
-    return os.path.join(cache_dir or cache_folder(), _FOLDER)
-
-
 def _path(address: str, ending: str, cache_dir: str) -> str:
     name = re.sub(r"[^A-Za-z0-9.-]", "_", without_token(address).partition("//")[2].rstrip("/"))
-    return os.path.join(_folder(cache_dir), name + ending)
+    return os.path.join(private_folder(cache_dir), name + ending)

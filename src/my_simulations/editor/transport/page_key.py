@@ -9,14 +9,15 @@ from __future__ import annotations
 import contextlib
 import os
 import secrets
-import tempfile
+
+from .private_file import private_folder, write_private
 
 _BYTES = 32
 
 
 def page_key(cache_dir: str) -> bytes:
     """The user's key, made at the first call; where it cannot be kept, another one each time."""
-    path = os.path.join(cache_dir, "editor", "page_key")
+    path = os.path.join(private_folder(cache_dir), "page_key")
     with contextlib.suppress(OSError):  # there is none yet, or no home to keep it in
         with open(path, "rb") as stream:
             key = stream.read()
@@ -24,9 +25,5 @@ def page_key(cache_dir: str) -> bytes:
             return key
     key = secrets.token_bytes(_BYTES)
     with contextlib.suppress(OSError):  # browsers then ask for the files again after each start
-        os.makedirs(os.path.dirname(path), mode=0o700, exist_ok=True)
-        handle, temporary = tempfile.mkstemp(dir=os.path.dirname(path))  # for its user alone
-        with os.fdopen(handle, "wb") as written:
-            written.write(key)
-        os.replace(temporary, path)
+        write_private(path, key)
     return key

@@ -17,9 +17,9 @@ from .protocol import ProtocolError
 Handler = Callable[[Client, Dict[str, Any]], Any]
 
 _SILENCE_S = 20.0
+"""Pings this often; a browser that answers none of them has gone."""
 _LAST_S = 2.0
 """How long the last requests of a client that has gone may take before it is forgotten."""
-"""Pings this often; a browser that answers none of them has gone."""
 
 
 class Route:
