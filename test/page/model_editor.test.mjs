@@ -2,7 +2,7 @@ import assert from 'node:assert/strict';
 import {test} from 'node:test';
 import {createActions} from '../../web/js/actions.js';
 import {
-  axesOf, axisOr, connection, isLinkOf, jointText, JOINT_TYPES, linkMoves, linkRemovals, newestToUndo,
+  axesOf, axisOr, connection, isLinkOf, jointText, JOINT_TYPES, linkMoves, linkRemovals, oldestToUndo,
   pluginText, renamedModel, stepsSince,
 } from '../../web/js/model_editor/model_edits.js';
 import {SOLID_SHAPES, solidModel} from '../../web/js/model_editor/solids.js';
@@ -95,7 +95,7 @@ test('Delete takes the chosen link of the edited model, not the model', async ()
 });
 
 test('the steps of a model that is discarded are undone, and none before them', async () => {
-  for (const [steps, to] of [[1, undefined], [2, 1], [5, 4]]) assert.equal(newestToUndo(steps), to);
+  for (const [steps, to] of [[1, undefined], [2, 1], [5, 4]]) assert.equal(oldestToUndo(steps), to);
 });
 
 test('a model that got another name is known by its links, also where nobody selected it', () => {

@@ -215,8 +215,7 @@ class KinematicBackend:
                 command.state.joints[n] if command.state else (0.0, 0.0))
 
     def _remove(self, model_id: int) -> None:
-        if model_id not in self.models:
-            raise CommandRefusedError("the model is not there any more")
+        self._check([model_id])
         model, first_link, first_joint, _ = self.models.pop(model_id)
         for n in range(len(model.links)):
             del self.links[first_link + n]

@@ -6,7 +6,7 @@ import {ask} from '../panels/dialog.js';
 import {byId} from '../panels/dom.js';
 import {styled} from '../panels/stylesheet.js';
 import {ConnectTool} from './connect_tool.js';
-import {linkNames, newestToUndo, renamedModel, stepsSince} from './model_edits.js';
+import {linkNames, oldestToUndo, renamedModel, stepsSince} from './model_edits.js';
 import {ModelFiles} from './model_files.js';
 import {Palette} from './model_palette.js';
 /** @import {Actions} from '../actions.js' */
@@ -121,7 +121,7 @@ export class ModelEditor {
 
   async #discard() {
     const {steps} = this;
-    if (steps > 0) await this.actions.undo(newestToUndo(steps));
+    if (steps > 0) await this.actions.undo(oldestToUndo(steps));
   }
 
   async #end() {

@@ -68,7 +68,7 @@ export const stepsSince = (undo, mark) => Math.max(undo.length - mark, 0);
  * What `undo` takes to undo so many steps: the index of the oldest of them, nothing for one.
  * @param {number} steps
  */
-export const newestToUndo = (steps) => (steps > 1 ? steps - 1 : undefined);
+export const oldestToUndo = (steps) => (steps > 1 ? steps - 1 : undefined);
 
 /**
  * The model that has another name now, or none: that of the same links which was not there before.

@@ -2,7 +2,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Any, Callable, Dict, List, Optional, Tuple, Type
+from typing import Any, Callable, Dict, Iterable, List, Optional, Tuple, Type
 
 import pybullet
 
@@ -360,18 +360,20 @@ class BulletBackend:
     # -- states ----------------------------------------------------------------------------------
 
     def _set_model(self, command: SetModelState) -> None:
-        entry, *_ = map(self._entry, (command.model_id, *command.of))
-        self._mover.set_model(command, entry)
+        self._check(command.of)
+        self._mover.set_model(command, self._entry(command.model_id))
 
     def _set_link(self, command: SetLinkState) -> None:
-        for model_id in command.of:
-            self._entry(model_id)
+        self._check(command.of)
         self._mover.set_link(command)
 
     def _set_joints(self, command: SetJoints) -> None:
-        for model_id in command.of:
-            self._entry(model_id)
+        self._check(command.of)
         self._mover.set_joints(command)
+
+    def _check(self, model_ids: Iterable[int]) -> None:
+        for model_id in model_ids:
+            self._entry(model_id)
 
     def _set_axes(self, command: SetAxes) -> None:
         entry = self._entry(command.model_id)

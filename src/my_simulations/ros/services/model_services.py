@@ -182,8 +182,6 @@ class ModelServices:
     def _spawn_light(self, light: Light, name: Optional[str], initial: Pose, frame: str) -> str:
         light = with_changes(light, name=light.name if name is None else name,
                              pose=compose(initial, light.pose))
-        if any(one.name == light.name for one in self._simulator.lights.all()):
-            raise CommandError(f"Failure - entity already exists. (light {light.name!r})")
         with gazebo_prefix("", NO_FRAME), told_if_taken(f"light {light.name!r}"):
             self._simulator.lights.add(light, frame)
         return "Successfully spawned entity"
