@@ -6,7 +6,7 @@ init, and what they used would be in nobody's sum.
 
 import ctypes
 import os
-import subprocess
+import signal
 import sys
 import time
 from typing import List
@@ -33,7 +33,9 @@ def main(command: List[str]) -> int:
     if ctypes.CDLL(None, use_errno=True).prctl(PR_SET_CHILD_SUBREAPER, 1, 0, 0, 0) != 0:
         raise OSError(ctypes.get_errno(), "prctl")
     environment = dict(os.environ, MY_SIMULATIONS_ADOPTER=str(os.getpid()))
-    started = subprocess.Popen(command, env=environment).pid
+    # Not subprocess.Popen: an object that is dropped waits for its process if that has ended.
+    started = os.posix_spawnp(command[0], command, environment,
+                              setsigdef=[signal.SIGPIPE, signal.SIGXFSZ])  # Python ignores these
     process = 0
     while process != started:
         process, status = os.waitpid(-1, 0)

@@ -20,14 +20,15 @@ marked() {
 
 # end_leftovers: end every process that a check started and did not end; says how many it had to.
 end_leftovers() {
-  local signal pids=() left tries
+  local signal pids=() left until
   for signal in 0 INT TERM KILL; do
     mapfile -t pids < <(marked)
     left=${#pids[@]}
     [ "$left" -gt 0 ] || return 0
     [ "$signal" = 0 ] || printf '(ending %d processes left running: %s) ' "$left" "${pids[*]}"
     kill -s "$signal" "${pids[@]}" 2>/dev/null || true
-    for ((tries = 0; tries < 30; tries++)); do
+    until=$((SECONDS + 4))
+    while [ "$SECONDS" -lt "$until" ]; do
       [ -n "$(marked)" ] || return 0
       sleep 0.1
     done

@@ -523,6 +523,30 @@ def test_processor_time_of_programs_that_lost_their_parent_is_counted(clone, tmp
     assert int(done.stdout.splitlines()[-1]) > 270, done.stdout + done.stderr
 
 
+ENDS_AT_ONCE = """
+import os, sys
+sys.path.insert(0, "tools/lib")
+import adopt
+class EndsAtOnce:
+    def __init__(self, start):
+        self.start = start
+    def __call__(self, *words, **options):
+        number = self.start(*words, **options)
+        os.waitid(os.P_PID, number, os.WEXITED | os.WNOWAIT)
+        return number
+for name in ("posix_spawnp", "fork", "posix_spawn"):
+    setattr(os, name, EndsAtOnce(getattr(os, name)))
+import _posixsubprocess, subprocess
+subprocess._fork_exec = EndsAtOnce(_posixsubprocess.fork_exec)
+sys.exit(adopt.main(["bash", "-c", "setsid sleep 3 & exit 7"]))
+"""
+
+
+def test_a_program_that_ends_before_it_is_waited_for_is_not_waited_for_again():
+    done = subprocess.run([sys.executable, "-c", ENDS_AT_ONCE], cwd=REPOSITORY, timeout=30)
+    assert done.returncode == 7
+
+
 PAGE = ("LOGS=$HOME/logs; STEPS=2; WORKSPACE=$HOME/ws\nprepare_page\n")
 
 
