@@ -53,9 +53,10 @@ test('joints and plugins are shown as text', () => {
     '<plugin/>\n<plugin name="b"/>');
 });
 
-test('steps are counted from where the editor was opened', () => {
-  assert.equal(stepsSince(['c', 'b', 'a'], 1), 2);
-  assert.equal(stepsSince([], 1), 0);
+test('steps are counted from where the editor was opened, however long the history is', () => {
+  for (const [depth, undoable, mark, steps] of [
+    [3, 3, 1, 2], [0, 0, 1, 0], [260, 260, 250, 10], [510, 500, 505, 5], [900, 500, 100, 500],
+  ]) assert.equal(stepsSince({depth, undoable}, mark), steps);
 });
 
 test('ghosts of links stand on the ground', () => {

@@ -460,8 +460,8 @@ export const FRAME_RECORD_BYTES = 32;
  *}} StatsPush */
 
 /** @typedef {{
- *  type: 'history', undo: string[], redo: string[], undo_by: string[], redo_by: string[],
- *  dirty: boolean, file: string
+ *  type: 'history', undo: string[], redo: string[], undoable: number, depth: number,
+ *  state: number, undo_by: string[], redo_by: string[], dirty: boolean, file: string
  *}} HistoryPush */
 
 /** @typedef {{type: 'people', people: Person[]}} PeoplePush */

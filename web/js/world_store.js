@@ -24,7 +24,10 @@ export class WorldStore extends Emitter {
   poses = new Map();
   stats = {sim_ns: 0, real_ns: 0, factor: 0, iterations: 0, paused: true};
   /** @type {Omit<HistoryPush, 'type'>} */
-  history = {undo: [], redo: [], undo_by: [], redo_by: [], dirty: false, file: ''};
+  history = {
+    undo: [], redo: [], undoable: 0, depth: 0, state: 0, undo_by: [], redo_by: [],
+    dirty: false, file: '',
+  };
   /** Everybody who has this world open, this page too. @type {Person[]} */
   people = [];
   /** This page's number among them. */

@@ -71,7 +71,9 @@ class Requests:
     def history_push(self) -> Dict[str, Any]:
         """The push `history`."""
         names = self._people.names
-        return {"type": "history", "undo": self._history.undo_labels[:_LISTED],
+        undo = self._history.undo_labels
+        return {"type": "history", "undo": undo[:_LISTED], "undoable": len(undo),
+                "depth": self._history.depth, "state": self._history.state,
                 "redo": self._history.redo_labels[:_LISTED],
                 "undo_by": names(self._history.undo_authors[:_LISTED]),
                 "redo_by": names(self._history.redo_authors[:_LISTED]),

@@ -41,6 +41,7 @@ class History:
         self._number = 0
         self._saved: Optional[int] = 0
         self._base = 0  # number of the newest step that was forgotten
+        self._forgotten = 0
 
     @property
     def undo_labels(self) -> List[str]:
@@ -79,6 +80,12 @@ class History:
             return self._top
 
     @property
+    def depth(self) -> int:
+        """Steps between the world as it was loaded and now, forgotten ones too."""
+        with self._lock:
+            return self._forgotten + len(self._done)
+
+    @property
     def _top(self) -> int:
         return self._done[-1].number if self._done else self._base
 
@@ -94,6 +101,7 @@ class History:
             self._undone.clear()
             if len(self._done) > LONGEST:
                 self._base = self._done.pop(0).number
+                self._forgotten += 1
                 if self._saved is not None and self._saved < self._base:
                     self._saved = None  # cannot be reached any more
 
@@ -119,7 +127,7 @@ class History:
         with self._lock:
             self._done.clear()
             self._undone.clear()
-            self._base = 0
+            self._base = self._forgotten = 0
             self._saved = None if dirty else 0
 
     def _move(self, source: List[Step], target: List[Step], to: int, verb: str) -> str:

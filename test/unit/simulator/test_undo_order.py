@@ -218,6 +218,25 @@ def test_the_oldest_steps_are_forgotten_also_of_a_world_that_was_never_saved(cas
     for n in range(LONGEST + 20):
         history.do(f"light {n}", AddLight(Light(f"l{n}")))
     assert len(history.undo_labels) == LONGEST
+    assert history.depth == LONGEST + 20
+    history.undo(4)
+    assert history.depth == LONGEST + 15
+
+
+def test_pages_are_told_of_more_steps_than_labels(edited):
+    made = edited(shown_box("a"))
+
+    async def edit(browser):
+        for n in range(210):
+            await browser.edit("rename", name=f"b{n}" if n else "a", to=f"b{n + 1}")
+        await browser.until(lambda: browser.last("history")["depth"] == 210)
+        told = browser.last("history")
+        assert told["undoable"] == 210 > len(told["undo"])
+        await browser.ask("undo", to=209)
+        await browser.until(lambda: browser.last("history")["depth"] == 0)
+        assert browser.document["models"][0]["name"] == "a"
+
+    made.browse(edit)
 
 
 def test_a_world_that_was_saved_at_the_oldest_step_is_unchanged_once_all_others_are_undone(case):

@@ -38,8 +38,8 @@ export class ModelEditor {
   #running = false;
   /** Steps of the history before the first change. */
   #mark = 0;
-  /** The latest step when the model was saved. @type {string} */
-  #savedAt = '';
+  /** State of the history when the model was saved; -1: never. */
+  #savedAt = -1;
   /** @type {(() => void)[]} */
   #ends = [];
   /** Names of the links of the model when it was last seen, to know it under another name. */
@@ -55,16 +55,11 @@ export class ModelEditor {
 
   /** Whether something has changed that no folder has. */
   get dirty() {
-    return this.steps > 0 && this.#marker() !== this.#savedAt;
+    return this.steps > 0 && this.store.history.state !== this.#savedAt;
   }
 
   /** Steps of the history since the editor was opened. */
-  get steps() { return stepsSince(this.store.history.undo, this.#mark); }
-
-  #marker() {
-    const {undo} = this.store.history;
-    return `${undo.length} ${undo[0] ?? ''}`;
-  }
+  get steps() { return stepsSince(this.store.history, this.#mark); }
 
   /** Begins; time stands still meanwhile. @param {string|null} name  of the model to edit; null: a new one */
   async open(name) {
@@ -72,7 +67,7 @@ export class ModelEditor {
     const {store, actions} = this;
     this.#running = !store.stats.paused;
     if (this.#running) await actions.pause();
-    this.#mark = store.history.undo.length;
+    this.#mark = store.history.depth;
     store.setModelEditing({name});
     this.#palette = new Palette(byId('view'), this);
     document.body.classList.add('model-editing');
@@ -96,7 +91,7 @@ export class ModelEditor {
     }
     const path = await (as ? this.files.saveAs(model.name) : this.files.save(model.name));
     if (!path) return false;
-    this.#savedAt = this.#marker();
+    this.#savedAt = this.store.history.state;
     this.notices.say(`Saved ${path}`);
     this.#palette?.update();
     return true;

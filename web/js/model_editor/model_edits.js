@@ -58,11 +58,12 @@ export const jointText = ({type, parent, child}) => `${parent} → ${child}: ${t
 export const pluginText = ({plugins}) => plugins.map(({xml}) => xml.trim()).join('\n');
 
 /**
- * How many steps of the history have come since a mark; the history that is sent is cut.
- * @param {string[]} undo  the latest first
- * @param {number} mark    its length before
+ * How many steps of the history have come since a mark and can be undone; the labels that are sent
+ * are only the latest.
+ * @param {{depth: number, undoable: number}} history
+ * @param {number} mark  its depth before
  */
-export const stepsSince = (undo, mark) => Math.max(undo.length - mark, 0);
+export const stepsSince = ({depth, undoable}, mark) => Math.max(Math.min(depth - mark, undoable), 0);
 
 /**
  * What `undo` takes to undo so many steps: the index of the oldest of them, nothing for one.
