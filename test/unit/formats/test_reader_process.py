@@ -50,10 +50,12 @@ def blank_png(path, side):
     return str(path)
 
 
-def doubling(path, levels):
-    """COLLADA of some kB with 2 ** `levels` instances of one triangle."""
+def doubling(path, levels, sets=1):
+    """COLLADA of some kB with 2 ** `levels` instances of so many sets of one triangle."""
     with open(os.path.join(VALID, "inch_y_up.dae"), encoding="utf-8") as stream:
         text = stream.read()
+    triangles = text[text.index("<triangles"):text.index("</mesh>")]
+    text = text.replace(triangles, triangles * sets)
     head, tail = text.split("<library_visual_scenes>")
     nodes = '<node id="n0"><instance_geometry url="#g"/></node>' + "".join(
         f'<node id="n{n}">' + f'<instance_node url="#n{n - 1}"/>' * 2 + "</node>"
@@ -121,7 +123,7 @@ def test_memory_is_limited_and_the_next_file_is_read(kept, tmp_path, monkeypatch
 
 
 def test_processor_time_is_limited(kept, tmp_path, monkeypatch):
-    mesh = doubling(tmp_path / "million.dae", 40)
+    mesh = doubling(tmp_path / "million.dae", 40, sets=20)
     monkeypatch.setattr(reader_process, "SECONDS", 0)
     with pytest.raises(InputError, match="processor time") as refused:
         load_mesh(mesh)
