@@ -1,3 +1,5 @@
+import pytest
+
 from my_simulations.ros.topics.publish_pacing import StateSchedule, StepSelector
 
 MS = 1000000
@@ -49,6 +51,17 @@ def test_a_clock_set_back_at_the_same_step_is_heard_of():
     assert selector.times(5000, lambda step: 0, now=0.002) == []
 
 
+@pytest.mark.parametrize("rate, every", [(240.0, 1), (60.0, 4), (1000.0 / 3.0, 1)])
+def test_a_clock_at_the_rate_of_the_steps_misses_none(rate, every):
+    """Sim times of such steps are rounded to whole nanoseconds."""
+    def at(step):
+        return round(step * 1e9 / (rate * every))
+
+    selector = StepSelector(0, 0, now=0.0, period_ns=round(1e9 / rate))
+    found = [time for step in range(1, 481) for time in selector.times(step, at, 0.0)]
+    assert found == [at(step) for step in range(every, 481, every)]
+
+
 def test_a_clock_frequency_is_in_sim_time():
     selector = StepSelector(0, 0, now=0.0, period_ns=10 * MS)
     published = []
@@ -79,6 +92,11 @@ def test_a_late_state_does_not_delay_those_that_follow():
     gate = StateSchedule(50.0)
     looks = [1, 21, 47, 61, 81, 112, 121, 141]  # some polls come late
     assert [step for step in looks if gate.due(step, one_ms(step), False, running)] == looks
+
+
+def test_states_at_the_rate_of_the_steps_miss_none():
+    gate = StateSchedule(240.0)
+    assert all(gate.due(step, round(step * 1e9 / 240), False, running) for step in range(1, 481))
 
 
 def test_states_are_limited_in_sim_time():

@@ -9,6 +9,9 @@ CLOCK_MESSAGES_PER_SECOND = 1000.0
 BURST = 250.0
 """Most messages in one burst, after a pause."""
 
+ROUNDING_NS = 1
+"""Sim times are whole nanoseconds: steps of 1/240 s lie up to this much closer than 240 Hz."""
+
 
 class TokenBucket:
     """Allows `rate` messages per second on average and at most `capacity` at once.
@@ -41,7 +44,8 @@ class StepSelector:
     """
 
     def __init__(self, step: int, sim_ns: int, now: float, period_ns: int = 0) -> None:
-        self._step, self._period_ns = step, period_ns
+        self._step = step
+        self._period_ns = max(period_ns - ROUNDING_NS, 0)
         self._published_ns = sim_ns
         self._bucket = TokenBucket(CLOCK_MESSAGES_PER_SECOND, BURST, now)
 
@@ -124,7 +128,7 @@ class StateSchedule:
         """
         waited = sim_ns - self._published_ns
         stepped, self._step = step != self._step, step
-        if owed or (stepped and (waited < 0 or waited >= self._period_ns)):
+        if owed or (stepped and (waited < 0 or waited >= self._period_ns - ROUNDING_NS)):
             found = True
         else:
             key = standing()
