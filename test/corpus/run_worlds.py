@@ -113,8 +113,8 @@ def row_of(results: Sequence[Dict[str, Any]]) -> List[str]:
 def table(rows: Sequence[Tuple[str, List[str]]]) -> str:
     """The rows under their heads."""
     width = max(len(name) for name, _ in rows)
-    lines = [" " * width + "".join(f"{head:>11}" for head in COLUMNS)]
-    lines += [f"{name:{width}}" + "".join(f"{value:>11}" for value in row) for name, row in rows]
+    lines = [" " * width + "".join(f" {head:>10}" for head in COLUMNS)]
+    lines += [f"{name:{width}}" + "".join(f" {value:>10}" for value in row) for name, row in rows]
     return "\n".join(lines)
 
 
