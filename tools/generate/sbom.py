@@ -56,8 +56,11 @@ def system_packages() -> Iterator[Dict[str, Any]]:
 
 def page_packages() -> Iterator[Dict[str, Any]]:
     """Of the editor's page, with the hash that npm checks."""
-    lock = json.loads((REPOSITORY / "web" / "package-lock.json").read_text())
-    for path, entry in sorted(lock["packages"].items()):
+    packages: Dict[str, Any] = {}
+    for folder in ("web", "tools/page_bundler"):
+        packages.update(json.loads(
+            (REPOSITORY / folder / "package-lock.json").read_text())["packages"])
+    for path, entry in sorted(packages.items()):
         if path:
             made = component("npm", path.rpartition("node_modules/")[2], entry["version"],
                              entry.get("license", ""))

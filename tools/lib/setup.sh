@@ -283,41 +283,6 @@ pip_install() {
   logged "pip-$1" "$advice" "${command[@]}" --find-links "$wheels"
 }
 
-page_stamp() { sha256sum <"$CLONE/web/package-lock.json"; }
-
-# page_is_there: whether the workspace has what the editor's page needs, in this version.
-page_is_there() {
-  local stamped="${WORKSPACE:-}/.my_simulations/.page"
-  [ -f "$stamped" ] && [ "$(cat "$stamped")" = "$(page_stamp)" ]
-}
-
-# prepare_page: what the editor's page needs from npm, in a folder of the workspace where the editor
-# finds it.
-prepare_page() {
-  begin "Packages of the editor's page"
-  local place="$WORKSPACE/.my_simulations" stamp
-  stamp=$(page_stamp)
-  if page_is_there; then
-    finish "all there"
-    return
-  fi
-  mkdir -p -- "$place"
-  if [ -n "$BUNDLED" ]; then
-    [ "$(cat "$BUNDLED/page/.page")" = "$stamp" ] || stop "the archive has modules of another version." \
-      "Make it again from this clone."
-    rm -rf -- "$place/node_modules"
-    cp -a -- "$BUNDLED/page/." "$place/"
-    finish "taken from the archive"
-    return
-  fi
-  rm -f -- "$place/.page"
-  cp -- "$CLONE/web/package.json" "$CLONE/web/package-lock.json" "$place/"
-  logged npm "Is there a network? Then run $COMMAND again." \
-    npm ci --prefix "$place" --ignore-scripts --no-audit --no-fund
-  printf '%s' "$stamp" >"$place/.page"
-  finish installed
-}
-
 # prepare_page_checks: what checks the types and the style of the page's modules, in a folder of the
 # workspace (PAGE_CHECKS) beside the configuration of TypeScript and ESLint.
 prepare_page_checks() {

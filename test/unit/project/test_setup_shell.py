@@ -590,6 +590,55 @@ def test_page_packages_that_do_not_come_stop_the_set_up_and_are_asked_for_again(
     assert "installed" in shell(clone, PAGE, page_home).stdout
 
 
+NPM = """#!/bin/bash
+echo "$@" >>$HOME/calls
+[ ! -e $HOME/offline ] || exit 1
+case $3 in
+  */page_bundler)
+    [ ! -e $HOME/no_bundler ] || exit 1
+    mkdir -p $3/node_modules/@esbuild/linux-x64/bin
+    printf '#!/bin/bash\nmkdir bundle && cp $1 bundle/ && echo made >>$HOME/calls\n' \
+      >$3/node_modules/@esbuild/linux-x64/bin/esbuild
+    chmod +x $3/node_modules/@esbuild/linux-x64/bin/esbuild ;;
+  *) mkdir -p $3/node_modules/three && echo 1 >$3/node_modules/three/package.json ;;
+esac
+"""
+PACKED = "ws/.my_simulations/node_modules/my_simulations_page/bundle/main.js"
+
+
+@pytest.fixture
+def packed_home(clone, page_home):
+    """As `page_home`, with a page of one module and what packs it."""
+    (page_home / "bin" / "npm").write_text(NPM)
+    (clone / "web" / "js").mkdir()
+    (clone / "web" / "js" / "main.js").write_text("one();")
+    return page_home
+
+
+def test_modules_of_the_page_are_packed_once_and_again_after_an_edit(clone, packed_home):
+    for text, expected, made in (("one();", "installed", 1), ("one();", "all there", 1),
+                                 ("other();", "all there", 2)):
+        (clone / "web" / "js" / "main.js").write_text(text)
+        done = shell(clone, PAGE, packed_home)
+        assert done.returncode == 0 and f"{expected} (" in done.stdout, done.stderr
+        assert (packed_home / PACKED).read_text() == text
+        calls = (packed_home / "calls").read_text().splitlines()
+        assert calls.count("made") == made and len(calls) == made + 2
+
+
+@pytest.mark.parametrize("fault", ["no_bundler", "bundle"])
+def test_a_page_that_cannot_be_packed_is_told_of_and_served_as_it_is(clone, packed_home, fault):
+    (packed_home / fault).touch()
+    if fault == "bundle":     # esbuild itself fails
+        (packed_home / "bin" / "npm").write_text(NPM.replace("mkdir bundle", "false"))
+    for expected in ("installed, its modules not packed: see ", "all there, its modules not "):
+        done = shell(clone, PAGE, packed_home)
+        assert done.returncode == 0 and expected in done.stdout, done.stdout + done.stderr
+        assert not (packed_home / PACKED).exists()
+    calls = (packed_home / "calls").read_text().splitlines()
+    assert sum("page_bundler" in line for line in calls) == 1     # it is not asked for each time
+
+
 PIP = """
 for word; do
   case $last in --find-links) wheels=$word ;; -d) out=$word ;; esac

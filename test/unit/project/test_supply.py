@@ -23,7 +23,8 @@ def test_every_python_package_is_pinned(name):
     assert [line for line in lines if line and not PINNED.fullmatch(line)] == []
 
 
-@pytest.mark.parametrize("lock", ["web/package-lock.json", "test/page/package-lock.json"])
+@pytest.mark.parametrize("lock", ["web/package-lock.json", "tools/page_bundler/package-lock.json",
+                                  "test/page/package-lock.json"])
 def test_every_package_of_the_page_is_pinned_by_its_hash(lock):
     packages = json.loads((REPOSITORY / lock).read_text())["packages"]
     assert [path for path, entry in packages.items()
@@ -38,7 +39,7 @@ def test_what_the_set_up_installs_can_be_listed():
     kinds = {entry["purl"].partition("/")[0] for entry in listed}
     assert kinds == {"pkg:pypi", "pkg:npm", "pkg:deb"}
     names = {entry["name"].lower() for entry in listed}
-    assert {"pybullet", "lxml", "three", "python3-venv"} <= names
+    assert {"pybullet", "lxml", "three", "esbuild", "python3-venv"} <= names
 
 
 PYTHON = [path for folder in ("src", "compat", "scripts", "tools", "test")

@@ -11,6 +11,7 @@ from aiohttp import hdrs, web
 
 from ...resources.package_files import own_directory
 from ..scene.content_types import PAGE, page_type, resource_type
+from .page_bundle import PACKED, PageBundle
 from .page_key import page_key
 
 _SCRIPT = re.compile(r"<script\b(?![^>]*\bsrc=)[^>]*>(.*?)</script>", re.DOTALL | re.IGNORECASE)
@@ -36,7 +37,9 @@ class PageFiles:
         self.web = page or self.own_folder()
         self._node_modules = node_modules(self.web)
         self._key = page_key(cache_dir)
+        self._bundle = PageBundle(self.web, self._node_modules)
         self._stamp = ""
+        self._packed = ("", "", "")     # stamp, HTML, and the HTML with packed modules
 
     @staticmethod
     def own_folder() -> str:
@@ -60,7 +63,10 @@ class PageFiles:
                 text = stream.read()
         except OSError:
             raise web.HTTPNotFound(text="the editor's page is not installed\n") from None
-        self._stamp = self.stamp()
+        stamp = self.stamp()
+        if (stamp, text) != self._packed[:2]:
+            self._packed = (stamp, text, self._bundle.html(text))
+        self._stamp, text = stamp, self._packed[2]
         text = _ADDRESS.sub(rf'"/v/{self._stamp}/\1/', text)
         response = web.Response(text=text, content_type="text/html")
         response.headers["Content-Security-Policy"] = _policy(text, request.host)
@@ -71,8 +77,11 @@ class PageFiles:
         return self._page_file(request, os.path.join(self.web, "protocol.json"))
 
     async def _part(self, request: web.Request) -> web.StreamResponse:
-        folder = os.path.join(self.web, request.match_info["part"])
-        return self._page_file(request, _inside(folder, request.match_info["inside"]))
+        part, inside = request.match_info["part"], request.match_info["inside"]
+        path = _inside(os.path.join(self.web, part), inside)
+        if part == "js" and inside.startswith(PACKED):
+            path = _inside(os.path.join(self._bundle.folder, PACKED), inside[len(PACKED):])
+        return self._page_file(request, path)
 
     async def _three(self, request: web.Request) -> web.StreamResponse:
         if not self._node_modules:
@@ -102,7 +111,8 @@ class PageFiles:
         waiting = [os.path.join(self.web, part) for part in ("js", "css", "img")]
         if self._node_modules:
             three = os.path.join(self._node_modules, "three")
-            waiting += [os.path.join(three, "build"), os.path.join(three, "package.json")]
+            waiting += [os.path.join(three, "build"), os.path.join(three, "package.json"),
+                        self._bundle.folder]
         while waiting:
             path = waiting.pop()
             try:

@@ -1,0 +1,101 @@
+# shellcheck shell=bash
+# What the editor's page needs: packages of npm, and its modules in few files.
+
+BUNDLE_REMARK=    # what a user should know of the few files; empty for nothing
+
+page_stamp() { sha256sum <"$CLONE/web/package-lock.json"; }
+
+# page_is_there: whether the workspace has what the editor's page needs, in this version.
+page_is_there() {
+  local stamped="${WORKSPACE:-}/.my_simulations/.page"
+  [ -f "$stamped" ] && [ "$(cat "$stamped")" = "$(page_stamp)" ]
+}
+
+# prepare_page: what the editor's page needs from npm, in a folder of the workspace where the editor
+# finds it.
+prepare_page() {
+  begin "Packages of the editor's page"
+  local place="$WORKSPACE/.my_simulations" stamp
+  stamp=$(page_stamp)
+  if page_is_there; then
+    bundle_page
+    finish "all there$BUNDLE_REMARK"
+    return
+  fi
+  mkdir -p -- "$place"
+  if [ -n "$BUNDLED" ]; then
+    [ "$(cat "$BUNDLED/page/.page")" = "$stamp" ] || stop "the archive has modules of another version." \
+      "Make it again from this clone."
+    rm -rf -- "$place/node_modules"
+    cp -a -- "$BUNDLED/page/." "$place/"
+    bundle_page
+    finish "taken from the archive"
+    return
+  fi
+  rm -f -- "$place/.page" "$place/page_bundler/package-lock.json"
+  cp -- "$CLONE/web/package.json" "$CLONE/web/package-lock.json" "$place/"
+  logged npm "Is there a network? Then run $COMMAND again." \
+    npm ci --prefix "$place" --ignore-scripts --no-audit --no-fund
+  printf '%s' "$stamp" >"$place/.page"
+  bundle_page
+  finish "installed$BUNDLE_REMARK"
+}
+
+# page_sources: one hash of all modules of the page and of three's version; the editor makes the same
+# (src/my_simulations/editor/transport/page_bundle.py).
+page_sources() {
+  local modules="$WORKSPACE/.my_simulations/node_modules"
+  {
+    (cd -- "$CLONE/web" && find js -type f -name '*.js' | LC_ALL=C sort | xargs -r sha256sum)
+    (cd -- "$modules" && sha256sum three/package.json)
+  } | sha256sum | cut -d ' ' -f 1
+}
+
+# bundle_page: pack the modules of the page. A browser takes them in half of the time then; where
+# it cannot be done the page is served as it is, module by module.
+bundle_page() {
+  local own="$WORKSPACE/.my_simulations" sources place work esbuild
+  place="$own/node_modules/my_simulations_page"
+  work="$own/page_made"
+  BUNDLE_REMARK=
+  [ -f "$own/node_modules/three/package.json" ] || return 0
+  sources=$(page_sources)
+  [ "$(cat "$place/sources" 2>/dev/null || true)" != "$sources" ] || return 0
+  BUNDLE_REMARK=", its modules not packed: see $LOGS/page-bundler.log"
+  page_bundler >/dev/null || recorded page-bundler fetch_page_bundler || return 0
+  esbuild=$(page_bundler) || return 0
+  BUNDLE_REMARK=", its modules not packed: see $LOGS/page-bundle.log"
+  rm -rf -- "$work" "$place"
+  mkdir -p -- "$work"
+  recorded page-bundle env -C "$work" NODE_PATH="$own/node_modules" "$esbuild" \
+    "$CLONE/web/js/main.js" --bundle --splitting --format=esm --target=es2022 \
+    --minify-whitespace --minify-syntax --legal-comments=eof --log-level=warning --outdir=. \
+    --entry-names='bundle/[name]' --chunk-names='bundle/[name]-[hash]' --metafile=meta.json ||
+    return 0
+  printf '%s\n' "$sources" >"$work/sources"
+  mv -- "$work" "$place"
+  BUNDLE_REMARK=
+}
+
+# page_bundler: the path of esbuild for this machine; fails without one of the right version.
+page_bundler() {
+  local own="$WORKSPACE/.my_simulations/page_bundler" found
+  cmp -s -- "$CLONE/tools/page_bundler/package-lock.json" "$own/package-lock.json" || return 1
+  for found in "$own"/node_modules/@esbuild/*/bin/esbuild; do
+    [ -x "$found" ] || return 1
+    printf '%s' "$found"
+    return 0
+  done
+}
+
+# fetch_page_bundler: once; where it did not come, again only with other packages of the page.
+fetch_page_bundler() {
+  local own="$WORKSPACE/.my_simulations/page_bundler"
+  if cmp -s -- "$CLONE/tools/page_bundler/package-lock.json" "$own/package-lock.json"; then
+    printf 'It did not come when it was asked for; remove %s to ask again.\n' "$own"
+    return 1
+  fi
+  mkdir -p -- "$own"
+  cp -- "$CLONE/tools/page_bundler/package.json" "$CLONE/tools/page_bundler/package-lock.json" "$own/"
+  npm ci --prefix "$own" --ignore-scripts --no-audit --no-fund
+}
