@@ -211,10 +211,11 @@ GONE = "is not there any more"
 class SetModelState(Command):
     """Move all links of a model rigidly so that its frame has `pose`; joints keep their positions.
 
-    Every link gets the rigid body's velocity, v + w x r. With `frame`, pose and twist are given in
-    it (the frame's own velocity is not added). `twist` None keeps the velocities, rotated. `of`:
-    ids of further models that must be there, as the one whose link the frame is: rows of a model
-    that has gone may be another's.
+    A joint to the world takes the position that belongs to the pose, if there is one; else its
+    anchor is moved. The canonical link gets the velocity `twist`, every other one the rigid
+    body's, v + w x r. With `frame`, pose and twist are given in it (the frame's own velocity is
+    not added). `twist` None keeps the velocities, rotated. `of`: ids of further models that must
+    be there, as the one whose link the frame is: rows of a model that has gone may be another's.
     """
 
     model_id: int

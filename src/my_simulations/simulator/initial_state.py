@@ -3,6 +3,7 @@ from __future__ import annotations
 
 from typing import List, Optional
 
+from ..description.model import WORLD, Model
 from ..description.saved_state import InitialState
 from ..engine.commands import Command, SetJoints, SetLinkState, SetModelState
 from ..geometry import compose
@@ -13,7 +14,8 @@ def initial_commands(entity: Entity, start: Optional[InitialState]) -> List[Comm
     """Commands that apply a saved initial state to a model that was just loaded.
 
     A model without joints gets the twist of each link. An articulated model moves as one rigid
-    body with the twist of its canonical link; its joint rates are zero.
+    body with the twist of its canonical link, unless it hangs on the world; its joint rates are
+    zero.
     """
     if start is None or entity.model.static:
         return []
@@ -29,6 +31,10 @@ def initial_commands(entity: Entity, start: Optional[InitialState]) -> List[Comm
         pose = compose(entity.initial_pose, link.pose)
         if not entity.model.joints:
             commands.append(SetLinkState(entity.first_link_row + n, pose, twist))
-        elif n == entity.canonical:
+        elif n == entity.canonical and not _hangs_on_world(entity.model):
             commands.append(SetModelState(entity.model_id, entity.initial_pose, twist))
     return commands
+
+
+def _hangs_on_world(model: Model) -> bool:
+    return any(joint.parent == WORLD for joint in model.joints)

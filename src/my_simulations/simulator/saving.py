@@ -10,6 +10,7 @@ from dataclasses import replace
 from typing import Dict, List, Optional, Sequence
 
 from ..description.compare import differences
+from ..description.joint_positions import anchored_pose
 from ..description.model import Joint, Model
 from ..description.saved_state import LightState, LinkState, ModelState, SavedState
 from ..description.unflatten import unflattened
@@ -19,7 +20,7 @@ from ..engine.ring_rows import axis_rows
 from ..errors import CommandError, InputError
 from ..formats.reading import read_file
 from ..formats.sdf.writer.entities import write_world
-from ..geometry import STILL, compose, inverse
+from ..geometry import STILL, Pose, compose, inverse
 from ..resources.package_files import package_directories
 from ..resources.resolver import Resolver, ResourceNotFoundError
 from ..resources.world_lookup import ENDINGS, folder_of_users, ships, users_folder
@@ -48,13 +49,27 @@ def present_world(simulator: Simulator, *, state: bool = True, launched: bool = 
     if not launched:
         entities = [entity for entity in entities if not entity.launched]
     world = simulator.world
-    models = [replace(unflattened(entity.model), pose=entity.state(snapshot)[0])
+    models = [replace(unflattened(entity.model), pose=_frame(entity, snapshot))
               for entity in entities]
     saved = (_state if state else _configuration)(world, entities, snapshot)
     return replace(
         world, models=models, lights=simulator.lights.all(),
         joints=_joints_of(simulator, entities), physics=simulator.physics.settings,
         gravity=simulator.physics.gravity, state=saved, initial={}, initial_ns=0)
+
+
+def _frame(entity: Entity, snapshot: Snapshot) -> Pose:
+    """The pose to write into a model: of one that hangs on the world that of its anchors.
+
+    Where its links are, its `<state>` says: in a model whose frame has turned with its door, the
+    hinge would have turned too.
+    """
+    saved = entity.saved(snapshot)
+    positions = {row.joint.name: position for row, (position, _) in zip(
+        axis_rows(entity.model), saved.joints)}
+    poses = {link.name: now.pose for link, now in zip(entity.model.links, saved.links)}
+    return anchored_pose(entity.model.joints, entity.model.links, poses, positions) or (
+        entity.state(snapshot)[0])
 
 
 def _joints_of(simulator: Simulator, entities: Sequence[Entity]) -> List[Joint]:

@@ -55,14 +55,13 @@ class WorldState:
 def _commands(entity: Entity, was: RememberedState) -> List[Command]:
     """Restore an articulated model by its frame and joints, others link by link."""
     model = entity.model
-    if model.static or len(entity.link_names) == 1:
+    if model.static or (len(entity.link_names) == 1 and not model.joints):
         return [SetModelState(entity.model_id, was.pose, None if model.static else was.twist)]
     if not model.joints:
         return [SetLinkState(entity.first_link_row + n, link.pose, link.twist)
                 for n, link in enumerate(was.state.links)]
-    found: List[Command] = [SetModelState(entity.model_id, was.pose, was.twist)]
-    if was.state.joints:
-        found.append(SetJoints(tuple(
-            (entity.first_joint_row + n, position, rate)
-            for n, (position, rate) in enumerate(was.state.joints))))
-    return found
+    joints = SetJoints(tuple((entity.first_joint_row + n, position, rate)
+                             for n, (position, rate) in enumerate(was.state.joints)))
+    # Joints first: where the frame's link hangs on others, the others are placed by it. Rates of
+    # joints are lost when the model is moved.
+    return [joints, SetModelState(entity.model_id, was.pose, was.twist), joints]

@@ -39,6 +39,7 @@ from ..ring import JOINTS, LINKS
 from . import bodies, extra_surfaces, joint_axes
 from .bodies import Body, Part
 from .body_builder import Builder
+from .closing_joints import closing_joints
 from .collision_shapes import ShapeError, ShapeFactory
 from .contact_readout import read_contacts
 from .contact_settling import ContactSettling
@@ -240,6 +241,9 @@ class BulletBackend:
                                   open_joints(model, builder.plans), first_row)
         entry = Entry(model, builder, built, first_row, pose, constraints)
         self._models[builder.model_id] = entry
+        rows = builder.joint_rows
+        self._readout.add_joints(rows, closing_joints(
+            list(constraints.closing), model, pose, first_row, rows.start))
         for body in built:
             self._register(body)
             for part in body.parts:
@@ -319,6 +323,7 @@ class BulletBackend:
         self._waker.around(entry.bodies)
         del self._models[command.model_id]
         entry.constraints.remove()
+        self._readout.forget_joints(entry.builder.joint_rows)
         for body in entry.bodies:
             for keeper in self._keepers:
                 keeper.forget(body)

@@ -8,7 +8,7 @@ margin, so that the question is repeated only after the mover has gone that far.
 from __future__ import annotations
 
 import struct
-from typing import Callable, Dict, List, Set, Tuple
+from typing import Callable, Dict, List, Sequence, Set, Tuple
 
 import numpy as np
 import pybullet
@@ -17,6 +17,7 @@ from ...geometry import IDENTITY, Pose, inverse
 from ..body_plan import BASE
 from ..ring import JOINT_WIDTH, JOINTS, LINK_WIDTH, LINKS
 from .bodies import Body
+from .closing_joints import ClosingJoint
 from .link_states import motions
 
 _ROW = struct.Struct("=13d")
@@ -58,6 +59,24 @@ class StateReadout:
         self._patrol: List[int] = []
         self._touched: Dict[int, Body] = {}
         self._stepped = False
+        self._closing: Dict[int, ClosingJoint] = {}
+
+    def add_joints(self, rows: slice, closing: Sequence[ClosingJoint]) -> None:
+        """Know a new model's rows of the joint table; `closing` are its joints without an axis."""
+        self.used_joints = max(self.used_joints, rows.stop)
+        self.joints[rows] = 0.0
+        for row in range(rows.start, rows.stop):
+            self._closing.pop(row, None)
+        self._closing.update((one.row, one) for one in closing)
+
+    def closes(self, row: int) -> bool:
+        """Whether a row of the joint table is that of a joint that closes a loop."""
+        return row in self._closing
+
+    def forget_joints(self, rows: slice) -> None:
+        """A model is gone; its rows stay as they are."""
+        for row in range(rows.start, rows.stop):
+            self._closing.pop(row, None)
 
     def add(self, body: Body) -> None:
         """Know a new body."""
@@ -68,8 +87,6 @@ class StateReadout:
                 self._offsets[part.row] = inverse(part.link_from_com)
             else:
                 self._offsets.pop(part.row, None)
-        for axis in body.axes:
-            self.used_joints = max(self.used_joints, axis.row + 1)
         self.touch(body)
 
     def forget(self, body: Body) -> None:
@@ -82,7 +99,7 @@ class StateReadout:
     def clear(self) -> None:
         """All bodies are gone; their rows stay as they are."""
         for table in (self._awake, self._trees, self._resting, self._guards, self._touched,
-                      self._offsets):
+                      self._offsets, self._closing):
             table.clear()
 
     def touch(self, body: Body) -> None:
@@ -121,6 +138,8 @@ class StateReadout:
         offset_rows: List[int] = []
         self._read_all(list(rigid.values()), offset_rows)
         self._read_rest(trees, offset_rows)
+        for one in self._closing.values():
+            one.read(self.links, self.joints)
         self._stepped = False
         return True
 

@@ -9,6 +9,7 @@ from ...geometry import (
     STILL,
     Pose,
     Twist,
+    Vec3,
     add,
     compose,
     conjugate,
@@ -21,7 +22,7 @@ from ...geometry import (
 )
 from ..api import CommandRefusedError
 from ..commands import Frame, LinkState, SetJoints, SetLinkState, SetModelState
-from . import bodies
+from . import anchored_bodies, bodies
 from .bodies import Axis, Body, Part
 from .forces import Forces
 from .gyroscopic_rigid import GyroscopicRigid
@@ -56,10 +57,9 @@ class StateSetter:
 
     def model_pose(self, entry: Entry) -> Pose:
         """Where the model frame is: its canonical link's pose says it."""
-        names = [link.name for link in entry.model.links]
-        if not names:
+        if not entry.model.links:
             return entry.pose
-        lead = names.index(entry.model.canonical_link) if entry.model.canonical_link else 0
+        lead = _canonical(entry)
         return compose(self.link_state(entry.first_row + lead).pose,
                        inverse(entry.model.links[lead].pose))
 
@@ -70,9 +70,11 @@ class StateSetter:
         if not entry.model.links:
             return
         current = self.model_pose(entry)
+        # As in Gazebo the velocity is that of the canonical link, which is what is read as well.
+        at = compose(pose, entry.model.links[_canonical(entry)].pose).position
         self._waker.around(entry.bodies)
         for body in entry.bodies:
-            self._move(body, current, pose, twist)
+            self._move(body, current, pose, twist, at)
         self._waker.around(entry.bodies)
 
     def set_link(self, command: SetLinkState) -> None:
@@ -86,17 +88,22 @@ class StateSetter:
         pose, twist = self._in_world(command.pose, command.twist, command.frame)
         current = self.link_state(part.row).pose
         self._waker.around([body])
-        self._move(body, current, pose, twist)
+        self._move(body, current, pose, twist, pose.position)
         self._waker.around([body])
 
     def set_joints(self, command: SetJoints) -> None:
-        """Set joint axes; all are checked before the first moves. Raises CommandRefusedError."""
+        """Set joint axes; all are checked before the first moves. Raises CommandRefusedError.
+
+        Those that close loops follow from the others.
+        """
         for row, position, rate in command.joints:
-            if row not in self._axes:
+            if row not in self._axes and not self._readout.closes(row):
                 raise CommandRefusedError("the joint is not there any more")
             if not (abs(position) < 1e12 and abs(rate) < 1e12):
                 raise CommandRefusedError("the joint position is not finite")
         for row, position, rate in command.joints:
+            if self._readout.closes(row):
+                continue
             body, axis = self._axes[row]
             self._waker.around([body])
             pybullet.resetJointState(body.uid, axis.index, position, rate)
@@ -130,33 +137,45 @@ class StateSetter:
                           rotate(at.orientation, twist.angular))
         return compose(at, pose), twist
 
-    def _move(self, body: Body, current: Pose, wanted: Pose, twist: Optional[Twist]) -> None:
-        """Move a body as if `current`, a pose fixed to it, became `wanted` with `twist` there."""
+    def _move(self, body: Body, current: Pose, wanted: Pose, twist: Optional[Twist],
+              at: Vec3) -> None:
+        """Move a body as if `current`, fixed to it, became `wanted`, with `twist` in `at`."""
         lead = self.link_state(body.parts[0].row)
-        if body.rigid or body.base is not None:
+        target = lead.pose
+        is_anchored = not body.rigid and body.base is None
+        rates = {axis.index: pybullet.getJointState(body.uid, axis.index)[1] for axis in body.axes}
+        if is_anchored:
+            way = compose(wanted, inverse(current))
+            if not anchored_bodies.turned(body, way):
+                base = compose(way, Pose(*pybullet.getBasePositionAndOrientation(body.uid)))
+                pybullet.resetBasePositionAndOrientation(body.uid, base.position,
+                                                         base.orientation)
+        else:
             target = compose(wanted, compose(inverse(current), lead.pose))
             bodies.place(body, target)
-        else:
-            position, turn = pybullet.getBasePositionAndOrientation(body.uid)
-            target = compose(wanted, compose(inverse(current), Pose(position, turn)))
-            pybullet.resetBasePositionAndOrientation(body.uid, target.position,
-                                                     target.orientation)
         for axis in body.axes:
-            position_rate = pybullet.getJointState(body.uid, axis.index)[:2]
-            rate = position_rate[1] if twist is None else 0.0
-            pybullet.resetJointState(body.uid, axis.index, position_rate[0], rate)
+            rate = rates[axis.index] if twist is None else (
+                anchored_bodies.rate(body, axis, twist) if is_anchored else 0.0)
+            pybullet.resetJointState(body.uid, axis.index,
+                                     pybullet.getJointState(body.uid, axis.index)[0], rate)
         self._forces.disturbed(body)
-        if body.moves and (body.rigid or body.base is not None):
-            bodies.launch(body, target, _carried(lead, target, wanted, twist))
+        if body.moves and not is_anchored:
+            bodies.launch(body, target, _carried(lead, target, at, twist))
         self._holds.moved(body)
         self._spin.moved(body)
         self._readout.touch(body)
 
 
-def _carried(lead: LinkState, target: Pose, wanted: Pose, twist: Optional[Twist]) -> Twist:
-    """The twist at `target` of a body that moves with `twist` at `wanted`; None: keep, turned."""
+def _canonical(entry: Entry) -> int:
+    """Which link carries the model's frame."""
+    name = entry.model.canonical_link
+    return [link.name for link in entry.model.links].index(name) if name else 0
+
+
+def _carried(lead: LinkState, target: Pose, at: Vec3, twist: Optional[Twist]) -> Twist:
+    """The twist at `target` of a body that moves with `twist` in `at`; None: keep, turned."""
     if twist is None:
         turn = multiply(target.orientation, conjugate(lead.pose.orientation))
         return Twist(rotate(turn, lead.twist.linear), rotate(turn, lead.twist.angular))
-    lever = subtract(target.position, wanted.position)
+    lever = subtract(target.position, at)
     return Twist(add(twist.linear, cross(twist.angular, lever)), twist.angular)

@@ -8,15 +8,19 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Any, Dict, List, Optional, Set, Tuple
 
+from ...description.compare import differences
 from ...description.flatten import flattened
+from ...description.joint_positions import joint_position, moved
 from ...description.light import Light
-from ...description.model import Joint, Link, Model
+from ...description.model import WORLD, Joint, Link, Model
 from ...description.saved_state import InitialState, ModelState, SavedState
 from ...description.world import World
 from ...errors import Issue, warning
 from ...geometry import Pose, Twist, compose, inverse
-from .state_joint_positions import joint_position
 from .state_scale import scaled
+
+_NEAR = 1e-4
+"""m, and components of a quaternion: saved poses have few digits."""
 
 
 def apply_state(world: World) -> World:
@@ -81,10 +85,32 @@ def _restored(model: Model, state: ModelState, initial: Dict[str, InitialState])
         positions: Dict[str, float] = {}
     else:
         positions = _positions(flat.joints, flat.links, poses, state)
-        model = replace(model, pose=_base_pose(flat, poses, state) or model.pose)
+        held = _held(flat, poses)
+        positions.update(held or {})
+        if held is None:
+            model = replace(model, pose=_base_pose(flat, poses, state) or model.pose)
     if twists or positions:
         initial[model.name] = InitialState(twists, positions)
     return model
+
+
+def _held(flat: Model, poses: Dict[str, Pose]) -> Optional[Dict[str, float]]:
+    """Positions of the joints to the world, if these say where their links are; else None.
+
+    A joint's anchor stays where the model was; a model that was moved with its anchors is another.
+    """
+    at_zero = {WORLD: Pose(), **{link.name: compose(flat.pose, link.pose) for link in flat.links}}
+    anchors = [joint for joint in flat.joints if joint.parent == WORLD and joint.child in poses
+               and joint.child in at_zero]
+    found: Dict[str, float] = {}
+    for joint in anchors:
+        position = joint_position(joint, at_zero, {WORLD: Pose(), **poses}) or 0.0
+        there = moved(joint, position, at_zero[joint.child])
+        if differences(there, poses[joint.child], _NEAR):
+            return None
+        if position:
+            found[joint.name] = position
+    return found if anchors else None
 
 
 def _base_pose(flat: Model, poses: Dict[str, Pose], state: ModelState) -> Optional[Pose]:

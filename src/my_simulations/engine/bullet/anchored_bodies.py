@@ -1,0 +1,115 @@
+"""Bodies that hang on the world by a joint: moving them turns that joint, as far as it can.
+
+In Gazebo the anchor of such a joint stays in the world, and its angle follows from the pose of the
+link. Here joint positions are what is kept, so they are changed together with the pose.
+"""
+from __future__ import annotations
+
+import math
+from typing import List, Optional, Tuple
+
+import pybullet
+
+from ...geometry import (
+    Pose,
+    Quat,
+    Twist,
+    Vec3,
+    compose,
+    conjugate,
+    dot,
+    inverse,
+    multiply,
+    norm,
+    scale,
+    subtract,
+)
+from .bodies import Axis, Body
+from .link_states import place
+
+_JOINT_TYPE, _PARENT = 2, 16     # of pybullet.getJointInfo
+_BASE = -1
+_NEAR = 2e-5
+"""m and rad: a pose as near as this to one that the joint allows is meant to be that one. Saved
+poses have six digits."""
+_STEP = 0.1   # rad or m, to see which way an axis goes
+
+
+def turned(body: Body, way: Pose) -> bool:
+    """Move a body whose base is fixed by `way`, a motion in the world, with its first joints.
+
+    True if they allow it; else nothing has changed. Rates are left at zero.
+    """
+    done: List[Tuple[Axis, float]] = []
+    for index in _first_joints(body):
+        axis = next((one for one in body.axes if one.index == index), None)
+        before = Pose(*place(body.uid, index))
+        after = compose(way, before)
+        position = _position(body, axis, before, after) if axis is not None else None
+        if axis is None and _is_near(before, after):
+            continue
+        if axis is None or position is None:
+            for other, old in done:
+                pybullet.resetJointState(body.uid, other.index, old)
+            return False
+        done.append((axis, pybullet.getJointState(body.uid, axis.index)[0]))
+        pybullet.resetJointState(body.uid, axis.index, position)
+    return True
+
+
+def rate(body: Body, axis: Axis, twist: Twist) -> float:
+    """The rate, rad/s or m/s, of a first joint whose link moves with `twist`; 0 of other joints."""
+    if axis.index not in _first_joints(body):
+        return 0.0
+    position = pybullet.getJointState(body.uid, axis.index)[0]
+    here = Pose(*place(body.uid, axis.index))
+    pybullet.resetJointState(body.uid, axis.index, position + _STEP)
+    there = Pose(*place(body.uid, axis.index))
+    pybullet.resetJointState(body.uid, axis.index, position)
+    if _turns(body, axis):
+        way = _rotation(multiply(there.orientation, conjugate(here.orientation)))
+        return dot(scale(way, 1.0 / _STEP), twist.angular)
+    return dot(scale(subtract(there.position, here.position), 1.0 / _STEP), twist.linear)
+
+
+def _first_joints(body: Body) -> List[int]:
+    return [index for index in range(pybullet.getNumJoints(body.uid))
+            if pybullet.getJointInfo(body.uid, index)[_PARENT] == _BASE]
+
+
+def _turns(body: Body, axis: Axis) -> bool:
+    kind: int = pybullet.getJointInfo(body.uid, axis.index)[_JOINT_TYPE]
+    return kind == pybullet.JOINT_REVOLUTE
+
+
+def _position(body: Body, axis: Axis, before: Pose, after: Pose) -> Optional[float]:
+    """The position at which the link is at `after`; None if there is none."""
+    start: float = pybullet.getJointState(body.uid, axis.index)[0]
+    turns = _turns(body, axis)
+    span = norm(_rotation(multiply(after.orientation, conjugate(before.orientation)))) if turns \
+        else norm(subtract(after.position, before.position))
+    for position in (start + span, start - span):
+        pybullet.resetJointState(body.uid, axis.index, position)
+        fits = _is_near(Pose(*place(body.uid, axis.index)), after)
+        pybullet.resetJointState(body.uid, axis.index, start)
+        if fits:
+            return _least(position, axis) if turns else position
+    return None
+
+
+def _least(angle: float, axis: Axis) -> float:
+    """The same angle in one turn about zero, as Gazebo has it, unless its stops forbid that."""
+    one = math.remainder(angle, 2.0 * math.pi)
+    return one if axis.lower <= one <= axis.upper else angle
+
+
+def _is_near(one: Pose, other: Pose) -> bool:
+    apart = compose(inverse(one), other)
+    return norm(apart.position) < _NEAR and norm(_rotation(apart.orientation)) < _NEAR
+
+
+def _rotation(turn: Quat) -> Vec3:
+    """Axis times angle, rad, at most half a turn."""
+    x, y, z, w = turn if turn[3] >= 0.0 else (-turn[0], -turn[1], -turn[2], -turn[3])
+    sine = norm((x, y, z))
+    return scale((x, y, z), 2.0 * math.atan2(sine, w) / sine) if sine > 0.0 else (0.0, 0.0, 0.0)
