@@ -41,6 +41,7 @@ from .bodies import Body, Part
 from .body_builder import Builder
 from .closing_joints import closing_joints
 from .collision_shapes import ShapeError, ShapeFactory
+from .constraint_book import ConstraintBook
 from .contact_readout import read_contacts
 from .contact_settling import ContactSettling
 from .force_dependent_slip import slips
@@ -92,7 +93,8 @@ class BulletBackend:
         self._friction = FrictionBalance(self._on_misfit)
         self._spin = GyroscopicRigid(lambda: self._forces.wrenched_links)
         self._holds = PinnedBodies(self._waker.around)
-        self._ties = InterModelJoints()
+        self._book = ConstraintBook()
+        self._ties = InterModelJoints(self._book)
         self._decay = VelocityDecay()
         self._settling = ContactSettling(lambda: self._forces.loaded_bodies, self._on_held)
         self._landing = LandingContacts(self._rolling.landed, self._settling.solve_impact)
@@ -237,7 +239,7 @@ class BulletBackend:
             built = builder.build(pose, dt)
         except ShapeError as fault:
             raise CommandRefusedError(str(fault)) from fault
-        constraints = Constraints(model, builder.plans, built, pose,
+        constraints = Constraints(self._book, model, builder.plans, built, pose,
                                   open_joints(model, builder.plans), first_row)
         entry = Entry(model, builder, built, first_row, pose, constraints)
         self._models[builder.model_id] = entry

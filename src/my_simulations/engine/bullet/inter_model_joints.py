@@ -6,7 +6,7 @@ Tied bodies do not sleep, and those that are tied to each other do not collide (
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Dict, List, Optional, Sequence, Tuple
+from typing import Dict, List, Optional, Sequence, Set, Tuple
 
 import pybullet
 
@@ -15,6 +15,7 @@ from ..api import CommandRefusedError
 from ..body_plan import BASE, TIE_TYPES
 from ..commands import ConnectModels
 from .bodies import SLEEP_THRESHOLD, Body, Part
+from .constraint_book import ConstraintBook, Number
 from .joint_constraints import End, tie
 
 
@@ -22,18 +23,24 @@ from .joint_constraints import End, tie
 class _Tie:
     name: str
     ends: Tuple[End, ...]
-    constraints: List[int]
+    constraints: List[Number]
 
     @property
     def bodies(self) -> Tuple[Body, ...]:
         """Those that are tied."""
         return tuple(end[0] for end in self.ends)
 
+    @property
+    def uids(self) -> Set[int]:
+        """PyBullet's numbers of the bodies that are tied."""
+        return {body.uid for body in self.bodies}
+
 
 class InterModelJoints:
     """The joints that go with either of the models they connect."""
 
-    def __init__(self) -> None:
+    def __init__(self, book: ConstraintBook) -> None:
+        self._book = book
         self._ties: List[_Tie] = []
         self._anchor: Optional[End] = None
 
@@ -55,7 +62,7 @@ class InterModelJoints:
             raise CommandRefusedError(
                 f"joint '{joint.name}' slides between bodies that are not articulated"
             )
-        made = tie(joint, one, ends[0][1], other, ends[1][1])
+        made = tie(self._book, joint, one, ends[0][1], other, ends[1][1])
         found = _Tie(joint.name, tuple(end for end in (one, other) if end is not self._anchor),
                      made)
         self._ties.append(found)
@@ -78,22 +85,23 @@ class InterModelJoints:
         """A body goes: untie it from the others."""
         if not body.ties:
             return
-        for one in [one for one in self._ties if body in one.bodies]:
+        for one in [one for one in self._ties if body.uid in one.uids]:
             self._untie(one)
+            # Bullet keeps pairs that do not collide by numbers, which the next body gets.
+            _let_collide(one, True)
 
     def disconnect(self, names: Sequence[str]) -> List[Body]:
         """Untie joints by name; returns the bodies that are free, which collide again."""
         found = [one for one in self._ties if one.name in names]
         for one in found:
             self._untie(one)
-            if not any(set(other.bodies) == set(one.bodies) for other in self._ties):
+            if not any(other.uids == one.uids for other in self._ties):
                 _let_collide(one, True)
         return [body for one in found for body in one.bodies]
 
     def _untie(self, one: _Tie) -> None:
         self._ties.remove(one)
-        for made in one.constraints:
-            pybullet.removeConstraint(made)
+        self._book.remove(one.constraints)
         for tied in one.bodies:
             tied.ties -= 1
             if not tied.ties and tied.rigid and tied.moves and tied.may_sleep:
@@ -105,6 +113,7 @@ class InterModelJoints:
         """All bodies are gone."""
         self._ties.clear()
         self._anchor = None
+        self._book.clear()
 
 
 def _let_collide(one: _Tie, collide: bool) -> None:

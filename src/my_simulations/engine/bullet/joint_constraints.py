@@ -10,6 +10,7 @@ from ...description.model import WORLD, Joint, Model
 from ...geometry import Pose, Vec3, compose, inverse, rotate, scale, transform
 from ..body_plan import NO_LINK, BodyPlan
 from .bodies import Axis, Body, Part
+from .constraint_book import ConstraintBook, Number
 
 _FORCE = 1e7          # N or N m: what a closed loop or a gear may need
 _HINGE_LENGTH = 0.1   # m between the points that stand for a hinge
@@ -20,14 +21,14 @@ End = Tuple[Body, Part]
 """A link as the end of a joint."""
 
 
-def tie(joint: Joint, child: End, child_from_joint: Pose, parent: Optional[End],
-        parent_from_joint: Pose) -> List[int]:
+def tie(book: ConstraintBook, joint: Joint, child: End, child_from_joint: Pose,
+        parent: Optional[End], parent_from_joint: Pose) -> List[Number]:
     """Hold a link to another as a joint would, limits and what else its axes have aside.
 
     PyBullet has no hinge between bodies: points that stay together stand for it. Universal joints
     hold as balls. Sliding ones are for links of articulated bodies only. Of the joint, type and
     axis count; its frame is given in the frame of both links, or of the world for `parent` None.
-    Returns PyBullet's numbers of the constraints.
+    Returns the numbers of the constraints in the book.
     """
     points: List[Vec3] = [(0.0, 0.0, 0.0)]
     kind = {"fixed": pybullet.JOINT_FIXED, "prismatic": pybullet.JOINT_PRISMATIC}.get(
@@ -38,7 +39,7 @@ def tie(joint: Joint, child: End, child_from_joint: Pose, parent: Optional[End],
     elif joint.type == "fixed" and (child[0].rigid or (parent is not None and parent[0].rigid)):
         kind = pybullet.JOINT_POINT2POINT  # to rigid bodies "fixed" gets the turns wrong
         points = _about_the_centre(child[1], child_from_joint)
-    return [_tie(child, compose(child_from_joint, Pose(at)), parent,
+    return [_tie(book, child, compose(child_from_joint, Pose(at)), parent,
                  compose(parent_from_joint, Pose(at)), kind, axis) for at in points]
 
 
@@ -54,7 +55,8 @@ def _about_the_centre(part: Part, link_from_joint: Pose) -> List[Vec3]:
             for turn in turns]
 
 
-def _tie(one: End, mine: Pose, other: Optional[End], theirs: Pose, kind: int, axis: Vec3) -> int:
+def _tie(book: ConstraintBook, one: End, mine: Pose, other: Optional[End], theirs: Pose, kind: int,
+         axis: Vec3) -> Number:
     (body, part), uid, index = one, -1, -1
     mine = compose(inverse(part.link_from_com), mine)
     if other is not None:
@@ -63,22 +65,23 @@ def _tie(one: End, mine: Pose, other: Optional[End], theirs: Pose, kind: int, ax
         if body.rigid and not other[0].rigid:  # PyBullet wants the articulated body first
             (body, part), uid, index = other, body.uid, part.index
             mine, theirs = theirs, mine
-    made = pybullet.createConstraint(
+    is_rigid = body.rigid and (other is None or other[0].rigid)
+    return book.make(is_rigid, (
         body.uid, part.index, uid, index, kind, rotate(mine.orientation, axis), mine.position,
-        theirs.position, mine.orientation, theirs.orientation)
-    pybullet.changeConstraint(made, maxForce=_FORCE)
-    return int(made)
+        theirs.position, mine.orientation, theirs.orientation), maxForce=_FORCE)
 
 
 class Constraints:
     """The constraints of one model; `remove` before its bodies go.
 
     Attributes:
-        closing: what stands for joints that close loops: PyBullet's numbers by the joint's name.
+        closing: what stands for joints that close loops: numbers in the book by the joint's name.
     """
 
-    def __init__(self, model: Model, plans: Sequence[BodyPlan], bodies: Sequence[Body],
-                 pose: Pose, open_joints: Sequence[Joint], first_row: int) -> None:
+    def __init__(self, book: ConstraintBook, model: Model, plans: Sequence[BodyPlan],
+                 bodies: Sequence[Body], pose: Pose, open_joints: Sequence[Joint],
+                 first_row: int) -> None:
+        self._book = book
         self._model = model
         self._pose = pose
         self._parts = {part.row - first_row: (body, part)
@@ -102,8 +105,7 @@ class Constraints:
 
     def remove(self) -> None:
         """Take them out."""
-        for made in self._made:
-            pybullet.removeConstraint(made)
+        self._book.remove(self._made)
         self._made.clear()
 
     # -- loops -----------------------------------------------------------------------------------
@@ -114,11 +116,12 @@ class Constraints:
         at = self._model_from_joint(joint)
         made: List[int] = []
         if child is not None:
-            made = tie(joint, child, self._seen_from(child, at), parent,
+            made = tie(self._book, joint, child, self._seen_from(child, at), parent,
                        compose(self._pose, at) if parent is None
                        else self._seen_from(parent, at))
         elif parent is not None:
-            made = tie(joint, parent, self._seen_from(parent, at), None, compose(self._pose, at))
+            made = tie(self._book, joint, parent, self._seen_from(parent, at), None,
+                       compose(self._pose, at))
         self._made += made
         self.closing[joint.name] = made
 
@@ -147,12 +150,10 @@ class Constraints:
         """follower + ratio leader = target, of two axes of one body."""
         if follower[0].uid != leader[0].uid:
             return
-        made = pybullet.createConstraint(
+        self._made.append(self._book.make(False, (
             follower[0].uid, follower[1], leader[0].uid, leader[1], pybullet.JOINT_GEAR,
-            (0.0, 0.0, 1.0), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
-        pybullet.changeConstraint(made, gearRatio=ratio, maxForce=_FORCE, erp=_ERP,
-                                  relativePositionTarget=target)
-        self._made.append(made)
+            (0.0, 0.0, 1.0), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)),
+            gearRatio=ratio, maxForce=_FORCE, erp=_ERP, relativePositionTarget=target))
 
     def _screws(self, plan: BodyPlan, body: Body) -> None:
         """Turning by thread_pitch rad a metre; positive pitches are left-handed in Gazebo."""
