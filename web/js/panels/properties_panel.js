@@ -15,6 +15,11 @@ import {unitGeometry} from './geometry_fields.js';
 /** @import {Input} from './property_inputs.js' */
 /** @import {Row} from './world_rows.js' */
 
+/**
+ * A field on the panel; `field` is that of the newest document.
+ * @typedef {{key: string, field: Field, input: Input, element: HTMLElement}} Entry
+ */
+
 export class Properties {
   /**
    * @param {HTMLElement} element
@@ -44,7 +49,7 @@ export class Properties {
   #title;
   /** @type {string|null} */
   #signature = null;
-  /** @type {{key: string, field: Field, input: Input, element: HTMLElement}[]} */
+  /** @type {Entry[]} */
   #inputs = [];
   #turns = new WeakMap();
   #closed = new Set(remembered.get('closed-sections', ['Inertial']));
@@ -145,6 +150,7 @@ export class Properties {
       this.#build(found);
     }
     if (!found) return;
+    renew(this.#inputs, found);
     const entities = new Map(found.sections.map((section) => [section.key, section.entity]));
     for (const {key, field, input, element} of this.#inputs) {
       // While a change is on its way the field shows the new value, not the one before it.
@@ -230,7 +236,7 @@ export class Properties {
   #field(section, field) {
     const note = h('div', {class: 'field-note', role: 'alert'});
     /** @param {unknown} value */
-    const commit = (value) => this.#commit(section, field, value, element, note);
+    const commit = (value) => this.#commit(section, entry, value, note);
     /** @param {string} text */
     const refuse = (text) => {
       note.textContent = text;
@@ -254,18 +260,21 @@ export class Properties {
       ),
       note,
     );
-    this.#inputs.push({key: section.key, field, input, element});
+    const entry = {key: section.key, field, input, element};
+    this.#inputs.push(entry);
     return element;
   }
 
   /**
    * @param {Section} section
-   * @param {Field} field
+   * @param {Entry} entry
    * @param {unknown} value
-   * @param {HTMLElement} element
    * @param {HTMLElement} note
    */
-  async #commit(section, field, value, element, note) {
+  async #commit(section, entry, value, note) {
+    // What other properties and poses are now may be newer than what the panel shows.
+    renew([entry], this.#found());
+    const {field, element} = entry;
     note.textContent = '';
     element.classList.add('pending');
     // Several changes of one field may be on their way; the last one decides.
@@ -309,5 +318,20 @@ export class Properties {
   #set(target, path, value) {
     const owner = this.row?.kind === 'light' ? target : (this.row?.model ?? '');
     return this.#told(owner, () => this.request('edit', {op: {kind: 'set', target, path, value}}));
+  }
+}
+
+/**
+ * Gives entries the fields of what was found now: `ops` of a field are of the document it was made
+ * from. What is not among them, as after another selection, keeps its field.
+ * @param {Entry[]} entries
+ * @param {Found|null} found
+ */
+function renew(entries, found) {
+  const sections = new Map(found?.sections.map(({key, fields}) => [key, fields]));
+  for (const entry of entries) {
+    const {path, label} = entry.field;
+    const fresh = sections.get(entry.key)?.find((one) => one.path === path && one.label === label);
+    entry.field = fresh ?? entry.field;
   }
 }
