@@ -9,13 +9,15 @@ import subprocess
 import sys
 import time
 
+import numpy as np
 import pytest
 from editor_case import Case, box
 
 from my_simulations.cli.front_ends import FrontEnds
 from my_simulations.description.world import World
 from my_simulations.editor.logs.recorder import Recorder, path_of
-from my_simulations.editor.logs.state_log import LogReader
+from my_simulations.editor.logs.state_log import LogReader, LogWriter
+from my_simulations.editor.transport.pose_messages import Poses
 from my_simulations.engine.inline_engine import InlineEngine
 from my_simulations.engine.kinematic_backend import KinematicBackend
 from my_simulations.errors import CommandError, Severity
@@ -113,6 +115,22 @@ def test_models_that_come_and_go_are_in_the_log(running):
     names = [[model["name"] for model in document(log, log.seek(when)[0])["models"]]
              for when in (came - 0.1, came + 0.4, log.end)]
     assert names == [["a"], ["a", "b"], ["a"]]
+    log.close()
+
+
+def test_what_follows_a_reset_of_time_comes_after_what_was_before(tmp_path):
+    writer = LogWriter(str(tmp_path / "log" / "state.log"))
+    writer.document(0.0, {})
+    states = [(0.0, 0.0), (0.5, 1.0), (1.0, 2.0), (0.0, 10.0), (0.4, 11.0), (0.0, 20.0),
+              (0.3, 21.0)]
+    for number, (seconds, x) in enumerate(states):
+        writer.poses(Poses(np.array([0]), np.array([[x, 0, 0, 0, 0, 0, 1]], np.float32), number,
+                           seconds, seconds))
+    writer.close()
+    log = LogReader(writer.path)
+    assert (log.begin, log.end) == (0.0, pytest.approx(1.7))
+    assert [x_at(log, seconds) for seconds in (0.5, 0.99, 1.0, 1.4 - 1e-6, 1.4, 1.7)] == [
+        1.0, 1.0, 10.0, 10.0, 20.0, 21.0]
     log.close()
 
 

@@ -111,7 +111,7 @@ class LogReader:
     """Reads one log. For one thread at a time.
 
     Attributes:
-        begin, end: sim time, s.
+        begin, end: sim time, s. What follows a reset of sim time is after what was before it.
 
     Raises:
         CommandError: no such file, or not a log.
@@ -130,7 +130,7 @@ class LogReader:
         if not self._states:
             self._file.close()
             raise CommandError(f"{path} contains no states")
-        self._times = _rising([self._records[n].time for n in self._states])
+        self._times = _log_times([self._records[n].time for n in self._states])
         self.begin, self.end = self._times[0], self._times[-1]
         self._poses: Dict[int, Any] = {}
         self._at = -1
@@ -204,11 +204,16 @@ class LogReader:
             at += length
 
 
-def _rising(times: List[float]) -> List[float]:
-    """The same times, none before its predecessor: a reset of sim time shows as a pause."""
-    highest = float("-inf")
+def _log_times(times: List[float]) -> List[float]:
+    """The sim times, s, but after a reset of sim time they go on from where they were.
+
+    So every state has a time of its own, and what was recorded first is shown first.
+    """
+    offset = 0.0
+    previous = times[0]
     found = []
     for time in times:
-        highest = max(highest, time)
-        found.append(highest)
+        offset += max(0.0, previous - time)
+        found.append(time + offset)
+        previous = time
     return found
