@@ -367,6 +367,7 @@ _TABLE: Tuple[Tuple[str, Tuple[Tuple[str, str, str, str], ...]], ...] = (
         ("world-file", NOTE, "The path of the world file that was opened.", "None."),
         ("log", EITHER, "The state log ended early.", "See the message."),
         ("recording", ERROR, "The log is still being recorded.", "Stop the recording first."),
+        ("replay", ERROR, "A page that shows a log was to edit the world.", "Close the log first."),
     )),
 )
 

@@ -112,6 +112,7 @@ class Requests:
     # -- editing ---------------------------------------------------------------------------------
 
     def _edit(self, client: Client, message: Dict[str, Any]) -> Dict[str, Any]:
+        _refuse_in_log(client)
         op = message["op"]
         self._acting = client.number
         with self._company.watching(client.number):
@@ -133,6 +134,7 @@ class Requests:
     def _moved_in_history(self, client: Client, message: Dict[str, Any],
                           verb: str) -> Dict[str, Any]:
         """Whose edits are taken back hear of it, and so does who takes them back."""
+        _refuse_in_log(client)
         steps = message.get("to") or 0
         history = self._history
         move, authors, labels = (
@@ -152,6 +154,8 @@ class Requests:
         names: List[str] = message["names"]
         if len(names) != len(message["poses"]):
             raise CommandError("drag: names and poses must have the same length")
+        if client.replay is not None:
+            return  # the move that ends the drag is refused, once
         waiting = client.number in self._pending
         self._pending.setdefault(client.number, {}).update(zip(names, message["poses"]))
         if not waiting:
@@ -246,3 +250,10 @@ class Requests:
         if push != self._told:
             self._told = push
             self._hub.push_soon(push)
+
+
+def _refuse_in_log(client: Client) -> None:
+    """Who looks at a log does not see what an edit does to the world. Raises EditRefusedError."""
+    if client.replay is not None:
+        raise EditRefusedError("replay", "the world cannot be edited while a log is open",
+                               "close the log first")

@@ -367,6 +367,32 @@ def test_a_log_is_recorded_listed_and_played_to_one_browser(case):
     made.browse(play)
 
 
+def test_who_looks_at_a_log_does_not_edit_the_world_unseen(case):
+    made = case(box("a"))
+
+    async def look(browser):
+        await browser.edit("insert", shape="box")
+        await browser.ask("log_start", name="still")
+        await browser.ask("step", steps=100)
+        await browser.ask("log_stop")
+        await browser.ask("log_open", name="still")
+        pose = [7, 0, 1, 0, 0, 0, 1]
+        for kind, fields in {"edit": {"op": {"kind": "delete", "names": ["a"]}}, "undo": {},
+                             "redo": {}}.items():
+            with pytest.raises(Refused) as refused:
+                await browser.ask(kind, **fields)
+            assert refused.value.code == "replay"
+        await browser.tell("drag", names=["a"], poses=[pose])
+        await browser.ask("drag_end")
+        other = await Browser.open(browser.session, made.url)
+        assert other.model("a") and other.model("unit_box")
+        assert other.link_pose("a") != pose[:3]
+        await browser.ask("log_close")
+        await browser.edit("delete", names=["a"])
+
+    made.browse(look)
+
+
 def test_a_full_disk_is_told_when_a_log_is_written(tmp_path):
     writer = LogWriter(str(tmp_path / "x.log"))
     writer._file.close()
