@@ -2,9 +2,10 @@ import assert from 'node:assert/strict';
 import {test} from 'node:test';
 import {createActions} from '../../web/js/actions.js';
 import {
-  axesOf, axisOr, connection, isLinkOf, jointText, JOINT_TYPES, linkMoves, linkRemovals, oldestToUndo,
-  pluginText, renamedModel, stepsSince,
+  axesOf, axisOr, connection, isLinkOf, jointText, JOINT_TYPES, linkMoves, linkRemovals, pluginText,
+  renamedModel, stepsSince,
 } from '../../web/js/model_editor/model_edits.js';
+import {ModelEditor} from '../../web/js/model_editor/model_editor.js';
 import {SOLID_SHAPES, solidModel} from '../../web/js/model_editor/solids.js';
 import {Store} from '../../web/js/store.js';
 import {near} from './near.mjs';
@@ -95,8 +96,38 @@ test('Delete takes the chosen link of the edited model, not the model', async ()
   assert.deepEqual(connection.requests.at(-1)[1].op, {kind: 'remove_part', target: 'a::link'});
 });
 
+/** A model editor whose history has since got steps, the newest first; '' is the user's own. */
+function editorAfter(undoBy) {
+  const {connection, store, actions} = begun();
+  const said = [];
+  const editor = new ModelEditor({store, actions, request: null, notices: {say: (text) => said.push(text)}});
+  store.receive({type: 'history', undo: undoBy.map(() => 'a step'), undo_by: undoBy, redo: [],
+    redo_by: [], undoable: undoBy.length, depth: undoBy.length, state: undoBy.length,
+    dirty: true, file: ''});
+  return {editor, connection, said};
+}
+
 test('the steps of a model that is discarded are undone, and none before them', async () => {
-  for (const [steps, to] of [[1, undefined], [2, 1], [5, 4]]) assert.equal(oldestToUndo(steps), to);
+  for (const [undoBy, fields] of [[[''], {}], [['', ''], {to: 1}], [['', '', 'Ann'], {to: 1}]]) {
+    const {editor, connection} = editorAfter(undoBy);
+    assert.equal(await editor.discard(), true);
+    assert.deepEqual(connection.requests, [['undo', fields]]);
+  }
+});
+
+test('what others did after a step is not undone with it', async () => {
+  const {editor, connection, said} = editorAfter(['Ann', '', 'Ann', '']);
+  assert.equal(await editor.discard(), false);
+  assert.deepEqual(connection.requests, []);
+  assert.match(said[0], /Ann edited/);
+});
+
+test('what others did to the world is no change of the model', async () => {
+  const {editor, connection} = editorAfter(['Ann', 'Ann']);
+  assert.equal(editor.dirty, false);
+  assert.equal(await editor.discard(), true);
+  assert.deepEqual(connection.requests, []);
+  assert.equal(editorAfter(['Ann', '']).editor.dirty, true);
 });
 
 test('a model that got another name is known by its links, also where nobody selected it', () => {

@@ -6,7 +6,7 @@ import {ask} from '../panels/dialog.js';
 import {byId} from '../panels/dom.js';
 import {styled} from '../panels/stylesheet.js';
 import {ConnectTool} from './connect_tool.js';
-import {linkNames, oldestToUndo, renamedModel, stepsSince} from './model_edits.js';
+import {linkNames, ownSteps, renamedModel, stepsSince} from './model_edits.js';
 import {ModelFiles} from './model_files.js';
 import {Palette} from './model_palette.js';
 /** @import {Actions} from '../actions.js' */
@@ -53,13 +53,16 @@ export class ModelEditor {
     return name ? this.store.model(name) : undefined;
   }
 
-  /** Whether something has changed that no folder has. */
+  /** Whether this page's user has changed something that no folder has. */
   get dirty() {
-    return this.steps > 0 && this.store.history.state !== this.#savedAt;
+    return this.#own.oldest >= 0 && this.store.history.state !== this.#savedAt;
   }
 
-  /** Steps of the history since the editor was opened. */
-  get steps() { return stepsSince(this.store.history, this.#mark); }
+  /** The user's own steps of the history since the editor was opened. */
+  get #own() {
+    const {store} = this;
+    return ownSteps(stepsSince(store.history, this.#mark), (at) => store.authorOf('undo', at));
+  }
 
   /** Begins; time stands still meanwhile. @param {string|null} name  of the model to edit; null: a new one */
   async open(name) {
@@ -100,23 +103,33 @@ export class ModelEditor {
   /** Asks what becomes of changes, and leaves. @returns {Promise<boolean>} false: the user stays */
   async close() {
     if (this.dirty) {
-      const answer = await ask('Exit model editor?', 'The model has changes that are not saved as a model folder.', [
+      const {others} = this.#own;
+      const text = 'The model has changes that are not saved as a model folder.' + (others.length
+        ? ` They cannot be discarded at once: ${others.join(' and ')} edited the world after them.` : '');
+      const answer = await ask('Exit model editor?', text, [
         {title: 'Cancel'},
-        {title: 'Discard Changes', value: 'discard', danger: true},
+        ...(others.length ? [] : [{title: 'Discard Changes', value: 'discard', danger: true}]),
         {title: 'Keep in World', value: 'keep'},
         {title: 'Save and Exit', value: 'save', primary: true},
       ]);
       if (!answer) return false;
       if (answer === 'save' && !await this.save()) return false;
-      if (answer === 'discard') await this.#discard();
+      if (answer === 'discard' && !await this.discard()) return false;
     }
     await this.#end();
     return true;
   }
 
-  async #discard() {
-    const {steps} = this;
-    if (steps > 0) await this.actions.undo(oldestToUndo(steps));
+  /** Undoes the user's own steps; false where that would undo what others did after them. */
+  async discard() {
+    const {oldest, others} = this.#own;
+    if (others.length) {
+      this.notices.say(`Not discarded: ${others.join(' and ')} edited the world meanwhile.`);
+      return false;
+    }
+    // Without `to` the newest step is undone.
+    if (oldest >= 0) await this.actions.undo(oldest || undefined);
+    return true;
   }
 
   async #end() {

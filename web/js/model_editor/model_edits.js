@@ -66,10 +66,17 @@ export const pluginText = ({plugins}) => plugins.map(({xml}) => xml.trim()).join
 export const stepsSince = ({depth, undoable}, mark) => Math.max(Math.min(depth - mark, undoable), 0);
 
 /**
- * What `undo` takes to undo so many steps: the index of the oldest of them, nothing for one.
+ * Which of the latest steps of the history are one's own.
  * @param {number} steps
+ * @param {(at: number) => string} authorOf  the other who did a step, '' for oneself
+ * @returns {{oldest: number, others: string[]}}  oldest: index of the first own step, -1 without one;
+ *   others: who did steps after that one, which would be undone with it
  */
-export const oldestToUndo = (steps) => (steps > 1 ? steps - 1 : undefined);
+export function ownSteps(steps, authorOf) {
+  const authors = Array.from({length: steps}, (_, at) => authorOf(at));
+  const oldest = authors.lastIndexOf('');
+  return {oldest, others: [...new Set(authors.slice(0, Math.max(oldest, 0)).filter(Boolean))]};
+}
 
 /**
  * The model that has another name now, or none: that of the same links which was not there before.
