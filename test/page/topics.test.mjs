@@ -2,6 +2,7 @@ import assert from 'node:assert/strict';
 import {test} from 'node:test';
 import {placeOf} from '../../web/js/topics/frame_places.js';
 import {fanOf} from '../../web/js/topics/laser_fan.js';
+import {isOver} from '../../web/js/topics/marker_lives.js';
 import {decodeTopicFrame} from '../../web/js/topics/topic_frames.js';
 import {sensedBy, Topics} from '../../web/js/topics/topics.js';
 import {commandOf, mountDriving} from '../../web/js/drive_keys.js';
@@ -248,4 +249,11 @@ test('arrow keys mean nothing without a selected model or with other keys held',
   const control = driver();
   control.key('keydown', 'ArrowUp', {ctrlKey: true});
   assert.deepEqual([...nothing.speeds(), ...lamp.speeds(), ...control.speeds()], []);
+});
+
+test('a marker goes when its lifetime is over or time began anew, and stays without one', () => {
+  const life = {from: 10, lifetime: 0.5};
+  assert.deepEqual([10, 10.4, 10.5, 9.9, 0].map((now) => isOver(life, now)),
+    [false, false, true, false, true]);
+  assert.equal(isOver({from: 10, lifetime: 0}, 1e6), false);
 });

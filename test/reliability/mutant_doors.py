@@ -195,7 +195,7 @@ class TopicViews:
             except ImportError:
                 continue  # not on this system
             self._kinds.append((kind, makes.message(getattr(module, name))))
-        self._viewers = {kind: Viewer(kind) for kind, _ in self._kinds}
+        self._viewers = {kind: Viewer(kind, lambda: 1.0) for kind, _ in self._kinds}
         self.target = Target("views of topics", list(range(len(self._kinds))),
                              lambda made, chance: made, self._encode, self._feed, self._renew,
                              ".message")
@@ -204,7 +204,7 @@ class TopicViews:
         """Nothing is open."""
 
     def _renew(self) -> None:
-        self._viewers = {kind: Viewer(kind) for kind in self._viewers}
+        self._viewers = {kind: Viewer(kind, lambda: 1.0) for kind in self._viewers}
 
     def _encode(self, made: int, chance: Random) -> Tuple[str, Any]:
         kind, make = self._kinds[made]

@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 import pytest
+from genpy import Duration
 from geometry_msgs.msg import Point, Pose, PoseStamped, TransformStamped
 from nav_msgs.msg import OccupancyGrid, Odometry, Path
 from PIL import Image as Picture
@@ -32,7 +33,7 @@ TYPES = Protocol.from_folder(Pages.own_folder()).types
 
 def view(message, kind=None):
     """Fields and payload of a message that alone has come; checked against the protocol."""
-    viewer = Viewer(kind or message._type)
+    viewer = Viewer(kind or message._type, lambda: 0.0)
     viewer.take(message)
     frame, stamp, (fields, payload) = viewer.view()
     TYPES.check({"topic": "/t", "frame": frame, "stamp": stamp, "view": fields}, "TopicHead", "v")
@@ -188,7 +189,7 @@ def transform(parent, child, x):
 
 
 def test_tf_is_told_whole_although_it_comes_in_parts():
-    viewer = Viewer(TFMessage._type)
+    viewer = Viewer(TFMessage._type, lambda: 0.0)
     viewer.take(TFMessage([transform("odom", "base", 1.0)]))
     viewer.take(TFMessage([transform("base", "laser", 0.2)]))
     viewer.take(TFMessage([transform("odom", "base", 2.0)]))
@@ -202,7 +203,7 @@ def test_markers_stay_until_they_are_deleted():
         return Marker(ns="n", id=number, action=action, type=Marker.LINE_STRIP,
                       points=[Point(0, 0, 0), Point(1, 0, 0)], pose=Pose())
 
-    viewer = Viewer(MarkerArray._type)
+    viewer = Viewer(MarkerArray._type, lambda: 0.0)
     viewer.take(MarkerArray([marker(1), marker(2)]))
     viewer.take(MarkerArray([]))
     viewer.take(MarkerArray([marker(1, Marker.DELETE)]))
@@ -210,6 +211,46 @@ def test_markers_stay_until_they_are_deleted():
     viewer.take(MarkerArray([marker(0, 3)]))
     assert viewer.view()[2][0]["markers"] == []
     assert view(marker(1))[0]["markers"][0]["shape"] == "line_strip"
+
+
+class Trail:
+    """A viewer of markers, and the sim time that it is told, s."""
+
+    def __init__(self):
+        self.now = 10.0
+        self._viewer = Viewer(Marker._type, lambda: self.now)
+
+    def take(self, number, lifetime):
+        self._viewer.take(Marker(id=number, lifetime=Duration.from_sec(lifetime)))
+
+    def shown(self):
+        """Ids of what is shown, with what is left of its lifetime, s."""
+        return {one["id"]: one["lifetime"] for one in self._viewer.view()[2][0]["markers"]}
+
+
+def test_markers_go_when_their_lifetime_is_over():
+    trail = Trail()
+    trail.take(1, 0.0)
+    trail.take(2, 0.5)
+    trail.now = 10.2
+    trail.take(3, 0.5)
+    assert trail.shown() == {"/1": 0.0, "/2": pytest.approx(0.3), "/3": pytest.approx(0.5)}
+    trail.now = 10.6
+    assert trail.shown() == {"/1": 0.0, "/3": pytest.approx(0.1)}
+    trail.now = 0.0  # sim time was reset
+    assert trail.shown() == {"/1": 0.0}
+
+
+def test_the_newest_markers_are_shown_however_many_came_before():
+    trail = Trail()
+    trail.take(0, 0.0)
+    for number in range(1, 1500):
+        trail.now += 0.1
+        trail.take(number, 0.45)
+    assert set(trail.shown()) == {"/0", *(f"/{n}" for n in range(1495, 1500))}
+    for number in range(2000, 3500):
+        trail.take(number, 0.0)
+    assert list(trail.shown()) == [f"/{n}" for n in range(2500, 3500)]
 
 
 def test_other_types_are_shown_as_text_with_long_lists_cut_short():

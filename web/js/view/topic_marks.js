@@ -1,6 +1,8 @@
 /** ROS messages in the scene, each where its frame is, moving with the link that carries it. */
 import {Group, Line, Matrix4, Mesh, Points, Texture} from 'three';
 import {compose, inverse} from '../pose.js';
+import {SimClock} from '../sim_clock.js';
+import {isOver} from '../topics/marker_lives.js';
 import {matrixOf, place} from './three_convert.js';
 import {
   contactsShape, frameShape, mapShape, markerShape, pathShape, pointsShape, rangeShape, scanShape,
@@ -8,6 +10,7 @@ import {
 } from './topic_shapes.js';
 /** @import {Object3D} from 'three' */
 /** @import {FramePlace} from '../topics/frame_places.js' */
+/** @import {Life} from '../topics/marker_lives.js' */
 /** @import {Marker, OdometryView} from '../protocol.js' */
 /** @import {Models} from './model_views.js' */
 /** @import {Pose7, Vec3} from '../pose.js' */
@@ -24,7 +27,7 @@ const FRAME_SIZE = 0.15;
 
 /**
  * A shape where a frame is; of frames that nobody knows yet the place is null.
- * @typedef {{group: Group, frame: string|null, place: FramePlace|null}} Part
+ * @typedef {{group: Group, frame: string|null, place: FramePlace|null, life: Life|null}} Part
  */
 
 /** What is drawn of a topic. */
@@ -42,13 +45,29 @@ class Mark {
     this.color = color;
   }
 
-  /** @param {Object3D} shape @param {string|null} frame @param {FramePlace|null} [place] */
-  add(shape, frame, place = null) {
+  /**
+   * @param {Object3D} shape
+   * @param {string|null} frame
+   * @param {FramePlace|null} [place]
+   * @param {Life|null} [life]  null: until the next message
+   */
+  add(shape, frame, place = null, life = null) {
     const group = new Group();
     group.matrixAutoUpdate = false;
     group.add(shape);
     this.group.add(group);
-    this.parts.push({group, frame, place});
+    this.parts.push({group, frame, place, life});
+  }
+
+  /** Takes away what is over; whether there was such. @param {number} now  sim time, s */
+  expire(now) {
+    const over = this.parts.filter(({life}) => life && isOver(life, now));
+    for (const {group} of over) {
+      group.traverse(free);
+      this.group.remove(group);
+    }
+    if (over.length) this.parts = this.parts.filter((part) => !over.includes(part));
+    return over.length > 0;
   }
 
   clear() {
@@ -75,6 +94,7 @@ export class TopicMarks {
   /** @type {Map<string, Mark>} */
   #marks = new Map();
   #count = 0;
+  #clock = new SimClock();
 
   /** @param {{store: Store, models: Models, stage: Stage, topics: Topics}} parts */
   constructor({store, models, stage, topics}) {
@@ -86,6 +106,7 @@ export class TopicMarks {
     topics.listen('shown', () => this.#drop());
     topics.listen('transforms', () => this.#placeAll());
     topics.listen('list', () => this.#placeAll());
+    store.listen('stats', () => this.#tick());
     store.listen('document', () => {
       for (const mark of this.#marks.values()) Object.assign(mark, {trail: [], anchor: null});
       this.#placeAll();
@@ -105,6 +126,14 @@ export class TopicMarks {
         if (link !== null && (!ids || ids.has(link))) this.#put(part);
       }
     }
+  }
+
+  /** Takes away markers whose time is over. */
+  #tick() {
+    const {sim_ns: sim, factor, paused} = this.#store.stats;
+    this.#clock.tell(sim / 1e9, paused ? 0 : factor, performance.now());
+    const changed = [...this.#marks.values()].filter((mark) => mark.expire(sim / 1e9));
+    if (changed.length) this.#stage.invalidate();
   }
 
   #drop() {
@@ -165,7 +194,10 @@ export class TopicMarks {
         return inFrame(mapShape(view, new Uint8Array(buffer, start, view.width * view.height)));
       case 'odometry': return this.#addTrail(mark, topic, view);
       case 'transforms': return this.#addFrames(mark);
-      case 'markers': return view.markers.forEach((marker) => addMarker(mark, marker));
+      case 'markers': {
+        const now = this.#clock.at(performance.now());
+        return view.markers.forEach((marker) => addMarker(mark, marker, now));
+      }
       default: return undefined;
     }
   }
@@ -231,10 +263,10 @@ export class TopicMarks {
   }
 }
 
-/** @param {Mark} mark @param {Marker} marker */
-function addMarker(mark, marker) {
+/** @param {Mark} mark @param {Marker} marker @param {number} now  sim time, s */
+function addMarker(mark, marker, now) {
   const group = new Group();
   place(group, marker.pose);
   group.add(markerShape(marker));
-  mark.add(group, marker.frame);
+  mark.add(group, marker.frame, null, {from: now, lifetime: marker.lifetime});
 }

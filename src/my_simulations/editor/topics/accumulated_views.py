@@ -1,8 +1,9 @@
 """Topics whose messages tell a part of the whole: tf and markers."""
 from __future__ import annotations
 
+import math
 import threading
-from typing import Any, Dict, List, Tuple
+from typing import Any, Callable, Dict, List, Tuple
 
 from .plain_numbers import number, pose, rotation, vector
 
@@ -15,12 +16,14 @@ _SHAPES = {0: "arrow", 1: "cube", 2: "sphere", 3: "cylinder", 4: "line_strip", 5
 """visualization_msgs/Marker.type."""
 
 _DELETE, _DELETE_ALL = 2, 3
+_ENDLESS_S = 1e-4
+"""A lifetime up to this has no end (rviz behaviour)."""
 
 
 class Transforms:
     """The last transform to each frame."""
 
-    def __init__(self) -> None:
+    def __init__(self, _now: Callable[[], float]) -> None:
         self._lock = threading.Lock()
         self._known: Dict[str, Tuple[str, Any]] = {}
 
@@ -42,43 +45,81 @@ class Transforms:
 
 
 class Markers:
-    """The markers that were added and not deleted."""
+    """The markers that were added and not deleted, and whose lifetime has not passed.
 
-    def __init__(self) -> None:
+    As in rviz a lifetime begins when the marker comes, and is sim time. When there are too many,
+    those that came first are dropped.
+
+    Args:
+        now: sim time, s.
+    """
+
+    def __init__(self, now: Callable[[], float]) -> None:
+        self._now = now
         self._lock = threading.Lock()
-        self._known: Dict[str, Any] = {}
+        self._known: Dict[str, _Kept] = {}
 
     def take(self, message: Any) -> None:
         """A visualization_msgs/Marker or MarkerArray."""
+        markers = getattr(message, "markers", None) or [message]
         with self._lock:
-            for one in getattr(message, "markers", None) or [message]:
-                self._take(one)
+            now = self._now()
+            if len(self._known) + len(markers) > _MOST_MARKERS:
+                self._drop_expired(now)
+            for one in markers:
+                self._take(one, now)
 
-    def _take(self, marker: Any) -> None:
+    def _take(self, marker: Any, now: float) -> None:
         if not hasattr(marker, "action"):
             return  # an empty array
         name = f"{marker.ns}/{marker.id}"
         if marker.action == _DELETE_ALL:
             self._known.clear()
-        elif marker.action == _DELETE:
-            self._known.pop(name, None)
-        elif name in self._known or len(self._known) < _MOST_MARKERS:
-            self._known[name] = marker
+            return
+        self._known.pop(name, None)
+        if marker.action != _DELETE:
+            if len(self._known) >= _MOST_MARKERS:
+                self._known.pop(next(iter(self._known)))
+            self._known[name] = _Kept(marker, now)
+
+    def _drop_expired(self, now: float) -> None:
+        self._known = {name: one for name, one in self._known.items() if not one.is_expired(now)}
 
     def fields(self) -> Dict[str, Any]:
         """The view."""
         with self._lock:
+            now = self._now()
+            self._drop_expired(now)
             known = list(self._known.items())
-        return {"type": "markers", "markers": [_marker(name, one) for name, one in known]}
+        return {"type": "markers", "markers": [
+            _marker(name, one.marker, one.left(now)) for name, one in known]}
 
 
-def _marker(name: str, marker: Any) -> Dict[str, Any]:
+class _Kept:
+    """A marker, with the sim times at which it came and at which its lifetime is over, s."""
+
+    def __init__(self, marker: Any, came: float) -> None:
+        self.marker = marker
+        self._came = came
+        lifetime = marker.lifetime.to_nsec() * 1e-9
+        self._ends = came + lifetime if lifetime > _ENDLESS_S else math.inf
+
+    def left(self, now: float) -> float:
+        """What is left of its lifetime, s; 0 without an end."""
+        return self._ends - now if math.isfinite(self._ends) else 0.0
+
+    def is_expired(self, now: float) -> bool:
+        """Whether its lifetime is over, or sim time began anew."""
+        return math.isfinite(self._ends) and not self._came <= now < self._ends
+
+
+def _marker(name: str, marker: Any, left: float) -> Dict[str, Any]:
     return {"id": name, "shape": _SHAPES.get(marker.type, "cube"),
             "frame": marker.header.frame_id, "pose": pose(marker.pose),
             "scale": vector(marker.scale), "color": _color(marker.color),
             "points": [vector(one) for one in marker.points[:_MOST_POINTS]],
             "colors": [_color(one) for one in marker.colors[:_MOST_POINTS]],
-            "text": marker.text, "lifetime": number(marker.lifetime.to_nsec() * 1e-9)}
+            "text": marker.text, "lifetime": left}
 
 
 def _color(message: Any) -> List[float]:

@@ -178,8 +178,11 @@ class LiveTopics:
         kind = next((one.kind for one in self._source.topics() if one.name == topic.name), "")
         if not kind or kind == "*":
             return None
-        topic.viewer = Viewer(kind)
+        topic.viewer = Viewer(kind, self._sim_time)
         return self._source.hear(topic.name, kind, topic.take)
+
+    def _sim_time(self) -> float:
+        return self._hub.simulator.clock.sim_ns * 1e-9
 
     def _fail(self, topic: LiveTopic, problem: str) -> None:
         if topic.problem != problem:

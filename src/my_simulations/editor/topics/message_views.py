@@ -24,11 +24,15 @@ class Viewer:
 
     `take` may be called from any thread, `view` from another one; what is shown is the newest
     message, or of topics that tell in parts (tf, markers) all that was told.
+
+    Args:
+        kind: the topic's type.
+        now: sim time, s.
     """
 
-    def __init__(self, kind: str) -> None:
+    def __init__(self, kind: str, now: Callable[[], float]) -> None:
         self._make = VIEWS.get(kind, _text)
-        self._kept = ACCUMULATED[kind]() if kind in ACCUMULATED else None
+        self._kept = ACCUMULATED[kind](now) if kind in ACCUMULATED else None
         self._newest: Any = None
 
     def take(self, message: Any) -> None:
@@ -144,7 +148,7 @@ VIEWS: Dict[str, Callable[[Any], View]] = {
 }
 """How a message of a type is shown; others as text."""
 
-ACCUMULATED: Dict[str, Callable[[], Any]] = {
+ACCUMULATED: Dict[str, Callable[[Callable[[], float]], Any]] = {
     "tf2_msgs/TFMessage": Transforms, "tf/tfMessage": Transforms,
     "visualization_msgs/Marker": Markers, "visualization_msgs/MarkerArray": Markers,
 }

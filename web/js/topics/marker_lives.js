@@ -1,0 +1,14 @@
+/** How long markers are shown. Pure. */
+
+/** Seconds by which a guess of sim time may be behind one before. */
+const BEHIND = 1;
+
+/** From when on something is shown, sim time, and how long, s; 0: for ever. @typedef {{from: number, lifetime: number}} Life */
+
+/**
+ * Whether a lifetime is over, or sim time began anew.
+ * @param {Life} life
+ * @param {number} now  sim time, s
+ */
+export const isOver = ({from, lifetime}, now) =>
+  lifetime > 0 && (now >= from + lifetime || now < from - BEHIND);
