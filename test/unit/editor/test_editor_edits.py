@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import asyncio
+from dataclasses import replace
 
 import pytest
 from editor_case import Refused, arm, box, cases, sun
@@ -411,3 +412,22 @@ def test_edits_of_one_browser_are_carried_out_in_their_order(case):
         assert made.sim.models.names() == ["unit_box"] + [f"unit_box_{n}" for n in range(29)]
 
     made.browse(many)
+
+
+def test_the_model_is_meant_where_a_light_has_its_name(case):
+    made = case(box("lamp"), lights=[replace(sun(), name="lamp")])
+    light = made.sim.lights.get("lamp")
+
+    async def edit(browser):
+        await browser.edit("set", target="lamp", path="pose", value=[1, 2, 3, 0, 0, 0, 1])
+        assert made.sim.states.model_state("lamp")[0].position == (1.0, 2.0, 3.0)
+        await browser.edit("delete", names=["lamp"])
+        assert (made.sim.models.names(), made.sim.lights.all()) == ([], [light])
+        await browser.edit("delete", names=["lamp"])  # now the light is
+        assert not made.sim.lights.all()
+        await browser.ask("undo", to=1)
+        assert (made.sim.models.names(), made.sim.lights.all()) == (["lamp"], [light])
+        await browser.edit("rename", name="lamp", to="post")
+        assert (made.sim.models.names(), made.sim.lights.all()) == (["post"], [light])
+
+    made.browse(edit)

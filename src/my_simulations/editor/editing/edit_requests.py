@@ -50,7 +50,7 @@ from .inserts import (
 from .model_building import ModelBuilding
 from .model_scaling import resized
 from .property_path import made
-from .property_target import property_change, split_target
+from .property_target import is_of_light, property_change, split_target
 
 _MOST_IN_A_GROUP = 5000
 _MOST_STEPS = 1000000
@@ -172,12 +172,12 @@ class Edits:
         names = list(dict.fromkeys(op["names"]))
         if not names:
             raise CommandError("nothing is selected")
-        lights = {light.name for light in self._world.lights.all()}
         parts: List[Operation] = []
         for name in names:
-            if name not in lights:
+            is_light = is_of_light(self._world, name)
+            if not is_light:
                 self._world.models.get(name)
-            parts.append(RemoveLight(name) if name in lights else RemoveModel(name))
+            parts.append(RemoveLight(name) if is_light else RemoveModel(name))
         return f"Delete {listed(names)}", _one(parts), {"names": names}
 
     def _paste(self, op: Dict[str, Any]) -> Planned:
@@ -229,7 +229,7 @@ class Edits:
         if not to or "::" in to or to in ("world", "default"):
             raise CommandError(f"{to!r} is not a valid name for a model or light")
         label = f"Rename {name} to {to}"
-        if any(light.name == name for light in self._world.lights.all()):
+        if is_of_light(self._world, name):
             return (label, EditLight(name, replace(self._world.lights.get(name), name=to)),
                     {"name": to})
         model = self._world.models.get(name)

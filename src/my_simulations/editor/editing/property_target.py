@@ -48,7 +48,7 @@ def property_change(world: Simulator, resolver: Resolver, target: str, path: str
     """
     if not target:
         return _of_world(world, path, value)
-    if any(light.name == target for light in world.lights.all()):
+    if is_of_light(world, target):
         _refuse_name(path)
         return EditLight(target, with_value(world.lights.get(target), path, value))
     owner, rest = split_target(world, target)
@@ -60,6 +60,14 @@ def property_change(world: Simulator, resolver: Resolver, target: str, path: str
     _refuse_name(path)
     links = _links_with(owner, rest, path, value, resolver)
     return _edited(owner, replace(owner, links=links))
+
+
+def is_of_light(world: Simulator, name: str) -> bool:
+    """Whether a name means a light; a model and a light of one name: it means the model.
+
+    SDF before 1.7 allows such names (Gazebo behaviour).
+    """
+    return not world.models.has(name) and any(light.name == name for light in world.lights.all())
 
 
 def split_target(world: Simulator, target: str) -> Tuple[Model, str]:
