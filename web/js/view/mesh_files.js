@@ -35,6 +35,15 @@ const text = async (url) => new TextDecoder().decode(await bytes(url));
 /** three turns a scene unless its file says that y is up. */
 const UP_AXIS = /<up_axis>[^<]*<\/up_axis>/;
 
+/** An address as a person reads it; files may name pictures with a bare %. @param {string} url */
+function readable(url) {
+  try {
+    return decodeURI(url);
+  } catch {
+    return url;
+  }
+}
+
 /** @param {string} url */
 const folder = (url) => url.slice(0, url.lastIndexOf('/') + 1);
 
@@ -233,7 +242,7 @@ export class Meshes {
     this.manager.onError = (url) => {
       if (told.has(url)) return;
       told.add(url);
-      onProblem(`Failed to load texture ${decodeURI(url)}`);
+      onProblem(`Failed to load texture ${readable(url)}`);
     };
   }
 
@@ -313,7 +322,7 @@ export class Meshes {
         const root = await this.#read({url: geometry.fallback, format: 'stl'}).catch(() => null);
         if (root) return {found: use(root), whole: true};
       }
-      this.onProblem(`Failed to load mesh ${decodeURI(geometry.url)}: ${faultText(error)}`);
+      this.onProblem(`Failed to load mesh ${readable(geometry.url)}: ${faultText(error)}`);
       return {found: null, whole: false};
     }
   }
