@@ -1,5 +1,5 @@
 /** ROS messages in the scene, each where its frame is, moving with the link that carries it. */
-import {Group, Line, Matrix4, Mesh, Points, Texture} from 'three';
+import {Group, InstancedMesh, Line, Matrix4, Mesh, Points, Texture} from 'three';
 import {compose, inverse} from '../pose.js';
 import {SimClock} from '../sim_clock.js';
 import {isOver} from '../topics/marker_lives.js';
@@ -81,6 +81,7 @@ class Mark {
 function free(object) {
   if (object instanceof Points || object instanceof Line || object instanceof Mesh) {
     object.geometry.dispose();
+    if (object instanceof InstancedMesh) object.dispose();
     const {texture} = object.userData;
     if (texture instanceof Texture) texture.dispose();
   }

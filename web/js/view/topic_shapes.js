@@ -1,13 +1,14 @@
 /** What the view draws of one ROS message: laser fans, points, paths, markers. */
 import {
   BoxGeometry, BufferAttribute, BufferGeometry, ConeGeometry, CylinderGeometry, DataTexture,
-  DoubleSide, Group, Line, LineBasicMaterial, LineSegments, Mesh, MeshBasicMaterial, NearestFilter,
-  PlaneGeometry, Points, PointsMaterial, RGBAFormat, SphereGeometry,
+  DoubleSide, Group, InstancedMesh, Line, LineBasicMaterial, LineSegments, Matrix4, Mesh,
+  MeshBasicMaterial, NearestFilter, PlaneGeometry, Points, PointsMaterial, RGBAFormat, SphereGeometry,
+  Vector3,
 } from 'three';
 import {arrow, ball, segments, through, triad} from './markers.js';
 import {fanOf} from '../topics/laser_fan.js';
 import {label} from './label_sprite.js';
-import {place} from './three_convert.js';
+import {colorOf, place} from './three_convert.js';
 /** @import {Material, Object3D} from 'three' */
 /** @import {
  *   ContactsView, MapView, Marker, PathView, PointsView, RangeView, ScanView
@@ -146,19 +147,41 @@ export function frameShape(name, size) {
   return group;
 }
 
-/** A visualization_msgs/Marker about its own pose. @param {Marker} marker @returns {Object3D} */
+/** Shapes whose points may have colours of their own. */
+const POINTED = new Set(['line_strip', 'line_list', 'points', 'triangle_list', 'cube_list', 'sphere_list']);
+
+/**
+ * A visualization_msgs/Marker about its own pose. As in rviz the colours of points, where there is
+ * one for each, stand for that of the marker, and what is wholly transparent is not drawn.
+ * @param {Marker} marker
+ * @returns {Object3D}
+ */
 export function markerShape(marker) {
   const [r, g, b, a] = marker.color;
   const color = (r * 255 << 16) + (g * 255 << 8) + (b * 255 | 0);
-  const vertexColors = marker.colors.length > 0 && marker.colors.length === marker.points.length;
-  const looks = {opacity: a || 1, transparent: a < 1, vertexColors,
+  const vertexColors = POINTED.has(marker.shape) && marker.colors.length > 0 &&
+    marker.colors.length === marker.points.length;
+  const opacity = vertexColors ? Math.max(...marker.colors.map((one) => one[3])) : a;
+  if (opacity <= 0) return new Group();
+  const looks = {opacity, transparent: opacity < 1, vertexColors,
     color: vertexColors ? 0xffffff : color};
   const [x, y, z] = marker.scale;
-  const solid = () => material(MeshBasicMaterial, {...looks, color, vertexColors: false});
+  const size = new Vector3(x || 1e-3, y || 1e-3, z || 1e-3);
+  const solid = () => material(MeshBasicMaterial, {...looks, vertexColors: false});
   /** @param {BufferGeometry} geometry */
   const sized = (geometry) => {
     const mesh = new Mesh(geometry, solid());
-    mesh.scale.set(x || 1e-3, y || 1e-3, z || 1e-3);
+    mesh.scale.copy(size);
+    return mesh;
+  };
+  /** One at each point, drawn at once. @param {BufferGeometry} geometry */
+  const many = (geometry) => {
+    const mesh = new InstancedMesh(geometry, solid(), marker.points.length);
+    const matrix = new Matrix4();
+    marker.points.forEach(([px, py, pz], index) => {
+      mesh.setMatrixAt(index, matrix.makeScale(size.x, size.y, size.z).setPosition(px, py, pz));
+      if (vertexColors) mesh.setColorAt(index, colorOf(marker.colors[index]));
+    });
     return mesh;
   };
   const lines = () => material(LineBasicMaterial, looks);
@@ -172,8 +195,8 @@ export function markerShape(marker) {
       material(PointsMaterial, {size: Math.max(x, 1e-3), ...looks})));
     case 'triangle_list': return colored(marker, new Mesh(pointsOf(marker),
       material(MeshBasicMaterial, {side: DoubleSide, ...looks})));
-    case 'cube_list': return many(marker, () => sized(new BoxGeometry(1, 1, 1)));
-    case 'sphere_list': return many(marker, () => sized(new SphereGeometry(0.5, 12, 8)));
+    case 'cube_list': return many(new BoxGeometry(1, 1, 1));
+    case 'sphere_list': return many(new SphereGeometry(0.5, 12, 8));
     case 'text': return label(marker.text, `#${color.toString(16).padStart(6, '0')}`);
     default: return sized(new BoxGeometry(1, 1, 1));
   }
@@ -207,15 +230,4 @@ function colored({points, colors}, made) {
   made.geometry.setAttribute('color', new BufferAttribute(
     new Float32Array(colors.flatMap((color) => color.slice(0, 3))), 3));
   return made;
-}
-
-/** @param {Marker} marker @param {() => Object3D} make */
-function many({points}, make) {
-  const group = new Group();
-  for (const point of points.slice(0, 1000)) {
-    const one = make();
-    one.position.fromArray(point);
-    group.add(one);
-  }
-  return group;
 }
