@@ -402,6 +402,24 @@ def test_a_full_disk_is_told_when_a_log_is_written(tmp_path):
         writer.close()
 
 
+@pytest.mark.parametrize("name", ["my run (2)", "a@b#c", "x" * 100])
+def test_a_log_whose_folder_was_renamed_is_listed_and_opened(case, name):
+    made = case(box("a"))
+
+    async def rename(browser):
+        await browser.ask("log_start", name="old")
+        await browser.ask("step", steps=10)
+        await browser.ask("log_stop")
+        folder = made.folder / "data" / "log"
+        (folder / "old").rename(folder / name)
+        (found,) = (await browser.ask("log_list"))["logs"]
+        assert (await browser.ask("log_open", name=found["name"]))["name"] == name
+        with pytest.raises(Refused):
+            await browser.ask("log_start", name=name)
+
+    made.browse(rename)
+
+
 def test_no_log_takes_the_place_of_another(case):
     made = case()
     (made.folder / "data" / "log" / "old").mkdir(parents=True)

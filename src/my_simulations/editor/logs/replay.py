@@ -105,7 +105,9 @@ class Logs:
         if self._writer is not None:
             raise EditRefusedError("recording", f"the log {self._name!r} is already being recorded")
         name = message.get("name") or new_name()
-        path = self._path(name)
+        if not _NAME.match(name):
+            raise CommandError(f"{name!r} is not a valid log name")
+        path = self._more.get(name) or os.path.join(self._folder, name, FILE)
         if os.path.lexists(path):
             raise EditRefusedError("exists", f"log {name!r} already exists")
         self._writer, self._name, self._revision = LogWriter(path), name, -1
@@ -164,12 +166,7 @@ class Logs:
 
     def _list(self, _client: Client, _message: Dict[str, Any]) -> Dict[str, Any]:
         found: List[Dict[str, Any]] = []
-        try:
-            names = os.listdir(self._folder)
-        except OSError:
-            names = []
-        paths = {name: os.path.join(self._folder, name, FILE) for name in names}
-        for name, path in {**paths, **self._more}.items():
+        for name, path in self._paths().items():
             try:
                 status = os.stat(path)
             except OSError:
@@ -177,12 +174,20 @@ class Logs:
             found.append({"name": name, "bytes": status.st_size, "modified": status.st_mtime})
         return {"logs": sorted(found, key=lambda log: -float(log["modified"]))}
 
+    def _paths(self) -> Dict[str, str]:
+        """Where logs may be, by name: folders may have been renamed to any name."""
+        try:
+            names = os.listdir(self._folder)
+        except OSError:
+            names = []
+        return {**{name: os.path.join(self._folder, name, FILE) for name in names}, **self._more}
+
     def _path(self, name: str) -> str:
-        if name in self._more:
-            return self._more[name]
-        if not _NAME.match(name):
-            raise CommandError(f"{name!r} is not a valid log name")
-        return os.path.join(self._folder, name, FILE)
+        """Raises CommandError for a name that is not listed."""
+        path = self._paths().get(name)
+        if path is None:
+            raise CommandError(f"log {name!r} does not exist")
+        return path
 
     # -- playing ---------------------------------------------------------------------------------
 
