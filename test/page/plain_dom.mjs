@@ -24,6 +24,7 @@ class PlainElement extends EventTarget {
   setAttribute() {}
   contains() { return false; }
   closest() { return null; }
+  getContext() { return null; }
   focus() {}
   select() {}
   scrollIntoView() {}

@@ -28,10 +28,13 @@ class Vector extends Thing {
 
 class Place extends Thing {
   children = [];
+  geometry = undefined;
   position = new Vector();
+  rotation = new Vector();
   scale = new Vector();
   quaternion = new Vector();
   matrix = new Thing();
+  layers = new Thing();
   visible = true;
   add(...children) {
     this.children.push(...children);

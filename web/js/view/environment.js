@@ -7,6 +7,7 @@ import {originScale} from '../camera_math.js';
 import {ContactShadows} from './contact_shadows.js';
 import {GroundGrid, makeOrigin} from './ground_grid.js';
 import {groundHeight} from './ground.js';
+import {free} from './markers.js';
 import {roadStrip} from './road_strip.js';
 import {colorOf} from './three_convert.js';
 import {Gradient, WorldSky, leavesBackground} from './sky.js';
@@ -34,6 +35,7 @@ function ribbon(road) {
   geometry.setAttribute('uv', new BufferAttribute(new Float32Array(uvs), 2));
   geometry.setIndex(triangles);
   geometry.computeVertexNormals();
+  geometry.userData.single = true;
   return geometry;
 }
 
@@ -55,6 +57,8 @@ export class Surroundings {
   #haze = null;
   /** @type {Mesh[]} */
   #roads = [];
+  /** What they were laid for. @type {Road[]} */
+  #laid = [];
 
   /** @param {{stage: Stage, store: Store, materials: Materials}} options */
   constructor({stage, store, materials}) {
@@ -126,8 +130,12 @@ export class Surroundings {
 
   #layRoads() {
     const {scene} = this.#stage;
+    const roads = this.#store.document?.roads ?? [];
+    if (roads === this.#laid) return;
+    this.#laid = roads;
     scene.remove(...this.#roads);
-    this.#roads = (this.#store.document?.roads ?? []).filter(({points}) => points.length > 1).map((road) => {
+    this.#roads.forEach(free);
+    this.#roads = roads.filter(({points}) => points.length > 1).map((road) => {
       const mesh = new Mesh(ribbon(road),
         this.#materials.get(road.material ?? ASPHALT, {}, {doubleSided: true}));
       mesh.receiveShadow = true;

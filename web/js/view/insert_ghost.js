@@ -3,9 +3,10 @@ import {rayPlane, WORLD_AXES} from '../drag_math.js';
 import {magnetic} from '../drag_snap.js';
 import {place} from './three_convert.js';
 import {lightIcon} from './light_views.js';
+import {free} from './markers.js';
 import {standaloneModel} from './standalone_model.js';
 /** @import {Group} from 'three' */
-/** @import {Model} from '../protocol.js' */
+/** @import {Light, Model} from '../protocol.js' */
 /** @import {MousePoint} from './pointer.js' */
 /** @import {ViewParts} from './view.js' */
 
@@ -74,13 +75,20 @@ export class Placer {
     this.#dispose = () => {};
     const {placing} = this.#store;
     if (placing) {
-      const ghost = placing.kind === 'light' ? lightIcon(placing.document)
+      const ghost = placing.kind === 'light' ? this.#lightGhost(placing.document)
         : this.#modelGhost(placing.document);
       ghost.visible = false;
       this.#stage.scene.add(ghost);
       this.#ghost = ghost;
     }
     this.#stage.shadowsChanged();
+  }
+
+  /** @param {Light} document */
+  #lightGhost(document) {
+    const group = lightIcon(document);
+    this.#dispose = () => free(group);
+    return group;
   }
 
   /** @param {Model} document */

@@ -19,13 +19,23 @@ const KEPT = 300;
 export function label(text, color = '#ffffff') {
   const key = `${color} ${text}`;
   const material = looks.get(key) ?? written(text, color);
-  if (looks.size > KEPT) looks.clear();
+  // The last one is the one used last.
+  looks.delete(key);
   looks.set(key, material);
+  if (looks.size > KEPT) forgetFirst();
   const sprite = new Sprite(material);
   sprite.scale.set(HEIGHT * material.userData.aspect, HEIGHT, 1);
   sprite.center.set(0, 0);
   sprite.renderOrder = 60;
   return sprite;
+}
+
+/** Should it still be shown somewhere, three uploads it again. */
+function forgetFirst() {
+  const [[key, material]] = looks;
+  looks.delete(key);
+  material.map?.dispose();
+  material.dispose();
 }
 
 /** @param {string} text @param {string} color */

@@ -3,6 +3,7 @@ import {
   BufferAttribute, BufferGeometry, Color, DirectionalLight, Group, HemisphereLight, LineBasicMaterial,
   LineSegments, Mesh, MeshBasicMaterial, PointLight, Quaternion, SphereGeometry, SpotLight, Vector3,
 } from 'three';
+import {free} from './markers.js';
 import {leavesAmbient} from './sky.js';
 import {lightColorOf, place} from './three_convert.js';
 /** @import {Light} from '../protocol.js' */
@@ -35,6 +36,7 @@ const hitGeometry = new SphereGeometry(0.3, 8, 6);
 function wires(points) {
   const geometry = new BufferGeometry();
   geometry.setAttribute('position', new BufferAttribute(new Float32Array(points.flat(2)), 3));
+  geometry.userData.single = true;
   return new LineSegments(geometry, wireMaterial);
 }
 
@@ -185,6 +187,7 @@ export class Lights {
     const {scene} = this.#stage;
     for (const {lamp, icon} of this.#entries.values()) {
       scene.remove(lamp, icon);
+      free(icon);
       if ('target' in lamp) scene.remove(lamp.target);
       lamp.dispose();
     }

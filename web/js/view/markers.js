@@ -30,6 +30,7 @@ export const ball = new SphereGeometry(1, 16, 12);
 export function segments(points, material) {
   const geometry = new BufferGeometry();
   geometry.setAttribute('position', new BufferAttribute(new Float32Array(points.flat()), 3));
+  geometry.userData.single = true;
   const made = new LineSegments(geometry, material);
   made.renderOrder = 50;
   return made;
@@ -75,9 +76,18 @@ export function point(group, direction) {
 /** The edges of a box of size 1. @param {Material} material */
 export const boxLines = (material) => new LineSegments(boxEdges, material);
 
+/** Frees the geometries that only this object has (`userData.single`). @param {Object3D} root */
+export function free(root) {
+  root.traverse((object) => {
+    if ((object instanceof Mesh || object instanceof LineSegments) &&
+      object.geometry.userData.single) object.geometry.dispose();
+  });
+}
+
 /** Takes everything out of a group and frees what belongs to it alone. @param {Object3D} group */
 export function empty(group) {
-  for (const child of [...group.children]) group.remove(child);
+  free(group);
+  group.clear();
 }
 
 /** The small yellow ball that marks what the camera turns about. */

@@ -2,7 +2,7 @@
 import {Group, LineBasicMaterial, Mesh, MeshBasicMaterial} from 'three';
 import {measures} from '../measure_math.js';
 import {label} from './label_sprite.js';
-import {ball, segments} from './markers.js';
+import {ball, empty, segments} from './markers.js';
 /** @import {Vec3} from '../pose.js' */
 /** @import {ViewParts} from './view.js' */
 /** @import {MousePoint} from './pointer.js' */
@@ -55,7 +55,7 @@ export class Measure {
     if (!points.length && !this.#points.length) return;
     this.#points = points;
     this.texts = measures(points);
-    this.#group.clear();
+    empty(this.#group);
     for (const point of points) {
       const dot = new Mesh(ball, dotMaterial);
       dot.position.fromArray(point);

@@ -1,13 +1,13 @@
 /** What can be shown of models besides their looks: collisions, joints, masses, contacts, … */
 import {
-  BoxGeometry, CanvasTexture, DoubleSide, Group, LineBasicMaterial, LineSegments, Matrix4, Mesh,
+  BoxGeometry, CanvasTexture, DoubleSide, Group, LineBasicMaterial, Matrix4, Mesh,
   MeshBasicMaterial, MeshPhongMaterial, Quaternion, SRGBColorSpace, Vector3,
 } from 'three';
 import {equivalentBox} from '../inertia_math.js';
 import {skeletonOf} from '../skeleton.js';
 import {place} from './three_convert.js';
 import {meshOf, visualParts} from './shape_meshes.js';
-import {arrow, ball, boxLines, empty, segments, through, triad} from './markers.js';
+import {arrow, ball, boxLines, empty, free, segments, through, triad} from './markers.js';
 import {patternCanvas} from './builtin_textures.js';
 /** @import {Box3, Object3D} from 'three' */
 /** @import {Contact, Joint, Link, Model} from '../protocol.js' */
@@ -42,7 +42,16 @@ function basisOf(vectors) {
   return new Matrix4().makeBasis(x, y, z);
 }
 
+/** @type {MeshBasicMaterial|undefined} */
+let massLooks;
+
+/** One for all links; there is a canvas for it only in a page. */
 function massMaterial() {
+  massLooks ??= makeMassMaterial();
+  return massLooks;
+}
+
+function makeMassMaterial() {
   const canvas = patternCanvas('com');
   const map = canvas && new CanvasTexture(canvas);
   if (map) map.colorSpace = SRGBColorSpace;
@@ -187,7 +196,10 @@ export class Overlays {
 
   /** @param {string} name */
   #drop(name) {
-    for (const group of this.#groups.get(name)?.values() ?? []) this.#stage.scene.remove(group);
+    for (const group of this.#groups.get(name)?.values() ?? []) {
+      free(group);
+      this.#stage.scene.remove(group);
+    }
     this.#groups.delete(name);
   }
 
@@ -271,9 +283,6 @@ export class Overlays {
   /** @param {Contact[]} contacts */
   #showContacts(contacts) {
     if (!contacts.length && !this.#contacts.children.length) return;
-    for (const child of this.#contacts.children) {
-      if (child instanceof LineSegments) child.geometry.dispose();
-    }
     empty(this.#contacts);
     const shown = contacts.filter(({a, b}) =>
       [a, b].some((name) => this.#store.overlay('contacts', this.#store.split(name)[0]?.name ?? '')));

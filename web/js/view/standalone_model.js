@@ -1,5 +1,6 @@
 /** A model drawn by itself, outside of the world: ghosts, previews, thumbnails. */
-import {Group, Mesh} from 'three';
+import {Group} from 'three';
+import {free} from './markers.js';
 import {place} from './three_convert.js';
 import {meshOf, visualParts} from './shape_meshes.js';
 import {tinted} from './tints.js';
@@ -37,8 +38,6 @@ export function standaloneModel(model, stock, look = {}) {
       else add(parts);
     }
   }
-  const dispose = () => group.traverse((object) => {
-    if (object instanceof Mesh && object.geometry.userData.single) object.geometry.dispose();
-  });
+  const dispose = () => free(group);
   return {group, ready: Promise.all(waits).then(() => {}), dispose};
 }
