@@ -1,6 +1,7 @@
 import assert from 'node:assert/strict';
 import {test} from 'node:test';
 import {bodySections, sharedSections} from '../../web/js/panels/model_sections.js';
+import {near} from './near.mjs';
 
 const RED = [1, 0, 0, 1];
 
@@ -64,6 +65,16 @@ test('several models show what they have in common and are set together', () => 
   const [move] = fieldOf(section, 'pose').ops([null, 7, 0.5, 0, 0, 0]).ops;
   assert.deepEqual(move.poses.a.slice(0, 3), [0, 7, 0.5]);
   assert.deepEqual(move.poses.b.slice(0, 3), [3, 7, 0.5]);
+});
+
+test('what is not typed of the pose of several stays as exact as it is', () => {
+  const exact = [0, 0, 0.4999962, 0, 0, Math.SQRT1_2, Math.SQRT1_2];
+  const {sections: [section]} = sharedSections([box('a'), box('b')], () => exact);
+  assert.deepEqual(section.entity.pose, [0, 0, 0.5, 0, 0, 1.5708]);
+  const [move] = fieldOf(section, 'pose').ops([7, ...section.entity.pose.slice(1)]).ops;
+  assert.equal(move.poses.b[0], 7);
+  assert.equal(move.poses.b[2], exact[2]);
+  near(move.poses.b.slice(3), exact.slice(3), 1e-9);
 });
 
 test('what is static has no mass to set', () => {

@@ -149,8 +149,9 @@ export function sharedSections(models, poseOf) {
   const single = models.filter((model) => !model.static && model.links.length === 1);
   const solids = models.flatMap((model) => model.links.flatMap((link) => link.collisions.map(
     (collision) => ({collision, target: `${linkTarget(link, model.name)}::collision:${collision.name}`}))));
+  const pose = [0, 1, 2, 3, 4, 5].map((at) => common(poses.map((one) => Math.round(one[at] * 1e5) / 1e5)));
   /** @type {Field[]} */
-  const fields = [poseField(models, poses, count), flag('static'), flag('self_collide'),
+  const fields = [poseField(models, poses, pose, count), flag('static'), flag('self_collide'),
     flag('enable_wind')];
   if (single.length === models.length) {
     fields.push({path: 'mass', label: 'mass of each', type: 'number', unit: 'kg', above: 0,
@@ -166,7 +167,7 @@ export function sharedSections(models, poseOf) {
     label: `Set color of ${count}`, ops: models.flatMap((model) => colourOps(model, value))})});
   const visuals = models.flatMap(({links}) => links.flatMap((link) => link.visuals));
   const entity = {
-    pose: [0, 1, 2, 3, 4, 5].map((at) => common(poses.map((pose) => Math.round(pose[at] * 1e5) / 1e5))),
+    pose,
     static: common(models.map((model) => model.static)),
     self_collide: common(models.map((model) => model.self_collide)),
     enable_wind: common(models.map((model) => model.enable_wind)),
@@ -182,10 +183,11 @@ export function sharedSections(models, poseOf) {
  * Position and angles of several: what is typed is taken over by all, the rest stays each one's.
  * @param {Model[]} models
  * @param {number[][]} poses  six numbers each
+ * @param {unknown[]} shown   those that all have, rounded
  * @param {string} count
  * @returns {Field}
  */
-function poseField(models, poses, count) {
+function poseField(models, poses, shown, count) {
   return {path: 'pose', label: 'pose of each', type: 'vector',
     parts: ['x', 'y', 'z', 'roll', 'pitch', 'yaw'], unit: 'm, rad',
     ops: (value) => {
@@ -193,7 +195,8 @@ function poseField(models, poses, count) {
       /** @type {Record<string, number[]>} */
       const moved = {};
       models.forEach(({name}, index) => {
-        moved[name] = sevenOf(poses[index].map((part, at) => typed[at] ?? part));
+        moved[name] = sevenOf(poses[index].map((part, at) =>
+          (typed[at] === shown[at] ? part : typed[at] ?? part)));
       });
       return {label: `Move ${count}`, ops: [{kind: 'move', poses: moved}]};
     }};
