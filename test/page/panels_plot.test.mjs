@@ -1,6 +1,6 @@
 import assert from 'node:assert/strict';
 import test from 'node:test';
-import {csvOf, extent, KEPT, Series, ticks, variablesOf} from '../../web/js/panels/plot_data.js';
+import {csvOf, extent, KEPT, Series, take, ticks, variablesOf} from '../../web/js/panels/plot_data.js';
 import {box, world} from './fake_simulator.mjs';
 
 function series(variable, ...samples) {
@@ -12,6 +12,23 @@ function series(variable, ...samples) {
 test('time that runs back begins a curve anew', () => {
   const curve = series('a.x', [1, 1], [2, 2], [0.5, 3]);
   assert.deepEqual([curve.times, curve.values], [[0.5], [3]]);
+});
+
+test('time that runs back begins all curves anew, also those of what has gone', () => {
+  const [moving, gone] = ['car.x', 'wall.x'].map((variable) => new Series(variable));
+  const all = [moving, gone];
+  take(all, gone, {time: 100, value: 5});
+  for (const one of all) take(all, one, {time: 101, value: 6});
+  take(all, gone, {time: 102, problem: 'no model wall'});
+  assert.deepEqual([gone.ended, gone.times], [true, [100, 101]]);
+  for (const time of [0, 1, 2, 3]) {
+    take(all, moving, {time, value: time});
+    take(all, gone, {time, problem: 'no model wall'});
+  }
+  assert.deepEqual([moving.times, gone.times], [[0, 1, 2, 3], []]);
+  assert.equal(extent(all, 10, 3).to, 3);
+  take(all, gone, {time: 4, value: 1});
+  assert.equal(gone.ended, false);
 });
 
 test('a second sample of the same time replaces the first', () => {

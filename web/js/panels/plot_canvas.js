@@ -149,7 +149,7 @@ function drawCurve(pen, {series, color}, range, across, down, width) {
     low = high = values[at];
   }
   // What has not changed since is still what it was.
-  if (times.length) pen.lineTo(across(range.to), down(values[values.length - 1]));
+  if (times.length && !series.ended) pen.lineTo(across(range.to), down(values[values.length - 1]));
   pen.stroke();
 }
 

@@ -15,6 +15,10 @@ export class Series {
     this.times = [];
     /** @type {number[]} */
     this.values = [];
+    /** Sim time when it was last told, s. */
+    this.told = -Infinity;
+    /** Whether what it was of has gone. */
+    this.ended = false;
   }
 
   /**
@@ -41,6 +45,7 @@ export class Series {
   clear() {
     this.times.length = 0;
     this.values.length = 0;
+    this.told = -Infinity;
   }
 
   /**
@@ -51,6 +56,20 @@ export class Series {
     const index = upper(this.times, time) - 1;
     return index >= 0 ? this.values[index] : undefined;
   }
+}
+
+/**
+ * Takes what is told of one curve. Time that runs back (a reset) begins all curves anew, also those
+ * of what has gone: the axis is that of the present time.
+ * @param {Series[]} all
+ * @param {Series} series
+ * @param {{time: number, value?: number|null, problem?: string|null}} push
+ */
+export function take(all, series, {time, value, problem}) {
+  if (all.some(({told}) => told > time)) for (const one of all) one.clear();
+  if (value !== undefined && value !== null) series.add(time, value);
+  series.told = time;
+  series.ended = Boolean(problem);
 }
 
 /**

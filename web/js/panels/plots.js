@@ -6,7 +6,7 @@ import {saveBlob} from '../actions.js';
 import {fill, h, onActivate, onceAFrame, roving} from './dom.js';
 import {icon} from './icons.js';
 import {CURVE_COLORS, drawPlot} from './plot_canvas.js';
-import {csvOf, Series, variablesOf} from './plot_data.js';
+import {csvOf, Series, take, variablesOf} from './plot_data.js';
 /** @import {Curve} from './plot_canvas.js' */
 /** @import {WatchPush} from '../protocol.js' */
 
@@ -170,14 +170,17 @@ export class Plots {
   }
 
   clear() {
-    for (const {series} of this.#series.values()) series.clear();
+    for (const series of this.#all) series.clear();
     this.#draw();
   }
 
+  get #all() {
+    return [...this.#series.values()].map(({series}) => series);
+  }
+
   exportCsv() {
-    const all = [...this.#series.values()].map(({series}) => series);
-    if (!all.length) this.page.notices.say('No curves to export');
-    else saveBlob(new Blob([csvOf(all)], {type: 'text/csv'}), 'plot.csv');
+    if (!this.#series.size) this.page.notices.say('No curves to export');
+    else saveBlob(new Blob([csvOf(this.#all)], {type: 'text/csv'}), 'plot.csv');
   }
 
   /** The canvases below each other in one picture. */
@@ -195,15 +198,15 @@ export class Plots {
     whole.toBlob((blob) => blob && saveBlob(blob, 'plot.png'), 'image/png');
   }
 
-  /** @param {WatchPush} watchPush */
-  #take({topic, time, value, problem}) {
+  /** @param {WatchPush} push */
+  #take(push) {
+    const {topic, problem} = push;
     if (!topic.startsWith('plot:')) return;
     const kept = this.#series.get(topic.slice(5));
     if (!kept) return;
     if (problem && kept.problem !== problem) this.page.notices.say(`${topic.slice(5)}: ${problem}`);
     kept.problem = problem;
-    if (value === undefined || value === null) return;
-    kept.series.add(time, value);
+    take(this.#all, kept.series, push);
     this.#draw();
   }
 
