@@ -117,3 +117,24 @@ test('another tool ends placing', () => {
   store.setMode('rotate');
   assert.equal(store.placing, null);
 });
+
+test('what is shown of a model goes with its name, and not to the next one of it', () => {
+  const store = new Store();
+  const start = (file) =>
+    store.receive({type: 'world', revision: 1, document: {...world(), file}});
+  const shown = () => ['a', 'c'].map((name) => store.overlay('transparent', name));
+  const pose = [0, 0, 0, 0, 0, 0, 1];
+  start('one.world');
+  store.setOverlay('transparent', true, 'a');
+  store.receive({type: 'change', revision: 2, models: {a: null, c: model('c', 7, pose)}});
+  assert.deepEqual(shown(), [false, true]);
+  store.receive({type: 'change', revision: 3, models: {a: model('a', 8, pose)}});
+  assert.deepEqual(shown(), [false, true]);
+  start('one.world');  // as after a log
+  assert.deepEqual(shown(), [false, true]);
+  start('two.world');
+  store.setOverlay('transparent', true, 'a');
+  assert.deepEqual(shown(), [true, false]);
+  start('three.world');
+  assert.deepEqual(shown(), [false, false]);
+});

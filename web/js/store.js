@@ -124,6 +124,20 @@ export class Store extends WorldStore {
   }
 
   /**
+   * What is shown of a model goes with it, and is not that of the next one of its name.
+   * @param {string} name
+   * @param {string|null} to  its new name
+   */
+  modelGone(name, to) {
+    const {[name]: flags, ...others} = this.overlays.models;
+    if (flags) this.overlays.models = to === null ? others : {...others, [to]: flags};
+  }
+
+  worldGone() {
+    this.overlays.models = {};
+  }
+
+  /**
    * @param {string[]} names
    * @param {{add?: boolean, toggle?: boolean}} [how]  neither: the names replace the selection
    */

@@ -1,6 +1,7 @@
 /** The world as the simulator last told it: document, poses, time, history, people. */
 import {Emitter} from './emitter.js';
 import {decodeFrame, LIVE} from './pose_frames.js';
+import {linkNames, renamedModel} from './model_editor/model_edits.js';
 import {compose, inverse} from './pose.js';
 import {splitScoped} from './scoped_names.js';
 /** @import {
@@ -113,6 +114,8 @@ export class WorldStore extends Emitter {
 
   /** @param {WorldPush} worldPush */
   #replaceWorld({revision, document}) {
+    const before = this.document;
+    if (before && (before.name !== document.name || before.file !== document.file)) this.worldGone();
     this.revision = revision;
     this.document = document;
     this.poses.clear();
@@ -126,6 +129,8 @@ export class WorldStore extends Emitter {
   #change({revision, models, lights, world, order}) {
     if (!this.document) return;
     this.revision = revision;
+    const gone = this.document.models.filter(({name}) => models?.[name] === null);
+    const before = new Set(gone.length ? this.document.models.map(({name}) => name) : []);
     /** @type {EntityChange[]} */
     const changed = [];
     for (const [name, value] of Object.entries(models ?? {})) {
@@ -140,6 +145,10 @@ export class WorldStore extends Emitter {
     Object.assign(this.document, world);
     if (world && Object.keys(world).length) changed.push({name: '', kind: 'world', value: world});
     if (order) this.#sort(order);
+    for (const model of gone) {
+      const renamed = renamedModel(this.document.models, linkNames(model), before);
+      this.modelGone(model.name, renamed?.name ?? null);
+    }
     for (const detail of changed) this.emit('entity', detail);
     if (order) this.emit('order');
     this.dropGone();
@@ -173,6 +182,16 @@ export class WorldStore extends Emitter {
 
   /** Called when entities may have gone. */
   dropGone() {}
+
+  /**
+   * Called when there is no model of a name any more, before others are told.
+   * @param {string} _name
+   * @param {string|null} _to  its new name, where it got one
+   */
+  modelGone(_name, _to) {}
+
+  /** Called when another world was opened, before others are told. */
+  worldGone() {}
 
   /** @param {boolean} connected */
   #setConnected(connected) {
