@@ -24,7 +24,7 @@ from ...geometry import (
     scale,
     subtract,
 )
-from .bodies import Axis, Body
+from .bodies import Axis, Body, put_axis
 from .link_states import place
 
 _JOINT_TYPE, _PARENT = 2, 16     # of pybullet.getJointInfo
@@ -32,6 +32,7 @@ _BASE = -1
 _NEAR = 2e-5
 """m and rad: a pose as near as this to one that the joint allows is meant to be that one. Saved
 poses have six digits."""
+_SAME = 1e-12
 _STEP = 0.1   # rad or m, to see which way an axis goes
 
 
@@ -45,15 +46,17 @@ def turned(body: Body, way: Pose) -> bool:
         axis = next((one for one in body.axes if one.index == index), None)
         before = Pose(*place(body.uid, index))
         after = compose(way, before)
-        position = _position(body, axis, before, after) if axis is not None else None
-        if axis is None and _is_near(before, after):
+        if _is_near(before, after, _SAME if axis is not None else _NEAR):
             continue
+        # The half of a screw that turns does not say where its link is.
+        position = _position(body, axis, before, after) \
+            if axis is not None and axis.follower is None else None
         if axis is None or position is None:
             for other, old in done:
-                pybullet.resetJointState(body.uid, other.index, old)
+                put_axis(body, other, old)
             return False
         done.append((axis, pybullet.getJointState(body.uid, axis.index)[0]))
-        pybullet.resetJointState(body.uid, axis.index, position)
+        put_axis(body, axis, position)
     return True
 
 
@@ -90,7 +93,7 @@ def _position(body: Body, axis: Axis, before: Pose, after: Pose) -> Optional[flo
         else norm(subtract(after.position, before.position))
     for position in (start + span, start - span):
         pybullet.resetJointState(body.uid, axis.index, position)
-        fits = _is_near(Pose(*place(body.uid, axis.index)), after)
+        fits = _is_near(Pose(*place(body.uid, axis.index)), after, _NEAR)
         pybullet.resetJointState(body.uid, axis.index, start)
         if fits:
             return _least(position, axis) if turns else position
@@ -103,9 +106,9 @@ def _least(angle: float, axis: Axis) -> float:
     return one if axis.lower <= one <= axis.upper else angle
 
 
-def _is_near(one: Pose, other: Pose) -> bool:
+def _is_near(one: Pose, other: Pose, bound: float) -> bool:
     apart = compose(inverse(one), other)
-    return norm(apart.position) < _NEAR and norm(_rotation(apart.orientation)) < _NEAR
+    return norm(apart.position) < bound and norm(_rotation(apart.orientation)) < bound
 
 
 def _rotation(turn: Quat) -> Vec3:

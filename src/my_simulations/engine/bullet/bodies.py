@@ -73,6 +73,7 @@ class Axis:
         number: which of its joint's axes it is.
         ease: what acceleration an effort of 1 gives it, all else free, as the file has the body.
         lower, upper: its stops, rad or m.
+        follower: of a screw PyBullet's index of its other half, and how far that one goes with it.
     """
 
     row: int
@@ -82,6 +83,7 @@ class Axis:
     ease: float = 0.0
     lower: float = -math.inf
     upper: float = math.inf
+    follower: Optional[Tuple[int, float]] = None
 
 
 @dataclass
@@ -225,6 +227,14 @@ def place(body: Body, link_pose: Pose) -> None:
     for uid, (recipe, _) in zip(body.more, body.shapes[1:]):
         stand = piece_pose(at, recipe)
         pybullet.resetBasePositionAndOrientation(uid, stand.position, stand.orientation)
+
+
+def put_axis(body: Body, axis: Axis, position: float, rate: float = 0.0) -> None:
+    """Set the position and rate of a joint axis, of both halves of a screw."""
+    pybullet.resetJointState(body.uid, axis.index, position, rate)
+    if axis.follower is not None:
+        index, ratio = axis.follower
+        pybullet.resetJointState(body.uid, index, ratio * position, ratio * rate)
 
 
 def piece_pose(at: Pose, recipe: Recipe) -> Pose:

@@ -165,7 +165,13 @@ class Constraints:
                 if node.kind == "prismatic":
                     turning, sliding = sliding, turning
                 assert following.joint is node.joint
-                self._gear((body, turning), (body, sliding), node.joint.thread_pitch)
+                pitch = node.joint.thread_pitch
+                self._gear((body, turning), (body, sliding), pitch)
+                for axis in body.axes:
+                    if axis.index == turning and pitch:
+                        axis.follower = sliding, -1.0 / pitch
+                    elif axis.index == sliding:
+                        axis.follower = turning, -pitch
 
     def _gearbox(self, joint: Joint) -> None:
         """theta2 = -ratio theta1: angles of child and parent about the reference link."""

@@ -18,7 +18,7 @@ from ..body_plan import BASE
 from ..ring import JOINT_WIDTH, JOINTS, LINK_WIDTH, LINKS
 from .bodies import Body
 from .closing_joints import ClosingJoint
-from .link_states import motions
+from .link_states import motion, motions
 
 _ROW = struct.Struct("=13d")
 _PLACE = struct.Struct("=7d")
@@ -269,27 +269,25 @@ class StateReadout:
 
     def _read_tree(self, body: Body, offset_rows: List[int]) -> None:
         uid, links = body.uid, self._link_bytes
-        total = 0.0
-        hung = body.parts
+        hung = body.parts if body.base is None else body.parts[1:]
+        found = motions(uid, [part.index for part in hung])
         if body.base is not None:
-            position, turn = pybullet.getBasePositionAndOrientation(uid)
-            linear, angular = pybullet.getBaseVelocity(uid)
-            _ROW.pack_into(links, body.parts[0].row * _ROW.size, *position, *turn, *linear,
-                           *angular)
-            total += sum(position) + sum(turn) + sum(linear) + sum(angular)
-            hung = body.parts[1:]
-        for part, state in zip(hung, motions(uid, [part.index for part in hung])):
-            _ROW.pack_into(links, part.row * _ROW.size, *state.position, *state.orientation,
-                           *state.linear, *state.angular)
-            total += sum(state.position) + sum(state.linear)
-        if body.axes:
-            states = pybullet.getJointStates(uid, [axis.index for axis in body.axes])
-            for axis, (at, rate, *_) in zip(body.axes, states):
-                _AXIS.pack_into(self._joint_bytes, axis.row * _AXIS.size, at, rate)
-                total += at + rate
+            found.insert(0, motion(uid, BASE))
+        states = pybullet.getJointStates(uid, [axis.index for axis in body.axes]) \
+            if body.axes else ()
+        total = 0.0
+        for position, orientation, linear, angular in found:
+            total += sum(position) + sum(orientation) + sum(linear) + sum(angular)
+        for state in states:
+            total += state[0] + state[1]
         if total - total != 0.0:
-            self._diverged(body)
+            self._diverged(body)    # which needs the rows as they were
             return
+        for part, one in zip(body.parts, found):
+            _ROW.pack_into(links, part.row * _ROW.size, *one.position, *one.orientation,
+                           *one.linear, *one.angular)
+        for axis, state in zip(body.axes, states):
+            _AXIS.pack_into(self._joint_bytes, axis.row * _AXIS.size, state[0], state[1])
         offset_rows.extend(part.row for part in body.parts if part.row in self._offsets)
 
     def _to_link_frames(self, rows: List[int], twists: bool = True) -> None:

@@ -39,10 +39,9 @@ def restore(entry: Entry, state: ModelState) -> None:
         if body.rigid or body.base is not None:
             bodies.place(body, link.pose)
         for axis in body.axes:
-            pybullet.resetJointState(body.uid, axis.index,
-                                     *rates[row_name(axis.name, axis.number)])
+            bodies.put_axis(body, axis, *rates[row_name(axis.name, axis.number)])
         for ball in body.balls:
-            _restore_ball(body, ball, entry, state)
+            set_ball(body, ball, entry.pose, lambda row: state.links[row - entry.first_row])
         if not body.rigid and body.base is None:
             _restore_base(body, link.pose)
         if body.moves and (body.rigid or body.base is not None):
@@ -60,11 +59,20 @@ def _restore_base(body: Body, link_pose: Pose) -> None:
                                                  target.orientation)
 
 
-def _restore_ball(body: Body, ball: bodies.Ball, entry: Entry, state: ModelState) -> None:
-    child = state.links[ball.child.row - entry.first_row]
-    mine, spin, theirs = ball.child.com_pose(child.pose), child.twist.angular, entry.pose
+def set_ball(body: Body, ball: bodies.Ball, base: Pose,
+             state_of: Callable[[int], LinkState]) -> None:
+    """Give a ball joint the angles and rates of the links that it connects.
+
+    Args:
+        body: whose joint it is.
+        ball: the joint.
+        base: the pose of a fixed base.
+        state_of: gives a link row's state.
+    """
+    child = state_of(ball.child.row)
+    mine, spin, theirs = ball.child.com_pose(child.pose), child.twist.angular, base
     if ball.parent is not None:
-        parent = state.links[ball.parent.row - entry.first_row]
+        parent = state_of(ball.parent.row)
         theirs = ball.parent.com_pose(parent.pose)
         spin = subtract(spin, parent.twist.angular)
     between = multiply(conjugate(theirs.orientation), mine.orientation)

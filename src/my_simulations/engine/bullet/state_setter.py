@@ -28,7 +28,7 @@ from .forces import Forces
 from .gyroscopic_rigid import GyroscopicRigid
 from .pinned_bodies import PinnedBodies
 from .state_readout import StateReadout
-from .state_restore import Entry
+from .state_restore import Entry, set_ball
 from .wake_up import WakeUp
 
 
@@ -106,7 +106,7 @@ class StateSetter:
                 continue
             body, axis = self._axes[row]
             self._waker.around([body])
-            pybullet.resetJointState(body.uid, axis.index, position, rate)
+            bodies.put_axis(body, axis, position, rate)
             self._forces.disturbed(body)
             self._spin.moved(body)
             self._readout.touch(body)
@@ -118,8 +118,10 @@ class StateSetter:
             bodies.place(body, last.pose)
             bodies.launch(body, last.pose, STILL)
         for axis in body.axes:
-            pybullet.resetJointState(body.uid, axis.index,
-                                     float(self._readout.joints[axis.row, 0]), 0.0)
+            bodies.put_axis(body, axis, float(self._readout.joints[axis.row, 0]))
+        for ball in body.balls:
+            base = Pose(*pybullet.getBasePositionAndOrientation(body.uid))
+            set_ball(body, ball, base, lambda row: LinkState(self.link_state(row).pose))
         self._forces.disturbed(body)
         self._spin.moved(body)
 
@@ -156,8 +158,11 @@ class StateSetter:
         for axis in body.axes:
             rate = rates[axis.index] if twist is None else (
                 anchored_bodies.rate(body, axis, twist) if is_anchored else 0.0)
-            pybullet.resetJointState(body.uid, axis.index,
-                                     pybullet.getJointState(body.uid, axis.index)[0], rate)
+            bodies.put_axis(body, axis, pybullet.getJointState(body.uid, axis.index)[0], rate)
+        if twist is not None:
+            for ball in body.balls:
+                turn = pybullet.getJointStateMultiDof(body.uid, ball.index)[0]
+                pybullet.resetJointStateMultiDof(body.uid, ball.index, turn, (0.0, 0.0, 0.0))
         self._forces.disturbed(body)
         if body.moves and not is_anchored:
             bodies.launch(body, target, _carried(lead, target, at, twist))
