@@ -100,6 +100,22 @@ def test_joint_states_come_at_their_rate_and_before_any_other_controller():
     assert len(messages[-1].velocity) == len(messages[-1].effort) == 3
 
 
+def test_joint_states_are_in_alphabetical_order_of_the_joints():
+    arm = Arm("EffortJointInterface", names=("shoulder", "elbow"), states=STATE)
+    arm.run("states")
+    arm.context.joints["elbow"].position = 0.25
+    arm.context.advance(0.02)
+    (message,) = arm.published("joint_states")
+    assert (message.name, message.position) == (["elbow", "shoulder"], [0.25, 0.0])
+
+
+def test_joint_states_are_in_the_order_that_the_controller_is_told():
+    arm = Arm(states={**STATE, "joints": ["two", "one"]})
+    arm.run("states")
+    arm.context.advance(0.02)
+    assert arm.published("joint_states")[0].name == ["two", "one"]
+
+
 def test_a_rate_is_needed_for_joint_states():
     arm = Arm(states={"type": STATE["type"]})
     assert not arm.load("states")

@@ -9,11 +9,14 @@ from .controller import Controller
 
 
 class JointStateController(Controller):
-    """Names and extra joints as the original; the topic is in the robot's namespace."""
+    """Names, in alphabetical order, and extra joints as the original.
+
+    The topic is in the robot's namespace.
+    """
 
     def load(self) -> None:
         """Find the joints, the rate, and joints that are not there but are to be published."""
-        names = self.settings.texts("joints", self.hardware.names)
+        names = self.settings.texts("joints", sorted(self.hardware.names))
         self._joints = [self.hardware.state(name) for name in names]
         if self.settings.get("publish_rate") is None:
             raise PluginError(f"parameter {self.name}/publish_rate is missing")
