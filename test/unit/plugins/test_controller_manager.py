@@ -207,3 +207,12 @@ def test_what_comes_while_a_controller_does_not_run_is_told_once():
     for _ in range(3):
         arm.hear("forward/command", data=2.0)
     assert sum("does not run" in text for text in arm.context.said) == 1
+
+
+@pytest.mark.parametrize(("inside", "place"), [
+    ("", "robot/controller_manager"), ("<robotNamespace/>", "controller_manager"),
+    ("<robotNamespace> </robotNamespace>", "controller_manager"),
+    ("<robotNamespace>left</robotNamespace>", "left/controller_manager")])
+def test_the_manager_is_in_the_namespace_that_the_element_says(inside, place):
+    arm = Arm(inside=inside)
+    assert f"{place}/list_controllers" in arm.context.services

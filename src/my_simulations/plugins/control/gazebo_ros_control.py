@@ -17,7 +17,8 @@ class GazeboRosControl(Plugin):
     def load(self) -> None:
         """Find the joints; offer the controller manager."""
         context, p = self.context, self.context.parameters
-        context.use_namespace(p.text("robotNamespace") or context.model)
+        # As in Gazebo an empty element, such as xacro leaves, is the node's namespace.
+        context.use_namespace(p.text("robotNamespace", context.model))
         simulated = p.text("robotSimType")
         if simulated not in _KNOWN:
             context.warn(f"<robotSimType> {simulated} is not simulated; {_KNOWN[1]} is used")
