@@ -167,21 +167,99 @@ def test_limits_on_the_parameter_server_come_before_those_of_the_description():
     assert arm.at() == pytest.approx(0.1, abs=1e-6)
 
 
-def test_the_emergency_stop_holds_positions_and_ends_controllers_until_it_is_over():
-    arm = Arm(inside="<eStopTopic>stop</eStopTopic>", forward=FORWARD)
+STOP = "<eStopTopic>stop</eStopTopic>"
+RATE = {"type": "velocity_controllers/JointVelocityController", "joint": "one"}
+PUSH = {"type": "effort_controllers/JointEffortController", "joint": "one"}
+
+
+def test_the_emergency_stop_holds_positions_until_it_is_over():
+    arm = Arm(inside=STOP, forward=FORWARD)
     arm.run("forward")
     arm.hear("forward/command", data=2.0)
     arm.context.advance(0.02)
     arm.hear("stop", data=True)
     halted = arm.at()
+    arm.hear("forward/command", data=-1.0)
     arm.context.advance(1.0)
     assert arm.at() == pytest.approx(halted, abs=1e-6)
-    assert arm.states() == {"forward": "stopped"}
     arm.hear("stop", data=False)
-    assert arm.states() == {"forward": "running"}
+    arm.context.advance(1.0)
+    assert arm.at() == pytest.approx(halted, abs=1e-6)   # started anew, where the joint is
     arm.hear("forward/command", data=1.0)
     arm.context.advance(1.0)
     assert arm.at() == pytest.approx(1.0, abs=1e-6)
+
+
+def test_controllers_run_and_joint_states_come_during_the_emergency_stop():
+    arm = Arm(inside=STOP, forward=FORWARD, states=STATE)
+    arm.run("forward", "states")
+    arm.hear("stop", data=True)
+    arm.context.advance(0.1)
+    assert arm.states() == {"forward": "running", "states": "running"}
+    assert [one.header.stamp for one in arm.published("joint_states")] == [
+        20e6, 40e6, 60e6, 80e6, 100e6]
+
+
+@pytest.mark.parametrize(("interface", "controller"), [
+    ("VelocityJointInterface", RATE), ("EffortJointInterface", PUSH),
+    ("PositionJointInterface", FORWARD)])
+def test_a_controller_that_is_started_during_the_emergency_stop_drives_after_it(
+        interface, controller):
+    arm = Arm(interface, inside=STOP, late=controller)
+    arm.hear("stop", data=True)
+    arm.run("late")
+    arm.hear("late/command", data=2.0)
+    arm.context.advance(0.5)
+    assert arm.at() == pytest.approx(0.0, abs=1e-9)
+    arm.hear("stop", data=False)
+    arm.hear("late/command", data=2.0)
+    arm.context.advance(0.5)
+    assert arm.at() > 0.1
+
+
+@pytest.mark.parametrize("event", ["reset", "clock_set"])
+def test_a_reset_during_the_emergency_stop_leaves_controllers_running_and_joints_at_rest(event):
+    arm = Arm(inside=STOP, forward=FORWARD)
+    arm.run("forward")
+    arm.hear("forward/command", data=2.0)
+    arm.context.advance(0.02)
+    arm.hear("stop", data=True)
+    if event == "reset":
+        arm.context.joints["one"].position = 0.0
+    getattr(arm.plugin, event)()
+    begun = arm.at()
+    arm.hear("forward/command", data=1.0)
+    arm.context.advance(1.0)
+    assert arm.at() == pytest.approx(begun, abs=1e-6)
+    assert arm.states() == {"forward": "running"}
+    arm.hear("stop", data=False)
+    arm.hear("forward/command", data=1.0)
+    arm.context.advance(1.0)
+    assert arm.at() == pytest.approx(1.0, abs=1e-6)
+
+
+def test_a_controller_that_is_loaded_anew_during_the_emergency_stop_is_the_one_that_goes_on():
+    arm = Arm(inside=STOP, forward=FORWARD)
+    arm.run("forward")
+    arm.hear("stop", data=True)
+    assert arm.switch((), ["forward"])
+    assert arm.ask("unload_controller", name="forward").ok
+    arm.run("forward")
+    arm.hear("stop", data=False)
+    arm.hear("forward/command", data=1.0)
+    arm.context.advance(1.0)
+    assert arm.at() == pytest.approx(1.0, abs=1e-6)
+
+
+def test_loops_between_interface_and_joint_hold_still_during_the_emergency_stop():
+    gains = {"gazebo_ros_control": {"pid_gains": {"one": {"p": 100.0, "d": 20.0}}}}
+    arm = Arm(inside=STOP, parameters=gains, forward=FORWARD)
+    arm.run("forward")
+    arm.hear("stop", data=True)
+    arm.hear("forward/command", data=0.5)
+    arm.context.advance(1.0)
+    assert arm.at() == pytest.approx(0.0, abs=1e-6)
+    assert arm.context.joints["one"].servo.drive_gains.p == 100.0
 
 
 def test_a_reset_starts_controllers_anew_where_joints_are():

@@ -35,7 +35,8 @@ class GazeboRosControl(Plugin):
         self._hardware.rest()
 
     def reset(self) -> None:
-        """Joints are where they began: controllers start anew there."""
+        """Joints are where they began: they are held, and controllers start anew, there."""
+        self._hardware.halt(self._stopped)
         self._manager.restart()
 
     def clock_set(self) -> None:
@@ -47,8 +48,10 @@ class GazeboRosControl(Plugin):
         self._manager.close()
 
     def _hear_stop(self, message: Any) -> None:
-        """Stopped, positions are held and nothing else is driven; then controllers start anew."""
+        """Stopped, controllers go on but drive nothing; then they start anew, as in Gazebo."""
         if bool(message.data) == self._stopped:
             return
         self._stopped = bool(message.data)
-        self._manager.halt(self._stopped)
+        self._hardware.halt(self._stopped)
+        if not self._stopped:
+            self._manager.restart()

@@ -29,11 +29,13 @@ class HardwareJoint:
         name: of the joint.
         interface: e.g. `hardware_interface::EffortJointInterface`.
         limits: of the joint.
+        halted: commands are not carried out.
     """
 
     def __init__(self, joint: Joint, interface: str, limits: JointLimits,
                  gains: Optional[PidGains], holding: float) -> None:
         self.name, self.interface, self.limits = joint.name, interface, limits
+        self.halted = False
         self._joint = joint
         most = limits.effort
         if interface == POSITION and gains is None:
@@ -56,13 +58,16 @@ class HardwareJoint:
 
     def command(self, value: float) -> None:
         """An effort, rate or position, as the interface has it."""
-        self._steer(replace(self._servo, target=value))
+        if not self.halted:
+            self._steer(replace(self._servo, target=value))
 
     def follow(self, target: float = 0.0, *, spline: Optional[Spline] = None,
                gains: Optional[PidGains] = None, target_rate: float = 0.0, of_rate: bool = False,
                by_rates: bool = False, feedforward: float = 0.0,
                most_effort: float = math.inf) -> None:
         """Have a loop about a target command the interface; see `engine.commands.JointServo`."""
+        if self.halted:
+            return
         self._steer(replace(
             self._servo, target=target, target_rate=target_rate, spline=spline, gains=gains,
             of_rate=of_rate, by_rates=by_rates, feedforward=feedforward,
@@ -165,6 +170,17 @@ class Hardware:
         for name, joint in self._first.items():
             if name not in but:
                 joint.rest()
+
+    def halt(self, halted: bool) -> None:
+        """Emergency stop: hold positions where they are now, rates and efforts at 0, until it ends.
+
+        Controllers go on, but what they command is lost (DefaultRobotHWSim::writeSim).
+        """
+        for joint in self._all.values():
+            joint.halted = False
+        self.rest()
+        for joint in self._all.values():
+            joint.halted = halted
 
     def release(self, name: str) -> None:
         """Nobody controls a joint any more."""

@@ -62,7 +62,6 @@ class ControllerManager:
         self._context, self._hardware, self._period = context, hardware, period
         self._extra = extra
         self._loaded: Dict[str, Controller] = {}
-        self._halted: List[Controller] = []
         self._types: Dict[str, str] = {}
         for name, kind, answer in (
                 ("list_controllers", "ListControllers", self._list),
@@ -132,21 +131,12 @@ class ControllerManager:
 
     def restart(self) -> None:
         """Start all running controllers anew, where joints are now."""
-        self.halt(True)
-        self.halt(False)
-
-    def halt(self, halted: bool) -> None:
-        """Emergency stop: running controllers stop, until it ends."""
-        if not halted:
-            for one in self._halted:
-                if one.name in self._loaded and one.state != RUNNING:
-                    self._start(one)
-            self._halted = []
-            return
-        self._halted = [one for one in self._loaded.values() if one.state == RUNNING]
-        for one in self._halted:
+        running = [one for one in self._loaded.values() if one.state == RUNNING]
+        for one in running:
             one.switch_off()
         self._hardware.rest()
+        for one in running:
+            self._start(one)
 
     def close(self) -> None:
         """End all."""
