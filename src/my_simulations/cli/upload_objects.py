@@ -136,7 +136,7 @@ def _load(parameters: client.Parameters, file: str, param: str, package: str
     Invalid entries are loaded too if possible, so that spawning one reports its errors.
     """
     try:
-        tree, source, issues = read_yaml(file, param)
+        tree, source, issues = read_yaml(file, param, angles=True)
     except InputError as fault:
         parameters.delete(param)
         return 0, fault.issues

@@ -20,7 +20,8 @@ _LONGEST_NUMBER = 1000
 class GuardedLoader(yaml.SafeLoader):
     """Raises yaml.MarkedYAMLError, with line and column, for all that it does not accept.
 
-    Dates are read as text, because a name or path may look like a date.
+    Dates are read as text, because a name or path may look like a date. What other modules add to
+    yaml.SafeLoader, as rosparam does, changes nothing.
 
     Attributes:
         keys: keys of the mappings that were being read when a fault was raised; empty after the
@@ -30,7 +31,8 @@ class GuardedLoader(yaml.SafeLoader):
     yaml_implicit_resolvers = {
         first: [(tag, pattern) for tag, pattern in resolvers
                 if tag != "tag:yaml.org,2002:timestamp"]
-        for first, resolvers in yaml.SafeLoader.yaml_implicit_resolvers.items()}
+        for first, resolvers in yaml.resolver.Resolver.yaml_implicit_resolvers.items()}
+    yaml_constructors = dict(yaml.constructor.SafeConstructor.yaml_constructors)
 
     def __init__(self, text: str) -> None:
         super().__init__(text)
@@ -74,7 +76,7 @@ class GuardedLoader(yaml.SafeLoader):
             raise _fault(f"text contains the character {bad}, which an XML file cannot hold",
                          node.start_mark)
         if (isinstance(node, yaml.ScalarNode) and len(node.value) > _LONGEST_NUMBER
-                and node.tag.endswith((":int", ":float"))):
+                and node.tag.endswith((":int", ":float", "!degrees", "!radians"))):
             raise _fault(f"a number of more than {_LONGEST_NUMBER} characters", node.start_mark)
         try:
             return super().construct_object(node, deep)

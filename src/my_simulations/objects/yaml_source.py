@@ -8,6 +8,7 @@ import yaml
 
 from ..errors import InputError, Issue, error, warning
 from ..resources.limited_file import at_most
+from .angles import AngleLoader
 from .guarded_yaml import LARGEST, GuardedLoader
 
 KeyPath = Tuple[str, ...]
@@ -39,12 +40,13 @@ class Source:
         return {"file": self.file, "line": self.lines.get(known, 0), "xpath": self.param(path)}
 
 
-def read_yaml(file: str, root: str) -> Tuple[Any, Source, List[Issue]]:
+def read_yaml(file: str, root: str, angles: bool = False) -> Tuple[Any, Source, List[Issue]]:
     """Read one YAML document.
 
     Args:
         file: path of the file.
         root: parameter path of its content, for messages.
+        angles: whether rosparam's angle forms, such as `deg(90)`, are read as numbers in rad.
 
     Returns:
         The plain values (None for an empty file), their source, and warnings about repeated keys.
@@ -58,7 +60,7 @@ def read_yaml(file: str, root: str) -> Tuple[Any, Source, List[Issue]]:
     source = Source(root, file, lines)
     loader: Optional[GuardedLoader] = None
     try:
-        loader = GuardedLoader(text)
+        loader = (AngleLoader if angles else GuardedLoader)(text)
         node = loader.get_single_node()
         if node is None:
             return None, Source(root, file), []

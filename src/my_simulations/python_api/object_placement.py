@@ -64,7 +64,7 @@ def selected_objects(names: Sequence[str], file: str, world: str
                      ) -> Tuple[Selection, List[Issue]]:
     """The objects of a list that are named, and all faults; see `read_objects`."""
     file = file or _list_of(world)
-    tree, source, issues = read_yaml(file, "/objects")
+    tree, source, issues = read_yaml(file, "/objects", angles=True)
     listing = parse_objects(tree, source, PACKAGE)
     groups, more = _groups_beside(file)
     selection = select(names, listing, groups)
@@ -98,6 +98,6 @@ def _groups_beside(file: str) -> Tuple[Dict[str, List[str]], List[Issue]]:
     groups = groups_file(file)
     if not os.path.isfile(groups):
         return {}, []
-    tree, source, issues = read_yaml(groups, "/object_groups")
+    tree, source, issues = read_yaml(groups, "/object_groups", angles=True)
     found, more = parse_groups(tree, source)
     return found, [*issues, *more]
