@@ -202,9 +202,9 @@ def test_a_square_of_the_lab_robot_slips_less_than_two_per_cent(case):
     for _ in range(4):
         for forward, turn, seconds in ((0.25, 0.0, 2.0), (0.0, 0.0, 0.4),
                                        (0.0, 0.5, math.pi), (0.0, 0.0, 0.4)):
-            one.hear("cmd_vel", linear={"x": forward}, angular={"z": turn})
+            one.hear("/cmd_vel", linear={"x": forward}, angular={"z": turn})
             one.sim.clock.advance(round(1000 * seconds))
-    told = odometry(one.last("odom", one.now() // 20_000_000 * 20_000_000))
+    told = odometry(one.last("/odom", one.now() // 20_000_000 * 20_000_000))
     true = one.truth("robo")
     assert math.hypot(told[0] - true[0], told[1] - true[1]) < 0.02 * 4 * 0.5
     assert math.remainder(told[2] - true[2], 2 * math.pi) == pytest.approx(0.0, abs=0.1)

@@ -34,7 +34,7 @@ class Drive:
                              paused=True, log=lambda issue: None)
         self.sim.start()
         self.graph = Graph()
-        self.graph.ignored |= {"scan", "camera/image_raw", "camera/image_raw/compressed"}
+        self.graph.ignored |= {"/scan", "/camera/image_raw", "/camera/image_raw/compressed"}
         self.host = PluginHost(self.sim, self.graph, PluginRegistry(), lambda issue: None)
         self.host.start()
         self.sim.clock.advance(200)
@@ -42,7 +42,7 @@ class Drive:
     def go(self, forward, turn, seconds):
         """Command, and settle: it is heard between the step that time stands at and the next."""
         self.odometry()
-        self.graph.heard["cmd_vel"](Message(linear={"x": forward}, angular={"z": turn}))
+        self.graph.heard["/cmd_vel"](Message(linear={"x": forward}, angular={"z": turn}))
         deadline = time.monotonic() + 60.0
         while self.host.unheard:
             assert time.monotonic() < deadline
@@ -52,10 +52,10 @@ class Drive:
     def odometry(self):
         wanted = (self.sim.clock.step // 20) * 20 * 10 ** 6
         deadline = time.monotonic() + 60.0
-        while self.graph.on("odom")[-1].header.stamp < wanted:
+        while self.graph.on("/odom")[-1].header.stamp < wanted:
             assert time.monotonic() < deadline
             time.sleep(0.001)
-        pose = self.graph.on("odom")[-1].pose.pose
+        pose = self.graph.on("/odom")[-1].pose.pose
         return pose.position.x, pose.position.y, 2.0 * math.atan2(pose.orientation.z,
                                                                   pose.orientation.w)
 
@@ -100,7 +100,7 @@ def test_the_same_run_gives_the_same_messages():
             drive.go(0.2, 0.3, 1.0)
             drive.odometry()
             return [(one.header.stamp, one.pose.pose.position.x, one.pose.pose.position.y)
-                    for one in drive.graph.on("odom")]
+                    for one in drive.graph.on("/odom")]
         finally:
             drive.close()
 

@@ -303,7 +303,10 @@ class Context(Protocol):
     # -- topics, services, parameters ------------------------------------------------------------
 
     def use_namespace(self, namespace: str) -> None:
-        """The namespace that names of topics, services and parameters are relative to."""
+        """The namespace that names of topics, services and parameters are relative to.
+
+        "/" is the root; "", as without a call, is the node's own.
+        """
 
     def message(self, kind: str) -> Any:
         """A new message of a type such as `nav_msgs/Odometry`."""

@@ -109,13 +109,14 @@ class PluginGraph:
         return end
 
     def use_namespace(self, namespace: str) -> None:
-        """What names are relative to."""
-        self._namespace = namespace.strip().rstrip("/")
+        """What names are relative to: "/" is the root, "" the node's own namespace."""
+        namespace = namespace.strip()
+        self._namespace = namespace.rstrip("/") or namespace[:1]
 
     def _name(self, name: str) -> str:
         if name.startswith(("/", "~")) or not self._namespace:
             return name
-        return f"{self._namespace}/{name}"
+        return f"{self._namespace.rstrip('/')}/{name}"
 
     def message(self, kind: str) -> Any:
         """A new message."""

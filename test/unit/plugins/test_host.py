@@ -5,6 +5,7 @@ import threading
 
 import pytest
 from plugin_case import PluginCase, kept, until
+from plugin_graph import Graph
 
 from my_simulations.description.model import Inertial, Joint, JointAxis, Link, Model
 from my_simulations.description.plugin import PluginSpec
@@ -355,6 +356,29 @@ def test_topics_of_a_drive_belong_to_no_link(case):
     uses = {use.name: use for use in one.host.topic_uses()}
     assert uses["robot/cmd_vel"].heard and not uses["robot/odom"].heard
     assert {(use.model, use.link, use.sensor) for use in uses.values()} == {("robot", "", "")}
+
+
+class Asking(Plugin):
+    found = []
+
+    def load(self):
+        self.context.use_namespace(self.context.parameters.text("robotNamespace"))
+        self.context.publish("scan", "sensor_msgs/LaserScan")
+        self.found.append(self.context.parameter("rate", None))
+
+
+@pytest.mark.parametrize(("namespace", "topic", "rate"), [
+    ("", "scan", 1), ("/", "/scan", 2), (" / ", "/scan", 2), ("a", "a/scan", 3),
+    ("a/", "a/scan", 3), ("/a/", "/a/scan", 4)])
+def test_names_are_in_the_node_s_namespace_the_root_or_the_one_given(
+        case, namespace, topic, rate, monkeypatch):
+    monkeypatch.setattr(Asking, "found", [])
+    rates = {"": 1, "/": 2, "a": 3, "/a": 4}
+    monkeypatch.setattr(Graph, "parameter", lambda _, at, name, default: rates.get(at, default))
+    xml = f"<plugin><robotNamespace>{namespace}</robotNamespace></plugin>"
+    one = case(robot("robot", xml, "libask.so"), extra={"libask.so": f"{__name__}:Asking"})
+    assert [use.name for use in one.host.topic_uses()] == [topic]
+    assert Asking.found == [rate]
 
 
 def test_a_plugin_that_was_switched_off_has_no_topics(case):
