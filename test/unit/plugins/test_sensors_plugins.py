@@ -106,6 +106,19 @@ def test_an_imu_sensor_has_the_noise_of_its_block():
     assert (sample.angular_velocity.x, sample.angular_velocity.y) == pytest.approx((0.25, 0.0))
 
 
+@pytest.mark.parametrize(("inside", "namespace"), [
+    ("", "/robot"), ("<robotNamespace></robotNamespace>", "/"),
+    ("<robotNamespace>left</robotNamespace>", "left")])
+def test_an_imu_sensor_is_in_the_namespace_of_its_model_the_root_or_the_one_given(
+        inside, namespace, monkeypatch):
+    context = FakeContext(f"<plugin><frameName>imu</frameName>{inside}</plugin>",
+                          sensor=Sensor("i", "imu"), sensor_link="base")
+    used = []
+    monkeypatch.setattr(context, "use_namespace", used.append)
+    SensorImu(context).load()
+    assert used == [namespace]
+
+
 def test_a_bumper_tells_of_its_link_alone_as_the_force_on_it():
     context = FakeContext(sensor=Sensor("b", "contact", update_rate=10.0,
                                         contact=ContactSensor(["c"])), sensor_link="base")

@@ -115,7 +115,8 @@ class SensorImu(Imu):
         context, p = self.context, self.context.parameters
         if context.sensor is None:
             raise PluginError("it belongs into a <sensor> of type imu")
-        context.use_namespace(namespace_or(p, context.model))
+        # An empty element, such as xacro leaves, is the root (GazeboRosImuSensor::LoadParameters).
+        context.use_namespace(p.text("robotNamespace", f"/{context.model}") or "/")
         frame = p.text("frameName")
         if not frame:
             raise PluginError("it has no <frameName>")
