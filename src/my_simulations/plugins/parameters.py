@@ -122,6 +122,11 @@ def _pose(text: str) -> Pose:
     return Pose((x, y, z), quat_from_rpy(roll, pitch, yaw))
 
 
+def lowest_rate(*rates: float, default: float = 0.0) -> float:
+    """Hz, of a plugin that can be no faster than its sensor: the lowest of the rates above 0."""
+    return min((rate for rate in rates if rate > 0.0), default=default)
+
+
 def namespace_or(parameters: Parameters, default: Optional[str]) -> str:
     """`<robotNamespace>`; where it is missing or empty the default."""
     return parameters.text("robotNamespace") or (default or "")

@@ -29,10 +29,10 @@ from my_simulations.plugins.testing import FakeContext, Message
 from my_simulations.sensing.api import RayReturns
 
 
-def laser(noise=None, kind="ray", inside="<topicName>scan</topicName>"):
+def laser(noise=None, kind="ray", inside="<topicName>scan</topicName>", rate=10.0):
     ray = Ray(ScanAngles(4, 1.0, -1.0, 1.0), min_range=0.1, max_range=5.0, noise=noise or Noise())
     context = FakeContext(f"<plugin>{inside}<frameName>mast</frameName></plugin>",
-                          sensor=Sensor("s", kind, update_rate=10.0, ray=ray), sensor_link="base")
+                          sensor=Sensor("s", kind, update_rate=rate, ray=ray), sensor_link="base")
     context.returns = RayReturns(np.array([0.05, 1.0, 2.0, math.inf]), np.zeros(4), np.zeros(4))
     return context
 
@@ -117,6 +117,21 @@ def test_an_imu_sensor_is_in_the_namespace_of_its_model_the_root_or_the_one_give
     monkeypatch.setattr(context, "use_namespace", used.append)
     SensorImu(context).load()
     assert used == [namespace]
+
+
+@pytest.mark.parametrize(("sensor", "plugin", "rate"), [
+    (20.0, 100.0, 20), (100.0, 20.0, 20), (0.0, 20.0, 20), (20.0, 0.0, 20), (0.0, 0.0, 1000)])
+def test_imu_and_range_sensors_are_no_faster_than_their_sensor_and_plugin(sensor, plugin, rate):
+    imu = FakeContext("<plugin><frameName>imu</frameName><topicName>data</topicName>"
+                      f"<updateRateHZ>{plugin}</updateRateHZ></plugin>",
+                      sensor=Sensor("i", "imu", update_rate=sensor), sensor_link="base")
+    SensorImu(imu).load()
+    sonar = laser(inside=f"<topicName>data</topicName><updateRate>{plugin}</updateRate>",
+                  rate=sensor)
+    Range(sonar).load()
+    for context, topic in ((imu, "robot/data"), (sonar, "data")):
+        context.advance(1.0)
+        assert len(context.published[topic]) == rate
 
 
 def test_a_bumper_tells_of_its_link_alone_as_the_force_on_it():

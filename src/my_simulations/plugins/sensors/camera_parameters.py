@@ -14,7 +14,7 @@ from ...description.sensor import Camera as CameraBlock
 from ...sensing.api import CameraSpec, Distortion
 from ..context import Context
 from ..frames import prefixed
-from ..parameters import namespace_or
+from ..parameters import lowest_rate, namespace_or
 from ..reconfigure import Option, Reconfigure, Value
 
 USUAL_RATE = 30.0
@@ -54,10 +54,9 @@ def topics_of(context: Context, suffix: str = "") -> CameraTopics:
 
 def rate_of(context: Context) -> float:
     """Hz: the lower one of the sensor's `<update_rate>` and the plugin's `<updateRate>`."""
-    said = [context.parameters.number("updateRate", 0.0)]
-    if context.sensor is not None:
-        said.append(context.sensor.update_rate)
-    return min((rate for rate in said if rate > 0.0), default=USUAL_RATE)
+    return lowest_rate(context.parameters.number("updateRate", 0.0),
+                       context.sensor.update_rate if context.sensor is not None else 0.0,
+                       default=USUAL_RATE)
 
 
 _LOOK_HZ = 10.0   # how often a slow camera looks whether somebody listens

@@ -16,7 +16,7 @@ from ..base import Plugin
 from ..context import Link, PluginError
 from ..frames import stamped
 from ..noise import WhiteNoise
-from ..parameters import namespace_or
+from ..parameters import lowest_rate, namespace_or
 from .rays import SampledNoise
 
 
@@ -129,7 +129,8 @@ class SensorImu(Imu):
                       for kind in ("angular_velocity", "linear_acceleration") for axis in "xyz"
                       ] if self._block is not None else []
         self._begin(p.text("topicName", "imu_data"), frame, context.sensor.name)
-        context.every(p.number("updateRateHZ", 1.0), self.update)
+        context.every(lowest_rate(p.number("updateRateHZ", 1.0), context.sensor.update_rate),
+                      self.update)
 
     def _noisy(self, sample: ImuSample) -> ImuSample:
         if not self._axes:

@@ -8,7 +8,7 @@ from typing import Any
 
 from ..frames import prefixed, stamped
 from ..noise import WhiteNoise
-from ..parameters import namespace_or
+from ..parameters import lowest_rate, namespace_or
 from .rays import RayPlugin
 
 _ULTRASOUND, _INFRARED = 0, 1  # of sensor_msgs/Range
@@ -31,7 +31,8 @@ class Range(RayPlugin):
                                  f"{context.sensor.name}::range",
                                  p.number("gaussianNoise", 0.0))
         self._topic = context.publish(p.text("topicName", "/range"), "sensor_msgs/Range")
-        context.every(p.number("updateRate", 0.0) or context.sensor.update_rate, self.update)
+        context.every(lowest_rate(p.number("updateRate", 0.0), context.sensor.update_rate),
+                      self.update)
 
     def _publish(self, returns: Any, ns: int) -> None:
         most = self._ray.max_range
