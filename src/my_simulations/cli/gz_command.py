@@ -15,6 +15,7 @@ from ..description.world import World
 from ..errors import CommandError, InputError
 from ..resources.database.download_notes import DownloadNotes
 from ..resources.resolver import Resolver
+from ..ros.arguments import Parser
 from . import gz_queries, object_client
 
 OK, FAILED, USAGE = 0, 1, 2
@@ -29,8 +30,8 @@ INSTEAD = {
 """Unsupported commands of Gazebo's gz, and their alternatives."""
 
 
-class _Parser(argparse.ArgumentParser):
-    """Accepts negative numbers as values; reports errors in one line."""
+class _Parser(Parser):
+    """Reports errors in one line."""
 
     def error(self, message: str) -> NoReturn:
         """Print the error and exit with status 2."""

@@ -5,12 +5,10 @@ import argparse
 import difflib
 import math
 import os
-import re
 import sys
 import threading
 import time
-from decimal import Decimal
-from typing import Any, Dict, List, Optional, Sequence
+from typing import Any, Dict, List, Optional
 
 from ..errors import SimulationError
 from ..ros.arguments import Parser, number
@@ -21,16 +19,9 @@ OK, FAILED, USAGE = 0, 1, 2
 WAIT_SECONDS = 120.0
 MASTER_SECONDS = 10.0
 
-_NEGATIVE = re.compile(r"-(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?")
-
 
 class SpawnError(SimulationError):
     """The model was not spawned; the text says why and what to do."""
-
-
-def plain_numbers(words: Sequence[str]) -> List[str]:
-    """Negative numbers as argparse accepts them: `-1e-5` becomes `-0.00001`, `-2.` `-2`."""
-    return [format(Decimal(word), "f") if _NEGATIVE.fullmatch(word) else word for word in words]
 
 
 def parser() -> argparse.ArgumentParser:
@@ -109,7 +100,7 @@ def main(argv: Optional[List[str]] = None) -> int:
     """
     words = sys.argv if argv is None else argv
     reader = parser()
-    options = reader.parse_args(plain_numbers([w for w in words[1:] if not _is_remapping(w)]))
+    options = reader.parse_args([word for word in words[1:] if not _is_remapping(word)])
     try:
         joint_positions(options)
     except ValueError as fault:

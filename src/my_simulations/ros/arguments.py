@@ -3,13 +3,23 @@ from __future__ import annotations
 
 import argparse
 import difflib
-from typing import List, NoReturn
+import re
+from typing import Any, List, NoReturn
 
 _UNKNOWN = "unrecognized arguments: "
+_NEGATIVE = re.compile(r"-(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?(,.*)?$")
+"""A negative number, or a list that begins with one; argparse itself knows -0.5, not -1e-3."""
 
 
 class Parser(argparse.ArgumentParser):
-    """An argument parser that suggests options and choices much like an unknown one."""
+    """An argument parser that takes every spelling of negative numbers for values.
+
+    It suggests options and choices much like an unknown one.
+    """
+
+    def __init__(self, *arguments: Any, **options: Any) -> None:
+        super().__init__(*arguments, **options)
+        self._negative_number_matcher = _NEGATIVE
 
     def error(self, message: str) -> NoReturn:
         """Print usage, error and suggestion, and exit with status 2."""

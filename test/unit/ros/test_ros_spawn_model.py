@@ -5,7 +5,7 @@ from my_simulations.ros.lifecycle.start_profile import StartProfile
 
 
 def parsed(*words):
-    return spawn_model.parser().parse_args(spawn_model.plain_numbers(words))
+    return spawn_model.parser().parse_args(words)
 
 
 @pytest.mark.parametrize("text, value", [("-1e-5", -1e-5), ("-2.", -2.0), ("-.5E1", -5.0),
