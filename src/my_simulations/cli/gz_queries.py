@@ -8,7 +8,7 @@ import time
 from typing import Any, Iterator, Sequence, Tuple
 
 from ..geometry import Vec3, rpy_from_quat
-from ..objects.object_document import root_tag
+from ..objects.object_document import decoded, root_tag
 from ..objects.selection import closest
 from ..ros.lifecycle import master_api
 from . import object_client as client
@@ -157,12 +157,12 @@ def _measured(running: Running, duration: float) -> Iterator[Tuple[float, float,
 def _spawn(options: argparse.Namespace, running: Running) -> int:
     if options.spawn_file:
         try:
-            with open(options.spawn_file, encoding="utf-8") as file:
-                text = file.read()
-        except (OSError, UnicodeDecodeError) as fault:
+            with open(options.spawn_file, "rb") as file:
+                text = decoded(file.read(), options.spawn_file)
+        except OSError as fault:
             raise client.ToolError(f"cannot read {options.spawn_file}: {fault}") from fault
     else:
-        text = sys.stdin.read()
+        text = decoded(sys.stdin.buffer.read(), "standard input")
     x, y, z, roll, pitch, yaw = (getattr(options, axis) or 0.0 for axis in "xyzRPY")
     running.simulator.spawn(options.model_name, text, root_tag(text) != "robot", (x, y, z),
                             (roll, pitch, yaw))

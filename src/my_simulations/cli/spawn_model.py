@@ -10,7 +10,7 @@ import threading
 import time
 from typing import Any, Dict, List, Optional
 
-from ..errors import SimulationError
+from ..errors import InputError, SimulationError
 from ..ros.arguments import Parser, number
 from ..ros.call_deadline import CallTimeoutError, within
 from ..ros.lifecycle.launch_info import Launch
@@ -105,6 +105,9 @@ def main(argv: Optional[List[str]] = None) -> int:
         joint_positions(options)
     except ValueError as fault:
         reader.error(str(fault))
+    for source in ("file", "param", "database"):
+        if getattr(options, source) == "":
+            reader.error(f"argument -{source}: is empty")
     try:
         _spawn(options, words)
     except SpawnError as fault:
@@ -122,7 +125,7 @@ def _is_remapping(word: str) -> bool:
 
 def _spawn(options: argparse.Namespace, words: List[str]) -> None:
     launch = Launch.of(words)
-    text = None if options.param else _document(options)
+    text = None if options.param is not None else _document(options)
     _reach_master(words)
     import rospy
 
@@ -168,24 +171,29 @@ def _document(options: argparse.Namespace) -> str:
 
         return ('<sdf version="1.4"><world name="default"><include>'
                 f"<uri>model://{escape(options.database)}</uri></include></world></sdf>")
+    from ..objects.object_document import decoded
+
     if options.stdin:
-        text, where = sys.stdin.read(), "standard input"
+        raw, where = sys.stdin.buffer.read(), "standard input"
     else:
-        text, where = _file_text(options.file), options.file
-    if not text.strip():
+        raw, where = _content(options.file), options.file
+    if not raw.strip():
         raise SpawnError(f"{where} is empty")
-    return text
+    try:
+        return decoded(raw, where)
+    except InputError as fault:
+        raise SpawnError(str(fault)) from fault
 
 
-def _file_text(path: str) -> str:
+def _content(path: str) -> bytes:
     if not os.path.exists(path):
         raise SpawnError(f"file not found: {path}")
     if not os.path.isfile(path):
         raise SpawnError(f"{path} is not a file")
     try:
-        with open(path, encoding="utf-8") as file:
+        with open(path, "rb") as file:
             return file.read()
-    except (OSError, UnicodeDecodeError) as fault:
+    except OSError as fault:
         raise SpawnError(f"cannot read {path}: {fault}") from fault
 
 

@@ -29,12 +29,25 @@ def read_document(file: str) -> str:
                                 file=file)]) from fault
     if not raw.strip():
         raise InputError([error("object-empty", "the file of the object is empty", file=file)])
+    return decoded(raw, file)
+
+
+def decoded(raw: bytes, file: str) -> str:
+    """The text of an XML document, decoded as declared, else as UTF-8.
+
+    Args:
+        raw: the document.
+        file: its file, or where else it comes from, for messages.
+
+    Raises:
+        InputError: it is not in the declared encoding.
+    """
     declared = _DECLARATION.match(raw)
     encoding = declared.group(1).decode("ascii") if declared else "utf-8"
     try:
         text = raw.decode("utf-8-sig" if encoding.lower() in ("utf-8", "utf8") else encoding)
     except (UnicodeDecodeError, LookupError) as fault:
-        raise InputError([error("object-encoding", f"the file is not {encoding} text: {fault}",
+        raise InputError([error("object-encoding", f"this is not {encoding} text: {fault}",
                                 file=file, hint="save it as UTF-8")]) from fault
     if declared and encoding.lower() not in ("utf-8", "utf8"):
         # The service message is UTF-8, so the declared encoding would be wrong.

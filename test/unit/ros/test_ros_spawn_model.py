@@ -1,6 +1,10 @@
+import argparse
+import io
+import sys
+
 import pytest
 
-from my_simulations.cli import spawn_model
+from my_simulations.cli import gz_command, gz_queries, spawn_model
 from my_simulations.ros.lifecycle.start_profile import StartProfile
 
 
@@ -64,6 +68,47 @@ def test_an_empty_file_is_status_1(tmp_path, capsys):
     empty.write_text("\n")
     assert spawn_model.main(["spawn_model", "-urdf", "-file", str(empty), "-model", "m"]) == 1
     assert "is empty" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("source", ["-file", "-param", "-database"])
+def test_an_empty_name_of_a_description_is_status_2(source, capsys):
+    with pytest.raises(SystemExit) as refused:
+        spawn_model.main(["spawn_model", "-urdf", source, "", "-model", "m"])
+    assert refused.value.code == 2
+    assert f"argument {source}: is empty" in capsys.readouterr().err
+
+
+LATIN = '<?xml version="1.0" encoding="ISO-8859-1"?><robot name="Gerät"/>'.encode("latin-1")
+
+
+def test_a_file_or_standard_input_is_read_in_its_declared_encoding(tmp_path, monkeypatch):
+    file = tmp_path / "latin.urdf"
+    file.write_bytes(LATIN)
+    monkeypatch.setattr(sys, "stdin", io.TextIOWrapper(io.BytesIO(LATIN), encoding="ascii"))
+    for words in (["-file", str(file)], ["-stdin"]):
+        text = spawn_model._document(parsed("-urdf", *words, "-model", "m"))
+        assert text == '<?xml version="1.0"?><robot name="Gerät"/>'
+
+
+def test_a_description_in_another_encoding_is_status_1(tmp_path, monkeypatch, capsys):
+    raw = LATIN.replace(b' encoding="ISO-8859-1"', b"")
+    file = tmp_path / "latin.urdf"
+    file.write_bytes(raw)
+    monkeypatch.setattr(sys, "stdin", io.TextIOWrapper(io.BytesIO(raw), encoding="ascii"))
+    for words, where in ((["-file", str(file)], str(file)), (["-stdin"], "standard input")):
+        assert spawn_model.main(["spawn_model", "-urdf", *words, "-model", "m"]) == 1
+        assert f"spawn_model: {where}: error: this is not utf-8 text" in capsys.readouterr().err
+
+
+def test_gz_reads_standard_input_and_files_in_their_declared_encoding(tmp_path, monkeypatch):
+    file, given = tmp_path / "latin.urdf", []
+    file.write_bytes(LATIN)
+    monkeypatch.setattr(sys, "stdin", io.TextIOWrapper(io.BytesIO(LATIN), encoding="ascii"))
+    simulator = argparse.Namespace(spawn=lambda name, text, *more: given.append(text))
+    for words in (["-f", str(file)], ["-s"]):
+        gz_queries._spawn(gz_command._model().parse_args(["-m", "m", *words]),
+                          argparse.Namespace(simulator=simulator))
+    assert given == ['<?xml version="1.0"?><robot name="Gerät"/>'] * 2
 
 
 def test_package_meshes_become_model_meshes():
