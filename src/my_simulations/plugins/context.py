@@ -315,7 +315,10 @@ class Context(Protocol):
         """A time as messages have it; default now."""
 
     def publish(self, name: str, kind: str, queue: int = 1, latch: bool = False) -> Publication:
-        """Offer a topic. Raises PluginError where the type's package is not installed."""
+        """Offer a topic; one without a name is offered to nobody.
+
+        Raises PluginError where the type's package is not installed.
+        """
 
     def subscribe(self, name: str, kind: str, call: Callable[[Any], None],
                   queue: int = 1) -> Handle:

@@ -41,6 +41,18 @@ class Offer:
         self._owner.close_one(self._topic)
 
 
+class _Nowhere:
+    """What is offered under an empty name, as Gazebo's plugins allow: it is not on the graph."""
+
+    wanted = False
+
+    def send(self, message: Any) -> None:
+        """Nobody hears it."""
+
+    def close(self) -> None:
+        """Nothing was opened."""
+
+
 class OpenEnd:
     """A subscription or service of a plugin."""
 
@@ -131,6 +143,8 @@ class PluginGraph:
 
     def publish(self, name: str, kind: str, queue: int, latch: bool) -> Offer:
         """Offer a topic."""
+        if not name:
+            return Offer(self, _Nowhere())
         return Offer(self, self._open(
             lambda full: self._graph.publish(full, kind, queue, latch), name, kind, False))
 

@@ -304,6 +304,8 @@ class FakeContext:
 
     def publish(self, name: str, kind: str, queue: int = 1, latch: bool = False) -> Any:
         """Offer a topic."""
+        if not name:
+            return _Topic([], lambda: False)
         name = self._name(name)
         return _Topic(self.published.setdefault(name, []), lambda: name not in self.unwanted)
 

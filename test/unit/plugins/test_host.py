@@ -358,6 +358,24 @@ def test_topics_of_a_drive_belong_to_no_link(case):
     assert {(use.model, use.link, use.sensor) for use in uses.values()} == {("robot", "", "")}
 
 
+class Mumbling(Plugin):
+    def load(self):
+        self.context.use_namespace("eyes")
+        self.topic = self.context.publish("", "sensor_msgs/LaserScan")
+        self.context.publish("scan", "sensor_msgs/LaserScan")
+        self.context.every(100.0, lambda: self.topic.publish(str(self.topic.wanted)))
+        self.context.subscribe("/stop", "std_msgs/Empty", lambda message: self.topic.close())
+
+
+def test_a_topic_without_a_name_is_offered_to_nobody(case):
+    one = case(robot("robot", "<plugin/>", "libmumble.so"),
+               extra={"libmumble.so": f"{__name__}:Mumbling"})
+    one.sim.clock.advance(20)
+    assert [use.name for use in one.host.topic_uses()] == ["eyes/scan", "/stop"]
+    one.hear("/stop")
+    assert (one.graph.sent, one.failed()) == ([], [])
+
+
 class Asking(Plugin):
     found = []
 

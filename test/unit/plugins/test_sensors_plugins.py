@@ -173,6 +173,24 @@ def test_ground_truth_with_an_offset():
     assert (odom.header.frame_id, odom.child_frame_id) == ("world", "base")
 
 
+BODY = "<bodyName>base</bodyName>"
+
+
+@pytest.mark.parametrize(("plugin", "inside"), [
+    (P3d, BODY), (Force, BODY), (Force, f"{BODY}<topicName/>")])
+def test_a_plugin_without_a_topic_name_is_the_users_fault(plugin, inside):
+    with pytest.raises(PluginError, match="it has no <topicName>"):
+        plugin(FakeContext(f"<plugin>{inside}</plugin>")).load()
+
+
+def test_a_plugin_with_an_empty_topic_name_publishes_nothing():
+    for plugin in (P3d, ModelImu):
+        context = FakeContext(f"<plugin>{BODY}<topicName></topicName></plugin>")
+        plugin(context).load()
+        context.advance(0.1)
+        assert context.published == {}
+
+
 def test_a_force_holds_until_the_next_one():
     context = FakeContext("<plugin><bodyName>base</bodyName><topicName>force</topicName></plugin>")
     plugin = Force(context)

@@ -5,6 +5,7 @@ from typing import Any
 
 from ...geometry import ZERO3, Vec3
 from ..base import Plugin
+from ..context import PluginError
 from ..finite_messages import finite_only
 from ..parameters import namespace_or
 
@@ -16,10 +17,12 @@ class Force(Plugin):
         """Read parameters."""
         context, p = self.context, self.context.parameters
         context.use_namespace(namespace_or(p, ""))
+        topic = p.text("topicName")
+        if not topic:
+            raise PluginError("it has no <topicName>")
         self._body = context.link(p.text("bodyName")).name
         self._force: Vec3 = ZERO3
         self._torque: Vec3 = ZERO3
-        topic = p.text("topicName")
         context.subscribe(topic, "geometry_msgs/Wrench", finite_only(context, topic, self._hear))
 
     def reset(self) -> None:

@@ -9,7 +9,7 @@ from typing import Any, Optional
 
 from ...geometry import Pose, Twist, add, compose, conjugate, inverse, multiply, rotate, subtract
 from ..base import Plugin
-from ..context import Link
+from ..context import Link, PluginError
 from ..frames import prefixed, stamped
 from ..noise import WhiteNoise
 from ..parameters import namespace_or
@@ -24,6 +24,8 @@ class P3d(Plugin):
         """Read parameters."""
         context, p = self.context, self.context.parameters
         context.use_namespace(namespace_or(p, ""))
+        if "topicName" not in p:   # an empty one is legal: nothing is published
+            raise PluginError("it has no <topicName>")
         name = p.text("bodyName")
         self._link = context.link(name)
         frame = p.text("frameName", "world")
