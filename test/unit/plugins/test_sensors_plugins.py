@@ -173,6 +173,15 @@ def test_ground_truth_with_an_offset():
     assert (odom.header.frame_id, odom.child_frame_id) == ("world", "base")
 
 
+def test_the_tf_prefix_of_ground_truth_is_before_its_frame_alone():
+    context = FakeContext("<plugin><bodyName>base</bodyName><topicName>truth</topicName></plugin>")
+    context.ros_parameters["tf_prefix"] = "r1"
+    P3d(context).load()
+    context.advance(0.001)
+    (odom,) = context.published["truth"]
+    assert (odom.header.frame_id, odom.child_frame_id) == ("r1/world", "base")
+
+
 BODY = "<bodyName>base</bodyName>"
 
 

@@ -34,7 +34,8 @@ class P3d(Plugin):
                             p.turn("rpyOffset", p.turn("rpyOffsets")))
         self._stddev = p.number("gaussianNoise", 0.0)
         self._noise = WhiteNoise(context.seed, f"{context.model}::{name}::p3d", self._stddev)
-        self._frame_id, self._child_id = prefixed(context, frame), prefixed(context, name)
+        # The original puts the prefix before the first alone.
+        self._frame_id, self._child_id = prefixed(context, frame), name
         self._topic = context.publish(p.text("topicName"), "nav_msgs/Odometry")
         context.every(p.number("updateRate", 0.0), self.update)
 
