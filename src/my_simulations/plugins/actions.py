@@ -1,14 +1,15 @@
 """Action servers: goals, cancels, status, feedback and results as topics. Source: actionlib."""
 from __future__ import annotations
 
-from typing import Any, Callable, List, Optional
+from typing import Any, Callable, List, Optional, Tuple
 
 from .context import Context, Ending, Handle
 from .frames import stamped
 
 PENDING, ACTIVE, PREEMPTED, SUCCEEDED, ABORTED, REJECTED, PREEMPTING, RECALLING, RECALLED = range(9)
 _STATUS_HZ = 5.0
-_KEEP_NS = 5_000_000_000    # how long the status of a goal is told after its end, sim time
+# How long the status of a goal is told after its end, and a cancel waits for its goal: sim time.
+_KEEP_NS = 5_000_000_000
 _QUEUE = 50
 
 
@@ -76,7 +77,7 @@ class ActionServer:
         self._context, self._kind = context, kind
         self._asked, self._cancelled = asked, cancelled
         self._goals: List[Goal] = []
-        self._early: List[Any] = []   # ids that were cancelled before they came
+        self._early: List[Tuple[Any, int]] = []   # cancels without a goal, and when they came
         self._status = context.publish(f"{name}/status", "actionlib_msgs/GoalStatusArray", _QUEUE,
                                        latch=True)
         self._results = context.publish(f"{name}/result", f"{kind}ActionResult", _QUEUE)
@@ -131,7 +132,7 @@ class ActionServer:
                 return   # a goal is sent once; a later copy changes nothing
         goal = Goal(self, goal_id, message.goal)
         self._goals.append(goal)
-        if any(_meant(one, goal) for one in self._early):
+        if any(_meant(one, goal) for one, _ in self._early):
             goal.cancel(self.result(), "cancelled before it came")
             return
         self._asked(goal)
@@ -139,7 +140,7 @@ class ActionServer:
     def _hear_cancel(self, wanted: Any) -> None:
         found = [goal for goal in self._goals if _meant(wanted, goal)]
         if wanted.id and not found:
-            self._early.append(wanted)
+            self._early.append((wanted, self._context.now_ns))
         for goal in found:
             if goal.status == ACTIVE:
                 goal.status = PREEMPTING
@@ -149,6 +150,8 @@ class ActionServer:
         now = self._context.now_ns
         self._goals = [goal for goal in self._goals if goal.ended_ns is None
                        or 0 <= now - goal.ended_ns <= _KEEP_NS]
+        self._early = [(one, came_ns) for one, came_ns in self._early
+                       if 0 <= now - came_ns <= _KEEP_NS]
         message = stamped(self._context, "actionlib_msgs/GoalStatusArray")
         message.status_list = [self._status_of(goal) for goal in self._goals]
         self._status.publish(message)

@@ -7,7 +7,7 @@ import pytest
 from robot_control import Arm, Client, Message, Span, tolerance, trajectory
 
 from my_simulations.description.model import JointAxis
-from my_simulations.plugins.actions import ABORTED, ACTIVE, PREEMPTED, REJECTED, SUCCEEDED
+from my_simulations.plugins.actions import ABORTED, ACTIVE, PREEMPTED, RECALLED, REJECTED, SUCCEEDED
 
 NAMES = ("one", "two")
 POSITION = {"type": "position_controllers/JointTrajectoryController", "joints": list(NAMES)}
@@ -148,6 +148,28 @@ def test_cancelling_stops_where_the_joints_are():
     assert client.results[0][:2] == (goal, PREEMPTED)
     arm.context.advance(1.0)
     assert arm.at() == pytest.approx(0.3, abs=2e-3)
+
+
+def test_a_cancel_waits_five_seconds_for_its_goal():
+    for seconds, status in ((4.9, RECALLED), (5.3, ACTIVE)):
+        arm, client = arm_with()
+        client.cancel("g1")
+        arm.context.advance(seconds)
+        assert client.send(trajectory(NAMES, (1.0, (1.0, 1.0)))) == "g1"
+        assert client.status == {"g1": status}
+
+
+def test_cancels_of_goals_that_are_gone_are_forgotten():
+    arm, client = arm_with()
+    for n in range(5):
+        client.cancel(f"old-{n}")
+    arm.context.advance(5.3)
+    action = arm.plugin._manager.controllers["arm"]._action
+    assert action._early == []
+    client.cancel("of a later clock")
+    arm.context.step = 0
+    arm.context.advance(0.2)
+    assert action._early == []
 
 
 def test_a_stop_may_take_its_time():
