@@ -1,21 +1,57 @@
 /**
  * Where an actor is at a time. Its trajectories run one after the other, each from its first
- * waypoint on, in world axes (Gazebo behaviour); `delay_start` is waited for before each cycle
- * (SDF spec 1.7, script/delay_start).
+ * waypoint on, in world axes; a spline of the trajectory's `tension` joins their positions, the
+ * shorter way of turning their orientations (Gazebo behaviour). `delay_start` is waited for before
+ * each cycle (SDF spec 1.7, script/delay_start).
  */
 import {orientation, position, slerp} from './pose.js';
 /** @import {Actor, Trajectory, Waypoint} from './protocol.js' */
 
-/** @typedef {{time: number, pose: number[]}} Key */
+/**
+ * @typedef {{time: number, pose: number[], slope: number[]}} Key
+ *   slope: of the spline, m for a whole segment
+ */
+
+/** m; ends of a path that are no further apart are one point (ignition::math::Vector3). */
+const CLOSED = 1e-3;
 
 /**
  * Waypoints in the order of their times; of those of one time the last counts.
  * @param {Waypoint[]} waypoints
- * @returns {Key[]}
  */
 function inOrder(waypoints) {
   const byTime = new Map(waypoints.map(({time, pose}) => [time, pose]));
   return [...byTime].map(([time, pose]) => ({time, pose})).sort((a, b) => a.time - b.time);
+}
+
+/**
+ * Slopes of a cardinal spline, which do not heed how long segments take (ignition::math::Spline).
+ * @param {number[][]} points
+ * @param {number} tension  0: Catmull-Rom; 1: straight, with a halt at each point
+ */
+function slopes(points, tension) {
+  const last = points.length - 1;
+  const closed = last > 0 &&
+    points[0].every((value, axis) => Math.abs(value - points[last][axis]) <= CLOSED);
+  return points.map((_, index) => {
+    const before = points[index > 0 ? index - 1 : closed ? last - 1 : 0];
+    const after = points[index < last ? index + 1 : closed ? 1 : last];
+    return after.map((value, axis) => 0.5 * (1 - tension) * (value - before[axis]));
+  });
+}
+
+/**
+ * @param {Key} from
+ * @param {Key} to
+ * @param {number} part  of the segment, 0 to 1
+ * @returns {number[]} position on the spline
+ */
+function onSpline(from, to, part) {
+  const [start, end] = [position(from.pose), position(to.pose)];
+  const rest = 1 - part;
+  const ahead = part * part * (3 - 2 * part);
+  return start.map((value, axis) => value + ahead * (end[axis] - value) +
+    part * rest * (rest * from.slope[axis] - part * to.slope[axis]));
 }
 
 /**
@@ -26,10 +62,11 @@ function script(trajectories) {
   /** @type {Key[]} */
   const keys = [];
   let length = 0;
-  for (const {waypoints} of trajectories) {
+  for (const {waypoints, tension} of trajectories) {
     const ordered = inOrder(waypoints);
+    const along = slopes(ordered.map(({pose}) => position(pose)), tension);
     ordered.forEach(({time, pose}, index) =>
-      keys.push({time: length + (index ? time : 0), pose}));
+      keys.push({time: length + (index ? time : 0), pose, slope: along[index]}));
     length += Math.max(ordered.at(-1)?.time ?? 0, 0);
   }
   return {keys, length};
@@ -76,8 +113,7 @@ export class ActorPath {
     if (next < 0) return [...keys[keys.length - 1].pose];
     const [from, to] = [keys[next - 1], keys[next]];
     const part = (at - from.time) / (to.time - from.time);
-    const start = position(from.pose);
-    return [...position(to.pose).map((end, axis) => start[axis] + (end - start[axis]) * part),
+    return [...onSpline(from, to, part),
       ...slerp(orientation(from.pose), orientation(to.pose), part)];
   }
 }

@@ -18,7 +18,7 @@ def pose_of(numbers):
 
 
 def actor_of(told):
-    trajectories = [Trajectory(one["id"], waypoints=[
+    trajectories = [Trajectory(one["id"], tension=one["tension"], waypoints=[
         Waypoint(waypoint["time"], pose_of(waypoint["pose"])) for waypoint in one["waypoints"]])
         for one in told["trajectories"]]
     return Actor("man", pose_of(told["pose"]), loop=told["loop"], auto_start=told["auto_start"],

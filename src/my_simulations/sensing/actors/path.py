@@ -1,17 +1,33 @@
 """Where an actor is at a time: the rules of the editor's page (web/js/actor_path.js).
 
-Trajectories run one after the other, each from its first waypoint on, in world axes (Gazebo
-behaviour). `delay_start` is waited for before each cycle (SDF spec 1.7, script/delay_start).
+Trajectories run one after the other, each from its first waypoint on, in world axes; a spline of
+the trajectory's `tension` joins their positions, the shorter way of turning their orientations
+(Gazebo behaviour). `delay_start` is waited for before each cycle (SDF spec 1.7,
+script/delay_start).
 """
 from __future__ import annotations
 
-from typing import List, Optional, Tuple
+from typing import List, NamedTuple, Optional, Tuple
 
 from ...description.actor import Actor, Waypoint
-from ...geometry import Pose, add, scale, slerp, subtract
+from ...geometry import Pose, Vec3, add, scale, slerp, subtract
 
-Key = Tuple[float, Pose]
-"""Time since the script began, s, and the pose in the world."""
+_CLOSED = 1e-3
+"""m; ends of a path that are no further apart are one point (ignition::math::Vector3)."""
+
+
+class Key(NamedTuple):
+    """A waypoint of the script.
+
+    Attributes:
+        time: since the script began, s.
+        pose: in the world.
+        slope: of the spline, m for a whole segment.
+    """
+
+    time: float
+    pose: Pose
+    slope: Vec3
 
 
 class ActorPath:
@@ -23,7 +39,8 @@ class ActorPath:
         self._length = 0.0
         for trajectory in actor.trajectories:
             ordered = _in_order(trajectory.waypoints)
-            self._keys += [(self._length + (time if n else 0.0), pose)
+            slopes = _slopes([pose.position for _, pose in ordered], trajectory.tension)
+            self._keys += [Key(self._length + (time if n else 0.0), pose, slopes[n])
                            for n, (time, pose) in enumerate(ordered)]
             self._length += max(ordered[-1][0] if ordered else 0.0, 0.0)
 
@@ -52,16 +69,38 @@ class ActorPath:
         at = self.script_time(time)
         if at is None or not self._keys:
             return self._actor.pose
-        after = next((n for n, (key, _) in enumerate(self._keys) if key > at), len(self._keys))
+        after = next((n for n, key in enumerate(self._keys) if key.time > at), len(self._keys))
         if after in (0, len(self._keys)):
-            return self._keys[max(after - 1, 0)][1]
-        (begin, start), (end, goal) = self._keys[after - 1], self._keys[after]
-        part = (at - begin) / (end - begin)
-        way = subtract(goal.position, start.position)
-        return Pose(add(start.position, scale(way, part)),
-                    slerp(start.orientation, goal.orientation, part))
+            return self._keys[max(after - 1, 0)].pose
+        start, goal = self._keys[after - 1], self._keys[after]
+        part = (at - start.time) / (goal.time - start.time)
+        return Pose(_on_spline(start, goal, part),
+                    slerp(start.pose.orientation, goal.pose.orientation, part))
 
 
-def _in_order(waypoints: List[Waypoint]) -> List[Key]:
+def _slopes(points: List[Vec3], tension: float) -> List[Vec3]:
+    """Of a cardinal spline, which does not heed how long segments take (ignition::math::Spline).
+
+    `tension` 0: Catmull-Rom; 1: straight, with a halt at each point.
+    """
+    if len(points) < 2:
+        return [(0.0, 0.0, 0.0)] * len(points)
+    closed = all(abs(a - b) <= _CLOSED for a, b in zip(points[0], points[-1]))
+    before, after = (points[-2], points[1]) if closed else (points[0], points[-1])
+    around = [before, *points, after]
+    return [scale(subtract(around[n + 2], around[n]), 0.5 * (1.0 - tension))
+            for n in range(len(points))]
+
+
+def _on_spline(start: Key, goal: Key, part: float) -> Vec3:
+    """Position at a part, 0 to 1, of a segment."""
+    rest = 1.0 - part
+    way = subtract(goal.pose.position, start.pose.position)
+    bend = subtract(scale(start.slope, rest), scale(goal.slope, part))
+    straight = add(start.pose.position, scale(way, part * part * (3.0 - 2.0 * part)))
+    return add(straight, scale(bend, part * rest))
+
+
+def _in_order(waypoints: List[Waypoint]) -> List[Tuple[float, Pose]]:
     """In the order of their times; of those of one time the last counts."""
     return sorted({one.time: one.pose for one in waypoints}.items(), key=lambda key: key[0])
