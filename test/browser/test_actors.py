@@ -121,9 +121,14 @@ FIGURES = {
     "borrowing": Actor("borrowing", Pose(), "swinging.dae",
                        animations=[Animation("fall", "mover.dae")], loop=False,
                        trajectories=[Trajectory(0, "fall", waypoints=PATH)]),
+    "changing": Actor("changing", Pose(), "going.dae",
+                      animations=[Animation("none", "rod.dae"), Animation("fall", "mover.dae"),
+                                  Animation("go", "going.dae")],
+                      trajectories=[Trajectory(n, kind, waypoints=PATH[:2]) for n, kind in
+                                    enumerate(("fall", "go", "none", "unknown", "fall"))]),
     "vain": Actor("vain", Pose(), "swinging.dae", animations=[Animation("none", "rod.dae")]),
 }
-TIMES = (0.0, 0.4, 1.0, 1.6, 2.2, 3.9, 10.3)
+TIMES = (0.0, 0.4, 1.0, 1.6, 2.2, 3.9, 4.4, 6.9, 8.5, 10.3)
 
 VERTICES = """async ({actor, times}) => {
   const [{Figure}, {Meshes}, {sourceOf}] = await Promise.all(
@@ -131,7 +136,7 @@ VERTICES = """async ({actor, times}) => {
   const meshes = new Meshes((problem) => { throw new Error(problem); });
   const figure = new Figure(actor);
   figure.dress(await meshes.figure(sourceOf(actor.geometry)),
-    figure.foreign && await meshes.figure(figure.foreign));
+    await Promise.all(figure.foreign.map((file) => file && meshes.figure(file))));
   return times.map((time) => {
     figure.show(time);
     figure.group.updateMatrixWorld(true);
@@ -172,10 +177,11 @@ def element(actor):
 
 def seen_by_cameras(folder, actor, time):
     """The places of the vertices that cameras and rays see."""
-    animation = actor.animations[0].filename if actor.animations else ""
+    animations = tuple("" if one.filename == actor.skin else str(folder / one.filename)
+                       for one in actor.animations)
     shape = FigureShape(Figure(actor, Mesh(actor.skin, str(folder / actor.skin),
-                                           (actor.skin_scale,) * 3),
-                               animation and str(folder / animation)), pytest.fail, "cameras")
+                                           (actor.skin_scale,) * 3), animations),
+                        pytest.fail, "cameras")
     frame = matrix(shape.pose_at(time))
     return np.concatenate([rows[:, :3] @ frame[:3, :3].T + frame[:3, 3]
                            for rows in shape.rows_at(shape.form_at(time))])

@@ -173,10 +173,10 @@ def path(*places, loop=False, delay=0.0):
         Waypoint(float(n), Pose(place)) for n, place in enumerate(places)])]}
 
 
-def figure(folder, skin, one, scale=1.0, animation=""):
+def figure(folder, skin, one, scale=1.0, animations=()):
     file = folder / "skin.dae"
     file.write_text(skin)
-    return Figure(one, Mesh("skin.dae", str(file), (scale,) * 3), animation)
+    return Figure(one, Mesh("skin.dae", str(file), (scale,) * 3), animations)
 
 
 def scenery(*figures):
@@ -247,12 +247,28 @@ def test_another_file_s_animation_turns_bones_of_the_same_names(view, tmp_path):
     mover = tmp_path / "mover.dae"
     mover.write_text(swinging(seconds=4.0))
     borrowed = scenery(figure(tmp_path, rod(), actor(animations=[Animation("fall", "mover.dae")]),
-                              animation=str(mover)))
+                              animations=(str(mover),)))
     found = view(borrowed, AHEAD, 2 * S)
     assert is_red(found, -0.8 * math.sqrt(0.5), 1.0 + 0.8 * math.sqrt(0.5))
     mover.write_text(rod())
-    still = scenery(figure(tmp_path, swinging(), actor(), animation=str(mover)))
+    still = scenery(figure(tmp_path, swinging(), actor(), animations=(str(mover),)))
     assert is_red(view(still, AHEAD, S), 0.0, 1.8)
+
+
+def test_limbs_move_by_the_animation_that_the_trajectory_names(view, tmp_path):
+    for name, text in (("fall.dae", swinging(seconds=4.0)), ("stand.dae", rod())):
+        (tmp_path / name).write_text(text)
+    there = [Waypoint(time, Pose()) for time in (0.0, 2.0)]
+    man = actor(animations=[Animation("fall", "fall.dae"), Animation("stand", "stand.dae")],
+                trajectories=[Trajectory(0, "stand", waypoints=there),
+                              Trajectory(1, "fall", waypoints=there)], loop=False)
+    files = tuple(str(tmp_path / one.filename) for one in man.animations)
+    shown = scenery(figure(tmp_path, rod(), man, animations=files))
+    half = math.sqrt(0.5)
+    for ns, fallen in ((S, False), (4 * S, True)):
+        found = view(shown, AHEAD, ns)
+        assert is_red(found, 0.0, 1.8) != fallen
+        assert is_red(found, -0.8 * half, 1.0 + 0.8 * half) == fallen
 
 
 def test_an_actor_throws_a_shadow_that_goes_with_it(view, tmp_path):

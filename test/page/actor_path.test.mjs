@@ -16,10 +16,12 @@ const walk = {id: 0, type: 'walk', tension: 0, waypoints: [{time: 0, pose: PLACE
 for (const {says, actor: fields, at: moments} of cases) {
   test(`an actor: ${says}`, () => {
     const path = new ActorPath(actor(fields));
-    for (const {time, pose} of moments) {
+    for (const {time, pose, stride} of moments) {
       const found = path.poseAt(time);
       near(found.slice(0, 3), pose.slice(0, 3));
       sameTurn(found.slice(3), pose.slice(3));
+      const {type, time: since} = path.strideAt(time) ?? {};
+      if (stride !== undefined) assert.deepEqual(stride, type === undefined ? null : [type, since]);
     }
   });
 }

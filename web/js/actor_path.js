@@ -54,33 +54,41 @@ function onSpline(from, to, part) {
     part * rest * (rest * from.slope[axis] - part * to.slope[axis]));
 }
 
+/** @typedef {{time: number, type: string}} Begin  of a trajectory, with its animation's name */
+
+/** @typedef {{type: string, time: number}} Stride  type: name of the animation; s since it began */
+
 /**
  * @param {Trajectory[]} trajectories
- * @returns {{keys: Key[], length: number}} times in s since the script began
+ * @returns {{keys: Key[], begins: Begin[], length: number}} times in s since the script began
  */
 function script(trajectories) {
   /** @type {Key[]} */
   const keys = [];
+  /** @type {Begin[]} */
+  const begins = [];
   let length = 0;
-  for (const {waypoints, tension} of trajectories) {
+  for (const {type, waypoints, tension} of trajectories) {
+    if (waypoints.length) begins.push({time: length, type});
     const ordered = inOrder(waypoints);
     const along = slopes(ordered.map(({pose}) => position(pose)), tension);
     ordered.forEach(({time, pose}, index) =>
       keys.push({time: length + (index ? time : 0), pose, slope: along[index]}));
     length += Math.max(ordered.at(-1)?.time ?? 0, 0);
   }
-  return {keys, length};
+  return {keys, begins, length};
 }
 
 export class ActorPath {
   #actor;
   #keys;
+  #begins;
   #length;
 
   /** @param {Actor} actor */
   constructor(actor) {
     this.#actor = actor;
-    ({keys: this.#keys, length: this.#length} = script(actor.trajectories));
+    ({keys: this.#keys, begins: this.#begins, length: this.#length} = script(actor.trajectories));
   }
 
   /** Whether time makes any difference to where it is. */
@@ -101,6 +109,19 @@ export class ActorPath {
     if (!loop) return Math.min(since, this.#length);
     const cycle = this.#length + Math.max(delay, 0);
     return Math.min(since % cycle, this.#length);
+  }
+
+  /**
+   * What the limbs do: the animation that the trajectory of the time names, from the trajectory's
+   * own begin (Gazebo behaviour); null before the script begins.
+   * @param {number} time  sim time, s
+   * @returns {Stride|null}
+   */
+  strideAt(time) {
+    const at = this.scriptTime(time);
+    if (at === null) return null;
+    const running = this.#begins.filter((begin) => begin.time <= at).at(-1);
+    return {type: running?.type ?? '', time: at - (running?.time ?? 0)};
   }
 
   /** @param {number} time  sim time, s @returns {number[]} pose7 in the world */

@@ -279,12 +279,12 @@ class Figure:
     Attributes:
         actor: where it goes.
         skin: its surface.
-        animation: path of the file that moves its limbs; "" for the skin's own.
+        animations: paths of the files of the actor's animations; "" for the skin's own.
     """
 
     actor: Actor
     skin: Mesh
-    animation: str = ""
+    animations: Tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)

@@ -49,7 +49,7 @@ def scenery(world: World, materials: "Materials", resolver: "Resolver") -> SetSc
 
 
 def _figure(actor: Actor, resolver: "Resolver") -> Figure:
-    """The page's rule: the first animation counts, of another COLLADA file than the skin."""
+    """The page's rule: an animation is the skin's own unless another COLLADA file has it."""
     def path_of(uri: str) -> str:
         try:
             return resolver.resolve(uri, actor.base_dir) if uri else ""
@@ -57,9 +57,10 @@ def _figure(actor: Actor, resolver: "Resolver") -> Figure:
             return ""
 
     skin = Mesh(actor.skin, path_of(actor.skin), (actor.skin_scale,) * 3)
-    animation = path_of(actor.animations[0].filename) if actor.animations else ""
-    foreign = animation.lower().endswith(tuple(PAGE_FORMATS)) and animation != skin.path
-    return Figure(actor, skin, animation if foreign else "")
+    paths = [path_of(animation.filename) for animation in actor.animations]
+    return Figure(actor, skin, tuple(
+        path if path.lower().endswith(tuple(PAGE_FORMATS)) and path != skin.path else ""
+        for path in paths))
 
 
 class SceneState:

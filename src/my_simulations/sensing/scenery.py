@@ -11,7 +11,7 @@ from typing import Callable, List, Optional, Tuple
 import numpy as np
 
 from ..geometry import Pose
-from .actors.figure_shape import FigureShape
+from .actors.figure_shape import FigureShape, Form
 from .api import PaintedRoad, SetScenery
 from .roads import strip
 from .surfaces import Piece, piece_of, surface_of
@@ -46,7 +46,7 @@ class Scenery:
         self.told = scenery
         self.parts: List[ScenicPart] = []
         self._figures: List[Tuple[FigureShape, int]] = []   # with the number of its first part
-        self._forms: List[Optional[float]] = []
+        self._forms: List[Optional[Form]] = []
         fixed = [self._lay(road, -1 - n) for n, road in enumerate(scenery.roads)]
         for figure in scenery.figures:
             shape = FigureShape(figure, trouble, viewers)

@@ -18,7 +18,7 @@ def pose_of(numbers):
 
 
 def actor_of(told):
-    trajectories = [Trajectory(one["id"], tension=one["tension"], waypoints=[
+    trajectories = [Trajectory(one["id"], one["type"], tension=one["tension"], waypoints=[
         Waypoint(waypoint["time"], pose_of(waypoint["pose"])) for waypoint in one["waypoints"]])
         for one in told["trajectories"]]
     return Actor("man", pose_of(told["pose"]), loop=told["loop"], auto_start=told["auto_start"],
@@ -33,6 +33,9 @@ def test_an_actor_is_where_the_page_has_it(case):
         assert found.position == pytest.approx(expected.position, abs=1e-9)
         same = sum(a * b for a, b in zip(found.orientation, expected.orientation))
         assert abs(same) == pytest.approx(1.0, abs=1e-9)
+        if "stride" in moment:
+            stride = path.stride_at(moment["time"])
+            assert (None if stride is None else [*stride]) == moment["stride"]
 
 
 def test_an_actor_without_a_path_does_not_move():

@@ -201,12 +201,13 @@ def test_the_files_of_an_actor_are_found_beside_its_world(resolved, tmp_path):
 
 
 @pytest.mark.parametrize(("files", "expected"), [
-    (["run.dae", "man.dae"], "run.dae"),   # the first counts
-    (["man.dae"], ""), (["run.bvh"], ""), (["gone.dae"], ""), ([], "")])
-def test_limbs_move_by_the_first_animation_of_another_file(resolved, tmp_path, files, expected):
+    (["run.dae", "man.dae"], ["run.dae", ""]), (["man.dae", "run.dae"], ["", "run.dae"]),
+    (["man.dae"], [""]), (["run.bvh"], [""]), (["gone.dae"], [""]), ([], [])])
+def test_limbs_move_by_animations_of_other_files_or_the_skin_s_own(
+        resolved, tmp_path, files, expected):
     [man] = resolved(world_of(Actor("man", skin="man.dae", base_dir=str(tmp_path), animations=[
         Animation("a", file) for file in files]))).figures
-    assert man.animation == (str(tmp_path / expected) if expected else "")
+    assert man.animations == tuple(str(tmp_path / one) if one else "" for one in expected)
 
 
 def test_a_road_is_asphalt_unless_it_says_otherwise(resolved):

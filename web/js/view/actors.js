@@ -10,7 +10,8 @@ import {sourceOf} from './mesh_files.js';
 import {place} from './three_convert.js';
 /** @import {Actor, LogPush} from '../protocol.js' */
 /** @import {MeshSource} from './mesh_files.js' */
-/** @import {Object3D} from 'three' */
+/** @import {AnimationAction, Object3D} from 'three' */
+/** @import {Stride} from '../actor_path.js' */
 /** @import {ViewParts} from './view.js' */
 
 /** Milliseconds between two steps, as between pose frames. */
@@ -45,29 +46,43 @@ function borrowed(clip, owner, figure) {
   return tracks.length ? new AnimationClip(clip.name, clip.duration, tracks) : null;
 }
 
-/** The movement of a skin's bones. */
-class Gait {
+/** The movements of a skin's bones, of which one goes on at a time. */
+class Gaits {
   #mixer;
   #root;
+  #rootX;
   #onTheSpot;
+  /** @type {Map<string, AnimationAction|null>} */
+  #actions;
+  /** @type {AnimationAction|null} */
+  #current = null;
 
   /**
    * @param {Object3D} figure
-   * @param {AnimationClip} clip
+   * @param {Map<string, AnimationClip|null>} clips  by name; of an unknown one the first
    * @param {boolean} onTheSpot
    */
-  constructor(figure, clip, onTheSpot) {
+  constructor(figure, clips, onTheSpot) {
     this.#mixer = new AnimationMixer(figure);
-    this.#mixer.clipAction(clip).play();
+    this.#actions = new Map([...clips].map(([name, clip]) =>
+      [name, clip && this.#mixer.clipAction(clip)]));
     this.#root = rootBone(figure);
+    this.#rootX = this.#root?.position.x ?? 0;
     this.#onTheSpot = onTheSpot;
   }
 
-  /** @param {number} time  s since the script began */
-  show(time) {
+  /** @param {Stride} stride */
+  show({type, time}) {
+    const [first = null] = this.#actions.values();
+    const action = this.#actions.has(type) ? this.#actions.get(type) ?? null : first;
+    if (action !== this.#current) {
+      this.#current?.stop();
+      action?.play();
+      this.#current = action;
+    }
     this.#mixer.setTime(time);
     // Where there is a path, it says how far the figure has come (Gazebo behaviour).
-    if (this.#onTheSpot && this.#root) this.#root.position.x = 0;
+    if (this.#onTheSpot && this.#root) this.#root.position.x = action ? 0 : this.#rootX;
   }
 }
 
@@ -76,9 +91,9 @@ export class Figure {
   group = new Group();
   path;
   #actor;
-  /** @type {Gait|null} */
-  #gait = null;
-  /** What it looks like: its pose and the time of its stride. @type {(number|null)[]|null} */
+  /** @type {Gaits|null} */
+  #gaits = null;
+  /** What it looks like: its pose and its stride. @type {unknown[]|null} */
   #shown = null;
 
   /** @param {Actor} actor */
@@ -90,42 +105,62 @@ export class Figure {
   }
 
   get moves() {
-    return this.path.moves || this.#gait !== null;
+    return this.path.moves || this.#gaits !== null;
   }
 
   /**
-   * The file that its first animation is in, when that is not the skin's own.
-   * @returns {MeshSource|null}
+   * The file of each animation, null for the skin's own.
+   * @returns {(MeshSource|null)[]}
    */
   get foreign() {
     const own = sourceOf(this.#actor.geometry);
-    const [animation] = this.#actor.animations;
-    const source = animation ? sourceOf(animation.geometry) : null;
-    return source && source.url !== own?.url ? source : null;
+    return this.#actor.animations.map(({geometry}) => {
+      const source = sourceOf(geometry);
+      return source && source.url !== own?.url ? source : null;
+    });
   }
 
   /**
    * Gives it its body.
-   * @param {import('three').Object3D} skin  a file's scene
-   * @param {import('three').Object3D|null} mover  the scene of the file in `foreign`
+   * @param {Object3D} skin  a file's scene
+   * @param {(Object3D|null)[]} movers  the scenes of the files in `foreign`
    */
-  dress(skin, mover) {
-    const [clip] = (this.foreign ? mover?.animations : skin.animations) ?? [];
-    const own = clip && mover && this.foreign ? borrowed(clip, mover, skin) : clip;
-    if (own && this.#actor.auto_start) this.#gait = new Gait(skin, own, this.path.moves);
+  dress(skin, movers) {
+    const clips = this.#clips(skin, movers);
+    if (this.#actor.auto_start && [...clips.values()].some(Boolean)) {
+      this.#gaits = new Gaits(skin, clips, this.path.moves);
+    }
     this.group.add(skin);
     this.#shown = null;
+  }
+
+  /**
+   * By name; the skin's own movement for an actor without animations.
+   * @param {Object3D} skin
+   * @param {(Object3D|null)[]} movers
+   * @returns {Map<string, AnimationClip|null>}
+   */
+  #clips(skin, movers) {
+    const own = skin.animations[0] ?? null;
+    const {foreign} = this;
+    if (!foreign.length) return new Map([['', own]]);
+    return new Map(this.#actor.animations.map(({name}, index) => {
+      if (!foreign[index]) return [name, own];
+      const mover = movers[index];
+      const clip = mover?.animations[0];
+      return [name, mover && clip ? borrowed(clip, mover, skin) : null];
+    }));
   }
 
   /** @param {number} time  sim time, s @returns {boolean} whether it looks different now */
   show(time) {
     const pose = this.path.poseAt(time);
-    const stride = this.#gait ? this.path.scriptTime(time) : null;
-    const now = [...pose, stride];
+    const stride = this.#gaits ? this.path.strideAt(time) : null;
+    const now = [...pose, stride?.type, stride?.time];
     if (this.#shown?.every((value, index) => value === now[index])) return false;
     this.#shown = now;
     place(this.group, pose);
-    if (stride !== null) this.#gait?.show(stride);
+    if (stride) this.#gaits?.show(stride);
     return true;
   }
 }
@@ -199,9 +234,9 @@ export class Actors {
     if (problem) this.#tellOnce(`Actor ${actor.name}: the skin cannot be shown: ${problem}`);
     if (source) {
       Promise.all([this.#meshes.figure(source),
-        figure.foreign && this.#meshes.figure(figure.foreign)]).then(([skin, mover]) => {
+        ...figure.foreign.map((file) => file && this.#meshes.figure(file))]).then(([skin, ...movers]) => {
         if (!skin || !this.#figures.includes(figure)) return;
-        figure.dress(skin, mover);
+        figure.dress(skin, movers);
         this.#stage.scene.add(figure.group);
         this.#step();
         this.#stage.shadowsChanged();

@@ -2,7 +2,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Callable, List, Optional
+from typing import Callable, List, Optional, Tuple
 
 import numpy as np
 
@@ -17,6 +17,9 @@ from ..surfaces import Piece, own_surface, piece_of
 from .path import ActorPath
 from .skeleton import Skeleton
 
+Form = Tuple[int, float]
+"""Number of an animation of the actor, and s in it."""
+
 
 class FigureShape:
     """What an actor looks like at a time, as on the editor's page (web/js/view/actors.js).
@@ -29,7 +32,8 @@ class FigureShape:
 
     def __init__(self, figure: Figure, trouble: Callable[[str], None], viewers: str) -> None:
         self._path = ActorPath(figure.actor)
-        self._skeleton: Optional[Skeleton] = None
+        self._skeletons: List[Skeleton] = []   # one for each animation
+        self._numbers = {one.name: n for n, one in enumerate(figure.actor.animations)}
         self.pieces: List[Piece] = []
         if not figure.skin.uri:
             return
@@ -52,13 +56,13 @@ class FigureShape:
         found = read_figure(figure.skin.path)
         if found is None:
             return []
-        clip = read_clip(figure.animation) if figure.animation else None
-        skeleton = Skeleton(found, figure.skin.scale[0], clip, borrows=bool(figure.animation),
-                            on_path=self._path.moves)
-        surfaces = skeleton.surfaces(None)
+        skeletons = [Skeleton(found, figure.skin.scale[0], read_clip(path) if path else None,
+                              borrows=bool(path), on_path=self._path.moves)
+                     for path in figure.animations or ("",)]
+        surfaces = skeletons[0].surfaces(None)
         if not all(np.isfinite(vertices).all() for vertices, _ in surfaces):
             raise MeshError("its bones are not at finite places")
-        self._skeleton = skeleton
+        self._skeletons = skeletons
         return [replace(one.part, vertices=vertices, normals=normals)
                 for one, (vertices, normals) in zip(found.parts, surfaces)]
 
@@ -66,18 +70,22 @@ class FigureShape:
         """In the world, at a sim time in s."""
         return self._path.pose_at(time)
 
-    def form_at(self, time: float) -> Optional[float]:
-        """What its shape depends on: s in its animation; None for the shape of the file."""
-        length = None if self._skeleton is None else self._skeleton.duration
-        at = self._path.script_time(time)
-        if length is None or at is None:
+    def form_at(self, time: float) -> Optional[Form]:
+        """What its shape depends on; None for the shape of the file."""
+        stride = self._path.stride_at(time)
+        if stride is None or not self._skeletons:
             return None
-        return at % length if length > 0.0 else 0.0
+        number = self._numbers.get(stride.type, 0)
+        length = self._skeletons[number].duration
+        if length is None:
+            return None
+        return number, stride.time % length if length > 0.0 else 0.0
 
-    def rows_at(self, form: Optional[float]) -> List[np.ndarray]:
+    def rows_at(self, form: Optional[Form]) -> List[np.ndarray]:
         """Rows of `Piece`, one table of each piece."""
         rows = [piece.rows.copy() for piece in self.pieces]
-        if self._skeleton is not None:
-            for table, (vertices, normals) in zip(rows, self._skeleton.surfaces(form)):
+        if self._skeletons:
+            number, at = form or (0, None)
+            for table, (vertices, normals) in zip(rows, self._skeletons[number].surfaces(at)):
                 table[:, :3], table[:, 3:6] = vertices, normals
         return rows

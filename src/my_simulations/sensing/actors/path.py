@@ -30,14 +30,24 @@ class Key(NamedTuple):
     slope: Vec3
 
 
+class Stride(NamedTuple):
+    """What the limbs do: the name of an animation, and s since it began."""
+
+    type: str
+    time: float
+
+
 class ActorPath:
     """The path of an actor."""
 
     def __init__(self, actor: Actor) -> None:
         self._actor = actor
         self._keys: List[Key] = []
+        self._begins: List[Tuple[float, str]] = []   # of trajectories, with their animations
         self._length = 0.0
         for trajectory in actor.trajectories:
+            if trajectory.waypoints:
+                self._begins.append((self._length, trajectory.type))
             ordered = _in_order(trajectory.waypoints)
             slopes = _slopes([pose.position for _, pose in ordered], trajectory.tension)
             self._keys += [Key(self._length + (time if n else 0.0), pose, slopes[n])
@@ -63,6 +73,17 @@ class ActorPath:
         if not self._actor.loop:
             return min(since, self._length)
         return min(since % (self._length + delay), self._length)
+
+    def stride_at(self, time: float) -> Optional[Stride]:
+        """The animation that the trajectory of a sim time (s) names, from the trajectory's begin.
+
+        Gazebo's rule. None before the script begins.
+        """
+        at = self.script_time(time)
+        if at is None:
+            return None
+        begin, name = ([(0.0, "")] + [one for one in self._begins if one[0] <= at])[-1]
+        return Stride(name, at - begin)
 
     def pose_at(self, time: float) -> Pose:
         """In the world, at a sim time in s."""
