@@ -129,6 +129,20 @@ def test_two_clicks_put_a_face_on_a_face(editor):
     editor.until("editor.store.mode === 'select'", "the mode of before")
 
 
+def test_the_box_round_a_light_and_the_camera_go_with_it(editor):
+    name = editor.get("editor.actions.edit({kind: 'insert_light', light: {pose: "
+                      "[0, 0, 2, 0, 0, 0, 1]}}).then(({value}) => value.name)")
+    editor.until(f"Boolean(editor.store.light('{name}'))", "the light")
+    editor.get(f"editor.store.select(['{name}']), editor.actions.follow()")
+    eye = editor.get("editor.view.camera.position")
+    assert editor.get("editor.view.selectionBoxes") == [[0, 0, 2]]
+    editor.get(f"editor.actions.setProperty('{name}', 'pose', [3, 2, 2, 0, 0, 0, 1])")
+    editor.until("editor.view.selectionBoxes[0][0] === 3", "the box at the light")
+    assert editor.get("editor.view.camera.position") == approx([eye[0] + 3, eye[1] + 2, eye[2]])
+    editor.get("editor.actions.undo()")
+    editor.until("editor.view.selectionBoxes[0][0] === 0", "the box at the light")
+
+
 def distance(editor, one, other):
     a, b = (editor.model(name)["pose"][:3] for name in (one, other))
     return sum((x - y) ** 2 for x, y in zip(a, b)) ** 0.5

@@ -64,6 +64,7 @@ export class CameraRig {
     store.listen('document', () => this.#openWorld());
     store.listen('entity', ({detail: {kind, value}}) => {
       if (kind === 'world' && value.gui_camera) this.#takeCamera(value.gui_camera);
+      if (kind === 'light') this.follow();
     });
     store.listen('camera', () => this.#applyChoices());
     this.apply();

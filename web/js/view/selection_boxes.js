@@ -23,6 +23,15 @@ export class SelectionBoxes {
     for (const event of /** @type {const} */ (['selection', 'document'])) {
       store.listen(event, () => this.update());
     }
+    // Models tell of their ways by poses (`follow`), lights by their documents alone.
+    store.listen('entity', ({detail}) => {
+      if (detail.kind === 'light' && store.selection.length) this.update();
+    });
+  }
+
+  /** Centres of the boxes that are seen, for tests. */
+  get places() {
+    return this.#boxes.filter(({visible}) => visible).map(({position}) => position.toArray());
   }
 
   /** Fits the boxes to what is selected now. */

@@ -195,6 +195,9 @@ class View {
   /** Names of the topics that are drawn, for tests. */
   get drawnTopics() { return this.#marks.drawn; }
 
+  /** Where the boxes round what is selected are, for tests. */
+  get selectionBoxes() { return this.#boxes.places; }
+
   /** Names of what others hold or have selected, for tests. */
   get sharedMarks() { return this.#people.shown; }
 
