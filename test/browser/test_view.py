@@ -129,6 +129,33 @@ def test_two_clicks_put_a_face_on_a_face(editor):
     editor.until("editor.store.mode === 'select'", "the mode of before")
 
 
+def test_a_face_is_snapped_from_where_its_body_has_gone_meanwhile(editor):
+    insert(editor, "moves", standing(1, -2))
+    insert(editor, "stays", standing(-1, 1))
+    editor.page.keyboard.press("n")
+    editor.page.mouse.click(*pixel_of(editor, "moves"))
+    editor.until("editor.store.selection[0] === 'moves'", "the first face")
+    editor.get("editor.actions.move({moves: [2, -4, 0.5, 0, 0, 0, 1]})")
+    editor.until("Math.abs(editor.store.worldPose('moves')[0] - 2) < 1e-6", "the move")
+    editor.page.mouse.click(*pixel_of(editor, "stays"))
+    editor.until("editor.store.history.undo[0]?.startsWith('Snap')", "the snap")
+    wait_for(lambda: 0.9 < distance(editor, "moves", "stays") < 1.45, "touching boxes")
+
+
+def test_a_face_of_what_was_deleted_is_not_waited_for(editor):
+    for name, x, y in (("gone", 1, -2), ("moves", -1, -2), ("stays", -1, 1)):
+        insert(editor, name, standing(x, y))
+    editor.page.keyboard.press("n")
+    editor.page.mouse.click(*pixel_of(editor, "gone"))
+    editor.until("editor.store.selection[0] === 'gone'", "the first face")
+    editor.get("editor.actions.remove(['gone'])")
+    editor.until("!editor.store.model('gone')", "the end of it")
+    editor.page.mouse.click(*pixel_of(editor, "moves"))
+    editor.until("editor.store.selection[0] === 'moves'", "another first face")
+    editor.page.mouse.click(*pixel_of(editor, "stays"))
+    editor.until("editor.store.history.undo[0]?.startsWith('Snap')", "the snap")
+
+
 def test_the_box_round_a_light_and_the_camera_go_with_it(editor):
     name = editor.get("editor.actions.edit({kind: 'insert_light', light: {pose: "
                       "[0, 0, 2, 0, 0, 0, 1]}}).then(({value}) => value.name)")

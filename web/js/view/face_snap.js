@@ -1,5 +1,5 @@
 /** The snap tool (N): a face of one model against a face of another, with two clicks. */
-import {BufferAttribute, BufferGeometry, DoubleSide, Mesh} from 'three';
+import {BufferAttribute, BufferGeometry, DoubleSide, Mesh, Vector3} from 'three';
 import {snapped} from '../face_math.js';
 import {through} from './markers.js';
 /** @import {Face} from '../face_math.js' */
@@ -28,7 +28,10 @@ export class FaceSnap {
   #stage;
   #hovered = triangle(0xff2a2a);
   #chosen = triangle(0xff9f1c);
-  /** The face that was chosen first. @type {{model: string, face: Face}|null} */
+  /**
+   * The face that was chosen first, in its link's frame: the link may go on moving.
+   * @type {{model: string, link: number, corners: Vector3[]}|null}
+   */
   #first = null;
 
   /** @param {ViewParts} viewParts */
@@ -41,6 +44,17 @@ export class FaceSnap {
     this.#stage = stage;
     stage.scene.add(this.#hovered, this.#chosen);
     store.listen('mode', () => this.#reset());
+    for (const event of /** @type {const} */ (['document', 'entity'])) {
+      store.listen(event, () => this.follow());
+    }
+  }
+
+  /** Keeps the chosen face on its link; gives it up when that has gone. */
+  follow() {
+    if (!this.#first) return;
+    const face = this.#chosenFace(this.#first);
+    if (!face) this.#first = null;
+    this.#mark(this.#chosen, face);
   }
 
   /** Marks the face under the mouse. @param {MousePoint} event */
@@ -56,20 +70,38 @@ export class FaceSnap {
   async click(event) {
     const hit = this.#under(event);
     if (!hit) return;
-    const {model} = hit.owner;
-    if (!this.#first || this.#first.model === model) {
-      if (hit.owner.plane) return;
-      this.#first = {model, face: hit.face};
+    const {model, linkId, plane} = hit.owner;
+    const first = this.#first;
+    const face = first && this.#chosenFace(first);
+    if (!first || !face || first.model === model) {
+      if (plane) return;
+      const within = this.#models.linkMatrix(linkId)?.clone().invert();
+      if (!within) return;
+      this.#first = {model, link: linkId, corners: hit.face.corners.map((corner) =>
+        new Vector3().fromArray(corner).applyMatrix4(within))};
       this.#store.select([model]);
       this.#mark(this.#chosen, hit.face);
       return;
     }
-    const {model: name, face} = this.#first;
-    const before = this.#store.worldPose(name);
+    const name = first.model;
+    // As it is shown: both faces are.
+    const before = this.#models.shownPose(name);
     if (!before) return;
     const pose = snapped(before, face, hit.face);
     this.#store.setMode('select');
     await this.#models.carry({[name]: pose}, this.#actions.move({[name]: pose}, 'snap'));
+  }
+
+  /**
+   * In the world, where its link is shown now.
+   * @param {{model: string, link: number, corners: Vector3[]}} first
+   * @returns {Face|null}
+   */
+  #chosenFace({model, link, corners}) {
+    const matrix = this.#store.model(model)?.links.some(({id}) => id === link) &&
+      this.#models.linkMatrix(link);
+    if (!matrix) return null;
+    return {corners: corners.map((corner) => corner.clone().applyMatrix4(matrix).toArray())};
   }
 
   /** @param {MousePoint} mousePoint */

@@ -128,6 +128,7 @@ class View {
   #marks;
   #people;
   #measure;
+  #snap;
   #cube;
   #readout;
   #preview;
@@ -170,13 +171,14 @@ class View {
     this.#people = new PeopleMarks(shared);
     this.#manipulator = new Manipulator(shared);
     this.#forces = new Forces(shared);
+    this.#snap = new FaceSnap(shared);
     const selector = new Selector(shared);
     this.#measure = new Measure({...shared, selector});
     this.#cube = new OrientationCube(element, actions);
     this.#readout = readout(element);
     this.#preview = new Preview(shared);
     this.#pointer = new Pointer({...shared, manipulator: this.#manipulator,
-      placer: new Placer(shared), faceSnap: new FaceSnap(shared), forces: this.#forces,
+      placer: new Placer(shared), faceSnap: this.#snap, forces: this.#forces,
       selector, measure: this.#measure, pivotMark: new PivotMark(shared),
       boxSelect: new BoxSelect(element, store, (name) =>
         // The ground is nobody's choice.
@@ -225,6 +227,7 @@ class View {
       this.#overlays.follow(ids);
       this.#marks.follow(ids);
       this.#people.follow(ids);
+      this.#snap.follow();
       if (!this.#manipulator.dragging) this.#manipulator.update();
     };
     this.#manipulator.onMoved = () => this.#boxes.update();
