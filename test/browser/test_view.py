@@ -170,6 +170,20 @@ def test_the_box_round_a_light_and_the_camera_go_with_it(editor):
     editor.until("editor.view.selectionBoxes[0][0] === 0", "the box at the light")
 
 
+def test_contacts_of_the_running_world_are_not_shown_over_a_log(editor):
+    insert(editor, "box", standing(0, 0))
+    editor.get("editor.actions.setOverlay('contacts', true)")
+    for action in ("logStart('flight')", "step(200)"):
+        assert editor.get(f"editor.actions.{action}.then(({{ok}}) => ok)")
+    editor.until("editor.view.contactMarks > 0", "marks of contacts")
+    for action in ("logStop()", "logOpen('flight')"):
+        assert editor.get(f"editor.actions.{action}.then(({{ok}}) => ok)")
+    editor.until("editor.store.showsLog", "the log")
+    assert editor.get("editor.view.contactMarks") == 0
+    assert editor.get("editor.actions.logClose().then(({ok}) => ok)")
+    editor.until("editor.view.contactMarks > 0", "marks of the world that stands still")
+
+
 def distance(editor, one, other):
     a, b = (editor.model(name)["pose"][:3] for name in (one, other))
     return sum((x - y) ** 2 for x, y in zip(a, b)) ** 0.5

@@ -251,6 +251,11 @@ export class WorldStore extends Emitter {
     return entity.kind === 'link' ? [...pose] : compose(pose, inverse(link.pose));
   }
 
+  /** Whether this page shows a log instead of the running world. */
+  get showsLog() {
+    return this.log?.state === 'open' || this.log?.state === 'playing';
+  }
+
   /** The others who have this world open. */
   get others() {
     return this.people.filter(({number}) => number !== this.me);

@@ -84,6 +84,7 @@ export class JointsPanel {
       store.listen(event, () => this.#update());
     }
     store.listen('watch', (event) => this.#showStates(event.detail));
+    store.listen('log', () => this.#hideLive());
   }
 
   #head;
@@ -124,6 +125,7 @@ export class JointsPanel {
     this.#off?.();
     this.#off = topic ? watches.add(topic) : null;
     this.#build();
+    this.#hideLive();
   }
 
   #build() {
@@ -275,6 +277,11 @@ export class JointsPanel {
       idle,
       note,
     );
+  }
+
+  /** States are those of the running world, not of a log. */
+  #hideLive() {
+    for (const {present} of this.#rows.values()) present.hidden = this.page.store.showsLog;
   }
 
   /** @param {WatchPush} watchPush */

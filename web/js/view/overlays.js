@@ -152,6 +152,16 @@ export class Overlays {
     store.listen('watch', ({detail}) => {
       if (detail.topic === 'contacts') this.#showContacts(detail.contacts ?? []);
     });
+    // They are of the running world, which tells of them again only once it goes on.
+    store.listen('log', () => {
+      this.#contacts.visible = !store.showsLog;
+      stage.invalidate();
+    });
+  }
+
+  /** How many marks of contacts are seen, for tests. */
+  get contacts() {
+    return this.#contacts.visible ? this.#contacts.children.filter((mark) => mark instanceof Mesh).length : 0;
   }
 
   /** Moves the marks with their links. @param {Set<number>|null} ids  null: all of them */

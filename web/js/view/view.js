@@ -200,6 +200,9 @@ class View {
   /** Where the boxes round what is selected are, for tests. */
   get selectionBoxes() { return this.#boxes.places; }
 
+  /** How many marks of contacts are seen, for tests. */
+  get contactMarks() { return this.#overlays.contacts; }
+
   /** Names of what others hold or have selected, for tests. */
   get sharedMarks() { return this.#people.shown; }
 
