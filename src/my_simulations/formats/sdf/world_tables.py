@@ -94,8 +94,8 @@ ROAD = Table("road", Road, {
 
 ANIMATION = Table("animation", Animation, {
     "filename": Value("filename", TEXT), "scale": Value("scale", FLOAT),
-    "interpolate_x": Value("interpolate_x", BOOL),
-}, attributes={"name": Value("name", TEXT)}, level=WARNING, use=KEPT)
+    "interpolate_x": Value("interpolate_x", BOOL, use=KEPT),
+}, attributes={"name": Value("name", TEXT)}, level=WARNING, use=SHOWN)
 
 WAYPOINT = Table("waypoint", Waypoint, {
     "time": Value("time", FLOAT), "pose": Value("pose", POSE),
@@ -105,7 +105,7 @@ TRAJECTORY = Table("trajectory", Trajectory, {
     "waypoint": Nested("waypoints", WAYPOINT, required=("time", "pose")),
 }, attributes={
     "id": Value("id", INT), "type": Value("type", TEXT),
-    "tension": Value("tension", FLOAT, use=KEPT),
+    "tension": Value("tension", FLOAT),
 }, level=WARNING, use=SHOWN)
 
 ACTOR = Table("actor", Actor, {
