@@ -153,3 +153,12 @@ def test_the_twist_of_a_model_is_that_of_its_first_link():
         told = world.links().twist["m::a"]
         assert list(told[:3]) == pytest.approx([1.0, 0.0, 0.0], abs=1e-9)
         assert list(told[3:]) == pytest.approx([0.0, 3.0, 0.0], abs=1e-9)
+
+
+def test_a_position_beyond_a_limit_is_the_limit(opened):
+    world = opened(DOOR)
+    for asked, reached in ((2.5, 1.57), (-0.5, 0.0), (0.7, 0.7)):
+        world.simulator.joints.set_positions({"door::hinge": asked})
+        world.step(100)
+        assert position(world) == pytest.approx(reached, abs=1e-6)
+        assert world.joints().rate["door::hinge"] == pytest.approx(0.0, abs=1e-6)

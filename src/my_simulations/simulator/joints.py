@@ -1,12 +1,15 @@
 """Joints of models in a running world: found by name, read, set, edited."""
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 from typing import Dict, List, Optional, Sequence, Tuple
 
 from ..description.model import Joint
 from ..engine.commands import Command, JointWrench, ReadJointWrenches, SetAxes, SetJoints
+from ..engine.ring_rows import axis_rows
 from .models import Models
+from .registry import Entity
 from .session import Session
 
 
@@ -53,7 +56,7 @@ class Joints:
         return list(answer) if isinstance(answer, tuple) else [None] * len(found)
 
     def set_positions(self, positions: Dict[str, float]) -> None:
-        """Move joint axes to positions (rad or m), at rest.
+        """Move joint axes to positions (rad or m), at rest; within their limits, as Gazebo does.
 
         Raises:
             UnknownEntityError: a joint does not exist.
@@ -61,8 +64,8 @@ class Joints:
         """
         def look_up() -> Command:
             found = [self._session.registry.movable_joint(name) for name in positions]
-            return SetJoints(tuple((row, value, 0.0)
-                                   for (_, row), value in zip(found, positions.values())),
+            return SetJoints(tuple((row, _within_limits(entity, row, value), 0.0)
+                                   for (entity, row), value in zip(found, positions.values())),
                              tuple(sorted({entity.model_id for entity, _ in found})))
 
         self._session.move(look_up)
@@ -86,6 +89,16 @@ class Joints:
             changed.pose = entity.pose
             with session.registry_lock:
                 session.registry.swap(entity, changed)
+
+
+def _within_limits(entity: Entity, row: int, position: float) -> float:
+    """The allowed position of an axis that is nearest; a number that is not finite stays."""
+    found = axis_rows(entity.model)[row - entity.first_joint_row]
+    axis = found.joint.axis2 if found.number else found.joint.axis
+    if axis is None or found.joint.type == "continuous" or axis.lower > axis.upper or (
+            not math.isfinite(position)):
+        return position
+    return min(max(position, axis.lower), axis.upper)
 
 
 def _fixed_properties(joint: Joint) -> Tuple[object, ...]:
