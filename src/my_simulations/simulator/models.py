@@ -206,7 +206,7 @@ class Models:
                 self._forget(entity)
                 return deleted
 
-    def _replaceable(self, name: str, may_replace: bool) -> Optional[Entity]:
+    def _replaceable(self, name: str, may_replace: bool = False) -> Optional[Entity]:
         registry = self._session.registry
         old = registry.model(name) if name in registry else None
         if old is not None and not may_replace:
@@ -230,7 +230,8 @@ class Models:
 
     # -- changing ----------------------------------------------------------------------------------
 
-    def edit(self, name: str, model: Model, meshes: Optional[MeshTable] = None) -> None:
+    def edit(self, name: str, model: Model, meshes: Optional[MeshTable] = None,
+             undone: bool = False) -> None:
         """Replace the description of a model; links and joints in both keep their state.
 
         Links keep pose and twist (moved along when their pose in the model differs), joints
@@ -241,6 +242,8 @@ class Models:
             model: the new description; a new name renames the model. Its pose is ignored: the
                 model stays in place, and a reset moves it to where it was loaded.
             meshes: added collision meshes by `mesh_key`; the present ones are kept.
+            undone: whether the model had this description before; a light may share its name
+                then, as both may in SDF before 1.7.
 
         Raises:
             CommandError: unknown or existing name, or rejected by the engine; nothing has changed.
@@ -252,7 +255,8 @@ class Models:
             with session.registry_lock:
                 old = session.registry.model(name)
                 if model.name != name:
-                    session.check_name_is_free(model.name)
+                    check = self._replaceable if undone else session.check_name_is_free
+                    check(model.name)
             parts = self._convex_meshes.of(model, {**old.meshes, **(meshes or {})})
             with session.registry_lock:
                 entity = session.new_entity(model, old.initial_pose, parts,

@@ -105,17 +105,19 @@ class EditModel:
         name: present name of the model.
         model: the new description.
         meshes: collision meshes to add, by `mesh_key`.
+        undone: whether the model had this description before; see `Models.edit`.
     """
 
     name: str
     model: Model
     meshes: MeshTable = field(default_factory=dict)
+    undone: bool = False
 
     def apply(self, world: Simulator) -> Operation:
         """Edit the model; its links and joints keep their states."""
         old = world.models.get(self.name)
-        world.models.edit(self.name, self.model, self.meshes)
-        return EditModel(self.model.name, old)
+        world.models.edit(self.name, self.model, self.meshes, self.undone)
+        return EditModel(self.model.name, old, undone=True)
 
 
 @dataclass(frozen=True)

@@ -232,6 +232,21 @@ def test_a_bad_edit_is_refused_with_a_reason_and_changes_nothing(case, op):
     made.browse(edit)
 
 
+def test_a_rename_is_undone_where_a_light_has_the_name_of_before(case):
+    made = case(box("sun"), lights=[sun()])
+
+    async def rename(browser):
+        before = state(made.sim)
+        await browser.edit("rename", name="sun", to="crate")
+        assert made.sim.models.names() == ["crate"]
+        await browser.ask("undo")
+        same(state(made.sim), before)
+        await browser.ask("redo")
+        assert made.sim.models.names() == ["crate"] and made.sim.lights.all() == [sun()]
+
+    made.browse(rename)
+
+
 def test_names_are_made_unique_as_gazebo_makes_them(case):
     async def insert(browser):
         names = [(await browser.edit("insert", shape="box"))["name"] for _ in range(3)]
