@@ -13,6 +13,7 @@ from ..errors import Severity
 from ..geometry import IDENTITY, Pose, Vec3, compose, conjugate, dot, norm, rotate, scale
 from .link_surface import coefficient, counting_collision
 from .model import WORLD, Inertial, Link, Model
+from .self_collision import self_collides
 from .shapes import Box, Capsule, Collision, Cylinder, Ellipsoid, Geometry, Plane, Sphere
 from .validate import Fault
 
@@ -69,7 +70,9 @@ def _jointed(model: Model, scope: str = "", static: bool = False) -> Set[str]:
     """
     name, static = f"{scope}{model.name}::", static or model.static
     found: Set[str] = set()
-    if not static and not model.self_collide:
+    if self_collides(model):
+        return found
+    if not static:
         found = {name + end for joint in model.joints for end in (joint.parent, joint.child)
                  if joint.type != "gearbox"}
     for inner in model.models:

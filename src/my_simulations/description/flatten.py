@@ -23,16 +23,22 @@ def flattened(model: Model) -> Model:
     joints: List[Joint] = list(model.joints)
     for nested in model.models:
         inner = flattened(nested)
-        links += [_moved(link, nested, model.static) for link in inner.links]
+        links += [_moved(link, nested, model) for link in inner.links]
         joints += [_scoped(joint, nested.name) for joint in inner.joints]
     return replace(model, links=links, joints=joints, models=[], guide=model)
 
 
-def _moved(link: Link, nested: Model, static: bool) -> Link:
-    """The link of a nested model; static ones inside a dynamic model become kinematic links."""
+def _moved(link: Link, nested: Model, outer: Model) -> Link:
+    """The link of a nested model; static ones inside a dynamic model become kinematic links.
+
+    What it says of self-collision is what its own model does (Gazebo, Link::Load).
+    """
+    own = link.self_collide
+    if own is None and nested.self_collide != outer.self_collide:
+        own = nested.self_collide
     return replace(
         link, name=f"{nested.name}::{link.name}", pose=compose(nested.pose, link.pose),
-        kinematic=link.kinematic or (nested.static and not static))
+        kinematic=link.kinematic or (nested.static and not outer.static), self_collide=own)
 
 
 def _scoped(joint: Joint, scope: str) -> Joint:

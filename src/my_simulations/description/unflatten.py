@@ -39,7 +39,11 @@ def _gathered(model: Model, links: Sequence[Link], joints: Sequence[Joint], guid
         else:
             before = known.get(link.name)
             kinematic = before.kinematic if guide.static and before else link.kinematic
-            own.append(replace(link, pose=_pose(link, before, above), kinematic=kinematic))
+            collides = link.self_collide
+            if before and before.self_collide is None and collides == guide.self_collide:
+                collides = None
+            own.append(replace(link, pose=_pose(link, before, above), kinematic=kinematic,
+                               self_collide=collides))
     theirs: Dict[str, List[Joint]] = {}
     ours: List[Joint] = []
     for joint in joints:

@@ -11,6 +11,7 @@ from typing import Dict, List, Tuple
 
 from ..description.link_surface import coefficient
 from ..description.model import Link, Model
+from ..description.self_collision import self_collides
 from .body_plan import MAX_TREE_LINKS, NO_LINK, BodyPlan, TreeLink, depth_first
 
 Carried = Tuple[int, ...]
@@ -19,10 +20,10 @@ Carried = Tuple[int, ...]
 def in_pieces(plan: BodyPlan, model: Model) -> BodyPlan:
     """The plan of a tree, a piece for each further friction of a link.
 
-    Links of models that collide with themselves stay whole: a piece would meet its neighbours. So
-    do all where there would be more links than Bullet can have.
+    Where links of a model collide with each other they stay whole: a piece would meet its
+    neighbours. So do all where there would be more links than Bullet can have.
     """
-    if model.self_collide:
+    if self_collides(model):
         return plan
     links = list(plan.links)
     for n, node in enumerate(plan.links):

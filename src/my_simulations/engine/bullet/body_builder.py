@@ -1,12 +1,14 @@
 """Builds the bodies of a model, as often as the world begins anew."""
 from __future__ import annotations
 
+import itertools
 from dataclasses import dataclass
-from typing import Any, Dict, List, Optional, Sequence, Tuple
+from typing import Any, Dict, Iterable, List, Optional, Sequence, Tuple
 
 import pybullet
 
 from ...description.model import Link, Model
+from ...description.self_collision import SelfCollision
 from ...description.shapes import MeshTable, Sphere
 from ...geometry import IDENTITY, Pose, Vec3, compose, conjugate, inverse, multiply
 from ..body_plan import BASE, NO_LINK, BodyPlan, TreeLink, plan_bodies
@@ -37,6 +39,8 @@ from .rims import with_rims
 _LIGHT = 1e-6  # share of a link's mass for the piece between the two axes it hangs on
 _JOINT_TYPES = {"revolute": pybullet.JOINT_REVOLUTE, "prismatic": pybullet.JOINT_PRISMATIC,
                 "fixed": pybullet.JOINT_FIXED, "ball": pybullet.JOINT_SPHERICAL}
+
+_Collider = Tuple[int, int, int]  # PyBullet's number of the body, and of its link; the link's row
 
 
 @dataclass(frozen=True)
@@ -83,6 +87,7 @@ class Builder:
         """Raises BodyPlanError, ShapeError."""
         self._model: Model = command.model
         self.model_id = command.model_id
+        self._meets = SelfCollision(command.model)
         self._first_row = command.first_link_row
         self._articulated = command.articulated or (
             not command.model.static and any(map(gives_way, command.model.links)))
@@ -200,7 +205,13 @@ class Builder:
             "linkJointTypes": [_JOINT_TYPES[node.kind] for node in hung],
             "linkJointAxis": [node.axis or (0.0, 0.0, 1.0) for node in hung],
             "flags": (pybullet.URDF_USE_SELF_COLLISION_EXCLUDE_PARENT
-                      | pybullet.URDF_USE_SELF_COLLISION) if self._model.self_collide else 0})
+                      | pybullet.URDF_USE_SELF_COLLISION) if self._collide(plan) else 0})
+
+    def _collide(self, plan: BodyPlan) -> bool:
+        """Whether any two links of a tree collide with each other."""
+        numbers = [node.index for node in plan.links if node.index != NO_LINK]
+        return any(self._meets.between(one, other)
+                   for one, other in itertools.combinations(numbers, 2))
 
     def _masses(self, plan: BodyPlan, n: int) -> _Masses:
         of = plan.links[n].of
@@ -292,15 +303,23 @@ class Builder:
             self._shapes.give(body.shapes)
 
     def _ignore_each_other(self, built: Sequence[Body], ignored: bool = True) -> None:
-        """Links of one model collide only when self_collide asks (SDF 1.7, model/self_collide)."""
-        if self._model.self_collide or self._model.static:
+        """Links of one model collide only where `self_collide` asks (`SelfCollision`)."""
+        if self._model.static:
             return
-        for n, one in enumerate(built):
-            for other in built[n + 1:]:
-                for a in [BASE] + [part.index for part in one.colliders if part.index != BASE]:
-                    for b in [BASE] + [part.index for part in other.colliders
-                                       if part.index != BASE]:
-                        collision_groups.ignore(one.uid, other.uid, a, b, ignored)
+        for plan, body in zip(self.plans, built):
+            if self._collide(plan):
+                self._ignore_pairs(itertools.combinations(_colliders(body), 2), ignored)
+        for one, other in itertools.combinations(built, 2):
+            self._ignore_pairs(itertools.product(_colliders(one), _colliders(other)), ignored)
+
+    def _ignore_pairs(self, pairs: Iterable[Tuple[_Collider, _Collider]], ignored: bool) -> None:
+        for (one, index, row), (other, other_index, other_row) in pairs:
+            if not self._meets.between(row - self._first_row, other_row - self._first_row):
+                collision_groups.ignore(one, other, index, other_index, ignored)
+
+
+def _colliders(body: Body) -> List[_Collider]:
+    return [(uid, part.index, part.row) for uid in body.uids for part in body.colliders]
 
 
 def _fit(uid: int, index: int, shape: Recipe) -> None:
