@@ -2,7 +2,8 @@
 
 A link without joints is a rigid body. Links connected by joints form a tree, as required by
 reduced coordinates: every link except the root has one parent joint. Joints to the world connect to
-a fixed, massless base. Static models become fixed links, with or without joints.
+a fixed, massless base, and so do kinematic links with joints, rigidly; whatever is connected to
+them hangs on the same base. Static models become fixed links, with or without joints.
 """
 from __future__ import annotations
 
@@ -125,6 +126,8 @@ class _Planner:
             for end in (joint.parent, joint.child):
                 (self.at_world if end == WORLD else self.at_link[end]).append(joint)
         self.children = {joint.child for joint in joints}
+        self.held = [link.name for link in model.links
+                     if link.kinematic and self.at_link[link.name]]
         self.visited: Set[str] = set()
         self.used: Set[str] = set()
 
@@ -132,8 +135,11 @@ class _Planner:
         bodies = []
         for joint in self.at_world:
             end = joint.child if joint.parent == WORLD else joint.parent
-            if end != WORLD and end not in self.visited:
+            if end != WORLD and end not in self.visited and end not in self.held:
                 bodies.append(self._from_world(end))
+        for name in self.held:
+            if name not in self.visited:
+                bodies += self._from_held(name)
         roots = [link for link in self.model.links if link.name not in self.children]
         for link in roots + self.model.links:
             if link.name not in self.visited:
@@ -155,6 +161,19 @@ class _Planner:
         self._hang(body, joint, end, BASE)
         return self._grow(body, end, len(body.links) - 1)
 
+    def _from_held(self, name: str) -> List[BodyPlan]:
+        """What hangs on a kinematic link and those it is connected to; they alone if nothing."""
+        body = self._grow(BodyPlan([self._fixed(name)], fixed_base=True), name, 0)
+        if any(link.joint is not None for link in body.links):
+            return [body]
+        return [BodyPlan([TreeLink(link.index, BASE)]) for link in body.links]
+
+    def _fixed(self, name: str) -> TreeLink:
+        """A kinematic link, on a fixed base."""
+        self.visited.add(name)
+        index = self.by_name[name]
+        return TreeLink(index, BASE, parent_from_frame=self.model.links[index].pose)
+
     def _grow(self, body: BodyPlan, start: str, at: int) -> BodyPlan:
         position = {start: at}
         queue: Deque[str] = deque([start])
@@ -164,9 +183,12 @@ class _Planner:
                 other = joint.child if joint.parent == name else joint.parent
                 if joint.name in self.used or other == WORLD or other in self.visited:
                     continue
-                self.visited.add(other)
-                self.used.add(joint.name)
-                self._hang(body, joint, other, position[name])
+                if other in self.held:   # all that reaches it is on a fixed base; the joint is open
+                    body.links.append(self._fixed(other))
+                else:
+                    self.visited.add(other)
+                    self.used.add(joint.name)
+                    self._hang(body, joint, other, position[name])
                 position[other] = len(body.links) - 1
                 queue.append(other)
         return body
@@ -234,8 +256,13 @@ def depth_first(links: List[TreeLink]) -> List[TreeLink]:
 
 
 def open_joints(model: Model, bodies: List[BodyPlan]) -> List[Joint]:
-    """The joints that connect nothing in `bodies`: loops, and unsupported types."""
+    """The joints that connect nothing in `bodies`: loops, and unsupported types.
+
+    Not those between links that nothing moves: they have nothing to hold.
+    """
     if model.static:
         return []
     used = {link.joint.name for body in bodies for link in body.links if link.joint is not None}
-    return [joint for joint in model.joints if joint.name not in used]
+    held = {WORLD} | {link.name for link in model.links if link.kinematic}
+    return [joint for joint in model.joints if joint.name not in used
+            and not (joint.type in AXES and {joint.parent, joint.child} <= held)]

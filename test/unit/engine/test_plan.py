@@ -1,6 +1,8 @@
 """Which bodies a model becomes."""
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 
 from my_simulations.description.model import Joint, JointAxis, Link, Model
@@ -74,3 +76,40 @@ def test_unknown_joint_types_connect_nothing():
     made = model("ab", "a>b")
     made.joints[0].type = "gearbox"
     assert shape(plan_bodies(made)) == [([0], False), ([1], False)]
+
+
+def kinematic(made: Model, *names: str) -> Model:
+    return replace(made, links=[replace(link, kinematic=link.name in names)
+                                for link in made.links])
+
+
+def test_a_kinematic_link_with_joints_is_fixed_and_carries_its_tree():
+    bodies = plan_bodies(kinematic(model("abc", "b>a", "a>c"), "a"))
+    assert shape(bodies) == [([0, 1, 2], True)]
+    assert bodies[0].links[0].joint is None and bodies[0].links[0].parent == BASE
+
+
+def test_a_kinematic_link_without_joints_is_a_rigid_body():
+    assert shape(plan_bodies(kinematic(model("ab"), "a"))) == [([0], False), ([1], False)]
+
+
+def test_kinematic_links_that_are_connected_are_fixed_to_one_base():
+    made = kinematic(model("abc", "a>b", "b>c"), "a", "c")
+    bodies = plan_bodies(made)
+    assert shape(bodies) == [([0, 1, 2], True)]
+    assert [link.parent for link in bodies[0].links] == [BASE, 0, BASE]
+    assert [joint.name for joint in open_joints(made, bodies)] == ["b>c"]
+
+
+def test_a_kinematic_link_that_a_tree_of_the_world_reaches_is_fixed_to_its_base():
+    made = kinematic(model("abc", "world>a", "a>b", "b>c"), "b")
+    bodies = plan_bodies(made)
+    assert shape(bodies) == [([0, 1, 2], True)]
+    assert [joint.name for joint in open_joints(made, bodies)] == ["a>b"]
+
+
+def test_a_joint_between_kinematic_links_or_to_the_world_connects_nothing():
+    made = kinematic(model("ab", "world>a", "a>b"), "a", "b")
+    bodies = plan_bodies(made)
+    assert shape(bodies) == [([0], False), ([1], False)]
+    assert open_joints(made, bodies) == []

@@ -52,6 +52,9 @@ class _Masses:
     moments: Vec3
 
 
+_FIXED = _Masses(0.0, IDENTITY, (0.0, 0.0, 0.0))
+
+
 @dataclass(frozen=True)
 class _Rigid:
     """A joint-free link, ready to be built."""
@@ -132,7 +135,7 @@ class Builder:
         number = plan.links[0].index
         link = self._model.links[number]
         static = self._model.static or link.kinematic
-        masses = (_Masses(0.0, IDENTITY, (0.0, 0.0, 0.0)) if static
+        masses = (_FIXED if static
                   else _Masses(link.inertial.mass, *principal(link.inertial)))
         return _Rigid(number, static, masses, compose(link.pose, masses.com), tuple(
             self._shapes.recipes(link.collisions, meshes, inverse(masses.com), static)))
@@ -188,7 +191,7 @@ class Builder:
         masses = tuple(self._masses(plan, n) for n in range(len(plan.links)))
         coms = [compose(inverse(node.link_from_frame), each.com)
                 for node, each in zip(hung, masses[offset:])]
-        base = _Masses(0.0, IDENTITY, (0.0, 0.0, 0.0)) if plan.fixed_base else masses[0]
+        base = _FIXED if plan.fixed_base else masses[0]
         at = IDENTITY if plan.fixed_base else self._model.links[plan.links[0].index].pose
         return _Tree(plan, masses, tuple(self._tree_shape(node, meshes) for node in plan.links),
                      at, {
@@ -215,6 +218,8 @@ class Builder:
 
     def _masses(self, plan: BodyPlan, n: int) -> _Masses:
         of = plan.links[n].of
+        if carried_by(plan.links[n], self._model).kinematic:
+            return _FIXED
         if of is not None:
             inertial = self._model.links[of].inertial
             com, (x, y, z) = principal(inertial)
@@ -228,6 +233,10 @@ class Builder:
 
     def _tree_shape(self, node: TreeLink, meshes: MeshTable) -> Optional[Recipe]:
         link = carried_by(node, self._model)
+        if link.kinematic:
+            still = self._shapes.recipes(link.collisions, meshes, IDENTITY, True)
+            if len(still) <= 1:     # a link of a tree has one shape
+                return still[0] if still else None
         found = self._shapes.recipes(with_rims(node, link.collisions, MAX_SHAPES), meshes,
                                      inverse(node.link_from_frame), False)
         return found[0] if found else None
@@ -258,7 +267,8 @@ class Builder:
             set_dynamics(uid, index, link, masses.mass, masses.moments, False)
             shape = tree.shapes[n]
             if shape is not None:
-                collision_groups.moving(link).set(uid, index)
+                (collision_groups.static(link) if link.kinematic
+                 else collision_groups.moving(link)).set(uid, index)
                 _fit(uid, index, shape)
             if node.index != NO_LINK:
                 parts.append(self._part(node.index, index, masses, link))
