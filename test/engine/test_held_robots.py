@@ -5,11 +5,14 @@ import math
 from typing import Callable, Dict
 
 import pytest
-from conftest import Lab, ball, ground
+from conftest import Lab, ball, ground, inertial_of_box, link_of, slab
 from test_settling import _on, _robot, _slope
 
+from my_simulations.description.model import Joint, JointAxis, Model
+from my_simulations.description.shapes import Box
 from my_simulations.engine.commands import (
     AddTimedForces,
+    Command,
     JointMotor,
     JointServo,
     PidGains,
@@ -120,8 +123,53 @@ def test_a_robot_that_was_held_drives_along_a_spline_as_one_that_was_not(lab: La
     assert one == pytest.approx(0.2, rel=0.05)
 
 
+def _lift(slow: JointAxis) -> Model:
+    """A light platform on a column that stands on the ground."""
+    foot = link_of(Box((0.6, 0.6, 0.2)), inertial_of_box(20.0, 0.6, 0.6, 0.2), None, "foot",
+                   Pose((0.0, 0.0, 0.1)))
+    top = link_of(Box((0.2, 0.2, 0.1)), inertial_of_box(1.0, 0.2, 0.2, 0.1), None, "top",
+                  Pose((0.0, 0.0, 0.5)))
+    return Model("lift", links=[foot, top],
+                 joints=[Joint("hinge", "prismatic", "foot", "top", axis=slow)])
+
+
+SLOW = 2e-4  # m/s
+DRIVES: Dict[str, Callable[[int], Command]] = {
+    "motor": lambda row: SetMotors((JointMotor(row, SLOW, 500.0),)),
+    "servo": lambda row: SetServos((JointServo(row, "velocity", SLOW, most_effort=500.0),)),
+    "loop": lambda row: SetServos((JointServo(row, "effort", SLOW, of_rate=True,
+                                              gains=PidGains(500.0, 5000.0, 0.0, -100.0, 100.0)),)),
+    "way": lambda row: SetServos((JointServo(row, "position", 1.0, most_rate=SLOW,
+                                             most_effort=500.0),))}
+
+
+@pytest.mark.parametrize("drive", DRIVES)
+def test_a_slow_axis_of_a_robot_that_stands_is_not_held(lab: Lab, drive: str):
+    lab.configure(gravity=(0.0, 0.0, -9.8))
+    lab.load(ground(1.0))
+    lift = lab.load(_lift(JointAxis((0.0, 0.0, 1.0))))
+    row = lab.joint_rows[lift, "hinge"]
+    lab.apply(DRIVES[drive](row))
+    lab.seconds(2)
+    start = lab.joint(lift)[0]
+    lab.seconds(8)
+    assert lab.joint(lift)[0] - start == pytest.approx(8 * SLOW, rel=0.05)
+    lab.apply(SetServos((JointServo(row, ""),)))
+    lab.apply(SetMotors((JointMotor(row, 0.0, 500.0),)))
+    lab.seconds(2)
+    assert _holds(lab)
+
+
+def test_a_robot_whose_driven_wheels_are_blocked_is_held(lab: Lab):
+    lab.load(ground(1.0))
+    robot = lab.load(_robot(), (0, 0, 0))
+    lab.apply(SetMotors(tuple(JointMotor(row, 1.0, 0.002) for row in _wheels(lab, robot))))
+    lab.load(slab("wall", (0.1, 2.0, 2.0)), (0.3, 0, 0))
+    lab.seconds(15)
+    assert _holds(lab)
+
+
 def test_a_robot_that_was_held_falls_when_its_floor_goes(lab: Lab):
-    from conftest import slab
     floor = lab.load(slab("floor", (4, 4, 1)), (0, 0, -0.5))
     robot = lab.load(_robot(), (0, 0, 0))
     lab.seconds(4)

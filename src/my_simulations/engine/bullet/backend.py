@@ -96,7 +96,10 @@ class BulletBackend:
         self._book = ConstraintBook()
         self._ties = InterModelJoints(self._book)
         self._decay = VelocityDecay()
-        self._settling = ContactSettling(lambda: self._forces.loaded_bodies, self._on_held)
+        self._settling = ContactSettling(
+            lambda: self._forces.loaded_bodies,
+            lambda row: self._motors.rate_of(row) or self._forces.servos.rate_of(row),
+            self._on_held)
         self._landing = LandingContacts(self._rolling.landed, self._settling.solve_impact)
         self._stop = SurfaceStop()
         self._mover = StateSetter(self._rows, self._axes, self._readout, self._waker,

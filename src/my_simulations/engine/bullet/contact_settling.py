@@ -15,9 +15,9 @@ thing that stands may drift. Contacts of articulated bodies start from nothing i
 is no warm start for them): a parked robot went 1 mm and 0.8 degrees in a minute, or slid where its
 wheels were not solved in 50 iterations (measured). While one that touches something is slow, the
 world is solved to 3e-8 m/s and with more iterations, which takes five times as long. One that has
-then stood still for half a second, and that nothing acts on but gravity and static bodies, is held:
-put back with its joints every 16 steps, at rest. Until something touches it, the world is solved as
-if it were not there. Rigid bodies that may not
+then stood still for half a second, that nothing acts on but gravity and static bodies, and of which
+no motor moves an axis, is held: put back with its joints every 16 steps, at rest. Until something
+touches it, the world is solved as if it were not there. Rigid bodies that may not
 sleep creep where friction holds them up; while there are such, it is solved to 3e-6 m/s. What
 moves, sleeps, or stands on the level costs nothing. Small ones that may not sleep creep on the
 level too, for which 3e-4 m/s is much: twenty cards of 2 mm went 2.7 mm apart in 20 s, solved so
@@ -45,6 +45,7 @@ _CLEAR = 3            # looks
 _STANDS = 32          # looks: to be held, an acceleration must be below 4e-5 m/s^2
 _PUSHED = 2e-3        # m/s and rad/s, of the base: one that is held has less between two looks
 _PUSHED_JOINT = 0.05  # rad/s or m/s
+_ON_ITS_WAY = 0.1     # share of the rate that is wanted of an axis
 _LEANS = 0.02         # friction by normal force
 _NONE = (0.0, 0.0, 0.0)
 _SMALL = 0.06         # m, radius: such a body creeps on the level too
@@ -82,12 +83,13 @@ class ContactSettling:
 
     Args:
         loaded: tells the bodies that timed forces act on in this step.
+        driven: tells the rate to which the axis of a row is driven; 0 for none.
         on_held: hears which body is held from now on (True), or is not any more.
     """
 
-    def __init__(self, loaded: Callable[[], Set[int]],
+    def __init__(self, loaded: Callable[[], Set[int]], driven: Callable[[int], float],
                  on_held: Callable[[Body, bool], None]) -> None:
-        self._loaded, self._on_held = loaded, on_held
+        self._loaded, self._driven, self._on_held = loaded, driven, on_held
         self._trees: Dict[int, _Tree] = {}
         self._moving: Set[int] = set()
         self._rigid: Dict[int, Body] = {}
@@ -222,7 +224,8 @@ class ContactSettling:
                 _hold(tree, held)
                 return False
             tree.looks = 0
-        elif alone and speed < _STILL and fastest < _STILL_JOINT:
+        elif (alone and speed < _STILL and fastest < _STILL_JOINT
+              and not self._is_driven(body, states)):
             tree.looks += 1
             if tree.looks > _STANDS:
                 _hold(tree, (Pose(*pybullet.getBasePositionAndOrientation(body.uid))
@@ -231,6 +234,17 @@ class ContactSettling:
         else:
             tree.looks = 0
         return True
+
+    def _is_driven(self, body: Body, states: JointStates) -> bool:
+        """Whether a motor or a servo moves an axis: slow as it is, it is on its way.
+
+        One that is blocked, as a wheel against a wall, has none of the rate that it is to have.
+        """
+        for axis, (_, rate, *_) in zip(body.axes, states):
+            wanted = self._driven(axis.row)
+            if wanted and abs(rate) > _ON_ITS_WAY * abs(wanted):
+                return True
+        return False
 
     @staticmethod
     def _split(wanted: bool) -> None:

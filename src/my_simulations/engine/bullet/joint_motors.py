@@ -21,6 +21,7 @@ class JointMotors:
         self._wake = wake
         self._motors: Dict[int, JointMotor] = {}
         self._specs: Dict[int, JointAxis] = {}
+        self._rates: Dict[int, float] = {}   # those other than 0 that are driven now
         self._yielding: Set[int] = set()
 
     def yield_to(self, rows: Set[int]) -> None:
@@ -30,6 +31,10 @@ class JointMotors:
             motor = self._motors.get(row)
             if motor is not None and row in self._axes:
                 self._drive(*self._axes[row], motor)
+
+    def rate_of(self, row: int) -> float:
+        """The rate to which an axis is driven, rad/s or m/s; 0 also for one that is not."""
+        return self._rates.get(row, 0.0)
 
     def set(self, motors: Iterable[JointMotor]) -> None:
         """Set these; others stay. Raises CommandRefusedError, and then none is set."""
@@ -56,17 +61,21 @@ class JointMotors:
             motor = self._motors.get(axis.row)
             if motor is not None:
                 self._drive(body, axis, motor)
+            else:
+                self._note(axis.row, spec.motor_rate, spec.friction)
 
     def forget(self, body: Body) -> None:
         """A body is gone."""
         for axis in body.axes:
             self._motors.pop(axis.row, None)
             self._specs.pop(axis.row, None)
+            self._rates.pop(axis.row, None)
 
     def clear(self) -> None:
         """All bodies are gone."""
         self._motors.clear()
         self._specs.clear()
+        self._rates.clear()
 
     def _drive(self, body: Body, axis: Axis, motor: JointMotor) -> None:
         rate, effort = motor.rate, motor.effort
@@ -75,3 +84,9 @@ class JointMotors:
             rate, effort = spec.motor_rate, max(0.0, spec.friction)
         pybullet.setJointMotorControl2(body.uid, axis.index, pybullet.VELOCITY_CONTROL,
                                        targetVelocity=rate, force=effort)
+        self._note(axis.row, rate, effort)
+
+    def _note(self, row: int, rate: float, effort: float) -> None:
+        self._rates.pop(row, None)
+        if rate and effort > 0.0:
+            self._rates[row] = rate

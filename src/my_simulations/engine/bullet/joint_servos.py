@@ -84,6 +84,19 @@ class JointServos:
         """Whether a servo of a body must be computed in each step."""
         return body.uid in self._busy
 
+    def rate_of(self, row: int) -> float:
+        """The rate to which an axis is driven, rad/s or m/s, splines aside; 0 for one that is not.
+
+        Of an axis that goes to a position, the most that it may have on its way.
+        """
+        law = self._laws.get(row)
+        if law is None or law.servo.spline is not None or row in self._yielding:
+            return 0.0
+        servo = law.servo
+        if servo.of_rate or servo.drive == "velocity" and servo.gains is None:
+            return max(-servo.most_rate, min(servo.most_rate, servo.target))
+        return servo.most_rate if servo.most_rate < math.inf else 0.0
+
     @property
     def moving(self) -> Set[int]:
         """PyBullet's numbers of bodies that are on their way along a spline."""
