@@ -5,6 +5,7 @@ import math
 import os
 import signal
 import sys
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -189,6 +190,40 @@ def test_a_process_that_dies_again_and_again_is_left_alone_until_the_world_chang
             ahead(sensing)
     sensing.change(LoadScene([FLOOR, WALL]))
     assert ahead(sensing) == pytest.approx(5.0, abs=1e-6)
+
+
+def test_pictures_that_end_the_process_are_given_up_though_rays_are_answered(start, monkeypatch):
+    sensing = start()
+    sensing.change(LoadScene([FLOOR, WALL]))
+    code = ("import os; from my_simulations.sensing.camera.renderer import Renderer; "
+            "Renderer.__init__ = lambda self, trouble: os._exit(4); "
+            "import runpy, sys; sys.argv = ['-m'] + sys.argv[1:]; "
+            "runpy.run_module('my_simulations.sensing', run_name='__main__')")
+    monkeypatch.setattr("my_simulations.sensing.process.child_command",
+                        lambda module, *words: [sys.executable, "-c", code, *words])
+    for _ in range(3):
+        assert ahead(sensing) == pytest.approx(5.0, abs=1e-6)
+        with pytest.raises(SensingGoneError, match="code 4"):
+            picture(sensing)
+    with pytest.raises(SensingUnavailableError, match="cameras stay off until the world changes"):
+        picture(sensing)
+    assert ahead(sensing) == pytest.approx(5.0, abs=1e-6)
+
+
+@pytest.mark.parametrize("change,said", [
+    ({"near": 1.0, "far": 1.0}, "near to far"), ({"near": 0.0}, "near to far"),
+    ({"far": math.inf}, "near to far"), ({"near": math.nan}, "near to far"),
+    ({"hfov": 0.0}, "angle of view"), ({"hfov": 3.2}, "angle of view"),
+    ({"width": 40000}, "40000 x 120")])
+def test_a_camera_with_impossible_numbers_is_refused_and_the_process_stays(sensing, change, said):
+    assert ahead(sensing) == pytest.approx(5.0, abs=1e-6)
+    before = sensing.pid
+    with pytest.raises(SensingError, match=said) as refused:
+        sensing.render(RenderCamera(MOUNT, replace(SPEC, **change), (RGB, DEPTH),
+                                    at=PLACES)).result(DEADLINE_S)
+    assert not isinstance(refused.value, SensingGoneError)
+    assert np.isfinite(picture(sensing).depth).any()
+    assert sensing.pid == before
 
 
 def test_what_is_not_installed_is_named_with_what_to_install(start, monkeypatch, tmp_path):

@@ -10,7 +10,7 @@ import subprocess
 import threading
 import time
 from concurrent.futures import Future
-from typing import Any, Callable, Dict, List, Optional, Tuple, Union
+from typing import Any, Callable, Dict, List, Optional, Set, Tuple, Union
 
 from ..child_process import await_end, child_command, child_environment, shielded, wait_or_kill
 from ..engine.message_pipe import Wire
@@ -35,6 +35,7 @@ _END_S = 3.0  # how long a child may take to end by itself
 _START_S = 60.0  # and to start, on a machine that does much else
 _MOST_WAITING = 256
 _MOST_DEATHS = 3
+_RAYS, _PICTURES = "lasers", "cameras"
 
 
 class _Waiting:
@@ -45,6 +46,10 @@ class _Waiting:
         self.future: "Future[Any]" = Future()
         self.since = time.monotonic()
 
+    @property
+    def kind(self) -> str:
+        return _PICTURES if isinstance(self.request, RenderCamera) else _RAYS
+
 
 class SensingProcess:
     """A child that casts rays and draws. Satisfies `api.Sensing`.
@@ -52,7 +57,7 @@ class SensingProcess:
     Nothing but this object exists before the first request. All that could block is done by threads
     of its own, so a child that hangs holds nobody up: it is ended after `patience` s. After a death
     the next request starts another child with the same scene; three deaths in a row without an
-    answer, and requests fail at once until the scene changes.
+    answer to rays, or to pictures, and requests of that kind fail at once until the scene changes.
 
     Args:
         ring_fd: descriptor of the engine's ring; -1 where all requests bring their rows.
@@ -67,8 +72,8 @@ class SensingProcess:
         self._outbox: "queue.Queue[Union[None, Change, Tuple[int, _Waiting]]]" = queue.Queue()
         self._waiting: Dict[int, _Waiting] = {}
         self._numbers = 0
-        self._deaths = 0
-        self._refusal = ""
+        self._deaths = {_RAYS: 0, _PICTURES: 0}   # while such requests waited, in a row
+        self._refusals: Dict[str, str] = {}
         self._closing = False
         self._writer: Optional[threading.Thread] = None
         self._reader: Optional[threading.Thread] = None
@@ -90,7 +95,8 @@ class SensingProcess:
     def change(self, change: Change) -> None:
         """Tell what is in the world."""
         with self._lock:
-            self._refusal, self._deaths = "", 0
+            self._refusals.clear()
+            self._deaths = dict.fromkeys(self._deaths, 0)
             if self._writer is None:
                 self._scene.apply(change)
             else:
@@ -111,7 +117,7 @@ class SensingProcess:
     def _submit(self, request: Request) -> "Future[Any]":
         waiting = _Waiting(request)
         with self._lock:
-            fault = self._fault()
+            fault = self._fault(waiting.kind)
             if fault is None:
                 self._numbers += 1
                 self._waiting[self._numbers] = waiting
@@ -124,11 +130,11 @@ class SensingProcess:
             waiting.future.set_exception(fault)
         return waiting.future
 
-    def _fault(self) -> Optional[SensingError]:
+    def _fault(self, kind: str) -> Optional[SensingError]:
         if self._closing:
             return SensingGoneError("the sensing process is being closed")
-        if self._refusal:
-            return SensingUnavailableError(self._refusal)
+        if kind in self._refusals:
+            return SensingUnavailableError(self._refusals[kind])
         if len(self._waiting) >= _MOST_WAITING:
             return SensingError(f"{_MOST_WAITING} rays and pictures are waiting already: "
                                 "this one is left out")
@@ -241,7 +247,7 @@ class SensingProcess:
         with self._lock:
             waiting = self._waiting.pop(number, None)
             if waiting is not None:
-                self._deaths = 0
+                self._deaths[waiting.kind] = 0
             for later in self._waiting.values():
                 later.since = time.monotonic()  # it works through them
         if waiting is None:
@@ -265,15 +271,22 @@ class SensingProcess:
             waiting, self._waiting = self._waiting, {}
             closing = self._closing
             wire.sock.close()
-            self._deaths += 1
-            if self._deaths >= _MOST_DEATHS:
-                self._refusal = (f"{reason}, the {_MOST_DEATHS}rd time in a row: lasers and "
-                                 "cameras stay off until the world changes")
+            given_up = self._give_up(reason, {one.kind for one in waiting.values()})
         if not closing:
-            self._listener(f"{reason}; physics goes on, and the next ray or picture starts "
-                           "another" if not self._refusal else self._refusal)
+            self._listener(given_up or f"{reason}; physics goes on, and the next ray or picture "
+                           "starts another")
         for one in waiting.values():
             one.future.set_exception(SensingGoneError(reason))
+
+    def _give_up(self, reason: str, kinds: Set[str]) -> str:
+        """Count a death while such requests waited; what is said where one kind is given up."""
+        for kind in kinds:
+            self._deaths[kind] += 1
+        ended = sorted(kind for kind in kinds if self._deaths[kind] >= _MOST_DEATHS)
+        text = (f"{reason}, the {_MOST_DEATHS}rd time in a row: {' and '.join(ended)} stay off "
+                "until the world changes")
+        self._refusals.update((kind, text) for kind in ended)
+        return text if ended else ""
 
 
 def _reason(code: int) -> str:

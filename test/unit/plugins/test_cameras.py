@@ -96,6 +96,19 @@ def test_camera_info_says_where_the_renderer_puts_points():
     assert info.D == [0.0] * 5
 
 
+@pytest.mark.parametrize("wrong,drawn", [
+    ({"horizontal_fov": 0.0}, (0.1, 0.1, 100.0)), ({"horizontal_fov": 3.2}, (3.13, 0.1, 100.0)),
+    ({"near": 0.0}, (1.0, 0.01, 100.0)), ({"near": -1.0, "far": 0.0}, (1.0, 0.01, 100.01)),
+    ({"near": 2.0, "far": 2.0}, (1.0, 2.0, 102.0)), ({"far": math.inf}, (1.0, 0.1, 1e4))])
+def test_numbers_that_no_camera_has_are_replaced_and_told(wrong, drawn):
+    context = camera(block=CameraBlock(**{"width": 8, "height": 6, "horizontal_fov": 1.0,
+                                          "near": 0.1, "far": 100.0, **wrong}))
+    context.advance(0.15)
+    spec = context.views[0][0].camera
+    assert (spec.hfov, spec.near, spec.far) == pytest.approx(drawn)
+    assert len(context.said) == 1 and "is drawn" in context.said[0]
+
+
 def test_a_lens_is_told_of_in_the_order_of_the_message():
     block = CameraBlock(width=640, height=480, k1=-0.2, k2=0.05, k3=0.01, p1=0.002, p2=0.003)
     context = camera("<borderCrop>false</borderCrop>", block)

@@ -7,6 +7,7 @@ their centres as ROS does (there it is one pixel off); and the lens of the senso
 """
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import Any, Callable, List, Mapping, Sequence
 
@@ -19,6 +20,9 @@ from ..reconfigure import Option, Reconfigure, Value
 
 USUAL_RATE = 30.0
 """Hz, of a camera that names no rate."""
+
+_NARROWEST, _WIDEST = 0.1, 3.13     # rad
+_NEAR, _DEPTH, _FARTHEST = 0.01, 100.0, 1e4   # m
 
 _COEFFICIENTS = ("K1", "K2", "T1", "T2", "K3")  # in the order of `CameraInfo.D`
 
@@ -97,11 +101,27 @@ class ImagerRate:
             offer.tell(values)
 
 
-def spec_of(block: CameraBlock, crop: bool = False) -> CameraSpec:
-    """What is to be drawn for a `<camera>`."""
+def spec_of(context: Context, block: CameraBlock, crop: bool = False) -> CameraSpec:
+    """What is to be drawn for a `<camera>`; numbers that no camera has are replaced, and told.
+
+    SDF 1.7 has angles from 0.1 rad on, and Gazebo's renderer no near clip plane at 0; a picture
+    without fisheye lens ends below pi.
+    """
     lens = (block.k1, block.k2, block.k3, block.p1, block.p2)
+    hfov, near, far = block.horizontal_fov, block.near, block.far
+    if not 0.0 < hfov < math.pi:
+        hfov = _WIDEST if hfov >= math.pi else _NARROWEST
+        context.warn(f"<horizontal_fov> {block.horizontal_fov:g} of camera {block.name!r} is none:"
+                     f" {hfov:g} rad is drawn")
+    if not 0.0 < near < math.inf:
+        near = _NEAR
+    if not near < far < math.inf:
+        far = _FARTHEST if far > near else near + _DEPTH
+    if (near, far) != (block.near, block.far):
+        context.warn(f"<clip> from {block.near:g} to {block.far:g} m of camera {block.name!r} holds"
+                     f" nothing: it is drawn from {near:g} to {far:g} m")
     return CameraSpec(
-        max(1, block.width), max(1, block.height), block.horizontal_fov, block.near, block.far,
+        max(1, block.width), max(1, block.height), hfov, near, far,
         1 if block.anti_aliasing <= 1 else 0,
         Distortion(*lens, center=block.distortion_center, crop=crop) if any(lens) else None)
 

@@ -44,7 +44,7 @@ class PictureStream:
                  topics: CameraTopics, baseline: float = 0.0, crop: bool = True,
                  calibrated: bool = True) -> None:
         self._context, self.topics = context, topics
-        self.spec = spec_of(block, crop)
+        self.spec = spec_of(context, block, crop)
         self.calibration = Calibration(context, block, self.spec, baseline)
         self._link, self._pose = link, place_of(sensor, block)
         self._who = "::".join((context.model, link, sensor.name, block.name))

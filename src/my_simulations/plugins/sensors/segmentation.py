@@ -27,7 +27,7 @@ class SegmentationCamera(Plugin):
         assert sensor is not None
         enter_namespace(context)
         self._topics = topics = topics_of(context)
-        spec = spec_of(block, p.flag("borderCrop", True))
+        spec = spec_of(context, block, p.flag("borderCrop", True))
         self._calibration = Calibration(context, block, spec, 0.0)
         self._view = View(context.sensor_link, place_of(sensor, block), spec, (LABELS,))
         self._image = context.publish(topics.named(topics.image), "sensor_msgs/Image", 2)

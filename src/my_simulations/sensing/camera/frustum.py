@@ -5,7 +5,19 @@ import math
 
 import numpy as np
 
-from ..api import CameraSpec
+from ..api import CameraSpec, SensingError
+
+
+def check(spec: CameraSpec, most: int) -> None:
+    """Raises SensingError for a camera that nobody can draw; `most`: pixels a side."""
+    if not 0.0 < spec.hfov < math.pi:
+        raise SensingError(f"a camera's angle of view lies between 0 and pi, not at {spec.hfov:g}")
+    if not 0.0 < spec.near < spec.far < math.inf:
+        raise SensingError("a camera sees from near to far, both above 0 m and finite, not from "
+                           f"{spec.near:g} to {spec.far:g}")
+    if not (0 < spec.width <= most and 0 < spec.height <= most):
+        raise SensingError(f"a picture has 1 to {most} pixels a side here, not {spec.width} x "
+                           f"{spec.height}")
 
 
 def projection(spec: CameraSpec) -> np.ndarray:

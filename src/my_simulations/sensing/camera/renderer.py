@@ -18,7 +18,7 @@ from ..surfaces import pieces_of
 from . import distortion, shaders
 from .batches import Batch
 from .context import draws_with_a_card, finisher, new_context
-from .frustum import in_sight, projection
+from .frustum import check, in_sight, projection
 from .kept_pictures import Drawn, KeptPictures
 from .lamps import (
     SHADOW_SIZE,
@@ -142,7 +142,11 @@ class Renderer:
 
     def render(self, spec: CameraSpec, frame: np.ndarray, poses: np.ndarray,
                outputs: Tuple[str, ...], step: int, ns: int = 0) -> Pictures:
-        """Pictures from a sensor at `frame` (world from sensor), links at `poses`, at `ns`."""
+        """Pictures from a sensor at `frame` (world from sensor), links at `poses`, at `ns`.
+
+        Raises SensingError for a camera with impossible numbers.
+        """
+        check(spec, self._targets.most)
         placed = self._scenery.extended(poses, ns)
         drawn = self._kept.get((spec, outputs, frame.tobytes()),
                                (placed.tobytes(), self._scenery.forms(ns)),
