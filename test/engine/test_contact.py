@@ -194,6 +194,67 @@ def test_a_bounce_rises_to_e_squared_of_the_height_from_any_height(lab: Lab, law
                   e * e * drop, rel=0.03)
 
 
+def _bouncing(e: float, threshold: float) -> Surface:
+    return Surface(restitution=e, bounce_threshold=threshold)
+
+
+def _rebound(lab: Lab, number: int, rest: float) -> float:
+    """The ratio of the speeds after and before the first impact from 1 m, by the heights."""
+    heights = []
+    for _ in range(900):
+        lab.steps(1)
+        heights.append(lab.pose(number).position[2] - rest)
+    bottom = int(np.argmin(heights[:500]))
+    return math.sqrt(max(0.0, *heights[bottom:]))
+
+
+DEFAULT = 1e5  # m/s, SDF's threshold
+PAIRS = [((0.5, 0.0), (0.5, 0.0), 0.5), ((0.8, 1.0), (0.8, 1.0), 0.8),
+         ((0.9, 0.0), (0.6, 0.0), 0.6), ((0.5, 0.0), (1.0, DEFAULT), 0.5),
+         ((0.5, DEFAULT), (0.7, 0.0), 0.5), ((0.8, 6.0), (1.0, 6.0), 0.0),
+         ((0.8, DEFAULT), (0.8, DEFAULT), 0.0), ((0.8, 0.0), (0.0, DEFAULT), 0.0)]
+
+
+@pytest.mark.parametrize("kind", ["rigid", "articulated"])
+@pytest.mark.parametrize("one,other,expected", PAIRS)
+def test_a_pair_bounces_by_the_smaller_restitution_and_threshold(lab: Lab, laws: Laws, one, other,
+                                                                 expected, kind: str):
+    lab.load(ground(surface=_bouncing(*other)))
+    number = lab.load(_as_built(ball(surface=_bouncing(*one)), kind), (0, 0, 1.5))
+    laws.near("pairs of bouncing surfaces: rebound by impact", _rebound(lab, number, 0.5), expected,
+              abs=0.03)
+
+
+def test_two_moving_bodies_that_are_alike_bounce_by_their_own_restitution(lab: Lab):
+    lab.load(ground(surface=_bouncing(1.0, 0.0)))
+    lab.configure(gravity=(0.0, 0.0, 0.0))
+    left, right = (lab.load(ball(name, surface=_bouncing(0.6, 0.0)), (x, 0, 3.0))
+                   for name, x in (("left", -1.0), ("right", 1.0)))
+    lab.push(left, (2.0, 0, 0))
+    lab.seconds(1.0)
+    speeds = [lab.twist(one).linear[0] for one in (left, right)]
+    assert speeds[1] - speeds[0] == pytest.approx(0.6 * 2.0, rel=0.02)
+    assert not lab.backend.events()
+
+
+def test_surfaces_that_come_and_go_leave_the_pairs_that_stay_right(lab: Lab):
+    lab.load(ground(surface=_bouncing(0.8, 0.0)))
+    guest = lab.load(ball("guest", surface=_bouncing(0.4, 0.0)), (5.0, 0, 1.5))
+    lab.steps(10)
+    lab.remove(guest)
+    number = lab.load(ball(surface=_bouncing(0.9, 0.0)), (0, 0, 1.5))
+    assert _rebound(lab, number, 0.5) == pytest.approx(0.8, abs=0.03)
+
+
+def test_unlike_moving_bodies_bounce_right_off_the_ground_and_the_rest_is_told(lab: Lab):
+    lab.load(ground(surface=_bouncing(1.0, 0.0)))
+    numbers = {e: lab.load(ball(f"b{e}", surface=_bouncing(e, 0.0)), (5.0 * e * 10, 0, 1.5))
+               for e in (0.5, 0.7, 0.9)}
+    assert _rebound(lab, numbers[0.5], 0.5) == pytest.approx(0.5, abs=0.03)
+    (event,) = lab.backend.events()
+    assert "restitution" in event.message
+
+
 def test_surfaces_do_not_bounce_by_default(lab: Lab):
     lab.load(ground())
     dropped = lab.load(ball(surface=Surface(restitution=1.0)), (0, 0, 1.5))

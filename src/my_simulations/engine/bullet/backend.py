@@ -54,6 +54,7 @@ from .joint_motors import JointMotors
 from .joint_wrenches import JointWrenches
 from .landing_contacts import LandingContacts
 from .pair_friction import FrictionBalance
+from .pair_restitution import PairRestitution
 from .pinned_bodies import PinnedBodies
 from .planar_motion import PlanarMotion
 from .residual_friction import ResidualFriction
@@ -91,6 +92,7 @@ class BulletBackend:
         self._forces = Forces(driver.around,
                               lambda rows: self._motors.yield_to(rows))
         self._friction = FrictionBalance(self._on_misfit)
+        self._bounces = PairRestitution(self._on_odd_bounce)
         self._spin = GyroscopicRigid(lambda: self._forces.wrenched_links)
         self._holds = PinnedBodies(self._waker.around)
         self._book = ConstraintBook()
@@ -108,9 +110,9 @@ class BulletBackend:
         self._planar = PlanarMotion(self._models, self._mover.model_pose, driver.around)
         self._wrenches = JointWrenches(self._models, self._forces, self._sliding)
         # What acts around the steps, in the order in which it does.
-        helpers = (self._friction, self._settling, self._forces, self._decay, self._planar,
-                   self._rolling, self._spin, self._residual, self._sliding, self._holds,
-                   self._stop, self._landing, self._seams)
+        helpers = (self._friction, self._bounces, self._settling, self._forces, self._decay,
+                   self._planar, self._rolling, self._spin, self._residual, self._sliding,
+                   self._holds, self._stop, self._landing, self._seams)
         self._loop = StepLoop(helpers, pybullet.stepSimulation)
         # Everything that remembers bodies one by one.
         self._keepers = (*helpers, self._ties, self._motors, self._wrenches,
@@ -317,6 +319,7 @@ class BulletBackend:
         self._loop.add(body)
         self._forces.add_body(body)
         self._friction.add(body)
+        self._bounces.add(body)
         self._spin.add(body)
         self._residual.add(body)
         self._settling.add(body)
@@ -441,6 +444,13 @@ class BulletBackend:
         self._events.append(Event(
             "log", f"model '{self._models[body.model_id].model.name}' touches others in a ring, "
             f"for which no friction fits all pairs: it is {100 * share:.0f} % off", body.model_id))
+
+    def _on_odd_bounce(self, uid: int, share: float) -> None:
+        body = self._bodies[uid]
+        self._events.append(Event(
+            "log", f"model '{self._models[body.model_id].model.name}' may bounce off another moving"
+            f" model {100 * share:.0f} % off the smaller restitution: no values fit all pairs",
+            body.model_id))
 
     def _on_diverged(self, body: Body) -> None:
         self._loop.changed()

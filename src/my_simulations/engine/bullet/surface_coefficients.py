@@ -28,5 +28,8 @@ def friction(surface: Surface, static: bool) -> float:
 
 
 def restitution(surface: Surface) -> float:
-    """The restitution to store: 0 unless the surface can reach its threshold."""
+    """The restitution of a surface by itself: 0 unless it can reach its threshold.
+
+    `PairRestitution` stores what suits the other surfaces of the world, too.
+    """
     return surface.restitution if surface.bounce_threshold < NEVER_BOUNCES else 0.0

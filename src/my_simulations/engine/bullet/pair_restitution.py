@@ -1,0 +1,155 @@
+"""The smaller restitution of each pair, where PyBullet's product gives something else.
+
+Gazebo (ODEPhysics::Collide) takes the smaller restitution_coefficient of two surfaces, and the
+smaller threshold; PyBullet multiplies the stored restitutions, once two shapes touch. So what is
+stored must suit all pairs that may ever meet: the logarithms x of the stored values satisfy
+x_i + x_j = log min(e_i, e_j) as well as they can. That is exact for every world whose moving
+surfaces that bounce are alike, whatever they bounce on. Where they are not, pairs with static
+surfaces come first, and how far others are off is told once.
+
+A pair bounces where one of its thresholds lets it. Surfaces that never bounce by themselves (SDF's
+default threshold) do on those that do; where two such could meet, the moving one is stored as 0.
+PyBullet has one threshold for the world, below which nothing bounces: the smallest of all, and not
+below Bullet's own 0.2 m/s, at which a thing comes to rest.
+
+Something is worked out when a surface that bounces has come or gone, never in a usual step.
+"""
+from __future__ import annotations
+
+import itertools
+import math
+from typing import Callable, Dict, List, NamedTuple, Set, Tuple
+
+import numpy as np
+import pybullet
+
+from ...geometry import Vec3
+from . import surface_coefficients
+from .bodies import Body
+from .step_helper import FAR
+
+Node = Tuple[int, int]  # body uid, link index
+
+_LEAST_THRESHOLD = 0.2   # m/s
+_AMONG_MOVING = 0.05     # weight of a pair of moving surfaces; of one with a static surface: 1
+_MOST_KINDS = 60         # of more, pairs of moving surfaces are not looked at
+_TOLERATED = 0.05
+
+
+class _Kind(NamedTuple):
+    """Surfaces that are stored alike; `never`: they do not bounce by themselves."""
+
+    moves: bool
+    restitution: float
+    never: bool
+
+
+class PairRestitution:
+    """Keeps the stored restitutions right for the surfaces of the world.
+
+    Args:
+        misfit: told, once, of a body and the share by which its restitution is off.
+    """
+
+    def __init__(self, misfit: Callable[[int, float], None]) -> None:
+        self._misfit = misfit
+        self._told = False
+        self._changed = False
+        self._kinds: Dict[Node, _Kind] = {}
+        self._stored: Dict[Node, float] = {}
+        self._thresholds: Dict[Node, float] = {}
+        self._models: Dict[Node, int] = {}
+
+    def add(self, body: Body) -> None:
+        """Know a new body."""
+        for part in body.colliders:
+            surface = surface_coefficients.of_link(part.link)
+            if surface.restitution <= 0.0:
+                continue
+            never = surface.bounce_threshold >= surface_coefficients.NEVER_BOUNCES
+            for uid in body.uids:
+                node = (uid, part.index)
+                self._changed = True
+                self._kinds[node] = _Kind(body.moves, surface.restitution, never)
+                self._stored[node] = surface_coefficients.restitution(surface)
+                self._thresholds[node] = surface.bounce_threshold
+                self._models[node] = body.model_id
+
+    def forget(self, body: Body) -> None:
+        """A body is gone."""
+        for part in body.colliders:
+            for uid in body.uids:
+                for table in (self._kinds, self._stored, self._thresholds, self._models):
+                    self._changed |= table.pop((uid, part.index), None) is not None
+
+    def clear(self) -> None:
+        """All bodies are gone."""
+        for table in (self._kinds, self._stored, self._thresholds, self._models):
+            table.clear()
+        self._changed = self._told = False
+
+    def due(self, step: int) -> int:
+        """At once when surfaces have come or gone."""
+        return step if self._changed else FAR
+
+    def before(self, step: int, dt: float, gravity: Vec3) -> None:
+        """Store what suits the surfaces that there are."""
+        if not self._changed:
+            return
+        self._changed = False
+        if not self._kinds:
+            return
+        pybullet.setPhysicsEngineParameter(restitutionVelocityThreshold=max(
+            _LEAST_THRESHOLD, min(self._thresholds.values())))
+        values = self._solved()
+        for node, kind in self._kinds.items():
+            value = values.get(kind, 0.0)
+            if abs(value - self._stored[node]) > 1e-9:
+                self._stored[node] = value
+                pybullet.changeDynamics(*node, restitution=value)
+
+    def after(self, step: int, dt: float, gravity: Vec3) -> None:
+        """Do nothing after a step."""
+
+    def _solved(self) -> Dict[_Kind, float]:
+        """What to store for each kind; 0 for those that are missing."""
+        members: Dict[_Kind, Set[int]] = {}
+        for node, kind in self._kinds.items():
+            members.setdefault(kind, set()).add(self._models[node])
+        if all(kind.never for kind in members):
+            return {}
+        alone = sum(len(models) for kind, models in members.items() if kind.never) == 1
+        kinds = sorted(kind for kind in members if alone or not (kind.moves and kind.never))
+        column = {kind: n for n, kind in enumerate(kinds)}
+        pairs = self._pairs(kinds, members)
+        if not pairs:
+            return {kind: kind.restitution for kind in kinds}
+        rows, targets = np.zeros((len(pairs), len(kinds))), np.zeros(len(pairs))
+        for n, pair in enumerate(pairs):
+            targets[n] = math.log(min(kind.restitution for kind in pair))
+            for kind in pair:
+                rows[n, column[kind]] += 1.0
+        weights = np.array([_AMONG_MOVING if one.moves and other.moves else 1.0
+                            for one, other in pairs])
+        solution = np.linalg.lstsq(rows * weights[:, None], targets * weights, rcond=None)[0]
+        self._tell(pairs, np.abs(np.expm1(rows @ solution - targets)))
+        met = rows.any(axis=0)
+        return {kind: math.exp(solution[n]) if met[n] else kind.restitution
+                for n, kind in enumerate(kinds)}
+
+    @staticmethod
+    def _pairs(kinds: List[_Kind], members: Dict[_Kind, Set[int]]) -> List[Tuple[_Kind, _Kind]]:
+        """The pairs that may meet and bounce."""
+        few = len(kinds) <= _MOST_KINDS
+        return [(one, other) for one, other in itertools.combinations_with_replacement(kinds, 2)
+                if (one.moves or other.moves) and not (one.never and other.never)
+                and (few or not (one.moves and other.moves))
+                and (one is not other or len(members[one]) > 1)]
+
+    def _tell(self, pairs: List[Tuple[_Kind, _Kind]], off: np.ndarray) -> None:
+        worst = int(off.argmax())
+        if off[worst] > _TOLERATED and not self._told:
+            self._told = True
+            moving = next(kind for kind in pairs[worst] if kind.moves)
+            uid = min(node for node, kind in self._kinds.items() if kind == moving)[0]
+            self._misfit(uid, float(off[worst]))
