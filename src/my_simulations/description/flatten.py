@@ -6,10 +6,10 @@ The engine supports flat models only.
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import List
+from typing import Callable, List, Optional
 
 from ..geometry import compose
-from .model import WORLD, Joint, Link, Model
+from .model import WORLD, Joint, JointAxis, Link, Model
 
 
 def flattened(model: Model) -> Model:
@@ -42,6 +42,19 @@ def _moved(link: Link, nested: Model, outer: Model) -> Link:
 
 
 def _scoped(joint: Joint, scope: str) -> Joint:
-    parent = joint.parent if joint.parent == WORLD else f"{scope}::{joint.parent}"
-    return replace(joint, name=f"{scope}::{joint.name}", parent=parent,
-                   child=f"{scope}::{joint.child}")
+    return renamed(joint, lambda name: f"{scope}::{name}")
+
+
+def renamed(joint: Joint, new: Callable[[str], str]) -> Joint:
+    """The joint with other names: its own, and those of the links and joints that it names."""
+    def link(name: str) -> str:
+        return new(name) if name and name != WORLD else name
+
+    def axis(one: Optional[JointAxis]) -> Optional[JointAxis]:
+        if one is None or one.mimic is None:
+            return one
+        return replace(one, mimic=replace(one.mimic, joint=new(one.mimic.joint)))
+
+    return replace(joint, name=new(joint.name), parent=link(joint.parent), child=link(joint.child),
+                   gearbox_reference=link(joint.gearbox_reference), axis=axis(joint.axis),
+                   axis2=axis(joint.axis2))

@@ -5,6 +5,7 @@ from dataclasses import replace
 from typing import Dict, List, Optional, Sequence
 
 from ..geometry import IDENTITY, Pose, compose, inverse
+from .flatten import renamed
 from .model import WORLD, Joint, Link, Model
 from .scoped_names import SCOPE
 
@@ -75,6 +76,5 @@ def _lies_in(joint: Joint, scope: str) -> bool:
 
 
 def _seen_from_inside(joint: Joint, scope: str) -> Joint:
-    parent = joint.parent if joint.parent == WORLD else joint.parent[len(scope) + 2:]
-    return replace(joint, name=joint.name[len(scope) + 2:], parent=parent,
-                   child=joint.child[len(scope) + 2:])
+    inside = scope + SCOPE
+    return renamed(joint, lambda name: name[len(inside):] if name.startswith(inside) else name)

@@ -120,3 +120,29 @@ def test_names_that_the_world_does_not_have_are_a_warning():
     world, issues = applied('<model name="nobody"/><deletions><name>nothing</name></deletions>')
     assert warnings(issues) == ["state-unknown"] * 2
     assert len(world.models) == 3
+
+
+def test_links_that_no_joint_connects_with_the_first_one_stand_where_they_stood():
+    cart = (f'<model name="cart"><link name="base">{INERTIAL}</link><link name="loose">'
+            f"<pose>0 3 0 0 0 0</pose>{INERTIAL}</link>"
+            f'<link name="wheel"><pose>1 0 0 0 0 0</pose>{INERTIAL}</link>'
+            f'<link name="stand"><pose>0 5 0 0 0 0</pose>{INERTIAL}</link>'
+            f'<link name="flag"><pose>0 5 1 0 0 0</pose>{INERTIAL}</link>'
+            '<joint name="axle" type="revolute"><parent>base</parent><child>wheel</child>'
+            '<axis><xyz>0 1 0</xyz></axis></joint>'
+            '<joint name="pole" type="revolute"><parent>stand</parent><child>flag</child>'
+            '<axis><xyz>0 0 1</xyz></axis></joint></model>')
+    world, issues = world_of(
+        cart + '<state world_name="w"><model name="cart"><pose>2 0 0 0 0 0</pose>'
+        '<link name="base"><pose>2 0 0 0 0 0</pose></link>'
+        '<link name="loose"><pose>7 7 7 0 0 0</pose></link>'
+        '<link name="stand"><pose>0 9 0 0 0 0</pose></link>'
+        '<link name="flag"><pose>0 9 1 0 0 0.5</pose></link></model></state>')
+    assert errors(issues) == []
+    world = apply_state(world)
+    model = model_named(world, "cart")
+    assert model.pose.position == (2, 0, 0)
+    assert {link.name: link.pose.position for link in model.links} == {
+        "base": (0, 0, 0), "loose": (5, 7, 7), "wheel": (1, 0, 0), "stand": (-2, 9, 0),
+        "flag": (-2, 9, 1)}
+    assert world.initial["cart"].joints == pytest.approx({"pole": 0.5})

@@ -146,3 +146,16 @@ def test_a_force_torque_sensor_of_1_4_measures_in_the_parent():
     assert link_of(xml.format(""), "1.4")[0].extra == [xml.format("<frame>parent</frame>")]
     assert link_of(xml.format("<frame>child</frame>"), "1.4")[0].extra == [
         xml.format("<frame>child</frame>")]
+
+
+PARAMETERS = ('<pose frame="odom">1 2 3 0 0 0</pose><joint><axis><xyz>0 0 1</xyz></axis></joint>'
+              '<physics><update_rate>5</update_rate></physics><origin pose="1 2 3 0 0 0"/>'
+              "<force_torque/><imu><noise><rate><mean>1</mean></rate></noise></imu>"
+              '<pose degrees="true">0 0 0 90 0 0</pose>')
+
+
+@pytest.mark.parametrize("version", ["1.3", "1.4", "1.5", "1.6", "1.7", "1.9"])
+def test_the_parameters_of_a_plugin_stay_as_they_are_written(version):
+    model, _ = model_of(f'<link name="a">{INERTIAL}</link><plugin name="p" filename="f.so">'
+                        f"{PARAMETERS}</plugin>", version)
+    assert PARAMETERS in model.plugins[0].xml

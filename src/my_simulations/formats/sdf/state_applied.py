@@ -89,6 +89,7 @@ def _restored(model: Model, state: ModelState, initial: Dict[str, InitialState])
         positions.update(held or {})
         if held is None:
             model = replace(model, pose=_base_pose(flat, poses, state) or model.pose)
+        model = _links_moved(model, _loose(flat, poses), Pose())
     if twists or positions:
         initial[model.name] = InitialState(twists, positions)
     return model
@@ -111,6 +112,38 @@ def _held(flat: Model, poses: Dict[str, Pose]) -> Optional[Dict[str, float]]:
         if position:
             found[joint.name] = position
     return found if anchors else None
+
+
+def _loose(flat: Model, poses: Dict[str, Pose]) -> Dict[str, Pose]:
+    """World poses, with joints at 0, of the links that no joint connects with the model's frame.
+
+    Links that are connected move with the one on which the others hang.
+    """
+    at_zero = {link.name: link.pose for link in flat.links}
+    children = {joint.child for joint in flat.joints}
+    first = flat.canonical_link or (flat.links[0].name if flat.links else "")
+    found: Dict[str, Pose] = {}
+    for group in _connected(flat):
+        if first in group or WORLD in group:
+            continue
+        root = next((name for name in group if name not in children), group[0])
+        if root in poses:
+            way = compose(poses[root], inverse(at_zero[root]))
+            found.update((name, compose(way, at_zero[name])) for name in group)
+    return found
+
+
+def _connected(flat: Model) -> List[List[str]]:
+    """The names of links in groups that joints connect, in order; WORLD is in groups on it."""
+    groups = {link.name: [link.name] for link in flat.links}
+    groups[WORLD] = [WORLD]
+    for joint in flat.joints:
+        one, other = groups.get(joint.parent), groups.get(joint.child)
+        if one is None or other is None or one is other:
+            continue
+        one += other
+        groups.update((name, one) for name in other)
+    return list({id(group): group for group in groups.values()}.values())
 
 
 def _base_pose(flat: Model, poses: Dict[str, Pose], state: ModelState) -> Optional[Pose]:

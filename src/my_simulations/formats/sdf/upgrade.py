@@ -44,6 +44,22 @@ def _version(root: Any, source: Source) -> Tuple[int, ...]:
     return version
 
 
+def _all(root: Any, *tags: str) -> List[Any]:
+    """The elements of these names, but none in plugins, whose parameters are their own.
+
+    Source: sdformat 9, Converter::ConvertDescendantsImpl.
+    """
+    found: List[Any] = []
+    waiting = [root]
+    while waiting:
+        element = waiting.pop()
+        if element.tag in tags:
+            found.append(element)
+        if element.tag != "plugin":
+            waiting.extend(reversed(element))
+    return found
+
+
 def _rename(parent: Any, old: str, new: str) -> None:
     for element in parent.findall(old):
         element.tag = new
@@ -53,7 +69,7 @@ def _to_1_4(root: Any) -> None:
     from lxml import etree
 
     includes_by_uri(root)
-    for physics in root.iter("physics"):
+    for physics in _all(root, "physics"):
         _rename(physics, "update_rate", "real_time_update_rate")
         for path in ("ode/solver/dt", "bullet/dt"):
             old = physics.find(path)
@@ -61,7 +77,7 @@ def _to_1_4(root: Any) -> None:
                 etree.SubElement(physics, "max_step_size").text = old.text
             if old is not None:
                 old.getparent().remove(old)
-    for origin in list(root.iter("origin")):
+    for origin in _all(root, "origin"):
         if origin.get("pose") is not None:
             origin.tag = "pose"
             origin.text = origin.attrib.pop("pose")
@@ -70,17 +86,17 @@ def _to_1_4(root: Any) -> None:
 def _to_1_5(root: Any) -> None:
     from lxml import etree
 
-    for axis in root.iter("axis", "axis2"):
+    for axis in _all(root, "axis", "axis2"):
         if axis.getparent().tag == "joint" and axis.find("use_parent_model_frame") is None:
             etree.SubElement(axis, "use_parent_model_frame").text = "true"
     # Defaults that differ before 1.5.
-    if next(root.iter("collide_bitmask"), None) is not None:
-        for collision in root.iter("collision"):
+    if _all(root, "collide_bitmask"):
+        for collision in _all(root, "collision"):
             if collision.find("geometry") is not None:
                 _default(collision, "surface/contact/collide_bitmask", "1")
-    for sensor in root.iter("force_torque"):
+    for sensor in _all(root, "force_torque"):
         _default(sensor, "frame", "parent")
-    for actor in root.iter("actor"):
+    for actor in _all(root, "actor"):
         if actor.get("static") is not None:
             _default(actor, "static", actor.attrib.pop("static"))
 
@@ -98,7 +114,7 @@ def _default(element: Any, path: str, text: str) -> None:
 
 
 def _to_1_6(root: Any) -> None:
-    for physics in list(root.iter("physics")):
+    for physics in _all(root, "physics"):
         world = physics.getparent()
         if world is None or world.tag != "world":
             continue  # the physics of a joint
@@ -107,7 +123,7 @@ def _to_1_6(root: Any) -> None:
                 physics.remove(element)
                 if world.find(name) is None:
                     world.append(element)
-    for imu in root.iter("imu"):
+    for imu in _all(root, "imu"):
         for noise in imu.findall("noise"):
             imu.remove(noise)
             _imu_noise(imu, noise)
@@ -137,11 +153,11 @@ def _imu_noise(imu: Any, noise: Any) -> None:
 def _to_1_7(root: Any) -> None:
     from lxml import etree
 
-    for pose in root.iter("pose"):
+    for pose in _all(root, "pose"):
         frame = pose.attrib.pop("frame", None) if pose.attrib else None
         if frame:
             pose.set("relative_to", frame)
-    for flag in list(root.iter("use_parent_model_frame")):
+    for flag in _all(root, "use_parent_model_frame"):
         axis = flag.getparent()
         axis.remove(flag)
         if (flag.text or "").strip().lower() in ("true", "1"):
@@ -156,7 +172,7 @@ def _to_1_7(root: Any) -> None:
 
 def _from_1_9(root: Any, source: Source) -> None:
     """Convert poses in degrees or with a quaternion to the form of 1.7."""
-    for pose in root.iter("pose"):
+    for pose in _all(root, "pose"):
         if not pose.attrib:
             continue
         degrees = (pose.attrib.pop("degrees", "") or "").strip().lower() in ("true", "1")

@@ -1,0 +1,25 @@
+"""Joints of nested models name links and joints in the scope that they get."""
+from __future__ import annotations
+
+from my_simulations.description.flatten import flattened
+from my_simulations.description.model import Joint, JointAxis, Link, Mimic, Model
+from my_simulations.description.unflatten import unflattened
+
+INNER = Model("in", links=[Link("base"), Link("a"), Link("b")], joints=[
+    Joint("ja", "revolute", "base", "a", axis=JointAxis()),
+    Joint("jb", "revolute", "base", "b", axis=JointAxis(mimic=Mimic("ja", 2.0))),
+    Joint("gears", "gearbox", "a", "b", axis=JointAxis(), axis2=JointAxis(),
+          gearbox_reference="base"),
+    Joint("to_world", "fixed", "world", "base")])
+OUTER = Model("out", links=[Link("l")], models=[INNER])
+
+
+def test_what_a_nested_joint_follows_and_measures_about_is_scoped():
+    ja, jb, gears, to_world = flattened(OUTER).joints
+    assert jb.axis.mimic.joint == ja.name == "in::ja"
+    assert (gears.parent, gears.child, gears.gearbox_reference) == ("in::a", "in::b", "in::base")
+    assert to_world.parent == "world"
+
+
+def test_nested_joints_come_back_as_they_were():
+    assert unflattened(flattened(OUTER)).models[0].joints == INNER.joints
