@@ -191,3 +191,26 @@ def test_merging_two_bodies_equals_the_sum_over_their_mass_points(seed):
     assert total.izz == pytest.approx(sum(m * (r[0] ** 2 + r[1] ** 2) for m, r in arms))
     assert total.ixy == pytest.approx(sum(-m * r[0] * r[1] for m, r in arms), abs=1e-9)
     assert total.iyz == pytest.approx(sum(-m * r[1] * r[2] for m, r in arms), abs=1e-9)
+
+
+@pytest.mark.parametrize("base, tip, wanted", [
+    ("<turnGravityOff>true</turnGravityOff>", "<turnGravityOff>false</turnGravityOff>",
+     {"gravity": True}),
+    ("<turnGravityOff>false</turnGravityOff>", "<turnGravityOff>true</turnGravityOff>",
+     {"gravity": False}),
+    ("<turnGravityOff>true</turnGravityOff>", "", {"gravity": False}),
+    ("<selfCollide>false</selfCollide>", "<selfCollide>true</selfCollide>",
+     {"self_collide": True}),
+    ("<selfCollide>true</selfCollide>", "", {"self_collide": True}),
+    ("<dampingFactor>0</dampingFactor>", "<dampingFactor>0.3</dampingFactor>",
+     {"linear_decay": 0.0, "angular_decay": 0.0}),
+    ("", "<dampingFactor>0.3</dampingFactor>", {"linear_decay": 0.3}),
+    ('<dampingFactor>0.1</dampingFactor></gazebo><gazebo reference="a">'
+     "<dampingFactor>0.2</dampingFactor>", "", {"linear_decay": 0.1})])
+def test_of_what_lumped_links_set_the_same_counts_as_in_gazebo(base, tip, wanted):
+    model, issues = robot_of(
+        robot_link("a") + robot_link("b") + robot_joint("j", "a", "b")
+        + f'<gazebo reference="a">{base}</gazebo><gazebo reference="b">{tip}</gazebo>')
+    assert errors(issues) == []
+    (link,) = model.links
+    assert {name: getattr(link, name) for name in wanted} == wanted

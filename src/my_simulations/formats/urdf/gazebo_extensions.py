@@ -83,6 +83,9 @@ class Extensions:
             for _, collision in body.collisions:
                 self._set(collision, GAZEBO_COLLISION[tag], child)
         elif tag in GAZEBO_LINK:
+            if tag == "dampingFactor" and tag in body.said:
+                return True     # sdformat writes an element each time, and the first one counts
+            body.said.add(tag)
             for value in GAZEBO_LINK[tag]:
                 self._set(link, value, child)
         elif tag == "material":

@@ -2,7 +2,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Any, Iterator, List, Optional, Tuple
+from typing import Any, Iterator, List, Optional, Set, Tuple
 
 from ...description.model import Inertial, Joint, Link
 from ...description.shapes import Collision, Visual
@@ -24,6 +24,7 @@ class Body:
         down: connections to the children, sorted by joint name.
         into: the body it was lumped into, which itself was not lumped; None if it is kept.
         offset: pose of its link frame in the body it was lumped into.
+        said: tags of its `<gazebo>` blocks that set the link.
     """
 
     link: Link
@@ -35,6 +36,7 @@ class Body:
     down: List["Connection"] = field(default_factory=list)
     into: Optional["Body"] = None
     offset: Pose = IDENTITY
+    said: Set[str] = field(default_factory=set)
 
 
 @dataclass

@@ -248,15 +248,23 @@ class _RobotReader:
         self._model.joints.append(joint)
 
     def _hand_over(self, body: Body) -> None:
-        """Move other settings of a lumped link to its new link, whose settings take precedence."""
-        link, to = body.link, lumped_into(body).link
+        """Move other settings of a lumped link to its new link.
+
+        Where both set one, the later link counts for turnGravityOff and selfCollide, and the
+        earlier one for dampingFactor (sdformat 9, parser_urdf.cc: InsertSDFExtensionLink).
+        """
+        link, whole = body.link, lumped_into(body)
+        to = whole.link
         to.extra += [moved(xml, body.offset) for xml in link.extra]
-        if to.self_collide is None:
-            to.self_collide = link.self_collide
-        to.gravity = to.gravity and link.gravity
+        if to.self_collide is None or "selfCollide" in body.said:
+            to.self_collide = link.self_collide if link.self_collide is not None \
+                else to.self_collide
+        to.gravity = link.gravity if "turnGravityOff" in body.said else to.gravity and link.gravity
         to.kinematic = to.kinematic or link.kinematic
-        to.linear_decay = to.linear_decay or link.linear_decay
-        to.angular_decay = to.angular_decay or link.angular_decay
+        if "dampingFactor" not in whole.said:
+            to.linear_decay = to.linear_decay or link.linear_decay
+            to.angular_decay = to.angular_decay or link.angular_decay
+        whole.said |= body.said
 
     def _warn_about_world(self, body: Body) -> None:
         if body.collisions or body.visuals:
