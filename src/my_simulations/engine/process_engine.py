@@ -36,7 +36,11 @@ class ProcessEngine:
         self._ring = RingReader(self._ring_fd)
         self._bell_out, self._bell_in = os.pipe()
         os.set_blocking(self._bell_out, False)
+        # A sender may block until the child reads, which may wait for the reader thread to take its
+        # replies: what that thread needs is never held over a send.
         self._lock = threading.Lock()
+        self._send_lock = threading.Lock()  # taken before the other: numbers leave in order
+        self._bell_lock = threading.Lock()
         self._waiting: "OrderedDict[int, Tuple[Command, Future[Reply]]]" = OrderedDict()
         self._numbers = 0
         self._closing = False
@@ -99,14 +103,17 @@ class ProcessEngine:
     def submit(self, command: Command) -> "Future[Reply]":
         """Queue a command; the future fails with `EngineDiedError` if the child dies before."""
         future: "Future[Reply]" = Future()
-        with self._lock:
-            if self._wire is None:
-                future.set_exception(EngineDiedError("the physics engine is not running"))
-                return future
-            self._numbers += 1
-            self._waiting[self._numbers] = (command, future)
+        with self._send_lock:
+            with self._lock:
+                wire = self._wire
+                if wire is None:
+                    future.set_exception(EngineDiedError("the physics engine is not running"))
+                    return future
+                self._numbers += 1
+                number = self._numbers
+                self._waiting[number] = (command, future)
             try:
-                self._wire.send((self._numbers, command))
+                wire.send((number, command))
             except OSError as fault:
                 # The reader thread sees the same end, and fails this future with the others.
                 _log.debug("the engine does not listen: %s", fault)
@@ -114,10 +121,11 @@ class ProcessEngine:
 
     def nudge(self) -> None:
         """Notify the child that credits were raised."""
-        with self._lock:
-            if self._wire is not None:
+        with self._send_lock:
+            wire = self._wire
+            if wire is not None:
                 try:
-                    self._wire.send((0, Nudge()))
+                    wire.send((0, Nudge()))
                 except OSError as fault:
                     _log.debug("the engine does not listen: %s", fault)
 
@@ -172,6 +180,7 @@ class ProcessEngine:
             if self._wire is wire:
                 self._wire = None
             waiting, self._waiting = self._waiting, OrderedDict()
+        with self._send_lock:  # it was hung up: whoever still sends fails at once
             wire.sock.close()
         shown = answer_shown(self._ring, waiting)
         reason = self._verdict or _reason(process.returncode)

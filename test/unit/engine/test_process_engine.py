@@ -1,0 +1,61 @@
+"""The parent's side of the engine's connection, without a child."""
+from __future__ import annotations
+
+import socket
+import threading
+
+import pytest
+
+from my_simulations.engine.api import Reply
+from my_simulations.engine.commands import ClearTimedForces, Ping
+from my_simulations.engine.message_pipe import Wire
+from my_simulations.engine.process_engine import ProcessEngine
+
+WAIT = 60.0
+
+
+class Child:
+    """Stands for the child process, which the test plays itself."""
+
+    pid = 0
+    returncode = 0
+
+    def poll(self):
+        return None
+
+    def wait(self, _=None):
+        return 0
+
+
+class Engine(ProcessEngine):
+    """With the child's end of the connection in `theirs`."""
+
+    def restart(self):
+        ours, theirs = socket.socketpair()
+        self.theirs = Wire(theirs)
+        self._child, self._wire = Child(), Wire(ours)
+        self._reader = threading.Thread(target=self._read, args=(self._child, self._wire),
+                                        daemon=True)
+        self._reader.start()
+
+
+@pytest.fixture
+def engine():
+    made = Engine()
+    yield made
+    made.theirs.hang_up()
+    made.close()
+
+
+def test_replies_are_taken_while_a_large_command_is_being_sent(engine):
+    """The child may read on only after its replies were taken."""
+    ping = engine.submit(Ping())
+    sending = threading.Thread(
+        target=engine.submit, args=(ClearTimedForces(tuple(range(10**9, 10**9 + 10**6))),),
+        daemon=True)
+    sending.start()
+    (number, _), = engine.theirs.receive(WAIT)
+    assert engine.theirs.sock.recv(1)  # the second is on its way, and does not fit
+    engine.theirs.send((number, Reply(0, 0)))
+    assert ping.result(WAIT) == Reply(0, 0)
+    assert sending.is_alive()
