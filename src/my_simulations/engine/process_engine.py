@@ -131,13 +131,14 @@ class ProcessEngine:
 
     def wait_bell(self, timeout: float) -> bool:
         """Wait for the bell and empty it; False after `timeout` s."""
-        if not select.select([self._bell_out], [], [], timeout)[0]:
-            return False
-        try:
-            os.read(self._bell_out, 4096)
-        except BlockingIOError:
-            return False
-        return True
+        with self._bell_lock:  # close() must not take the descriptor from under it
+            if self._bell_out < 0 or not select.select([self._bell_out], [], [], timeout)[0]:
+                return False
+            try:
+                os.read(self._bell_out, 4096)
+            except BlockingIOError:
+                return False
+            return True
 
     def kill(self, reason: str = "") -> None:
         """Kill the child; `reason` is reported instead of the signal."""
@@ -146,7 +147,10 @@ class ProcessEngine:
             self._child.kill()
 
     def close(self) -> None:
-        """Stop the child and wait until it has ended."""
+        """Stop the child, wait until it has ended, and close what was shared with it.
+
+        The ring stays readable.
+        """
         self._closing = True
         with self._lock:
             wire, self._wire = self._wire, None
@@ -156,6 +160,16 @@ class ProcessEngine:
             wait_or_kill(self._child, _END_S)
         if self._reader is not None and self._reader is not threading.current_thread():
             self._reader.join(_END_S)
+        self._close_descriptors()
+
+    def _close_descriptors(self) -> None:
+        if self._bell_out < 0:
+            return
+        os.write(self._bell_in, b"\0")  # wakes a thread that waits for the bell
+        with self._bell_lock:
+            for descriptor in (self._ring_fd, self._bell_out, self._bell_in):
+                os.close(descriptor)
+            self._ring_fd = self._bell_out = self._bell_in = -1
 
     def _read(self, process: "subprocess.Popen[bytes]", wire: Wire) -> None:
         while True:

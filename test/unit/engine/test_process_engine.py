@@ -1,6 +1,7 @@
 """The parent's side of the engine's connection, without a child."""
 from __future__ import annotations
 
+import os
 import socket
 import threading
 
@@ -59,3 +60,17 @@ def test_replies_are_taken_while_a_large_command_is_being_sent(engine):
     engine.theirs.send((number, Reply(0, 0)))
     assert ping.result(WAIT) == Reply(0, 0)
     assert sending.is_alive()
+
+
+def test_a_closed_engine_leaves_no_descriptors_and_wakes_who_waits_for_the_bell(engine):
+    descriptors = (engine._ring_fd, engine._bell_out, engine._bell_in)
+    waiting = threading.Thread(target=engine.wait_bell, args=(WAIT,))
+    waiting.start()
+    engine.close()
+    waiting.join(WAIT / 2)
+    assert not waiting.is_alive()
+    for descriptor in descriptors:
+        with pytest.raises(OSError):
+            os.fstat(descriptor)
+    assert not engine.wait_bell(0.0) and engine.ring.step == 0
+    engine.close()
