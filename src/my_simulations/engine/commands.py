@@ -563,6 +563,11 @@ class Advance(Command):
 
 
 @dataclass(frozen=True)
+class EndAdvance(Command):
+    """End an `Advance` that is under way after its running step; it is answered as if done."""
+
+
+@dataclass(frozen=True)
 class AddTimedForces(Command):
     """Add timed wrenches and efforts; those on one link or axis add up.
 

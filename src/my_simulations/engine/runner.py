@@ -15,7 +15,9 @@ from .commands import (
     AddTimedForces,
     Advance,
     Batch,
+    Clear,
     Command,
+    EndAdvance,
     Nudge,
     Pause,
     PhysicsSettings,
@@ -94,6 +96,7 @@ class Runner:
         # last states must stay readable for who puts them back.
         self._met = (self._clock_sets, self._step)
         self._advance: Optional[Tuple[int, int]] = None  # (command number, last step)
+        self._ended: List[int] = []  # numbers of advances that were ended early, to be answered
         self._due = 0.0
         self._burst = 1
         self._allowance = 0.0
@@ -156,7 +159,7 @@ class Runner:
         commands = [pair for pair in received if not isinstance(pair[1], Nudge)]
         if not commands:
             return True
-        answers = []
+        answers: List[Tuple[int, object, str]] = []
         refused = False
         for number, command in commands:
             try:
@@ -175,6 +178,8 @@ class Runner:
                 traceback.print_exc()
                 answers.append((number, None, f"the physics engine failed: {fault!r}"))
         sequence = self._write(force=True)
+        answers[:0] = [(number, self._step, "") for number in self._ended]
+        self._ended.clear()
         for number, value, error in answers:
             self._channel.reply(number, Reply(self._step, sequence, value, error))
         self._report_events()
@@ -197,20 +202,32 @@ class Runner:
                 raise CommandRefusedError("another advance is under way")
             self._advance = (number, self._step + max(0, command.steps))
             return None
+        if isinstance(command, (EndAdvance, Clear)):
+            self._end_advance()
+        if isinstance(command, (EndAdvance, Ping)):
+            return None
         if isinstance(command, SetPhysics):
             self._configure(command.settings)
             return None
         if isinstance(command, SetClock):
-            self._step = command.step
-            self._clock = Clock(command.step, command.sim_ns,
-                                picoseconds(self._settings.step_size))
-            self._end_credits()
-            return None
-        if isinstance(command, Ping):
+            self._set_clock(command)
             return None
         if isinstance(command, AddTimedForces) and command.whole:
             command = AddTimedForces(tuple(force.begun(self._step) for force in command.forces))
         return self._backend.apply(command)
+
+    def _end_advance(self) -> None:
+        if self._advance is not None:
+            self._ended.append(self._advance[0])
+            self._advance = None
+
+    def _set_clock(self, command: SetClock) -> None:
+        if self._advance is not None:  # as many steps are left as before, as in Gazebo
+            number, last = self._advance
+            self._advance = (number, command.step + last - self._step)
+        self._step = command.step
+        self._clock = Clock(command.step, command.sim_ns, picoseconds(self._settings.step_size))
+        self._end_credits()
 
     def _configure(self, settings: PhysicsSettings) -> None:
         if not 0.0 < settings.step_size <= 10.0:

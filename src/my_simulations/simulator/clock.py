@@ -4,7 +4,15 @@ from __future__ import annotations
 import contextlib
 from typing import Iterator, List, Tuple
 
-from ..engine.commands import FOREVER, Advance, Command, Pause, Run, SetClock
+from ..engine.commands import (
+    FOREVER,
+    Advance,
+    Command,
+    EndAdvance,
+    Pause,
+    Run,
+    SetClock,
+)
 from ..engine.ring import Clock
 from .session import Session
 
@@ -57,7 +65,10 @@ class SimClock:
         return self._paused or self._manual_stepping
 
     def pause(self) -> int:
-        """Pause after the running step; returns the step count."""
+        """Pause after the running step; returns the step count.
+
+        An `advance` goes on, as in Gazebo.
+        """
         with self._session.structure_lock:
             self._paused = True
             return self._session.call(Pause()).step
@@ -76,8 +87,15 @@ class SimClock:
             self._session.call((self.resume_commands() or [Pause()])[0])
 
     def advance(self, steps: int) -> int:
-        """Execute `steps` steps as fast as possible; returns the step count after them."""
+        """Execute `steps` steps as fast as possible; returns the step count after them.
+
+        It returns early when `end_advance` or another world ends it.
+        """
         return self._session.call(Advance(steps)).step
+
+    def end_advance(self) -> int:
+        """End an `advance` that is under way; returns the step count."""
+        return self._session.call(EndAdvance()).step
 
     def wait_step(self, after_step: int, timeout: float) -> bool:
         """Wait until the step count is not `after_step`, or something else has changed.

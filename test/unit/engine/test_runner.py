@@ -1,6 +1,7 @@
 """Pacing, horizon and commands between steps, on a backend without physics."""
 from __future__ import annotations
 
+import threading
 import time
 
 import pytest
@@ -10,6 +11,8 @@ from my_simulations.engine.commands import (
     FOREVER,
     Advance,
     Batch,
+    Clear,
+    EndAdvance,
     LoadModel,
     Pause,
     PhysicsSettings,
@@ -95,6 +98,57 @@ def test_an_advance_makes_exactly_its_steps_also_while_paused(engine):
     assert ask(engine, Advance(1000)).step == 1000
     assert engine.ring.step == 1000
     assert engine.ring.link(0)[0].position[0] == pytest.approx(1.0)
+
+
+class Stopping(KinematicBackend):
+    """A world that stops in a step until it is let go, for the test to act meanwhile."""
+
+    def __init__(self):
+        super().__init__()
+        self.at, self.stopped, self.go = -1, threading.Event(), threading.Event()
+
+    def step(self, first, count):
+        if first <= self.at < first + count:
+            self.stopped.set()
+            assert self.go.wait(WAIT)
+        super().step(first, count)
+
+
+@pytest.fixture
+def stopped():
+    """An engine in the midst of an advance from step 100 to 2100, and the advance."""
+    made = InlineEngine(Stopping)
+    ask(made, Advance(100))
+    made.backend.at = 100
+    advance = made.submit(Advance(2000))
+    assert made.backend.stopped.wait(WAIT)
+    yield made, advance
+    made.backend.go.set()
+    made.close()
+
+
+def test_a_clock_that_is_set_during_an_advance_leaves_as_many_steps_to_make(stopped):
+    engine, advance = stopped
+    reset = engine.submit(SetClock(0, 0))
+    engine.backend.go.set()
+    made = ask_later(reset).step
+    assert made == 0
+    # The steps before the reset were one burst.
+    assert 1 <= 2000 - ask_later(advance).step <= 1000
+
+
+@pytest.mark.parametrize("command", [EndAdvance(), Batch((Pause(), EndAdvance())), Clear()])
+def test_an_advance_can_be_ended(stopped, command):
+    engine, advance = stopped
+    ending = engine.submit(command)
+    engine.backend.go.set()
+    ended = ask_later(advance)
+    assert ended.value == ended.step == ask_later(ending).step < 2100
+    assert ask(engine, Advance(1)).step == ended.step + 1
+
+
+def ask_later(answer):
+    return answer.result(WAIT)
 
 
 def test_commands_work_while_paused_and_the_reply_names_a_snapshot_that_shows_them(engine):
