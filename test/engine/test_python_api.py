@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 
 import my_simulations
+from my_simulations.engine.commands import Advance
 from my_simulations.errors import CommandError, EngineLostError, InputError
 from my_simulations.python_api.plain_values import pose_of
 
@@ -73,6 +74,42 @@ def test_wrenches_and_efforts_act_for_their_time(world):
     world.step(300)
     assert world.states().twist["ball"][0] == pytest.approx(0.2, rel=1e-6)  # F t / m
     assert world.joints().position["pendulum::pin"] > 0.0
+
+
+def test_steps_may_be_a_whole_float_and_nothing_else(world):
+    world.step(10.0)
+    for steps in (1.5, math.nan, math.inf, "two", None):
+        with pytest.raises(CommandError, match="whole number"):
+            world.step(steps)
+    assert world.time == pytest.approx(0.01)
+
+
+def test_steps_that_are_interrupted_end(world, monkeypatch):
+    call = world.simulator.clock._session.supervisor._answer
+
+    def interrupted(engine, command):
+        if isinstance(command, Advance):
+            engine.submit(command)
+            raise KeyboardInterrupt
+        return call(engine, command)
+
+    monkeypatch.setattr(world.simulator.clock._session.supervisor, "_answer", interrupted)
+    with pytest.raises(KeyboardInterrupt):
+        world.step(1_000_000)
+    monkeypatch.undo()
+    at = world.time
+    assert at < 1000.0
+    world.step(1)
+    assert world.time == pytest.approx(at + world.step_size)
+
+
+def test_a_duration_may_be_infinite_but_not_nan(world):
+    world.spawn(BALL, pose=[0, 0, 5])
+    world.apply_wrench("ball::link", force=[2, 0, 0], duration=math.inf)
+    world.step(100)
+    assert world.states().twist["ball"][0] == pytest.approx(0.1, rel=1e-6)
+    with pytest.raises(CommandError, match="NaN"):
+        world.apply_wrench("ball::link", force=[2, 0, 0], duration=math.nan)
 
 
 def test_reset_repeats_bit_for_bit_and_brings_back_what_was_removed():

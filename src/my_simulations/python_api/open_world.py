@@ -20,7 +20,7 @@ from ..simulator.scene_sensing import SceneSensing
 from ..simulator.simulator import Simulator
 from .kept_files import KeptFiles
 from .object_placement import Alter
-from .plain_values import nanoseconds_of, pose_of, twist_of, vector_of
+from .plain_values import nanoseconds_of, pose_of, twist_of, vector_of, whole_number
 from .readings import (
     ContactReading,
     JointReadings,
@@ -128,7 +128,11 @@ class OpenWorld:
         return self.simulator.physics.settings.max_step_size
 
     def step(self, steps: int = 1) -> None:
-        """Make steps, as fast as possible; at most a million at a time."""
+        """Make steps, as fast as possible; at most a million at a time.
+
+        An exception that interrupts it, such as that of Ctrl-C, ends it after the running step.
+        """
+        steps = whole_number(steps, "steps")
         if not 0 <= steps <= _MOST_STEPS:
             raise CommandError(f"steps must be between 0 and {_MOST_STEPS}, is {steps}")
         self._refuse_lost()
@@ -137,6 +141,11 @@ class OpenWorld:
                 self.simulator.clock.advance(steps)
             except EngineLostError as fault:
                 self._lost = self._lost or str(fault)
+            except CommandError:
+                raise
+            except BaseException:
+                self.simulator.clock.end_advance()
+                raise
         self._refuse_lost()
 
     def reset(self, seed: Optional[int] = None) -> None:

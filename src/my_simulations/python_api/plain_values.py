@@ -1,6 +1,7 @@
 """Arguments of Python programs: poses, vectors and times as plain numbers."""
 from __future__ import annotations
 
+import math
 from typing import Optional, Sequence
 
 from ..errors import CommandError
@@ -43,5 +44,23 @@ def twist_of(values: Sequence[float]) -> Twist:
 
 
 def nanoseconds_of(duration: Optional[float]) -> int:
-    """A duration in s as nanoseconds; -1 for None, which is for ever."""
-    return -1 if duration is None else max(0, round(duration * 1e9))
+    """A duration in s as nanoseconds; -1 for None and infinity, which are for ever.
+
+    Raises:
+        CommandError: it is no number.
+    """
+    if duration is None or duration == math.inf:
+        return -1
+    if math.isnan(duration):
+        raise CommandError("a duration must be a number of seconds, not NaN")
+    return max(0, round(max(0.0, duration) * 1e9))
+
+
+def whole_number(value: float, what: str) -> int:
+    """A whole number, also one that is written as a float. Raises CommandError; `what` names it."""
+    try:
+        if int(value) == value:
+            return int(value)
+    except (TypeError, ValueError, OverflowError):
+        pass
+    raise CommandError(f"{what} must be a whole number, is {value!r}")
