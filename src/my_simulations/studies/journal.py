@@ -15,7 +15,7 @@ import json
 import os
 import threading
 import time
-from typing import Any, Dict, Iterator, List, Set, Tuple
+from typing import Any, Dict, Iterator, List, Optional, Set, Tuple
 
 from ..errors import CommandError
 from .row import STATUSES, Row, row_of
@@ -39,6 +39,7 @@ class Journal:
     def __init__(self, path: str, header: Dict[str, Any]) -> None:
         self.path = path
         self._lock = threading.Lock()
+        self._fault: Optional[OSError] = None  # of the first row that could not be written
         self._file = os.open(path, os.O_RDWR | os.O_CREAT | os.O_APPEND | os.O_CLOEXEC, 0o666)
         self._synced = time.monotonic()
         try:
@@ -57,7 +58,11 @@ class Journal:
             raise
 
     def append(self, rows: List[Row]) -> None:
-        """Add rows, in one write."""
+        """Add rows, in one write.
+
+        Raises OSError if they cannot be written, such as on a full disk. Nothing is left of them
+        then, and every later call raises the same: the study ends, and can be resumed.
+        """
         with self._lock:
             self._put("".join(row.line() for row in rows).encode())
             if time.monotonic() - self._synced > _FSYNC_S:
@@ -74,8 +79,16 @@ class Journal:
         self._put((json.dumps(value) + "\n").encode())
 
     def _put(self, data: bytes) -> None:
-        while data:  # a full disk may take a part
-            data = data[os.write(self._file, data):]
+        if self._fault is not None:
+            raise self._fault
+        size = os.fstat(self._file).st_size
+        try:
+            while data:  # a full disk may take a part
+                data = data[os.write(self._file, data):]
+        except OSError as fault:
+            self._fault = fault
+            os.ftruncate(self._file, size)
+            raise
 
 
 def header_of(path: str) -> Dict[str, Any]:

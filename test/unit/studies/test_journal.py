@@ -1,6 +1,7 @@
 """The journal: whole lines, one writer, a cut that leaves what was finished."""
 from __future__ import annotations
 
+import errno
 import math
 import os
 
@@ -66,6 +67,34 @@ def test_a_journal_cut_anywhere_keeps_the_rows_before_the_cut(tmp_path):
         again.close()
         with open(path, "rb") as stream:
             assert stream.read() == whole
+
+
+def test_a_row_that_does_not_fit_on_the_disk_leaves_no_trace_and_ends_the_journal(
+        tmp_path, monkeypatch):
+    path = str(tmp_path / "j.jsonl")
+    journal = Journal(path, HEADER)
+    journal.append([row(1)])
+    write, left = os.write, [50]
+
+    def on_a_full_disk(file, data):
+        if not left[0]:
+            raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+        done = write(file, data[:left[0]])
+        left[0] -= done
+        return done
+
+    monkeypatch.setattr(os, "write", on_a_full_disk)
+    with pytest.raises(OSError, match="No space"):
+        journal.append([row(2)])
+    monkeypatch.undo()   # others freed some, and another case has ended
+    with pytest.raises(OSError, match="No space"):
+        journal.append([row(3)])
+    journal.close()
+    assert list(rows(path)) == [row(1)] and finished_cases(path) == {1}
+    again = Journal(path, HEADER)
+    again.append([row(2)])
+    again.close()
+    assert finished_cases(path) == {1, 2}
 
 
 def test_two_processes_do_not_write_one_journal_and_studies_are_not_mixed(tmp_path):
