@@ -1,6 +1,7 @@
 """Joint motors, planar velocities and wheel slips, which the engine applies in every step."""
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 from typing import Any, Dict, List, Optional, Sequence, Tuple
 
@@ -92,11 +93,14 @@ class Drives:
     def hold_axis(self, joint: str, position: float, effort: float, rate: float) -> None:
         """Move an axis, given by name, to a position (rad or m) and hold it there.
 
-        `effort` (N m or N) and `rate` (rad/s or m/s) limit the motor. Raises CommandError.
+        `effort` (N m or N) and `rate` (rad/s or m/s, infinite for any) limit the motor. Raises
+        CommandError: no such joint, or a number that cannot be used.
         """
         with self._session.structure_lock:
             row = self._session.axis_row(joint)
             target, limit = _finite(position, effort)
+            if math.isnan(rate):
+                raise CommandError("a joint's rate must be a number, not NaN")
             self.set(servos=[JointServo(row, "position", target, most_rate=rate,
                                         most_effort=limit)])
 

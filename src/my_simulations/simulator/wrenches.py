@@ -1,7 +1,7 @@
 """Timed wrenches on links and efforts on joint axes, given in sim time and exact to the step."""
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import astuple, replace
 from typing import Dict, List, Optional, Sequence, Tuple, Union
 
 from ..engine.commands import (
@@ -82,8 +82,10 @@ class Wrenches:
 
         Raises:
             UnknownEntityError: no such joint.
-            CommandError: the joint has no axis.
+            CommandError: the joint has no axis, or a number is not finite.
         """
+        if not is_finite(*(astuple(effort) if isinstance(effort, JointPid) else (effort,))):
+            raise CommandError(f"the effort on joint '{joint}' contains NaN or infinity")
         with self._session.structure_lock:
             row = self._session.axis_row(joint)
             if duration_ns:

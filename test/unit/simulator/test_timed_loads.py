@@ -7,7 +7,7 @@ import pytest
 
 from my_simulations.description.model import Inertial, Joint, JointAxis, Link, Model
 from my_simulations.description.world import World
-from my_simulations.engine.commands import FOREVER, TimedWrench
+from my_simulations.engine.commands import FOREVER, JointPid, TimedWrench
 from my_simulations.engine.inline_engine import InlineEngine
 from my_simulations.engine.kinematic_backend import KinematicBackend
 from my_simulations.engine.ring import Clock
@@ -174,3 +174,20 @@ def test_a_load_that_is_late_keeps_its_length():
     assert load.begun(5) == TimedWrench(0, 0, 5, 12)
     assert load.begun(2) is load
     assert TimedWrench(0, 0, 3, FOREVER).begun(5).stop == FOREVER
+
+
+@pytest.mark.parametrize("effort", [math.nan, math.inf, JointPid(math.nan),
+                                    JointPid(1.0, d=math.inf)])
+def test_an_effort_that_is_not_finite_is_refused(case, effort):
+    made = case(arm("a"))
+    with pytest.raises(CommandError, match="NaN or infinity"):
+        made.sim.wrenches.apply_effort("a::hinge", effort)
+    assert made.loads == []
+
+
+def test_a_drive_with_a_rate_of_nan_is_refused(case):
+    made = case(arm("a"))
+    with pytest.raises(CommandError, match="NaN"):
+        made.sim.drives.hold_axis("a::hinge", 1.0, 5.0, math.nan)
+    assert made.backends[-1].servos == {}
+    made.sim.drives.hold_axis("a::hinge", 1.0, 5.0, math.inf)
