@@ -1,6 +1,7 @@
 """Atomic file writes: to a temporary file, then renamed."""
 from __future__ import annotations
 
+import contextlib
 import errno
 import os
 import tempfile
@@ -69,8 +70,10 @@ def _mode(path: str) -> int:
 
 
 def _sync_folder(folder: str) -> None:
-    handle = os.open(folder, os.O_RDONLY)
-    try:
-        os.fsync(handle)
-    finally:
-        os.close(handle)
+    # The file is complete; some file systems (vboxsf, some FUSE and SMB mounts) cannot do more.
+    with contextlib.suppress(OSError):
+        handle = os.open(folder, os.O_RDONLY)
+        try:
+            os.fsync(handle)
+        finally:
+            os.close(handle)

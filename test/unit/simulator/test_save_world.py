@@ -328,3 +328,16 @@ def test_a_world_file_is_not_replaced_by_what_could_be_loaded_of_it(running, tmp
     save_world(sim, str(tmp_path / "other.world"), roots=[str(tmp_path)])
     save_world(sim, str(file), roots=[str(tmp_path)], overwrite=True, despite_losses=True)
     assert [model.name for model in load(str(file)).models] == ["a"]
+
+
+def test_a_file_is_saved_in_a_folder_that_cannot_be_forced_to_the_disk(tmp_path, monkeypatch):
+    force = os.fsync
+
+    def forced(handle):
+        if stat.S_ISDIR(os.fstat(handle).st_mode):
+            raise OSError(errno.EINVAL, os.strerror(errno.EINVAL))
+        force(handle)
+
+    monkeypatch.setattr(os, "fsync", forced)
+    safe_file.write_whole(str(tmp_path / "file"), b"content", overwrite=False)
+    assert (tmp_path / "file").read_bytes() == b"content"
