@@ -99,8 +99,7 @@ class Consumer:
 
     def leave(self) -> None:
         """Cancel all appointments of this consumer."""
-        self._owner.forget(self)
-        self._session.ring.words[self._word] = 0
+        self._owner.forget(self, self._word)
         self._session.supervisor.engine.nudge()
 
 
@@ -131,9 +130,11 @@ class Appointments:
         ring.words[CREDITS + number] = credit_word(*ring.clock_now()[:2])
         return consumer
 
-    def forget(self, consumer: Consumer) -> None:
+    def forget(self, consumer: Consumer, word: int) -> None:
         """Free the credit word of a consumer."""
         with self._lock:
+            if consumer in self._consumers:  # else the word may be another one's already
+                self._session.ring.words[word] = 0
             self._consumers = [None if one is consumer else one for one in self._consumers]
 
     def ring_all(self) -> None:

@@ -148,3 +148,19 @@ def test_one_who_leaves_holds_nobody_up(simulator):
     consumer = simulator.appointments.join()
     consumer.leave()
     assert simulator.clock.advance(5) == 5
+
+
+def test_one_that_leaves_does_not_take_the_credit_of_one_that_joins(simulator):
+    first = simulator.appointments.join()
+    first.leave()
+    second = simulator.appointments.join()
+    first.leave()   # a plugin that is ended twice
+    before = simulator.clock.step
+    advance = threading.Thread(target=simulator.clock.advance, args=(10,))
+    advance.start()
+    assert second.wait(WAIT)
+    assert simulator.clock.step == before
+    second.allow(second.now(), None)
+    advance.join(WAIT)
+    assert simulator.clock.step == before + 10
+    second.leave()
