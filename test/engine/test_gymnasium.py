@@ -173,3 +173,20 @@ def test_the_gripper_can_put_one_box_on_the_other(make):
         seen, reward, ended, cut, info = env.step(stacker(seen))
     assert ended and info["is_success"] and reward > 0.5
     assert seen[13] == pytest.approx(stack_boxes.SIZE, abs=0.004)
+
+
+@pytest.mark.parametrize("seeds", [[1], [1, 2, 3]])
+def test_another_number_of_seeds_than_of_environments_is_refused(seeds):
+    class Counting(gymnasium.Env):
+        observation_space = action_space = gymnasium.spaces.Box(-1.0, 1.0, (1,))
+        resets = 0
+
+        def reset(self, **_):
+            self.resets += 1
+            return np.zeros(1, np.float32), {}
+
+    together = my_simulations.gym.WorldVectorEnv([Counting, Counting])
+    with pytest.raises(ValueError, match="2 environments"):
+        together.reset(seed=seeds)
+    assert [env.resets for env in together.envs] == [0, 0]
+    together.close()

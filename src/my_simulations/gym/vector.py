@@ -35,12 +35,18 @@ class WorldVectorEnv(VectorEnv[Any, Any, Any]):
 
     def reset(self, *, seed: Optional[Union[int, Sequence[Optional[int]]]] = None,
               options: Optional[Dict[str, Any]] = None) -> Tuple[Any, Dict[str, Any]]:
-        """Begin an episode in every environment; a single seed counts up from one to the next."""
+        """Begin an episode in every environment; a single seed counts up from one to the next.
+
+        Raises ValueError for another number of seeds than of environments.
+        """
         if seed is None or isinstance(seed, int):
             seeds: List[Optional[int]] = [None if seed is None else seed + number
                                           for number in range(self.num_envs)]
         else:
             seeds = list(seed)
+            if len(seeds) != self.num_envs:
+                raise ValueError(f"{self.num_envs} environments need as many seeds, not"
+                                 f" {len(seeds)}")
         found = list(self._threads.map(lambda env, one: env.reset(seed=one, options=options),
                                        self.envs, seeds))
         self._over[:] = False
