@@ -72,7 +72,7 @@ class JointReadings:
     Attributes:
         time: sim time in s.
         position: rad of a revolute axis, m of a prismatic one, by `model::joint`; the axes of a
-            joint with several are `model::joint[0]` and so on.
+            joint with several are `model::joint`, `model::joint::1` and so on.
         rate: rad/s or m/s.
     """
 
