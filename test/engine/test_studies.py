@@ -354,3 +354,16 @@ def test_a_pyarrow_that_cannot_be_imported_costs_only_its_file(folder, capsys, m
     assert run(folder, "duration: 0.01\n") == 0
     assert "built for another NumPy" in capsys.readouterr().err
     assert len(table(folder)) == 1 and not (folder / "s" / "results.parquet").exists()
+
+
+def test_a_world_that_cannot_be_opened_is_told_by_the_same_word_in_any_engine(folder):
+    text = DROP.replace("duration: 0.4", "duration: 0.01")
+    text = text[:text.index("vary:")] + """vary:
+  dt: {set: physics.step_size, values: [20.0, 0.001, 30.0]}
+measure:
+  rest: final(pose.box.z)
+"""
+    run(folder, text, "--slots", "1")
+    found = [(row["status"], row["attempt"], row["step"]) for row in table(folder)]
+    assert found == [("failed", "1", "0"), ("ok", "1", "10"), ("failed", "1", "0")]
+    assert all("step size" in row["issue"] for row in table(folder)[::2])

@@ -17,6 +17,7 @@ from ..engine.process_engine import ProcessEngine
 from ..errors import CommandError, InputError, Severity, SimulationError
 from ..python_api import OpenWorld
 from ..python_api.kept_files import KeptFiles
+from ..python_api.world_choice import WorldChoice
 from ..simulator.watchdog import process_time
 from .attempts import until_no_crash
 from .case_world import choice_of
@@ -111,6 +112,7 @@ class Slot:
         self._engine: Optional[OneLifeEngine] = None
         self._guard = threading.Lock()
         self._began: Optional[float] = None  # processor time of the engine as the case began
+        self._opened_world = False  # of the case that runs
         self._excess = ""  # the status of a case that has used up a limit
 
     def close(self) -> None:
@@ -156,6 +158,7 @@ class Slot:
             self._excess = ""
             self._began = _used(self._engine) if self._engine is not None else 0.0
         began = self._began
+        self._opened_world = False
         trajectory = None
         try:
             trajectory = self._measured(case, row)
@@ -174,7 +177,8 @@ class Slot:
         engine = self._engine
         if engine is None:
             return
-        row.step = row.step or engine.ring.step
+        if self._opened_world:  # else the engine shows the case before
+            row.step = row.step or engine.ring.step
         if engine.exit_code is None and not self._excess:
             row.seconds = round(_used(engine) - began, 2)
             return
@@ -195,6 +199,7 @@ class Slot:
         """Run the case and fill its row."""
         study = self._study
         world = self._opened(case)
+        self._opened_world = True
         if self._hook is not None:
             self._hook(case, row.attempt, world)
         expressions = study.measure + study.require
@@ -222,7 +227,7 @@ class Slot:
     def _opened(self, case: Case) -> OpenWorld:
         choice, changes = choice_of(self._plan, case)
         if self._world is None:
-            self._world = OpenWorld(choice, engine=self._new_engine, files=self._files)
+            self._world = self._in_new_engine(choice)
         else:
             self._world.open(choice)
         world = self._world
@@ -233,6 +238,15 @@ class Slot:
         if unused:
             raise RefusedError("the world has no '" + "', '".join(unused) + "' to vary")
         return world
+
+    def _in_new_engine(self, choice: WorldChoice) -> OpenWorld:
+        try:
+            return OpenWorld(choice, engine=self._new_engine, files=self._files)
+        except BaseException:
+            with self._guard:  # it was closed; that is no crash unless it had died before
+                if self._engine is not None and not (self._engine.death or self._excess):
+                    self._engine = None
+            raise
 
     def _new_engine(self) -> Engine:
         engine = OneLifeEngine()
