@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 from typing import List, Optional, Sequence, Tuple
 
 from ..description.model import WORLD, Joint
+from ..description.saved_state import InitialState
 from ..engine.body_plan import TIE_TYPES
 from ..engine.commands import ConnectModels
 from ..errors import Issue, warning
@@ -51,10 +52,11 @@ class InterModelJoints:
         """The union of these joints and others."""
         return self._of(self._all + others._all)
 
-    def renamed(self, old: str, new: str) -> "InterModelJoints":
-        """The same joints after a model was renamed."""
+    def renamed(self, old: str, new: str, kept: Sequence[str]) -> "InterModelJoints":
+        """The same joints after a model was renamed; those of the names `kept` keep theirs."""
         return self._of([replace(one, joint=replace(
-            one.joint, name=_rescoped(one.joint.name, old, new),
+            one.joint, name=one.joint.name if one.joint.name in kept
+            else _rescoped(one.joint.name, old, new),
             parent=_rescoped(one.joint.parent, old, new),
             child=_rescoped(one.joint.child, old, new))) for one in self._all])
 
@@ -120,12 +122,13 @@ class InterModelJoints:
 class DeletedModel:
     """What restores a deleted model: its position in the order, its joints to other models.
 
-    `launched`: see `Entity`.
+    `launched`, `start`: see `Entity`.
     """
 
     slot: OrderSlot
     joints: InterModelJoints
     launched: bool = False
+    start: Optional[InitialState] = None
 
 
 def _touches(joint: Joint, model: str) -> bool:

@@ -168,10 +168,12 @@ class Models:
                 entity = session.new_entity(model, self._world_pose(model, pose, frame), meshes,
                                             between.slides(model.name))
                 entity.launched = launched or (deleted is not None and deleted.launched)
+                entity.start = (self._saved_starts.pop(model.name, None) if deleted is None
+                                else deleted.start)
             try:
                 session.call(Batch((
                     load_command(entity, state),
-                    *initial_commands(entity, self._saved_starts.pop(model.name, None)),
+                    *initial_commands(entity, entity.start if state is None else None),
                     *again.commands(session.registry, model.name, entity),
                     *([] if old is None else [RemoveModel(old.model_id)]))))
             except CommandError:
@@ -184,6 +186,8 @@ class Models:
                 if old is not None:
                     self._between = self._between.without(model.name)
                     self._forget(old)
+            if old is not None and model.name in self._pinned + self._held:
+                session.call(self._pin_command())
 
     def delete(self, name: str) -> DeletedModel:
         """Delete a model; returns when it is gone, with the data that `spawn` restores it from.
@@ -198,12 +202,15 @@ class Models:
             with session.registry_lock:
                 deleted = DeletedModel(
                     OrderSlot.of(session.registry.names(), name),
-                    self._between.of(name),
+                    self._between.removed(self._attached).of(name),
                     entity.launched,
+                    entity.start,
                 )
                 session.registry.remove(name)
                 self._between = self._between.without(name)
                 self._forget(entity)
+                self._pinned, self._held = ([one for one in names if one != name]
+                                            for names in (self._pinned, self._held))
                 return deleted
 
     def _replaceable(self, name: str, may_replace: bool = False) -> Optional[Entity]:
@@ -262,7 +269,7 @@ class Models:
                 entity = session.new_entity(model, old.initial_pose, parts,
                                             self._between.slides(model.name))
             entity.pose, entity.articulated = old.pose, old.articulated
-            entity.launched = old.launched
+            entity.launched, entity.start = old.launched, old.start
             forces = self._wrenches.transferred(old, entity)
             driving = self._drives.transferred(old, entity)
             try:
@@ -276,7 +283,8 @@ class Models:
                 raise
             with session.registry_lock:
                 session.registry.swap(old, entity)
-                self._between = self._between.renamed(name, model.name).present(session.registry)
+                self._between = self._between.renamed(
+                    name, model.name, self._attached).present(session.registry)
                 self._forget(old)
             self._wrenches.keep(forces)
             self._drives.adopt(driving)
@@ -346,6 +354,8 @@ class Models:
         Raises CommandError: a link does not exist, or the engine refused it.
         """
         session = self._session
+        if parent == child:
+            raise CommandError(f"cannot attach link '{child}' to itself")
         with session.structure_lock:
             with session.registry_lock:
                 snapshot = session.snapshot()

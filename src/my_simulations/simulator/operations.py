@@ -289,8 +289,10 @@ class Reset:
     def apply(self, world: Simulator) -> Operation:
         """Reset the world; the inverse restores states and time."""
         back = RestoreState(world.states.capture())
-        {"time": world.resets.reset_time, "poses": world.resets.reset_world,
-         "world": world.resets.reset_simulation}[self.what]()
+        resets: Dict[str, Callable[[], None]] = {
+            "time": world.resets.reset_time, "poses": world.resets.reset_world,
+            "world": world.resets.reset_simulation}
+        resets[self.what]()
         return back
 
 

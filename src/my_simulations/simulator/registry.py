@@ -21,6 +21,7 @@ from ..description.advice import reach_of
 from ..description.light import Light
 from ..description.model import Joint, Model
 from ..description.model_plugins import has_plugins
+from ..description.saved_state import InitialState
 from ..description.scoped_names import split_scoped
 from ..description.shapes import MeshTable
 from ..engine.commands import LinkState, ModelState
@@ -66,6 +67,7 @@ class Entity:
         articulated: built as an articulated body, for a prismatic joint to another model.
         launched: spawned by the launch file that started the simulator, and spawned again by it at
             the next start.
+        start: how it moves at its start, from a saved state; None for at rest.
     """
 
     model_id: int
@@ -77,6 +79,7 @@ class Entity:
     pose: Pose = IDENTITY
     articulated: bool = False
     launched: bool = False
+    start: Optional[InitialState] = None
 
     def __post_init__(self) -> None:
         self.pose = self.initial_pose

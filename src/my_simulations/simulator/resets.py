@@ -1,11 +1,9 @@
 """The three resets of Gazebo's services: time, model poses, everything."""
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import List
 
 from ..engine.commands import (
-    FOREVER,
     AddTimedForces,
     Batch,
     ClearTimedForces,
@@ -44,9 +42,7 @@ class Resets:
             now = self._session.call(Pause()).step
             # Our own data changes after the engine has applied the reset: an engine that is
             # restarted before that must get the old data.
-            pending = [replace(force, start=max(0, force.start - now),
-                               stop=force.stop if force.stop == FOREVER else force.stop - now)
-                       for force in self._wrenches.pending(now)]
+            pending = self._wrenches.shifted(now, 0)
             self._session.call(Batch((SetClock(0, 0), AddTimedForces(tuple(pending)),
                                       *self._clock.resume_commands())))
             self._wrenches.replace_all(pending)
@@ -62,21 +58,27 @@ class Resets:
             self._move_linkless_models(entities)
             self.world_resets += 1
 
-    def reset_simulation(self) -> None:
+    def reset_simulation(self, to_start: bool = False) -> None:
         """Reset models and joints to their loaded state, time to 0; clear timed wrenches.
 
         Spawned models are kept. The run that follows repeats that after the start bit for bit.
+
+        Args:
+            to_start: set the time at which the world began (of its <state>), instead of 0 as in
+                Gazebo.
         """
         session = self._session
         with session.structure_lock:
             entities = session.registry.entities()
+            clock = SetClock(0, 0) if not to_start else self._clock.start_command(
+                session.world.initial_ns, self._clock.now()[1].step_ps * 1e-12)
             self.simulation_resets += 1
             commands: List[Command] = [
                 *self._models.detach_all(),
                 Restart(tuple((entity.model_id, entity.initial_pose) for entity in entities)),
-                SetClock(0, 0)]
+                clock]
             for entity in entities:
-                commands += initial_commands(entity, session.world.initial.get(entity.model.name))
+                commands += initial_commands(entity, entity.start)
             commands += self._models.commands_after_loading()
             session.call(Batch(tuple(commands)))
             self._move_linkless_models(entities)

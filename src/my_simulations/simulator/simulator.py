@@ -5,6 +5,7 @@ snapshot shows their effect. All parts are safe from any thread.
 """
 from __future__ import annotations
 
+import traceback
 from typing import Callable, ContextManager, Dict, List, Optional
 
 from ..description.shapes import MeshTable
@@ -67,6 +68,7 @@ class Simulator:
     def __init__(self, world: World, *, engine_factory: Callable[[], Engine],
                  log: Callable[[Issue], None], paused: bool = False,
                  meshes: Optional[Dict[str, MeshTable]] = None, steps: int = FOREVER) -> None:
+        log = _guarded(log)
         supervisor = Supervisor(engine_factory, self._restore, log)
         self._session = session = Session(world, supervisor, log)
         self._world_meshes = meshes or {}
@@ -78,11 +80,16 @@ class Simulator:
         self.models = Models(session, self.wrenches, self.drives, ConvexParts(
             log, lambda text: log(Issue(Severity.NOTE, "meshes", text))))
         self.joints = Joints(session, self.models)
-        self.states = States(session, self.clock)
+        self.states = States(session, self.clock, self.wrenches)
         self.lights = Lights(session)
         self.scene = SceneSettings(session)
         self.resets = Resets(session, self.models, self.wrenches, self.drives, self.clock)
         self.feed = StateFeed(session)
+
+    @property
+    def over(self) -> bool:
+        """Whether it was closed, or has lost its engine for good."""
+        return self._session.supervisor.over
 
     @property
     def world(self) -> World:
@@ -170,3 +177,19 @@ class Simulator:
         reply = submit(Batch((*commands, *self.clock.resume_commands())))
         if reply.error:
             raise CommandError(reply.error)
+
+
+def _guarded(log: Callable[[Issue], None]) -> Callable[[Issue], None]:
+    """A log whose faults do not end the thread that reports, such as that which restarts engines.
+
+    They may be no `Exception`, such as those of pytest.fail.
+    """
+    def guarded(issue: Issue) -> None:
+        try:
+            log(issue)
+        except (KeyboardInterrupt, SystemExit):
+            raise
+        except BaseException:
+            traceback.print_exc()
+
+    return guarded

@@ -4,6 +4,7 @@ from __future__ import annotations
 from typing import Dict, List, Optional, Tuple
 
 from ..engine.commands import (
+    AddTimedForces,
     Batch,
     Command,
     Contact,
@@ -22,6 +23,7 @@ from .reference_frames import in_frame, relative, usable
 from .registry import Entity
 from .session import Session
 from .world_state import WorldState
+from .wrenches import Wrenches
 
 
 class States:
@@ -31,9 +33,10 @@ class States:
     world frame unless a reference frame is given.
     """
 
-    def __init__(self, session: Session, clock: SimClock) -> None:
+    def __init__(self, session: Session, clock: SimClock, wrenches: Wrenches) -> None:
         self._session = session
         self._clock = clock
+        self._wrenches = wrenches
 
     # -- reading -----------------------------------------------------------------------------------
 
@@ -161,12 +164,18 @@ class States:
     def restore(self, state: WorldState, clock: bool = True) -> None:
         """Restore poses, velocities, joints and, with `clock`, the time; models added since stay.
 
-        Models that were deleted, or have other links now, are skipped.
+        Models that were deleted, or have other links now, are skipped. Timed wrenches last as long
+        as they would have.
         """
         session = self._session
         with session.structure_lock:
             with session.registry_lock:
                 commands = state.commands(session.registry.entities())
                 session.registry.revision += 1
-            time = [SetClock(state.step, state.sim_ns)] if clock else []
-            session.call(Batch((Pause(), *time, *commands, *self._clock.resume_commands())))
+            if not clock:
+                session.call(Batch((Pause(), *commands, *self._clock.resume_commands())))
+                return
+            pending = self._wrenches.shifted(session.call(Pause()).step, state.step)
+            session.call(Batch((SetClock(state.step, state.sim_ns), *commands,
+                                AddTimedForces(tuple(pending)), *self._clock.resume_commands())))
+            self._wrenches.replace_all(pending)

@@ -68,6 +68,11 @@ class Supervisor:
             raise CommandError(self._failure or "cannot start the physics engine")
         return self._engine
 
+    @property
+    def over(self) -> bool:
+        """Whether no command will be carried out any more."""
+        return self._closing or self._failure is not None
+
     def call(self, command: Command) -> Reply:
         """Send a command and wait for the reply.
 

@@ -183,6 +183,16 @@ class Wrenches:
         """Wrenches and efforts that act or start after a step count."""
         return tuple(force for force in self._forces.values() if force.stop > step)
 
+    def shifted(self, now: int, step: int) -> List[TimedForce]:
+        """The pending ones as they are once the clock shows `step` instead of `now`.
+
+        Each lasts as long as it would have.
+        """
+        by = step - now
+        return [replace(force, start=max(0, force.start + by),
+                        stop=force.stop if force.stop == FOREVER else force.stop + by)
+                for force in self.pending(now)]
+
     def replace_all(self, forces: Sequence[TimedForce] = ()) -> None:
         """Replace all entries; the caller updates the engine."""
         self._forces = {force.force_id: force for force in forces}
