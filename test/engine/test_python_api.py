@@ -6,6 +6,7 @@ import os
 import signal
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -15,6 +16,7 @@ import my_simulations
 from my_simulations.engine.commands import Advance
 from my_simulations.errors import CommandError, EngineLostError, InputError
 from my_simulations.python_api.plain_values import pose_of
+from my_simulations.python_api.world_choice import WorldChoice
 
 ROOT = Path(__file__).resolve().parents[2]
 LIST = str(ROOT / "config/test/object_locations.yaml")
@@ -256,3 +258,141 @@ def test_a_joint_is_driven_with_finite_numbers(world):
             world.drive_joint("pin", rate, effort)
     with pytest.raises(CommandError, match="nobody"):
         world.drive_joint("nobody", 1.0, 1.0)
+
+
+STATE = """<sdf version="1.6"><world name="default"><model name="box"><pose>0 0 5 0 0 0</pose>
+<link name="link"/></model><state world_name="default"><sim_time>5 0</sim_time><model name="box">
+<pose>0 0 5 0 0 0</pose><link name="link"><pose>0 0 5 0 0 0</pose>
+<velocity>2 0 0 0 0 0</velocity></link></model></state></world></sdf>"""
+
+
+@pytest.fixture
+def saved_world(tmp_path):
+    (tmp_path / "saved.world").write_text(STATE)
+    with my_simulations.open_world(str(tmp_path / "saved.world")) as opened:
+        yield opened
+
+
+def test_a_reset_goes_back_to_the_time_at_which_the_world_began(saved_world):
+    assert saved_world.time == 5.0
+    for seed in (None, 7, None):
+        saved_world.step(10)
+        saved_world.reset(seed)
+        assert saved_world.time == 5.0
+    saved_world.simulator.resets.reset_simulation()   # that of Gazebo's service
+    assert saved_world.time == 0.0
+
+
+def test_a_saved_motion_stays_with_its_model(saved_world):
+    resets, models = saved_world.simulator.resets, saved_world.simulator.models
+    models.edit("box", replace(models.get("box"), name="renamed"))
+    saved_world.spawn(BALL, "box", [3, 0, 5])
+    resets.reset_simulation()
+    assert list(saved_world.states().twist["renamed"]) == [2, 0, 0, 0, 0, 0]
+    assert not any(saved_world.states().twist["box"])
+
+
+def test_a_wrench_lasts_as_long_after_time_was_put_back(world):
+    start = world.save()
+    world.step(500)
+    world.spawn(BALL, pose=[0, 0, 50])
+    world.apply_wrench("ball::link", (10, 0, 0), duration=0.5)
+    world.step(100)
+    world.restore(start)
+    world.step(1000)
+    assert world.states().twist["ball"][0] == pytest.approx(2.5, rel=1e-6)   # F t / m
+
+
+def test_a_model_does_not_hang_where_one_of_its_name_was_held(world):
+    for _ in range(2):
+        world.spawn(BALL, pose=[0, 0, 5])
+        world.simulator.models.hold("ball", True)
+        world.remove("ball")
+    world.spawn(BALL, pose=[0, 0, 5])
+    world.simulator.resets.reset_simulation()
+    world.step(100)
+    assert world.states().twist["ball"][2] == pytest.approx(-0.98, rel=1e-6)
+    models = world.simulator.models
+    models.hold("ball", True)
+    models.spawn(models.get("ball"), replace=True)   # a successor is held, too
+    before = world.states().pose["ball"][2]
+    world.step(100)
+    assert world.states().pose["ball"][2] == before
+
+
+def test_a_renamed_model_can_still_let_go(world):
+    models = world.simulator.models
+    for name, x in (("a", 0), ("b", 1)):
+        world.spawn(BALL, name, [x, 0, 5])
+    models.attach("a::grip", "a::link", "b::link")
+    models.edit("a", replace(models.get("a"), name="renamed"))
+    assert models.inter_model_joints == []
+    assert models.detach("a::grip")
+    with pytest.raises(CommandError, match="to itself"):
+        models.attach("c", "b::link", "b::link")
+
+
+def test_what_was_attached_does_not_come_back_with_a_deleted_model(world):
+    models = world.simulator.models
+    for name, x in (("a", 0), ("b", 1)):
+        world.spawn(BALL, name, [x, 0, 5])
+    models.attach("a::grip", "a::link", "b::link")
+    description = models.get("a")
+    deleted = models.delete("a")
+    world.simulator.resets.reset_simulation()
+    models.spawn(description, deleted=deleted)
+    assert models.inter_model_joints == []
+
+
+def test_a_reset_in_which_the_engine_dies_needs_no_second_one(world):
+    world.spawn(BALL, pose=[0, 0, 5])
+    world.reset()
+    os.kill(world.simulator.engine_pid, signal.SIGKILL)
+    world.reset()
+    world.step(10)
+    assert world.time == pytest.approx(0.01) and world.names == ["ground_plane"]
+
+
+def test_a_world_whose_engine_is_lost_for_good_is_opened_by_another(world):
+    world.simulator._session.supervisor._failure = "it died repeatedly; restart the simulator"
+    with pytest.raises(CommandError, match="repeatedly"):
+        world.step()
+    world._lost = "it died repeatedly"   # as its log says
+    world.reset()
+    world.step(10)
+    assert world.time == pytest.approx(0.01) and world.names == ["ground_plane"]
+
+
+def test_a_log_that_raises_does_not_keep_the_engine_from_coming_back(capfd):
+    def log(issue):
+        pytest.fail(issue.message)
+
+    with my_simulations.open_world(log=log) as world:
+        os.kill(world.simulator.engine_pid, signal.SIGKILL)
+        with pytest.raises(EngineLostError):
+            for _ in range(1000):
+                world.step(1000)
+        world.reset()
+        world.step(10)
+        assert world.time == pytest.approx(0.01)
+
+
+def test_a_world_that_is_refused_leaves_none(world, tmp_path):
+    file = tmp_path / "slow.world"
+    file.write_text(STATE.replace('<model name="box"><pose>', "<physics type='ode'><max_step_size>"
+                                  '50</max_step_size></physics><model name="box"><pose>', 1))
+    with pytest.raises(CommandError, match="step size"):
+        world.open(WorldChoice(str(file)))
+    with pytest.raises(EngineLostError, match="no world.*step size"):
+        world.step()
+
+
+def test_a_description_that_cannot_be_changed_leaves_the_world_open(world, tmp_path):
+    def alter(_):
+        raise KeyError("nothing to change")
+
+    (tmp_path / "saved.world").write_text(STATE)
+    with pytest.raises(KeyError):
+        world.open(WorldChoice(str(tmp_path / "saved.world"), alter=alter))
+    world.reset(seed=3)
+    assert world.names == ["ground_plane"]

@@ -92,16 +92,8 @@ class OpenWorld:
         self._furnished = 0  # the revision of the models when the world was opened
         self._choice = choice
         self._files = files or KeptFiles(resolver or Resolver.from_environment())
-        loaded = self._load()
-        self.simulator = Simulator(loaded.world, engine_factory=engine, paused=True, log=self._log,
-                                   meshes=loaded.meshes)
-        self._photographer = Photographer(self.simulator, SceneSensing(self.simulator, self._log))
-        try:
-            self.simulator.start()
-            self._furnish()
-        except BaseException:
-            self.simulator.close()
-            raise
+        self._new_engine = engine
+        self._start(self._load())
 
     def __enter__(self) -> OpenWorld:
         return self
@@ -156,15 +148,17 @@ class OpenWorld:
         again = self._choice.seed if seed is None else seed
         unchanged = self.simulator.models.revision == self._furnished and self._lost is None
         if again == self._choice.seed and unchanged:
-            self.simulator.resets.reset_simulation()
+            self.simulator.resets.reset_simulation(to_start=True)
             self._furnished = self.simulator.models.revision
-        else:
-            self.open(replace(self._choice, seed=again))
+            if self._lost is None:  # else the engine has died just now
+                return
+        self.open(replace(self._choice, seed=again))
 
     def open(self, choice: WorldChoice) -> None:
         """Open another world in the same engine; it behaves bit for bit as in a new one.
 
-        Issues found in the former world are forgotten.
+        Issues found in the former world are forgotten. An engine that is lost for good is
+        replaced, and `simulator` with it.
 
         Raises:
             InputError: the world cannot be used; the one before is still open if it is its file
@@ -174,12 +168,20 @@ class OpenWorld:
         before, self._choice = self._choice, choice
         try:
             loaded = self._load()
-        except InputError:
+        except BaseException:
             self._choice = before
             raise
-        self._lost = None
-        self.simulator.load_world(loaded.world, loaded.meshes)
-        self._furnish()
+        try:
+            if self.simulator.over:
+                self.close()
+                self._start(loaded)
+            else:
+                self.simulator.load_world(loaded.world, loaded.meshes)
+                self._furnish()
+        except BaseException as fault:
+            self._lost = f"there is no world: {fault}"
+            raise
+        self._lost = None  # an engine that has died in between has restored the start
 
     # -- reading -----------------------------------------------------------------------------------
 
@@ -359,6 +361,18 @@ class OpenWorld:
                           resolver=self._files.resolver, overwrite=overwrite, state=state)
 
     # -- helpers -----------------------------------------------------------------------------------
+
+    def _start(self, loaded: LoadedWorld) -> None:
+        """Start an engine with a world."""
+        self.simulator = Simulator(loaded.world, engine_factory=self._new_engine, paused=True,
+                                   log=self._log, meshes=loaded.meshes)
+        self._photographer = Photographer(self.simulator, SceneSensing(self.simulator, self._log))
+        try:
+            self.simulator.start()
+            self._furnish()
+        except BaseException:
+            self.simulator.close()
+            raise
 
     def _load(self) -> LoadedWorld:
         choice = self._choice
