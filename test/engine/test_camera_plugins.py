@@ -105,7 +105,8 @@ def test_a_world_stepped_by_hand_gets_each_picture_and_the_same_ones_again(case)
 
 
 def test_a_running_world_leaves_late_pictures_out_and_goes_on(case):
-    one = case(CAMERA.format(rate=1000))
+    large = CAMERA.replace("<width>160</width>", "<width>1600</width>")
+    one = case(large.replace("<height>120</height>", "<height>1200</height>").format(rate=1000))
     one.sim.clock.unpause()
     begun = one.sim.clock.sim_ns
     until(lambda: one.sim.clock.sim_ns - begun > 10 ** 9, "the world stands")
@@ -165,7 +166,9 @@ def test_cameras_and_gpu_lasers_see_an_actor_where_it_is_at_their_stamp_and_lase
     for n in range(1, 5):
         one.after(100, "sight", n)
         stamp = n * 100_000_000
-        near = 1.1 + 0.1 * n - 0.1   # of a rod of 20 cm, at 1 m/s
+        u = n / 6.0
+        # Of a rod of 20 cm, along Gazebo's spline through two points 0.6 m apart.
+        near = 1.0 + 0.6 * (0.5 * u + 1.5 * u ** 2 - u ** 3)
         assert one.last("sight", stamp).ranges[10] == pytest.approx(near, abs=1e-4)
         assert one.last("scan", stamp).ranges[10] == pytest.approx(2.0, abs=1e-4)
         depth = pixels(one.last("cam/depth/image_raw", stamp), np.float32)[..., 0]
