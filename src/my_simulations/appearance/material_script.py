@@ -1,7 +1,9 @@
 """Reads the subset of Ogre's `.material` scripts that models use: colours and one texture.
 
-Only the first pass of the first technique is read. Source: Ogre's script format, as used by
-public Gazebo models.
+Only the first pass of the first technique is read, and of its texture units the first with a
+texture. Of a derived material, the first unit changes the first of its parent unless it has another
+name (Ogre behaviour); further units are added to those of the parent. Source: Ogre's script format,
+as used by public Gazebo models.
 """
 from __future__ import annotations
 
@@ -36,6 +38,8 @@ class ScriptMaterial:
     texture: str = ""
     scale: Tuple[float, float] = (1.0, 1.0)
     parent: str = field(default="", repr=False)
+    unit: str = field(default="", repr=False, compare=False)
+    """Name of the texture unit that is read."""
 
 
 def read_materials(text: str) -> Dict[str, ScriptMaterial]:
@@ -89,13 +93,25 @@ def _block(words: Sequence[str], at: int, material: ScriptMaterial, above: Tuple
         if after < len(words) and words[after] == "{" and len(above) < _DEEPEST:
             kind = line[0] if line else ""
             seen[kind] = seen.get(kind, 0) + 1
+            if kind == "texture_unit":
+                _choose_unit(" ".join(line[1:]), material, seen)
             at = _block(words, after + 1, material, (*above, kind), seen)
         else:
-            if line and all(seen.get(kind, 1) == 1 for kind in ("technique", "pass")):
+            first = all(seen.get(kind, 1) == 1 for kind in ("technique", "pass"))
+            if line and first and (above[-1:] != ("texture_unit",) or seen.get("chosen unit")):
                 _setting(line, material)
             at = max(after, at + (0 if at < len(words) and words[at] == "}" else 1)) \
                 if after < len(words) else len(words)
     return at
+
+
+def _choose_unit(name: str, material: ScriptMaterial, seen: Dict[str, int]) -> None:
+    """Note whether the texture unit that begins is the one to read."""
+    first = seen["texture_unit"] == 1 and name in ("", material.unit)
+    chosen = first or not material.texture
+    seen["chosen unit"] = int(chosen)
+    if chosen and name:
+        material.unit = name
 
 
 def _setting(line: List[str], material: ScriptMaterial) -> None:
@@ -116,7 +132,7 @@ def _setting(line: List[str], material: ScriptMaterial) -> None:
         numbers = _numbers(values[1:])
         kept = values[0] in ("greater", "greater_equal")
         material.alpha_test = min(numbers[0] / 255.0, 1.0) if kept and numbers else 0.0
-    elif word == "texture" and values and not material.texture:
+    elif word == "texture" and values:
         material.texture = "" if "\0" in values[0] else values[0]
     elif word == "scale" and len(_numbers(values)) >= 2:
         u, v = _numbers(values)[:2]

@@ -58,6 +58,32 @@ def test_a_material_takes_from_its_parent_what_it_does_not_say():
     assert clear.blend and not clear.lighting and clear.emissive == (1, 1, 1, 1)
 
 
+WOOD = "material Wood { technique { pass { texture_unit grain { texture wood.png } } } }\n"
+
+
+@pytest.mark.parametrize(("units", "seen"), [
+    ("texture_unit { texture brick.png }", ("brick.png", (1.0, 1.0))),
+    ("texture_unit { scale 2 3 }", ("wood.png", (2.0, 3.0))),
+    ("texture_unit grain { texture brick.png }", ("brick.png", (1.0, 1.0))),
+    ("texture_unit dirt { texture dirt.png\n scale 4 4 }", ("wood.png", (1.0, 1.0))),
+    ("texture_unit { scale 2 2 }\n texture_unit { texture dirt.png }", ("wood.png", (2.0, 2.0))),
+])
+def test_a_texture_unit_of_a_derived_material_changes_that_of_its_parent(units, seen):
+    found = read_materials(
+        f"{WOOD}material Mine : Wood {{ technique {{ pass {{ {units} }} }} }}")["Mine"]
+    assert (found.texture, found.scale) == seen
+
+
+def test_the_first_texture_unit_with_a_texture_counts():
+    found = read_materials("""material Two { technique { pass {
+      texture_unit { texture_alias none }
+      texture_unit { texture a.png
+        scale 0.5 0.5 }
+      texture_unit { texture b.png
+        scale 10 10 } } } }""")["Two"]
+    assert (found.texture, found.scale) == ("a.png", (0.5, 0.5))
+
+
 @pytest.mark.parametrize("text", ["", "}", "{{{{", "material", "material X {", "material X { pass",
                                   "material X { diffuse a b c }", "\0" * 100, "{" * 100000])
 def test_broken_scripts_end_no_program(text):
