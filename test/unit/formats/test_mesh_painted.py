@@ -85,6 +85,18 @@ def test_the_triangles_are_those_that_collide_and_face_the_same_way(scale):
     assert (np.einsum("ij,ij->i", facing, part.normals[part.triangles].mean(axis=1)) > 0).all()
 
 
+def test_negative_indices_of_obj_draw_the_triangles_that_collide(tmp_path):
+    (tmp_path / "two.mtl").write_text("newmtl red\nKd 1 0 0\n")
+    corners = "v {0} 0 0\nv {1} 0 0\nv {0} 1 0\nvt 0 0\nvt {0} 1\nvt 0 1\nvn 0 0 1\n"
+    (tmp_path / "two.obj").write_text("mtllib two.mtl\nusemtl red\n" + "".join(
+        f"o part{x}\n{corners.format(x, x + 1)}f -3/-3/-1 -2/-2/-1 -1/-1/-1\n" for x in (0, 10)))
+    parts, plain = painted_parts(mesh(tmp_path / "two.obj")), load_mesh(mesh(tmp_path / "two.obj"))
+    drawn = np.concatenate([part.vertices[part.triangles] for part in parts])
+    assert sorted(drawn.tolist()) == sorted(plain.vertices[plain.triangles].tolist())
+    assert {part.color for part in parts} == {(1.0, 0.0, 0.0, 1.0)}
+    assert max(part.uv[:, 0].max() for part in parts) == 10.0
+
+
 def test_an_stl_file_has_no_colour_and_flat_faces():
     (part,) = painted_parts(mesh(REPOSITORY / "test" / "data" / "valid" / "cube.stl"))
     assert part.color is None and len(part.vertices) == 24

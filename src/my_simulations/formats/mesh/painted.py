@@ -234,10 +234,18 @@ def _glow(parts: Any) -> Optional[Color]:
 
 def _trimesh(mesh: Mesh, extension: str) -> List[PaintedPart]:
     import trimesh
+    from trimesh.resolvers import FilePathResolver
+
+    from .trimesh_formats import positive_obj
 
     if mesh.submesh:
         return []  # only `load_mesh` knows the selected submesh
-    scene = trimesh.load_scene(mesh.path, file_type=extension[1:], process=False)
+    source: Any = mesh.path
+    if extension == ".obj":
+        with open(mesh.path, "rb") as stream:
+            source = io.BytesIO(positive_obj(stream.read()))
+    scene = trimesh.load_scene(source, file_type=extension[1:], process=False,
+                               resolver=FilePathResolver(mesh.path))
     parts = []
     for node in scene.graph.nodes_geometry:
         matrix, name = scene.graph[node]

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import io
 import os
+import re
 from typing import Any, Dict, Iterator, List, Set, Tuple
 
 from .gltf import check_gltf
@@ -14,6 +15,7 @@ from .part import MeshError, MeshPart, bounded
 
 _HEADER = 84
 _RECORD = 50
+_NEGATIVE = re.compile(rb"[ \t/]-[0-9]+(?:[/\s\\]|\Z)")  # also coordinates: which is harmless
 _METRES = {"millimeter": 0.001, "millimeters": 0.001, "centimeter": 0.01, "micron": 1e-6,
            "inch": 0.0254, "foot": 0.3048}
 
@@ -64,6 +66,35 @@ def read_obj(data: bytes) -> List[MeshPart]:
     plain, names = _plain_obj(text.replace("\\\n", " "))
     return [MeshPart(names[int(part.names[0])], part.vertices, part.triangles)
             for part in _read(plain.encode(), "obj", split_groups=True)]
+
+
+def positive_obj(data: bytes) -> bytes:
+    """The text of an OBJ file with positive indices only, everything else as it is.
+
+    Raises:
+        ValueError: an index is not a number.
+    """
+    if not _NEGATIVE.search(data):
+        return data
+    text = data.decode("latin-1").replace("\r\n", "\n").replace("\r", "\n").replace("\\\n", " ")
+    counts = {"v": 0, "vt": 0, "vn": 0}
+    rows = []
+    for row in text.split("\n"):
+        words = row.partition("#")[0].split()
+        key = words[0] if words else ""
+        if key in counts:
+            counts[key] += 1
+        elif key == "f":
+            row = " ".join(["f", *(_positive(word, counts) for word in words[1:])])
+        rows.append(row)
+    return "\n".join(rows).encode("latin-1")
+
+
+def _positive(word: str, counts: Dict[str, int]) -> str:
+    """The corner `-3/-2/-1` with the indices that count from the first of the file."""
+    indices = zip(word.split("/"), counts.values())
+    return "/".join(str(count + 1 + int(index)) if index.startswith("-") else index
+                    for index, count in indices)
 
 
 def read_other(data: bytes, path: str) -> List[MeshPart]:
