@@ -5,7 +5,7 @@ from dataclasses import replace
 from typing import Dict, List, Optional, Sequence
 
 from ..geometry import IDENTITY, Pose, compose, inverse
-from .flatten import renamed
+from .flatten import flattened, renamed
 from .model import WORLD, Joint, Link, Model
 from .scoped_names import SCOPE
 
@@ -18,9 +18,10 @@ def unflattened(flat: Model) -> Model:
             plugins and kept XML of nested models from its `guide`. Without a guide, nested models
             are at the origin of the outer model.
     """
-    if not any(SCOPE in link.name for link in flat.links):
+    guide = flat.guide or Model("")
+    if not guide.models and not any(SCOPE in link.name for link in flat.links):
         return flat
-    whole = _gathered(flat, flat.links, flat.joints, flat.guide or Model(""), IDENTITY)
+    whole = _gathered(flat, flat.links, flat.joints, guide, IDENTITY)
     return replace(whole, guide=None)
 
 
@@ -59,6 +60,8 @@ def _gathered(model: Model, links: Sequence[Link], joints: Sequence[Joint], guid
         nested = guides.get(name, Model(name))
         models.append(_gathered(nested, some, theirs.get(name, []), nested,
                                 compose(above, nested.pose)))
+    models += [nested for nested in guide.models
+               if nested.name not in inner and not flattened(nested).links]
     return replace(model, links=own, joints=ours, models=models)
 
 

@@ -1,8 +1,11 @@
 """Joints of nested models name links and joints in the scope that they get."""
 from __future__ import annotations
 
+from dataclasses import replace
+
 from my_simulations.description.flatten import flattened
 from my_simulations.description.model import Joint, JointAxis, Link, Mimic, Model
+from my_simulations.description.plugin import PluginSpec
 from my_simulations.description.unflatten import unflattened
 
 INNER = Model("in", links=[Link("base"), Link("a"), Link("b")], joints=[
@@ -23,3 +26,17 @@ def test_what_a_nested_joint_follows_and_measures_about_is_scoped():
 
 def test_nested_joints_come_back_as_they_were():
     assert unflattened(flattened(OUTER)).models[0].joints == INNER.joints
+
+
+def test_nested_models_without_links_stay():
+    plugin = PluginSpec("p", "f.so", "<plugin name='p' filename='f.so'/>")
+    empty = Model("empty", plugins=[plugin], models=[Model("deeper")])
+    for models in ([empty], [INNER, empty]):
+        whole = replace(OUTER, models=models)
+        assert unflattened(flattened(whole)) == whole
+
+
+def test_a_nested_model_that_lost_its_links_goes():
+    flat = flattened(OUTER)
+    left = unflattened(replace(flat, links=flat.links[:1], joints=[]))
+    assert left.models == []

@@ -214,3 +214,12 @@ def test_of_what_lumped_links_set_the_same_counts_as_in_gazebo(base, tip, wanted
     assert errors(issues) == []
     (link,) = model.links
     assert {name: getattr(link, name) for name in wanted} == wanted
+
+
+def test_a_name_that_begins_with_the_links_gets_no_prefix():
+    model, _ = robot_of(
+        robot_link("base", URDF_INERTIAL + SHAPES) + robot_link("base_cap", URDF_INERTIAL + SHAPES)
+        + robot_joint("j", "base", "base_cap"))
+    (link,) = model.links
+    assert [c.name for c in link.collisions] == ["base_collision", "base_cap_collision_1"]
+    assert [v.name for v in link.visuals] == ["base_visual", "base_cap_visual_1"]

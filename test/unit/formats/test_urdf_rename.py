@@ -5,6 +5,7 @@ import pytest
 from reading import URDF_INERTIAL, codes, errors, robot_joint, robot_link, robot_of, tolerated
 
 from my_simulations.description.model import Mimic
+from my_simulations.formats.sdf.writer.entities import write_entity
 
 BOX = '<collision><geometry><box size="1 1 1"/></geometry></collision>'
 ARM = (robot_link("base", URDF_INERTIAL + BOX) + robot_link("hand", URDF_INERTIAL + BOX + BOX)
@@ -89,4 +90,6 @@ def test_mimic_is_read_and_kept_with_its_numbers():
             "j", "a", "b", "continuous", '<mimic joint="k" multiplier="-2" offset="0.5"/>')
         + robot_joint("k", "a", "c", "continuous"))
     assert model.joints[0].axis.mimic == Mimic("k", -2.0, 0.5)
-    assert "multiplier" in model.joints[0].extra[0] and codes(issues) == []
+    assert codes(issues) == []
+    text = write_entity(model).decode()
+    assert text.count("<axis>") == 2 and text.count("<mimic") == 1

@@ -68,7 +68,7 @@ def test_collisions_and_visuals_are_named_after_the_link_or_their_own_name():
     model, _ = robot_of(robot_link("leg", URDF_INERTIAL + inside))
     link = model.links[0]
     assert [c.name for c in link.collisions] == [
-        "leg_collision", "foot_collision_1", "leg_collision_2"]
+        "leg_collision", "leg_fixed_joint_lump__foot_collision_1", "leg_collision_2"]
     assert [v.name for v in link.visuals] == ["leg_visual", "leg_visual_1"]
 
 

@@ -8,7 +8,7 @@ from typing import Any, Callable, List, Optional, Tuple
 from ...description.model import INFINITE, Joint, JointAxis, Mimic
 from ...description.validate import JOINT_TYPES
 from ...geometry import Pose, Quat, Vec3, conjugate, norm, rotate, scale
-from ..xml.binding import REFUSED, Found, Table, Value, closest, fill, read_text, to_xml
+from ..xml.binding import REFUSED, Found, Table, Value, closest, fill, read_text
 from ..xml.source import FaultLevel, Source
 from ..xml.values import FLOAT, TEXT, VECTOR3
 from .frame_graph import FrameError
@@ -78,7 +78,6 @@ def _axis(tag: str, table: Table, found: Found, source: Source,
     inside = fill(axis, elements[0], table, source, kept)
     for child in inside.get("mimic", ()):
         axis.mimic = _mimic(child, source)
-        kept.append(to_xml(child))
     joint.extra += [f"<{tag}>{xml}</{tag}>" for xml in kept]
     found[f"{tag}/xyz"] = inside.get("xyz", [])
     return axis

@@ -70,7 +70,12 @@ def _unknown(kind: str, names: List[str], known: Set[str]) -> List[Tuple[str, st
 
 def _new(inserted: List[Any], present: List[Any]) -> List[Any]:
     names = {one.name for one in present}
-    return [one for one in inserted if one.name not in names]
+    found: List[Any] = []
+    for one in inserted:
+        if one.name not in names:
+            names.add(one.name)
+            found.append(one)
+    return found
 
 
 def _restored(model: Model, state: ModelState, initial: Dict[str, InitialState]) -> Model:

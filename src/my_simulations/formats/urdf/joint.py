@@ -2,13 +2,11 @@
 from __future__ import annotations
 
 from typing import Any, Dict, Optional
-from xml.sax.saxutils import quoteattr
 
 from ...description.model import INFINITE, Joint, JointAxis, Mimic, SoftLimits
 from ...geometry import Quat, conjugate, norm, rotate, scale
 from ..xml.binding import Found, closest, fill
 from ..xml.source import FaultLevel, Source
-from ..xml.values import FLOAT
 from .kinematic_tree import Body, Connection
 from .link import read_origin
 from .urdf_tables import (
@@ -66,10 +64,6 @@ def _follow(joint: Joint, element: Any, source: Source) -> None:
                     " no axis to turn; it is skipped", element)
         return
     joint.axis.mimic = mimic
-    joint.extra.append(
-        f"<axis><mimic joint={quoteattr(mimic.joint)} axis=\"axis\"><multiplier>"
-        f"{FLOAT.format(mimic.multiplier)}</multiplier><offset>{FLOAT.format(mimic.offset)}"
-        "</offset><reference>0</reference></mimic></axis>")
 
 
 def _axis(joint: Joint, found: Found, element: Any, source: Source) -> Optional[JointAxis]:

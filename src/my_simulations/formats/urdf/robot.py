@@ -226,10 +226,13 @@ class _RobotReader:
         body.link.inertial = usable_inertia(body.link, self._source, body.element)
 
     def _named(self, item: Any, stem: str, kind: str, number: int, body: Body) -> Any:
-        prefix = body.link.name if stem.startswith(LUMP) else ""
-        item.name = f"{prefix}{stem}_{kind}" + (f"_{number}" if number else "")
-        if prefix and kind == "collision":
-            own = stem[len(LUMP):]
+        """Give a shape its name as sdformat 9 does (CreateCollision, CreateVisual of
+        parser_urdf.cc): lumped or not, it has the link's name in front.
+        """
+        own = stem[len(LUMP):] if stem.startswith(LUMP) else stem
+        prefix = "" if own.startswith(body.link.name) else body.link.name + LUMP
+        item.name = f"{prefix}{own}_{kind}" + (f"_{number}" if number else "")
+        if kind == "collision" and (prefix or stem.startswith(LUMP)):
             before = sum(1 for other, _ in body.collisions[:number] if other == stem)
             self._renamed.collisions[f"{own}_{kind}" + (f"_{before}" if before else "")] = item.name
         return item
