@@ -21,6 +21,10 @@ class WhiteNoise:
         self._stddev = stddev
         self._drawn = 0
 
+    def reset(self) -> None:
+        """The draws begin anew, so that a run after a reset repeats the one before."""
+        self._drawn = 0
+
     def draw(self, count: int) -> List[float]:
         """Some numbers, by Box and Muller."""
         if self._stddev <= 0.0:

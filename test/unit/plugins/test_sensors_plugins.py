@@ -233,3 +233,36 @@ def test_the_noise_of_a_scan_does_not_depend_on_scans_before():
         return context.published["scan"][-1].ranges
 
     assert second(True) == second(False)
+
+
+def noisy(kind):
+    """A plugin with noise of its own, its context and what it has published in the next 0.2 s."""
+    noise = "<gaussianNoise>0.5</gaussianNoise><topicName>told</topicName>"
+    if kind is Range:
+        context = laser(inside=noise)
+    else:
+        context = FakeContext(f"<plugin>{BODY}{noise}<updateRate>50</updateRate></plugin>")
+    plugin = kind(context)
+    plugin.load()
+
+    def told():
+        context.published["told"].clear()
+        context.advance(0.2)
+        return [NUMBERS[kind](message) for message in context.published["told"]]
+
+    return plugin, told
+
+
+NUMBERS = {
+    Range: lambda message: message.range,
+    ModelImu: lambda message: (message.linear_acceleration.x, message.angular_velocity.z),
+    P3d: lambda message: (message.twist.twist.linear.x, message.twist.twist.angular.z)}
+
+
+@pytest.mark.parametrize("kind", list(NUMBERS))
+def test_the_noise_of_a_run_after_a_reset_is_that_of_the_first(kind):
+    plugin, told = noisy(kind)
+    first = told()
+    assert len(first) > 1 and told() != first
+    plugin.reset()
+    assert told() == first

@@ -45,7 +45,8 @@ class Imu(Plugin):
         self._before = self._velocity()
 
     def reset(self) -> None:
-        """Accelerations are of what comes."""
+        """Accelerations are of what comes, and noise begins anew."""
+        self._white.reset()
         self.begin_motion()
 
     clock_set = reset
@@ -131,6 +132,14 @@ class SensorImu(Imu):
         self._begin(p.text("topicName", "imu_data"), frame, context.sensor.name)
         context.every(lowest_rate(p.number("updateRateHZ", 1.0), context.sensor.update_rate),
                       self.update)
+
+    def reset(self) -> None:
+        """Biases begin anew, too."""
+        for noise in self._axes:
+            noise.reset(self.context.now_ns)
+        super().reset()
+
+    clock_set = reset
 
     def _noisy(self, sample: ImuSample) -> ImuSample:
         if not self._axes:

@@ -34,6 +34,12 @@ class Range(RayPlugin):
         context.every(lowest_rate(p.number("updateRate", 0.0), context.sensor.update_rate),
                       self.update)
 
+    def reset(self) -> None:
+        """Noise begins anew."""
+        self._noise.reset()
+
+    clock_set = reset
+
     def _publish(self, returns: Any, ns: int) -> None:
         most = self._ray.max_range
         nearest = min(float(min(returns.ranges)), most)

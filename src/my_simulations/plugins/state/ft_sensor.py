@@ -63,6 +63,7 @@ class FtSensor(Plugin):
 
     def reset(self) -> None:
         """Noise begins anew."""
+        self._white.reset()
         for noise in self._noise:
             noise.reset(self.context.now_ns)
 

@@ -39,6 +39,12 @@ class P3d(Plugin):
         self._topic = context.publish(p.text("topicName"), "nav_msgs/Odometry")
         context.every(p.number("updateRate", 0.0), self.update)
 
+    def reset(self) -> None:
+        """Noise begins anew."""
+        self._noise.reset()
+
+    clock_set = reset
+
     def update(self) -> None:
         """Publish."""
         if not self._topic.wanted:

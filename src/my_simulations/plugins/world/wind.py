@@ -62,7 +62,9 @@ class Wind(Plugin):
                     noise.number("mean", 0.0))
 
     def reset(self) -> None:
-        """It is calm."""
+        """It is calm, and noise begins anew."""
+        for lag in (self._magnitude, self._direction, self._vertical):
+            lag.noise.reset()
         self._means = [0.0, 0.0, 0.0]
         self._last_ns = self.context.now_ns
         self._pushed = []
