@@ -13,7 +13,7 @@ from conftest import Lab, ball, box, ground, inertial_of_box, link_of
 from my_simulations.description.flatten import flattened
 from my_simulations.description.model import Inertial, Joint, JointAxis, Link, Model
 from my_simulations.description.shapes import Box, Collision, Mesh, MeshData, mesh_key
-from my_simulations.engine.commands import SetModelState
+from my_simulations.engine.commands import SetLinkState, SetModelState
 from my_simulations.geometry import Pose
 
 START = Pose((0.0, 0.0, 3.0))
@@ -122,3 +122,13 @@ def test_a_mesh_of_a_kinematic_link_with_joints_keeps_its_hollows(lab: Lab):
     inside = lab.load(ball(radius=0.1), (0.0, 0.0, 3.3))
     lab.seconds(1.0)
     assert lab.pose(inside).position[2] == pytest.approx(3.1, abs=0.005)
+
+
+def test_a_kinematic_link_can_be_put_elsewhere_with_what_hangs_on_it(lab):
+    model = drop(lab, hung(still("post"), bob(), joints=[hinge("swing", "post", "bob")]))
+    angle = lab.joint(model, "swing")[0]
+    lab.apply(SetLinkState(lab.rows[model, "post"], Pose((5.0, 0.0, 4.0))))
+    lab.steps(1)
+    assert lab.pose(model, "post").position == pytest.approx((5.0, 0.0, 4.0), abs=1e-9)
+    assert math.dist(lab.pose(model, "bob").position, (5.0, 0.0, 4.0)) == pytest.approx(1.0)
+    assert lab.joint(model, "swing")[0] == pytest.approx(angle, abs=0.02)

@@ -83,7 +83,8 @@ class StateSetter:
             raise CommandRefusedError("the link is not there any more")
         self._readout.read()
         body, part = self._rows[command.row]
-        if not body.rigid and body.base is None:
+        held = part.link is not None and part.link.kinematic
+        if not body.rigid and body.base is None and not held:
             raise CommandRefusedError("the link belongs to a body that is joined to the world")
         pose, twist = self._in_world(command.pose, command.twist, command.frame)
         current = self.link_state(part.row).pose
