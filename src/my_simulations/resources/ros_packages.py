@@ -12,6 +12,7 @@ from typing import Any, Callable, List, Optional, Tuple, Type
 FindPackage = Callable[[str], Optional[str]]
 """Returns the folder of a package; None if it is unknown."""
 
+_COMMENT = re.compile(r"<!--.*?-->", re.DOTALL)
 _EXPORT = re.compile(r"<gazebo_ros\b([^>]*)>")
 _NAME = re.compile(r"<name>([^<]*)</name>")
 _ATTRIBUTE = re.compile(r"""(gazebo_model_path|gazebo_media_path)\s*=\s*["']([^"']*)["']""")
@@ -81,7 +82,7 @@ def package_name(folder: str) -> str:
     try:
         with open(os.path.join(folder, "package.xml"), encoding="utf-8",
                   errors="replace") as stream:
-            found = _NAME.search(stream.read())
+            found = _NAME.search(_COMMENT.sub("", stream.read()))
     except OSError:
         return ""
     return found.group(1).strip() if found else ""
@@ -90,7 +91,7 @@ def package_name(folder: str) -> str:
 def _add_exports(manifest: str, prefix: str, paths: ExportedPaths) -> None:
     try:
         with open(manifest, encoding="utf-8", errors="replace") as stream:
-            text = stream.read()
+            text = _COMMENT.sub("", stream.read())
     except OSError:
         return
     for tag in _EXPORT.findall(text):

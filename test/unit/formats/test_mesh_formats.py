@@ -225,6 +225,19 @@ def test_a_wrong_row_of_obj_is_told_with_its_line(tmp_path, row):
     assert (fault_of(mesh).code, fault_of(mesh).line) == ("mesh-unreadable", 4)
 
 
+def test_a_wrong_row_of_obj_after_one_that_goes_on_is_told_with_its_line(tmp_path):
+    mesh = written(tmp_path, "a.obj", "v 0 0 0\nv 1 \\\n0 \\\n0\nv 0 2 0\nf 1 2 9\n")
+    assert fault_of(mesh).line == 6
+
+
+@pytest.mark.parametrize("encoding", ["utf-8", "latin-1"])
+def test_a_part_of_obj_is_found_by_its_name_in_either_encoding(tmp_path, encoding):
+    text = "o größe\nv 0 0 0\nv 1 0 0\nv 0 2 0\nf 1 2 3\n"
+    (tmp_path / "a.obj").write_bytes(text.encode(encoding))
+    mesh = Mesh("a.obj", str(tmp_path / "a.obj"), submesh="größe")
+    assert len(load_mesh(mesh).triangles) == 1
+
+
 def test_groups_of_obj_are_parts_also_where_they_are_taken_up_again(tmp_path):
     mesh = written(tmp_path, "a.obj", "v 0 0 0\nv 1 0 0\nv 0 2 0\no shape\ng left\nf 1 2 3\n"
                    "g right\nf 3 2 1\ng left\nf 2 3 1\n")

@@ -131,7 +131,8 @@ class FakeRospack:
 
 def test_packages_export_model_and_media_folders(tmp_path):
     (tmp_path / "package.xml").write_text(
-        '<package><export>\n<gazebo_ros gazebo_model_path="${prefix}/models:/elsewhere"\n'
+        '<package><export>\n<!-- <gazebo_ros gazebo_model_path="${prefix}/old"/> -->'
+        '<gazebo_ros gazebo_model_path="${prefix}/models:/elsewhere"\n'
         " gazebo_media_path='${prefix}'/></export></package>")
     index = PackageIndex(FakeRospack({"a": str(tmp_path), "gone": str(tmp_path / "gone")}))
     paths = index.exported()

@@ -62,10 +62,33 @@ def read_obj(data: bytes) -> List[MeshPart]:
     Raises:
         MeshError: an invalid number, or an index out of range.
     """
-    text = data.decode("latin-1").replace("\r\n", "\n").replace("\r", "\n")
-    plain, names = _plain_obj(text.replace("\\\n", " "))
+    plain, names = _plain_obj(_joined(_lines_of(data)))
     return [MeshPart(names[int(part.names[0])], part.vertices, part.triangles)
             for part in _read(plain.encode(), "obj", split_groups=True)]
+
+
+def _lines_of(data: bytes) -> str:
+    """The text of a file whose encoding nothing tells, with one kind of line end."""
+    try:
+        text = data.decode("utf-8")
+    except UnicodeDecodeError:
+        text = data.decode("latin-1")
+    return text.replace("\r\n", "\n").replace("\r", "\n")
+
+
+def _joined(text: str) -> str:
+    """Lines that go on in others as one, and empty lines in place of those: line numbers stay."""
+    if "\\\n" not in text:
+        return text
+    rows: List[str] = []
+    begun: List[str] = []
+    for row in text.split("\n"):
+        if row.endswith("\\"):
+            begun.append(row[:-1])
+        else:
+            rows += [" ".join((*begun, row)), *[""] * len(begun)]
+            begun = []
+    return "\n".join([*rows, " ".join(begun)])
 
 
 def positive_obj(data: bytes) -> bytes:
