@@ -69,6 +69,8 @@ report_lane() {
   printf '[%d/%d] %s ... %s(%d s, processor %.1f s)\n' "$STEP" "$STEPS" "${told[4]}" \
     "${told[3]:+${told[3]} }" "${told[2]}" "$seconds"
   cat -- "$OUTCOMES/$1.text"
+  # What was ended by force is told in the middle of a line.
+  [ -z "$(tail -c 1 -- "$OUTCOMES/$1.text")" ] || printf '\n'
 }
 
 # show_lanes: on a terminal, what runs now.
