@@ -206,6 +206,13 @@ def pose_from_xyzrpy(x: float, y: float, z: float, roll: float, pitch: float, ya
     return Pose((x, y, z), quat_from_rpy(roll, pitch, yaw))
 
 
+def rotation_vector(turn: Quat) -> Vec3:
+    """Axis times angle of a quaternion, rad, at most half a turn."""
+    x, y, z, w = turn if turn[3] >= 0.0 else (-turn[0], -turn[1], -turn[2], -turn[3])
+    size = math.sqrt(x * x + y * y + z * z)
+    return scale((x, y, z), 2.0 * math.atan2(size, w) / size) if size > 1e-12 else (0.0, 0.0, 0.0)
+
+
 def twist_at(twist: Twist, lever: Vec3) -> Twist:
     """The twist of the same rigid body at a point `lever` (world axes) away: v + w x r."""
     return Twist(add(twist.linear, cross(twist.angular, lever)), twist.angular)

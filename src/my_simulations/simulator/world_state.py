@@ -60,8 +60,9 @@ def _commands(entity: Entity, was: RememberedState) -> List[Command]:
     if not model.joints:
         return [SetLinkState(entity.first_link_row + n, link.pose, link.twist)
                 for n, link in enumerate(was.state.links)]
-    joints = SetJoints(tuple((entity.first_joint_row + n, position, rate)
-                             for n, (position, rate) in enumerate(was.state.joints)))
+    joints = [SetJoints(tuple((entity.first_joint_row + n, position, rate)
+                              for n, (position, rate) in enumerate(was.state.joints)))] \
+        if was.state.joints else []
     # Joints first: where the frame's link hangs on others, the others are placed by it. Rates of
     # joints are lost when the model is moved.
-    return [joints, SetModelState(entity.model_id, was.pose, was.twist), joints]
+    return [*joints, SetModelState(entity.model_id, was.pose, was.twist), *joints]

@@ -6,21 +6,20 @@ link. Here joint positions are what is kept, so they are changed together with t
 from __future__ import annotations
 
 import math
-from typing import List, Optional, Tuple
+from typing import Dict, List, Optional, Tuple
 
 import pybullet
 
 from ...geometry import (
     Pose,
-    Quat,
     Twist,
-    Vec3,
     compose,
     conjugate,
     dot,
     inverse,
     multiply,
     norm,
+    rotation_vector,
     scale,
     subtract,
 )
@@ -60,17 +59,20 @@ def turned(body: Body, way: Pose) -> bool:
     return True
 
 
-def rate(body: Body, axis: Axis, twist: Twist) -> float:
-    """The rate, rad/s or m/s, of a first joint whose link moves with `twist`; 0 of other joints."""
-    if axis.index not in _first_joints(body):
-        return 0.0
+def rates(body: Body, twist: Twist) -> Dict[int, float]:
+    """The rates, rad/s or m/s, of first joints whose links move with `twist`, by joint index."""
+    first = set(_first_joints(body))
+    return {axis.index: _rate(body, axis, twist) for axis in body.axes if axis.index in first}
+
+
+def _rate(body: Body, axis: Axis, twist: Twist) -> float:
     position = pybullet.getJointState(body.uid, axis.index)[0]
     here = Pose(*place(body.uid, axis.index))
     pybullet.resetJointState(body.uid, axis.index, position + _STEP)
     there = Pose(*place(body.uid, axis.index))
     pybullet.resetJointState(body.uid, axis.index, position)
     if _turns(body, axis):
-        way = _rotation(multiply(there.orientation, conjugate(here.orientation)))
+        way = rotation_vector(multiply(there.orientation, conjugate(here.orientation)))
         return dot(scale(way, 1.0 / _STEP), twist.angular)
     return dot(scale(subtract(there.position, here.position), 1.0 / _STEP), twist.linear)
 
@@ -89,8 +91,9 @@ def _position(body: Body, axis: Axis, before: Pose, after: Pose) -> Optional[flo
     """The position at which the link is at `after`; None if there is none."""
     start: float = pybullet.getJointState(body.uid, axis.index)[0]
     turns = _turns(body, axis)
-    span = norm(_rotation(multiply(after.orientation, conjugate(before.orientation)))) if turns \
-        else norm(subtract(after.position, before.position))
+    way = rotation_vector(multiply(after.orientation, conjugate(before.orientation))) if turns \
+        else subtract(after.position, before.position)
+    span = norm(way)
     for position in (start + span, start - span):
         pybullet.resetJointState(body.uid, axis.index, position)
         fits = _is_near(Pose(*place(body.uid, axis.index)), after, _NEAR)
@@ -108,11 +111,4 @@ def _least(angle: float, axis: Axis) -> float:
 
 def _is_near(one: Pose, other: Pose, bound: float) -> bool:
     apart = compose(inverse(one), other)
-    return norm(apart.position) < bound and norm(_rotation(apart.orientation)) < bound
-
-
-def _rotation(turn: Quat) -> Vec3:
-    """Axis times angle, rad, at most half a turn."""
-    x, y, z, w = turn if turn[3] >= 0.0 else (-turn[0], -turn[1], -turn[2], -turn[3])
-    sine = norm((x, y, z))
-    return scale((x, y, z), 2.0 * math.atan2(sine, w) / sine) if sine > 0.0 else (0.0, 0.0, 0.0)
+    return norm(apart.position) < bound and norm(rotation_vector(apart.orientation)) < bound

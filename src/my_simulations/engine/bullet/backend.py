@@ -357,6 +357,7 @@ class BulletBackend:
         self._models.clear()
         for keeper in self._keepers:
             keeper.clear()
+        self._book.clear()
         for table in (self._bodies, self._rows, self._axes):
             table.clear()
         # Half of what a reset costs, and not to be saved: of 60 piles of 60 bodies that were taken

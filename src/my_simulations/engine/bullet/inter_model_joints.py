@@ -113,7 +113,6 @@ class InterModelJoints:
         """All bodies are gone."""
         self._ties.clear()
         self._anchor = None
-        self._book.clear()
 
 
 def _let_collide(one: _Tie, collide: bool) -> None:

@@ -65,8 +65,6 @@ class StateReadout:
         """Know a new model's rows of the joint table; `closing` are its joints without an axis."""
         self.used_joints = max(self.used_joints, rows.stop)
         self.joints[rows] = 0.0
-        for row in range(rows.start, rows.stop):
-            self._closing.pop(row, None)
         self._closing.update((one.row, one) for one in closing)
 
     def closes(self, row: int) -> bool:

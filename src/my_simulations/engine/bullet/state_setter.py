@@ -146,7 +146,7 @@ class StateSetter:
         lead = self.link_state(body.parts[0].row)
         target = lead.pose
         is_anchored = not body.rigid and body.base is None
-        rates = {axis.index: pybullet.getJointState(body.uid, axis.index)[1] for axis in body.axes}
+        before = {axis.index: pybullet.getJointState(body.uid, axis.index)[1] for axis in body.axes}
         if is_anchored:
             way = compose(wanted, inverse(current))
             if not anchored_bodies.turned(body, way):
@@ -156,10 +156,11 @@ class StateSetter:
         else:
             target = compose(wanted, compose(inverse(current), lead.pose))
             bodies.place(body, target)
+        rates = before if twist is None else (
+            anchored_bodies.rates(body, twist) if is_anchored else {})
         for axis in body.axes:
-            rate = rates[axis.index] if twist is None else (
-                anchored_bodies.rate(body, axis, twist) if is_anchored else 0.0)
-            bodies.put_axis(body, axis, pybullet.getJointState(body.uid, axis.index)[0], rate)
+            bodies.put_axis(body, axis, pybullet.getJointState(body.uid, axis.index)[0],
+                            rates.get(axis.index, 0.0))
         if twist is not None:
             for ball in body.balls:
                 turn = pybullet.getJointStateMultiDof(body.uid, ball.index)[0]

@@ -49,15 +49,7 @@ def _all(root: Any, *tags: str) -> List[Any]:
 
     Source: sdformat 9, Converter::ConvertDescendantsImpl.
     """
-    found: List[Any] = []
-    waiting = [root]
-    while waiting:
-        element = waiting.pop()
-        if element.tag in tags:
-            found.append(element)
-        if element.tag != "plugin":
-            waiting.extend(reversed(element))
-    return found
+    return [one for one in root.iter(*tags) if next(one.iterancestors("plugin"), None) is None]
 
 
 def _rename(parent: Any, old: str, new: str) -> None:

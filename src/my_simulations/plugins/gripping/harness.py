@@ -14,7 +14,6 @@ from typing import Any, Optional
 
 from ...geometry import (
     Pose,
-    Quat,
     Vec3,
     add,
     conjugate,
@@ -23,6 +22,7 @@ from ...geometry import (
     multiply,
     norm,
     rotate,
+    rotation_vector,
     scale,
     subtract,
 )
@@ -160,7 +160,7 @@ class Harness(Plugin):
             rate = subtract(rate, scale(self._axis, speed))
         stiff, damped = self._mass * _OMEGA ** 2, 2.0 * self._mass * _OMEGA
         force = subtract(force, add(scale(off, stiff), scale(rate, damped)))
-        turned = _rotation(multiply(pose.orientation, conjugate(self._anchor.orientation)))
+        turned = rotation_vector(multiply(pose.orientation, conjugate(self._anchor.orientation)))
         torque = scale(add(scale(turned, _OMEGA ** 2), scale(twist.angular, 2.0 * _OMEGA)),
                        -self._inertia)
         # The straps hold at the link's origin; the wrench acts at its centre of mass.
@@ -185,10 +185,3 @@ def _pid(winch: "list[Parameters]", name: str) -> Pid:
         return Pid()
     return Pid(*(found[0].number(field, 0.0) for field in (
         "p", "i", "d", "i_max", "i_min", "cmd_max", "cmd_min")))
-
-
-def _rotation(turn: Quat) -> Vec3:
-    """The rotation vector of a quaternion, rad."""
-    x, y, z, w = turn if turn[3] >= 0.0 else (-turn[0], -turn[1], -turn[2], -turn[3])
-    size = math.sqrt(x * x + y * y + z * z)
-    return scale((x, y, z), 2.0 * math.atan2(size, w) / size) if size > 1e-12 else (0.0, 0.0, 0.0)
