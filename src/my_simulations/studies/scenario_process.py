@@ -17,47 +17,49 @@ import signal
 import subprocess
 import sys
 import time
-from types import FrameType
-from typing import Dict, List, Optional
+from typing import Dict, List
 
 TIMED_OUT = 124
 _PR_SET_PDEATHSIG, _PR_SET_CHILD_SUBREAPER = 1, 36
 _QUIT_S = 20.0  # roslaunch gives its nodes 15 s, then 2 s
 _LEFT_S = 3.0   # for those whose parent has gone
-
-
-class _EndedError(Exception):
-    """A signal told this process to end."""
+_LOOK_S = 0.02
+_ENDING = (signal.SIGTERM, signal.SIGINT, signal.SIGHUP)
 
 
 def main(words: List[str]) -> int:
     """Run the command line; returns the exit status."""
     parent, seconds, command = int(words[1]), float(words[2]), words[3:]
-    for number in (signal.SIGTERM, signal.SIGINT, signal.SIGHUP):
-        signal.signal(number, _end)
+    # Blocked and waited for: the kernel sends one for each thread of PARENT that ends, and a
+    # handler that raises would be called again while the first one is dealt with.
+    signal.pthread_sigmask(signal.SIG_BLOCK, _ENDING)
     libc = ctypes.CDLL(None)
     libc.prctl(_PR_SET_CHILD_SUBREAPER, 1, 0, 0, 0)
     libc.prctl(_PR_SET_PDEATHSIG, signal.SIGTERM, 0, 0, 0)
     if os.getppid() != parent:  # it ended before this was asked for
         return 128 + signal.SIGTERM
-    process: Optional["subprocess.Popen[bytes]"] = None
+    process = subprocess.Popen(command, start_new_session=True, preexec_fn=_take_signals)
     try:
-        process = subprocess.Popen(command, start_new_session=True)
-        code = process.wait(seconds)
-        return code if code >= 0 else 128 - code
-    except subprocess.TimeoutExpired:
-        return TIMED_OUT
-    except _EndedError:
-        return 128 + signal.SIGTERM
+        return _wait(process, seconds)
     finally:
-        for number in (signal.SIGTERM, signal.SIGINT, signal.SIGHUP):
-            signal.signal(number, signal.SIG_IGN)
-        if process is not None:
-            _end_all(process)
+        _end_all(process)
 
 
-def _end(_: int, __: Optional[FrameType]) -> None:
-    raise _EndedError
+def _take_signals() -> None:
+    signal.pthread_sigmask(signal.SIG_UNBLOCK, _ENDING)
+
+
+def _wait(process: "subprocess.Popen[bytes]", seconds: float) -> int:
+    """Wait for the command, its time or a signal that ends this process; returns the status."""
+    until = time.monotonic() + seconds
+    while True:
+        code = process.poll()
+        if code is not None:
+            return code if code >= 0 else 128 - code
+        if time.monotonic() >= until:
+            return TIMED_OUT
+        if signal.sigtimedwait(_ENDING, _LOOK_S) is not None:
+            return 128 + signal.SIGTERM
 
 
 def _end_all(process: "subprocess.Popen[bytes]") -> None:
@@ -72,7 +74,7 @@ def _end_all(process: "subprocess.Popen[bytes]") -> None:
         if time.monotonic() > deadline:
             _signal_all(signal.SIGKILL)
         _reap()
-        time.sleep(0.02)
+        time.sleep(_LOOK_S)
 
 
 def _signal_all(number: int) -> None:
