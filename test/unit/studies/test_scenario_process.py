@@ -9,6 +9,7 @@ import time
 from pathlib import Path
 
 import pytest
+
 from my_simulations.studies import scenario_process
 
 SECONDS = 60.0
