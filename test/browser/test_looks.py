@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 import trimesh
 from PIL import Image
-from support import Node, wait_for
+from support import SWIFTSHADER_FLAGS, Editor, Node, wait_for
 
 from my_simulations.description.model import Link, Model
 from my_simulations.description.shapes import Mesh, Visual
@@ -317,3 +317,29 @@ def test_hints_fit_a_small_window_and_can_be_closed(node, browser, size, touch):
     faults = editor.faults
     editor.close()
     assert faults == []
+
+
+def test_swiftshader_draws_what_mesa_draws(node, editor, browser):
+    editor.get("editor.actions.edit({kind: 'insert', shape: 'sphere', name: 'ball',"
+               " pose: [0, 0, 0.5, 0, 0, 0, 1]})")
+    chromium = browser.launch(*SWIFTSHADER_FLAGS)
+    pages = [editor, Editor(chromium, node.url)]
+    shown = []
+    for page in pages:
+        page.until("Boolean(editor.store.model('ball') && editor.view.pixelOf('ball'))", "the ball")
+        x, y = page.get("editor.view.pixelOf('ball')")
+        clip = {"x": x - 100, "y": y - 100, "width": 200, "height": 200}
+        shown.append(np.asarray(Image.open(io.BytesIO(page.settled_picture(clip))).convert("RGB"),
+                                dtype=float))
+    assert "SwiftShader" in pages[1].get(RENDERER) and "SwiftShader" not in editor.get(RENDERER)
+    assert pages[1].faults == []
+    chromium.close()
+    assert shown[0].std() > 10.0, "a ball and its shadow"
+    assert np.abs(shown[0] - shown[1]).mean() < 2.0
+
+
+RENDERER = """(() => {
+  const context = document.createElement('canvas').getContext('webgl2');
+  const named = context.getExtension('WEBGL_debug_renderer_info');
+  return context.getParameter(named.UNMASKED_RENDERER_WEBGL);
+})()"""
