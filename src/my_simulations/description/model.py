@@ -218,3 +218,11 @@ class Model:
     extra: List[str] = field(default_factory=list)
     uri: str = ""
     guide: Optional["Model"] = field(default=None, compare=False, repr=False)
+
+    @property
+    def frame_link(self) -> Optional[Link]:
+        """Of a model without nested ones, the link that its frame moves with; None: no links."""
+        for link in self.links:
+            if link.name == self.canonical_link:
+                return link
+        return self.links[0] if self.links else None

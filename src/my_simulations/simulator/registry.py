@@ -87,11 +87,11 @@ class Entity:
         self.joint_names = [row.name for row in axis_rows(self.model)]
         self.has_plugins = has_plugins(self.model)
         self.canonical = 0
-        if self.model.canonical_link in self.link_names:
-            self.canonical = self.link_names.index(self.model.canonical_link)
         self.link_from_model = IDENTITY
-        if self.model.links:
-            self.link_from_model = inverse(self.model.links[self.canonical].pose)
+        link = self.model.frame_link
+        if link is not None:
+            self.canonical = self.link_names.index(link.name)
+            self.link_from_model = inverse(link.pose)
 
     @cached_property
     def reaches(self) -> List[float]:

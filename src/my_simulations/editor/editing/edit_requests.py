@@ -258,9 +258,9 @@ class Edits:
         link = op["link"]
         if self._world.models.has(link):
             model = self._world.models.get(link)
-            if not model.links:
+            if model.frame_link is None:
                 raise CommandError(f"model {link!r} has no links")
-            link = f"{link}::{model.canonical_link or model.links[0].name}"
+            link = f"{link}::{model.frame_link.name}"
         point = op.get("point")
         force, torque = _vector(op["force"]), _vector(op["torque"])
         operation = ApplyWrench(link, force, torque,

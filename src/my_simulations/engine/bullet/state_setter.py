@@ -175,8 +175,8 @@ class StateSetter:
 
 def _canonical(entry: Entry) -> int:
     """Which link carries the model's frame."""
-    name = entry.model.canonical_link
-    return [link.name for link in entry.model.links].index(name) if name else 0
+    carrier = entry.model.frame_link
+    return next((n for n, link in enumerate(entry.model.links) if link is carrier), 0)
 
 
 def _carried(lead: LinkState, target: Pose, at: Vec3, twist: Optional[Twist]) -> Twist:

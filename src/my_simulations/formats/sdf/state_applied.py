@@ -126,10 +126,9 @@ def _loose(flat: Model, poses: Dict[str, Pose]) -> Dict[str, Pose]:
     """
     at_zero = {link.name: link.pose for link in flat.links}
     children = {joint.child for joint in flat.joints}
-    first = flat.canonical_link or (flat.links[0].name if flat.links else "")
     found: Dict[str, Pose] = {}
     for group in _connected(flat):
-        if first in group or WORLD in group:
+        if (flat.frame_link and flat.frame_link.name in group) or WORLD in group:
             continue
         root = next((name for name in group if name not in children), group[0])
         if root in poses:
@@ -153,11 +152,10 @@ def _connected(flat: Model) -> List[List[str]]:
 
 def _base_pose(flat: Model, poses: Dict[str, Pose], state: ModelState) -> Optional[Pose]:
     """World pose of the model frame, from the pose of its canonical link."""
-    name = flat.canonical_link or (flat.links[0].name if flat.links else "")
-    for link in flat.links:
-        if link.name == name and name in poses:
-            return compose(poses[name], inverse(link.pose))
-    return state.pose
+    link = flat.frame_link
+    if link is None or link.name not in poses:
+        return state.pose
+    return compose(poses[link.name], inverse(link.pose))
 
 
 def _links_moved(model: Model, poses: Dict[str, Pose], above: Pose, scope: str = "") -> Model:
