@@ -225,6 +225,8 @@ class Requests:
         try:
             with self._company.watching(client.number):
                 value = handler(message)
+                if verb == "opened":
+                    self._let_go()
             file = value.get("path") or value.get("file") or "an empty world"
             self._company.tell_others(client.number, f"{verb} {file}")
             return value
@@ -236,12 +238,20 @@ class Requests:
             return {"entries": self._autosave.entries()}
         try:
             if message["action"] == "restore":
-                return {"file": self._autosave.restore(message.get("name") or "")}
+                file = self._autosave.restore(message.get("name") or "")
+                self._let_go()
+                return {"file": file}
             self._autosave.discard()
             return {"file": ""}
         finally:
             self._hub.push_soon(self._autosave.push())
             self._changed()
+
+    def _let_go(self) -> None:
+        """What people dragged was of the world before this one."""
+        self._pending.clear()
+        self._drags.forget()
+        self._company.tell_holds()
 
     def _changed(self) -> None:
         """After an edit: everybody looks at the world, and at the history if it differs."""

@@ -253,6 +253,28 @@ def test_a_drag_that_is_broken_off_goes_back(case):
     made.browse(drag)
 
 
+@pytest.mark.parametrize("how", ["open", "new"])
+def test_a_drag_ends_with_its_world(case, how):
+    """What follows it leaves the models of the next world alone, of the same names or not."""
+    made = case(box("a"))
+
+    async def drag(browser):
+        await browser.ask("save", path="kept.world")
+        await browser.edit("move", poses={"a": [5, 0, 0.5, 0, 0, 0, 1]})
+        await browser.tell("drag", names=["a"], poses=[[9, 0, 0.5, 0, 0, 0, 1]])
+        await browser.until(lambda: browser.link_pose("a") == pytest.approx([9.0, 0.0, 0.5]))
+        if how == "new":
+            await browser.ask("new", discard=True)
+            await browser.edit("insert", shape="box", name="a", pose=[0, 0, 0.5, 0, 0, 0, 1])
+        else:
+            await browser.ask("open", path="kept.world", discard=True)
+        await browser.ask("drag_end")
+        assert made.sim.states.model_state("a")[0].position[0] == pytest.approx(0.0)
+        assert browser.last("people")["people"][0]["held"] == []
+
+    made.browse(drag)
+
+
 def test_a_drag_of_what_is_not_there_harms_nobody(case):
     async def drag(browser):
         await browser.tell("drag", names=["nix"], poses=[[0, 0, 0, 0, 0, 0, 1]])

@@ -99,6 +99,11 @@ class Drags:
         if before:
             self._hold()
 
+    def forget(self) -> None:
+        """Nobody drags anything any more, and all stays where it is: the world is another one."""
+        self._before.clear()
+        self._hold()
+
     def _hold(self) -> None:
         names = {split_scoped(name, self._world.models.has)[0]
                  for before in self._before.values() for name in before}
