@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import math
 import re
+from bisect import bisect_right
 from typing import Any, Dict, Iterator, List, NamedTuple, Optional, Tuple
 
 from ..description.model import Link, Model
@@ -18,6 +19,8 @@ from .plan_json import COUNTERS
 from .plan_to_model import GREY
 
 _NAME = re.compile(r"(Wall|Window|Door|Stairs|Floor|Roof)_(\d+)\Z")
+
+_OPENINGS = ("Window", "Door")
 
 ROUGH = 1e-3
 """Tolerance of coinciding edges, m: Gazebo writes six digits."""
@@ -121,11 +124,7 @@ def _look(material: Optional[Material]) -> Tuple[str, str]:
 
 def _levels(items: List[_Item]) -> List[Level]:
     """The items by level; a level's height is the distance to the base of the next one."""
-    by_layer: Dict[Tuple[int, float], List[_Item]] = {}
-    for item in items:
-        z = round(item.pose.position[2], 2) if item.layer is None else 0.0
-        by_layer.setdefault((item.layer if item.layer is not None else 0, z), []).append(item)
-    groups = sorted(by_layer.values(), key=_base)
+    groups = _groups(items)
     levels: List[Level] = []
     for number, group in enumerate(groups):
         level = Level(f"Level {number + 1}")
@@ -140,8 +139,29 @@ def _levels(items: List[_Item]) -> List[Level]:
     return levels
 
 
+def _groups(items: List[_Item]) -> List[List[_Item]]:
+    """The items of each level, from the lowest; without a layer their heights tell them apart."""
+    by_layer: Dict[Tuple[int, float], List[_Item]] = {}
+    floating: List[_Item] = []
+    for item in items:
+        if item.layer is not None:
+            by_layer.setdefault((item.layer, 0.0), []).append(item)
+        elif item.kind in _OPENINGS:
+            floating.append(item)
+        else:
+            by_layer.setdefault((0, round(item.pose.position[2], 2)), []).append(item)
+    if not by_layer:
+        return [floating]
+    groups = sorted(by_layer.values(), key=_base)
+    bases = [_base(group) for group in groups]
+    for item in floating:  # its height is that of its level, and its own above it
+        below = bisect_right(bases, item.pose.position[2] + ROUGH)
+        groups[max(below - 1, 0)].append(item)
+    return groups
+
+
 def _base(group: List[_Item]) -> float:
-    standing = [item for item in group if item.kind not in ("Window", "Door")]
+    standing = [item for item in group if item.kind not in _OPENINGS]
     return min(item.pose.position[2] + (min((block.low[2] for block in item.blocks), default=0.0)
                                         if item.kind == "Wall" else 0.0)
                for item in standing or group)

@@ -107,3 +107,18 @@ def test_a_model_that_is_no_building_is_refused():
     with pytest.raises(InputError) as caught:
         plan_from_model(model)
     assert codes(caught.value.issues) == ["building-unknown"]
+
+
+def test_a_free_opening_without_a_layer_belongs_to_the_level_below_it():
+    plan = two_rooms()
+    plan.levels[0].windows.append(Opening(7, 0.8, 0.8, elevation=0.5, position=(1.0, 9.0)))
+    model = building_model(plan)
+    for link in model.links:
+        for visual in link.visuals:
+            visual.layer = None
+    read, _ = plan_from_model(model)
+    layered, _ = plan_from_model(building_model(plan))
+    assert [(level.height, len(level.walls)) for level in read.levels] == [
+        (level.height, len(level.walls)) for level in layered.levels]
+    (free,) = [window for window in read.levels[0].windows if window.wall is None]
+    assert (free.position, free.elevation) == ((1.0, 9.0), 0.5)
