@@ -124,3 +124,77 @@ def test_what_is_no_model_is_refused(case, home, name, files):
 
     case().browse(drop)
     assert models(home) == []
+
+
+def test_a_link_in_the_place_of_a_model_is_replaced_and_what_it_names_stays(case, home, tmp_path):
+    elsewhere = tmp_path / "workspace" / "crate"
+    elsewhere.mkdir(parents=True)
+    (elsewhere / "kept.txt").write_text("mine")
+    (home / ".gazebo" / "models").mkdir(parents=True)
+    (home / ".gazebo" / "models" / "crate").symlink_to(elsewhere)
+    files = sent(crate__model_dot_sdf=SDF)
+
+    async def drop(browser):
+        await browser.ask("import_model", name="crate", files=files, overwrite=True)
+
+    case().browse(drop)
+    assert sorted(os.listdir(home / ".gazebo" / "models" / "crate")) == ["model.config",
+                                                                         "model.sdf"]
+    assert (elsewhere / "kept.txt").read_text() == "mine"
+
+
+def test_a_model_that_cannot_be_replaced_stays_as_it_was(case, home, monkeypatch):
+    async def drop(browser):
+        await browser.ask("import_model", name="crate",
+                          files=sent(crate__model_dot_sdf=SDF, crate__notes_dot_txt=b"mine"))
+        rename = os.rename
+
+        def full(source, target):
+            if target == str(home / ".gazebo" / "models" / "crate") and "former" not in source:
+                raise OSError(28, "No space left on device", target)
+            rename(source, target)
+
+        monkeypatch.setattr(os, "rename", full)
+        with pytest.raises(Refused) as refused:
+            await browser.ask("import_model", name="crate", overwrite=True,
+                              files=sent(crate__model_dot_sdf=SDF))
+        assert "cannot be written: [Errno 28]" in str(refused.value)
+        monkeypatch.undo()
+
+    case().browse(drop)
+    assert models(home) == ["crate"]
+    assert (home / ".gazebo" / "models" / "crate" / "notes.txt").read_text() == "mine"
+
+
+def test_under_another_name_a_model_takes_its_own_meshes(case, home):
+    sdf = SDF.replace(b"<box><size>1 1 1</size></box>",
+                      b"<mesh><uri>model://crate/meshes/a.stl</uri></mesh>")
+
+    async def drop(browser):
+        for name, radius in (("crate", 0.1), ("copy", 0.3)):
+            await browser.ask("import_model", name=name,
+                              files=sent(crate__model_dot_sdf=sdf,
+                                         crate__meshes__a_dot_stl=ball(radius)))
+        await browser.edit("insert", uri="model://copy", pose=[1, 2, 0.1, 0, 0, 0, 1])
+
+    made = case()
+    made.browse(drop)
+    (model,) = [made.sim.models.get(name) for name in made.sim.models.names()]
+    mesh = model.links[0].collisions[0].geometry
+    assert mesh.path == str(home / ".gazebo" / "models" / "copy" / "meshes" / "a.stl")
+
+
+@pytest.mark.parametrize("files, told", [
+    (sent(a__model_dot_sdf=SDF, b__model_dot_sdf=SDF, a__model_dot_config=b"<model/>"),
+     "one model folder at a time; there are a, b"),
+    (sent(a__model_dot_config=b"<model/>", b__model_dot_urdf=b"<robot/>"),
+     "there is no model.config at its top"),
+])
+def test_several_folders_at_once_are_refused(case, home, files, told):
+    async def drop(browser):
+        with pytest.raises(Refused) as refused:
+            await browser.ask("import_model", name="two", files=files)
+        assert told in str(refused.value)
+
+    case().browse(drop)
+    assert models(home) == []

@@ -5,7 +5,6 @@ import base64
 import binascii
 import os
 import re
-import shutil
 import tempfile
 from dataclasses import replace
 from types import MappingProxyType
@@ -28,6 +27,7 @@ MOST_FILES = 500
 _OTHERS = (".sdf", ".config", ".mtl", ".png", ".jpg", ".jpeg", ".tga", ".bmp", ".tif", ".tiff",
            ".gif", ".material", ".program", ".vert", ".frag", ".txt", ".md", ".json", ".xml",
            ".yaml", ".urdf", ".world", ".gltf", ".bin")
+_TEXTS = (".sdf", ".urdf", ".xml", ".dae", ".material", ".json")
 _NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9_ .-]{0,63}")
 _DENSITY = 1000.0
 
@@ -45,14 +45,25 @@ def import_model(message: Dict[str, Any], resolver: Resolver) -> Tuple[Dict[str,
     Raises:
         InputError: the files cannot be used, with file and line.
         EditRefusedError: `exists`, where a folder of that name is there and must not be replaced.
-        CommandError: the request itself is at fault.
+        CommandError: the request itself is at fault, or the folder cannot be written.
     """
     name = checked_folder_name(message["name"])
-    files = _contents(message["files"])
+    files = _contents(message["files"], name)
     target = os.path.join(default_folder(), name)
     if os.path.lexists(target) and not message.get("overwrite"):
         raise EditRefusedError("exists", f"{target} already exists",
                                "overwrite it, or choose another name")
+    density = float(message.get("density") or _DENSITY)
+    try:
+        issues = _stored(files, name, target, density, resolver)
+    except OSError as fault:
+        raise CommandError(f"{target} cannot be written: {fault}") from fault
+    return {"uri": f"model://{name}", "path": target}, issues
+
+
+def _stored(files: Dict[str, bytes], name: str, target: str, density: float,
+            resolver: Resolver) -> List[Issue]:
+    """Make the model folder and try it; only a usable one takes its place."""
     os.makedirs(default_folder(), exist_ok=True)
     issues: List[Issue] = []
     with tempfile.TemporaryDirectory(prefix=".import-", dir=default_folder()) as scratch:
@@ -61,17 +72,26 @@ def import_model(message: Dict[str, Any], resolver: Resolver) -> Tuple[Dict[str,
             if any(path.lower().endswith((".sdf", "model.config")) for path in files):
                 _write(folder, files)
             else:
-                issues += _mesh_model(folder, name, files, float(message.get("density")
-                                                                 or _DENSITY))
+                issues += _mesh_model(folder, name, files, density)
             issues += tried(folder, resolver)
             _name_meshes(folder, name)
         except InputError as fault:
             raise InputError([placed(issue, folder, target) for issue in fault.issues]) from fault
-        if os.path.lexists(target):
-            shutil.rmtree(target)
+        _take_place(folder, target, os.path.join(scratch, "former"))
+    return [placed(issue, folder, target) for issue in issues]
+
+
+def _take_place(folder: str, target: str, former: str) -> None:
+    """Move a folder to `target`; what is there, perhaps a link, goes to `former`."""
+    if not os.path.lexists(target):
         os.rename(folder, target)
-    return ({"uri": f"model://{name}", "path": target},
-            [placed(issue, folder, target) for issue in issues])
+        return
+    os.rename(target, former)
+    try:
+        os.rename(folder, target)
+    except OSError:
+        os.rename(former, target)
+        raise
 
 
 def checked_folder_name(name: str) -> str:
@@ -83,8 +103,11 @@ def checked_folder_name(name: str) -> str:
     return name
 
 
-def _contents(given: List[Dict[str, str]]) -> Dict[str, bytes]:
-    """By relative path, the common folder taken off. Raises CommandError."""
+def _contents(given: List[Dict[str, str]], name: str) -> Dict[str, bytes]:
+    """By relative path, the common folder taken off; URIs of it are of `name`.
+
+    Raises CommandError.
+    """
     if not given or len(given) > MOST_FILES:
         raise CommandError(f"1 to {MOST_FILES} files can be imported at once, not {len(given)}")
     found: Dict[str, bytes] = {}
@@ -102,10 +125,23 @@ def _contents(given: List[Dict[str, str]]) -> Dict[str, bytes]:
     if size > MOST_BYTES:
         raise CommandError(f"the files have {size / 1e6:.0f} MB; at most {MOST_BYTES >> 20} MB can"
                            " be imported; put larger models into ~/.gazebo/models by hand")
-    tops = {path.split("/")[0] for path in found}
+    tops = sorted({path.split("/")[0] for path in found})
     if len(tops) == 1 and all("/" in path for path in found):  # a folder that was dropped
-        return {path.split("/", 1)[1]: data for path, data in found.items()}
+        return {path.split("/", 1)[1]: _renamed(path, data, tops[0], name)
+                for path, data in found.items()}
+    described = {path.split("/")[0] for path in found
+                 if path.lower().endswith((".sdf", "model.config"))}
+    if len(described) > 1 and not described & found.keys():
+        raise CommandError("drop one model folder at a time; there are "
+                           + ", ".join(sorted(described)))
     return found
+
+
+def _renamed(path: str, data: bytes, former: str, name: str) -> bytes:
+    """A text file of the model, with `name` in the URIs of its own files."""
+    if former == name or not path.lower().endswith(_TEXTS):
+        return data
+    return data.replace(f"model://{former}/".encode(), f"model://{name}/".encode())
 
 
 def _write(folder: str, files: Dict[str, bytes]) -> None:
@@ -115,7 +151,10 @@ def _write(folder: str, files: Dict[str, bytes]) -> None:
         with open(whole, "wb") as stream:
             stream.write(data)
     if "model.config" not in files:
-        described = min(path for path in files if path.lower().endswith(".sdf"))
+        described = min((path for path in files if path.lower().endswith(".sdf")), default="")
+        if not described:
+            raise CommandError("drop a model folder: there is no model.config at its top, and no"
+                               " .sdf file")
         _write(folder, {"model.config": config_text(os.path.basename(folder), described)})
 
 
