@@ -10,10 +10,13 @@ from my_simulations.description.model import JointAxis
 from my_simulations.engine.api import CommandRefusedError
 from my_simulations.engine.commands import (
     JointMotor,
+    JointServo,
     PhysicsSettings,
+    PidGains,
     PlanarVelocity,
     SetMotors,
     SetPlanarVelocities,
+    SetServos,
 )
 
 Z = (0.0, 0.0, 1.0)
@@ -57,6 +60,30 @@ def test_a_motor_goes_on_when_the_step_size_changes(lab: Lab):
     lab.backend.configure(lab.settings)
     lab.seconds(1.0)
     assert lab.joint(model)[1] == pytest.approx(2.0, abs=1e-6)
+
+
+def test_a_motor_goes_on_beside_a_servo_that_gives_efforts_and_after_it(lab: Lab):
+    """As ODE's motor beside a force: a drive plugin and gazebo_ros_control at the same wheel."""
+    model, row = wheel(lab)
+    lab.apply(SetMotors((JointMotor(row, 2.0, 100.0),)))
+    for servo in (JointServo(row, "effort", 30.0), JointServo(row, "velocity", -1.0),
+                  JointServo(row, "")):
+        lab.apply(SetServos((servo,)))
+        lab.seconds(0.5)
+        assert lab.joint(model)[1] == pytest.approx(
+            -1.0 if servo.drive == "velocity" else 2.0, abs=1e-6)
+
+
+def test_a_motor_holds_a_wheel_that_a_loop_too_stiff_for_the_step_would_throw(lab: Lab):
+    lab.settings = PhysicsSettings(step_size=0.01)
+    lab.backend.configure(lab.settings)
+    model = lab.load(arm("revolute", JointAxis(Z), mass=0.01, length=0.3, moment=1e-9))
+    row = lab.joint_rows[model, "hinge"]
+    lab.apply(SetMotors((JointMotor(row, 0.0, 50.0),)))
+    lab.apply(SetServos((JointServo(row, "effort", 0.1, of_rate=True,
+                                    gains=PidGains(1.0, 0.0, 0.01)),)))
+    lab.seconds(2.0)
+    assert lab.joint(model)[1] == pytest.approx(0.0, abs=1e-6)
 
 
 def test_a_motor_of_a_joint_that_is_not_there_is_refused(lab: Lab):

@@ -89,8 +89,8 @@ class BulletBackend:
         self._sliding = Sliding()
         self._waker = WakeUp(self._bodies, self._touched)
         driver = WakeUp(self._bodies, self._driven)
-        self._forces = Forces(driver.around,
-                              lambda rows: self._motors.yield_to(rows))
+        self._forces = Forces(driver.around, lambda rows: self._motors.yield_to(rows),
+                              lambda body, axis: self._motors.restore(body, axis))
         self._friction = FrictionBalance(self._on_misfit)
         self._bounces = PairRestitution(self._on_odd_bounce)
         self._spin = GyroscopicRigid(lambda: self._forces.wrenched_links)

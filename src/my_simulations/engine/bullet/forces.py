@@ -30,8 +30,12 @@ class Forces:
     """
 
     def __init__(self, wake: Callable[[List[Body]], None],
-                 loops_changed: Callable[[Set[int]], None] = lambda rows: None) -> None:
-        """`loops_changed` gets the axis rows that PID loops drive whenever these change."""
+                 loops_changed: Callable[[Set[int]], None] = lambda rows: None,
+                 release: Callable[[Body, Axis], None] = lambda body, axis: None) -> None:
+        """`loops_changed` gets the axis rows that PID loops drive whenever these change.
+
+        `release` gives an axis that a servo has left back to its motor, or its friction.
+        """
         self._wake = wake
         self._loops_changed = loops_changed
         self._timed: Dict[int, TimedForce] = {}
@@ -44,7 +48,7 @@ class Forces:
         self._resting: Dict[int, ImplicitAxes] = {}   # dampers of bodies that are held
         self._limits: Dict[int, Tuple[float, float]] = {}
         self._placed: Set[int] = set()
-        self.servos = JointServos(self._axes, wake)
+        self.servos = JointServos(self._axes, wake, release)
         self.slip = ForceDependentSlip()
 
     def add_body(self, body: Body) -> None:

@@ -28,9 +28,8 @@ class JointMotors:
         """PID loops drive these axes: their motors rest meanwhile, only friction stays."""
         changed, self._yielding = rows ^ self._yielding, set(rows)
         for row in changed:
-            motor = self._motors.get(row)
-            if motor is not None and row in self._axes:
-                self._drive(*self._axes[row], motor)
+            if row in self._motors and row in self._axes:
+                self.restore(*self._axes[row])
 
     def rate_of(self, row: int) -> float:
         """The rate to which an axis is driven, rad/s or m/s; 0 also for one that is not."""
@@ -49,7 +48,7 @@ class JointMotors:
             if before == motor:
                 continue
             self._motors[motor.row] = motor
-            self._drive(body, axis, motor)
+            self.restore(body, axis)
             woken[body.uid] = body
         if woken:
             self._wake(list(woken.values()))
@@ -58,9 +57,8 @@ class JointMotors:
         """The axes of a body of `model` got their limits and friction (anew): motors go on."""
         for axis, spec in specs_of(body, model):
             self._specs[axis.row] = spec
-            motor = self._motors.get(axis.row)
-            if motor is not None:
-                self._drive(body, axis, motor)
+            if axis.row in self._motors:
+                self.restore(body, axis)
             else:
                 self._note(axis.row, spec.motor_rate, spec.friction)
 
@@ -77,9 +75,12 @@ class JointMotors:
         self._specs.clear()
         self._rates.clear()
 
-    def _drive(self, body: Body, axis: Axis, motor: JointMotor) -> None:
-        rate, effort = motor.rate, motor.effort
-        if effort <= 0.0 or motor.row in self._yielding:
+    def restore(self, body: Body, axis: Axis) -> None:
+        """Let the motor of an axis act, or without one its friction."""
+        motor = self._motors.get(axis.row)
+        if motor is not None and motor.effort > 0.0 and axis.row not in self._yielding:
+            rate, effort = motor.rate, motor.effort
+        else:
             spec = self._specs.get(axis.row) or JointAxis()
             rate, effort = spec.motor_rate, max(0.0, spec.friction)
         pybullet.setJointMotorControl2(body.uid, axis.index, pybullet.VELOCITY_CONTROL,

@@ -56,10 +56,11 @@ class JointServos:
     """Keeps servos; what needs no computing is left to PyBullet's motors."""
 
     def __init__(self, axes: Mapping[int, Tuple[Body, Axis]],
-                 wake: Callable[[List[Body]], None]) -> None:
-        self._axes, self._wake = axes, wake
+                 wake: Callable[[List[Body]], None],
+                 release: Callable[[Body, Axis], None]) -> None:
+        """`release` gives an axis back to its motor, or its friction."""
+        self._axes, self._wake, self._release = axes, wake, release
         self._laws: Dict[int, ServoLaw] = {}
-        self._friction: Dict[int, Tuple[float, float]] = {}
         self._busy: Dict[int, _Loops] = {}
         self._yielding: Set[int] = set()
         self._dt = 0.0
@@ -133,8 +134,7 @@ class JointServos:
 
     def set_up(self, body: Body, model: Model, dt: float) -> None:
         """The axes of a body got their limits and friction (anew): servos go on."""
-        for axis, spec in specs_of(body, model):
-            self._friction[axis.row] = (spec.motor_rate, max(0.0, spec.friction))
+        for axis, _ in specs_of(body, model):
             law = self._laws.get(axis.row)
             if law is not None:
                 if dt != self._dt:
@@ -154,12 +154,11 @@ class JointServos:
         self._busy.pop(body.uid, None)
         for axis in body.axes:
             self._laws.pop(axis.row, None)
-            self._friction.pop(axis.row, None)
 
     def clear(self) -> None:
         """All bodies are gone."""
-        for table in (self._laws, self._friction, self._busy):
-            table.clear()
+        self._laws.clear()
+        self._busy.clear()
         self._yielding.clear()
 
     def act(self, efforts: Dict[int, float], shared: AbstractSet[int], step: int) -> None:
@@ -205,12 +204,6 @@ class JointServos:
             if not law.steady and row not in self._yielding:
                 body, axis = self._axes[row]
                 self._busy.setdefault(body.uid, _Loops(body.uid)).add(axis, law)
-
-    def _release(self, body: Body, axis: Axis) -> None:
-        """The axis has its friction again."""
-        rate, effort = self._friction.get(axis.row, (0.0, 0.0))
-        pybullet.setJointMotorControl2(body.uid, axis.index, pybullet.VELOCITY_CONTROL,
-                                       targetVelocity=rate, force=effort)
 
     def _drive(self, body: Body, axis: Axis) -> None:
         """Hand over what PyBullet does by itself."""
