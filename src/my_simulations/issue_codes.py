@@ -324,7 +324,7 @@ _TABLE: Tuple[Tuple[str, Tuple[Tuple[str, str, str, str], ...]], ...] = (
          "Simplify the model that triggers it."),
         ("engine-lost", ERROR, "The physics engine could not be restarted.",
          "Restart the simulator."),
-        ("state-diverged", ERROR, "The state of a model became NaN or infinite.",
+        ("state-diverged", ERROR, "The state of a model became NaN or infinite, or a joint races.",
          "Check masses, inertia and gains, or reduce the step size."),
         ("physics-approximate", WARNING, "A setting is simulated approximately.",
          "See the message."),

@@ -86,6 +86,21 @@ def test_a_motor_holds_a_wheel_that_a_loop_too_stiff_for_the_step_would_throw(la
     assert lab.joint(model)[1] == pytest.approx(0.0, abs=1e-6)
 
 
+def test_a_joint_that_a_loop_has_thrown_is_told_of_once(lab: Lab):
+    lab.settings = PhysicsSettings(step_size=0.01)
+    lab.backend.configure(lab.settings)
+    model = lab.load(arm("revolute", JointAxis(Z), mass=0.01, length=0.3, moment=1e-9))
+    row = lab.joint_rows[model, "hinge"]
+    lab.apply(SetServos((JointServo(row, "effort", 0.1, of_rate=True,
+                                    gains=PidGains(1.0, 0.0, 0.01)),)))
+    told = []
+    for _ in range(100):
+        lab.steps(2)
+        told += lab.backend.events()
+    assert [event.kind for event in told] == ["diverged"]
+    assert "a joint of model 'arm'" in told[0].message and "steps of 0.01 s" in told[0].message
+
+
 def test_a_motor_of_a_joint_that_is_not_there_is_refused(lab: Lab):
     with pytest.raises(CommandRefusedError):
         lab.apply(SetMotors((JointMotor(7, 1.0, 1.0),)))

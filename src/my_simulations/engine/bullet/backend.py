@@ -82,7 +82,7 @@ class BulletBackend:
         self._bodies: Dict[int, Body] = {}
         self._rows: Dict[int, Tuple[Body, Part]] = {}
         self._axes: Dict[int, Tuple[Body, bodies.Axis]] = {}
-        self._readout = StateReadout(self._on_diverged)
+        self._readout = StateReadout(self._on_diverged, self._on_raced)
         self._residual = ResidualFriction()
         self._rolling = RollingContacts(lambda links, step: self._landing.see_rolling(links, step))
         self._seams = SeamContacts(self._rolling)
@@ -459,3 +459,10 @@ class BulletBackend:
         name = self._models[body.model_id].model.name
         self._events.append(Event("diverged", f"the state of model '{name}' became infinite; it "
                                   "was put back where it was, at rest", body.model_id))
+
+    def _on_raced(self, body: Body) -> None:
+        name = self._models[body.model_id].model.name
+        self._events.append(Event(
+            "diverged", f"a joint of model '{name}' turns or moves with {bodies.FASTEST_RATE:g} "
+            "rad/s or m/s, the fastest that is computed: what drives it is too strong for steps of "
+            f"{self._settings.step_size:g} s", body.model_id))

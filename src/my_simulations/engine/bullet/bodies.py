@@ -32,7 +32,8 @@ SLEEP_THRESHOLD = 0.01
 _SMALL = 0.025  # m, half of its least extent: a larger body meets 1 cm even at 40 m/s
 _SWEPT = 0.25   # of that: for a ball 5 mm wide 0.4 bounces right, 0.8 does not (measured)
 
-_FREE_JOINT_VELOCITY = 1e6  # PyBullet clamps joint rates to 100 by default
+FASTEST_RATE = 1e6
+"""To what rates of joints, rad/s or m/s, are clamped; PyBullet's default is 100."""
 
 
 @dataclass
@@ -186,7 +187,7 @@ def set_dynamics(uid: int, index: int, link: Link, mass: float, moments: Vec3,
     change(contactProcessingThreshold=0.0)
     change(linearDamping=0.0, angularDamping=0.0)
     if index != BASE:
-        change(maxJointVelocity=_FREE_JOINT_VELOCITY)
+        change(maxJointVelocity=FASTEST_RATE)
     if mass > 0.0 and may_sleep:
         change(activationState=pybullet.ACTIVATION_STATE_ENABLE_SLEEPING,
                sleepThreshold=SLEEP_THRESHOLD)

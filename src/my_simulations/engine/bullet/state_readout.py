@@ -16,7 +16,7 @@ import pybullet
 from ...geometry import IDENTITY, Pose, inverse
 from ..body_plan import BASE
 from ..ring import JOINT_WIDTH, JOINTS, LINK_WIDTH, LINKS
-from .bodies import Body
+from .bodies import FASTEST_RATE, Body
 from .closing_joints import ClosingJoint
 from .link_states import motion, motions
 
@@ -41,12 +41,18 @@ class StateReadout:
         joints: float64 array (JOINTS, 2).
     """
 
-    def __init__(self, diverged: Callable[[Body], None]) -> None:
+    def __init__(self, diverged: Callable[[Body], None],
+                 raced: Callable[[Body], None]) -> None:
+        """`diverged` gets bodies whose state is no number, to put them back where they were.
+
+        `raced` gets, once, bodies with a joint at the fastest rate that is computed.
+        """
         self.links = np.zeros((LINKS, LINK_WIDTH))
         self.joints = np.zeros((JOINTS, JOINT_WIDTH))
         self.used_links = 0
         self.used_joints = 0
-        self._diverged = diverged
+        self._diverged, self._raced = diverged, raced
+        self._racing: Set[int] = set()
         self._link_bytes = memoryview(self.links.data).cast("B")
         self._joint_bytes = memoryview(self.joints.data).cast("B")
         self._awake: Dict[int, Body] = {}
@@ -91,13 +97,14 @@ class StateReadout:
         """A body is gone; its rows stay as they are."""
         for table in (self._awake, self._trees, self._resting, self._guards, self._touched):
             table.pop(body.uid, None)
+        self._racing.discard(body.uid)
         for part in body.parts:
             self._offsets.pop(part.row, None)
 
     def clear(self) -> None:
         """All bodies are gone; their rows stay as they are."""
         for table in (self._awake, self._trees, self._resting, self._guards, self._touched,
-                      self._offsets, self._closing):
+                      self._offsets, self._closing, self._racing):
             table.clear()
 
     def touch(self, body: Body) -> None:
@@ -276,11 +283,16 @@ class StateReadout:
         total = 0.0
         for position, orientation, linear, angular in found:
             total += sum(position) + sum(orientation) + sum(linear) + sum(angular)
+        fastest = 0.0
         for state in states:
             total += state[0] + state[1]
+            fastest = max(fastest, state[1], -state[1])
         if total - total != 0.0:
             self._diverged(body)    # which needs the rows as they were
             return
+        if fastest >= FASTEST_RATE and uid not in self._racing:
+            self._racing.add(uid)
+            self._raced(body)
         for part, one in zip(body.parts, found):
             _ROW.pack_into(links, part.row * _ROW.size, *one.position, *one.orientation,
                            *one.linear, *one.angular)
