@@ -116,6 +116,13 @@ def test_a_road_lies_on_a_ground_of_its_height_and_below_what_stands_on_it(view)
     assert found.labels[pixel(0.0, 1.0, 0.5)] == 1
 
 
+def test_a_road_of_one_point_leaves_the_others_in_their_places(view):
+    bare, whole = laid(points=((9.0, 9.0, 0.0),)), laid()
+    found = view(SetScenery((*bare.roads, *whole.roads)))
+    assert found.rgb[pixel(0.0, 1.0)].tolist() == [255, 0, 0]
+    assert found.rgb[pixel(2.2, 1.0)].tolist() != [255, 0, 0]
+
+
 def test_a_road_without_a_material_is_asphalt_with_lines_along_it(view):
     asphalt = Look(pattern="road", lit=False)
     found = view(laid(asphalt, 4.0, [(-4.0, 0.0, 0.0), (4.0, 0.0, 0.0)])).rgb

@@ -61,7 +61,6 @@ class Scenery:
         made = strip(road.road)
         at = Pose(road.road.points[0]) if made is not None else Pose()
         if made is not None:
-            row = -1 - len(self.parts)
             piece = piece_of(made.vertices - np.array(at.position), made.normals, made.uv,
                              made.triangles, surface_of(road.look, 1.0))
             self.parts.append(ScenicPart(piece, row, False))
