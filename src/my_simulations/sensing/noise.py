@@ -2,8 +2,8 @@
 
 Every draw comes from Philox (a generator that is a function of key and counter), keyed by the
 world's seed, the sensor's scoped name and the quantity, counted by the sample. The models are those
-of Gazebo Classic 11 (`GaussianNoiseModel`): a bias drawn once with a random sign, white noise, a
-wandering bias, rounding to a precision.
+of Gazebo Classic 11 (`GaussianNoiseModel`): a bias drawn once with a random sign, from which it may
+wander towards 0, white noise, rounding to a precision.
 """
 from __future__ import annotations
 
@@ -30,16 +30,19 @@ def generator(seed: int, sensor: str, quantity: str, sample: int, purpose: int =
 class Noise:
     """The noise of one quantity of one sensor, e.g. `range` or `angular_velocity/x`.
 
-    Only the wandering bias remembers anything: where it was at the sample before. Over samples left
-    out it wanders in one stride, which has the same distribution.
+    Only a bias that wanders remembers anything: where it was at the sample before. Over samples
+    left out it wanders in one stride, which has the same distribution.
+
+    Attributes:
+        bias: where it begins.
     """
 
     def __init__(self, spec: NoiseSpec, seed: int, sensor: str, quantity: str = "") -> None:
         self.spec = spec
         self._name = (seed, sensor, quantity)
         self._active = spec.type in (GAUSSIAN, QUANTIZED)
-        self._wandering = 0.0
         self.bias = self._first_bias() if self._active else 0.0
+        self._wandering = self.bias
 
     def _first_bias(self) -> float:
         spec = self.spec
@@ -50,8 +53,8 @@ class Noise:
         return float(-bias if draws.random() < 0.5 else bias)
 
     def reset(self) -> None:
-        """The world begins anew: the wandering bias is 0 again."""
-        self._wandering = 0.0
+        """The world begins anew: the bias is where it began."""
+        self._wandering = self.bias
 
     def apply(self, values: Any, sample: int, elapsed: float) -> Any:
         """Values of a sample with their noise; what is not finite stays.
@@ -68,7 +71,7 @@ class Noise:
         spec = self.spec
         self._wander(sample, elapsed)
         plain = np.asarray(values, dtype=np.float64)
-        noisy = plain + (self.bias + self._wandering + spec.mean)
+        noisy = plain + (self._wandering + spec.mean)
         if spec.stddev > 0.0:
             noisy = noisy + generator(*self._name, sample).normal(0.0, spec.stddev, plain.shape)
         if spec.type == QUANTIZED and spec.precision > 0.0:

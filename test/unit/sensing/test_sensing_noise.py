@@ -67,6 +67,17 @@ def test_a_wandering_bias_has_its_deviation_and_its_correlation_time():
     assert noise.apply(0.0, 0, 0.5) == Noise(spec, 1, "s").apply(0.0, 0, 0.5)
 
 
+def test_a_bias_that_wanders_leaves_where_it_was_drawn():
+    spec = NoiseSpec("gaussian", bias_mean=5.0, dynamic_bias_stddev=1e-9,
+                     dynamic_bias_correlation_time=2.0)
+    noise = Noise(spec, 1, "s")
+    assert abs(noise.bias) == 5.0
+    assert noise.apply(0.0, 0, 2.0) == pytest.approx(noise.bias * math.exp(-1.0), rel=1e-6)
+    assert noise.apply(0.0, 1, 60.0) == pytest.approx(0.0, abs=1e-6)
+    noise.reset()
+    assert noise.apply(0.0, 2, 2.0) == pytest.approx(noise.bias * math.exp(-1.0), rel=1e-6)
+
+
 def test_quantized_values_are_multiples_of_the_precision():
     noise = Noise(NoiseSpec("gaussian_quantized", 0.0, 0.3, precision=0.25), 1, "s")
     found = noise.apply(np.zeros(1000), 0, 0.1) / 0.25
