@@ -8,8 +8,9 @@ import pytest
 
 from my_simulations.description.sensor import Ray, ScanAngles, Sensor
 from my_simulations.plugins.sensors.laser_points import BlockLaser, Velodyne
+from my_simulations.plugins.sensors.rays import fan_of
 from my_simulations.plugins.testing import FakeContext
-from my_simulations.sensing.api import RayReturns
+from my_simulations.sensing.api import RayFan, RayReturns
 
 
 def laser(cls, ranges, inside="", rows=2, retro=None):
@@ -81,3 +82,14 @@ def test_the_namespace_of_a_velodyne_is_its_prefix():
     context = laser(Velodyne, [1.0, 1.0], "<robotNamespace>/r1</robotNamespace>")
     context.advance(0.1)
     assert context.published["r1/points"][0].header.frame_id == "r1/mast"
+
+
+def test_a_single_ray_looks_ahead_and_one_that_sees_visuals_along_the_minimum():
+    """As Gazebo's MultiRayShape and GpuRaySensor."""
+    one, many = ScanAngles(1, 1.0, -0.5, 0.5), ScanAngles(3, 1.0, -0.5, 0.5)
+    level = fan_of(Ray(many, one, 0.1, 5.0))
+    assert (level.min_angle, level.max_angle) == (-0.5, 0.5)
+    assert (level.rows, level.min_elevation) == (1, 0.0)
+    assert fan_of(Ray(one, many, 0.1, 5.0)).min_angle == 0.0
+    assert fan_of(Ray(one, one, 0.1, 5.0), visuals=True) == RayFan(
+        1, -0.5, 0.5, 1, -0.5, 0.5, 0.1, 5.0)

@@ -3,7 +3,7 @@ from __future__ import annotations
 
 from typing import Any, Tuple
 
-from ...description.sensor import Noise, Ray
+from ...description.sensor import Noise, Ray, ScanAngles
 from ...sensing.api import RayFan, RayReturns
 from ...sensing.noise import Noise as SensorNoise
 from ..base import Plugin
@@ -12,16 +12,20 @@ from ..context import Context, PluginError, Publication
 _NO_END = 1e6  # m: a sensor without a maximum range
 
 
-def fan_of(ray: Ray) -> RayFan:
-    """The rays of a sensor: samples times resolution points, rows likewise."""
-    def count(samples: int, resolution: float) -> int:
-        return max(1, int(samples * resolution))
+def fan_of(ray: Ray, visuals: bool = False) -> RayFan:
+    """The rays of a sensor: samples times resolution points, rows likewise.
 
-    flat, high = ray.horizontal, ray.vertical
+    A single one of a `ray` sensor looks along the angle 0, whatever the file says; one of a
+    `gpu_ray` sensor, which sees `visuals`, along the minimum (Gazebo behaviour: MultiRayShape,
+    GpuRaySensor).
+    """
+    def spread(scan: ScanAngles) -> Tuple[int, float, float]:
+        count = max(1, int(scan.samples * scan.resolution))
+        return (1, 0.0, 0.0) if count == 1 and not visuals else (
+            count, scan.min_angle, scan.max_angle)
+
     far = ray.max_range if 0.0 < ray.max_range < _NO_END else _NO_END
-    return RayFan(count(flat.samples, flat.resolution), flat.min_angle, flat.max_angle,
-                  count(high.samples, high.resolution), high.min_angle, high.max_angle,
-                  max(0.0, ray.min_range), far)
+    return RayFan(*spread(ray.horizontal), *spread(ray.vertical), max(0.0, ray.min_range), far)
 
 
 def ray_of(context: Context) -> Tuple[Ray, bool]:
@@ -40,7 +44,7 @@ class RayPlugin(Plugin):
     def take_ray(self) -> None:
         """Find the block of the sensor. Raises PluginError."""
         self._ray, self._visuals = ray_of(self.context)
-        self._fan = fan_of(self._ray)
+        self._fan = fan_of(self._ray, self._visuals)
 
     def update(self) -> None:
         """Look, if somebody listens."""
