@@ -335,7 +335,7 @@ def test_only_what_is_wanted_is_drawn():
 
 
 def realsense(inside="", names=("color", "depth", "ired1", "ired2")):
-    context = FakeContext(f"<plugin><prefix>d_</prefix>{inside}</plugin>")
+    context = FakeContext(f"<plugin name='camera'><prefix>d_</prefix>{inside}</plugin>")
     context.model_sensors = [(f"{name}_link", Sensor(
         f"d_{name}", "depth" if name == "depth" else "camera", update_rate=10.0,
         cameras=[CameraBlock(width=8, height=6, format="L8" if "ired" in name else "R8G8B8")]))
@@ -347,7 +347,8 @@ def realsense(inside="", names=("color", "depth", "ired1", "ired2")):
 
 def test_a_realsense_looks_through_the_sensors_of_its_model():
     context = realsense("<pointCloud>true</pointCloud><colorUpdateRate>5</colorUpdateRate>"
-                        "<depthTopicName>camera/aligned/image_raw</depthTopicName>"
+                        "<depthTopicName>aligned/image_raw</depthTopicName>"
+                        "<robotNamespace>/robot</robotNamespace>"
                         "<depthOpticalframeName>d_optical</depthOpticalframeName>")
     context.advance(0.2)
     assert len(context.published["camera/color/image_raw"]) == 1
@@ -359,6 +360,17 @@ def test_a_realsense_looks_through_the_sensors_of_its_model():
     assert len(context.published["camera/depth/points"]) == 2
     assert {view.link for (view,) in context.views} == {
         "color_link", "depth_link", "ired1_link", "ired2_link"}
+
+
+def test_points_of_a_realsense_have_limits_of_their_own():
+    context = realsense("<pointCloud>true</pointCloud><pointCloudCutoff>1.6</pointCloudCutoff>"
+                        "<pointCloudTopicName>depth/color/points</pointCloudTopicName>")
+    context.advance(0.1)
+    (cloud,) = context.published["camera/depth/color/points"]
+    (depth,) = context.published["camera/depth/image_raw"]
+    assert "camera/depth/camera_info" in context.published
+    assert np.isnan(np.frombuffer(cloud.data, np.float32)[0]), "1.5 m is too near"
+    assert np.frombuffer(depth.data, np.uint16)[0] == 1500
 
 
 def test_a_realsense_does_without_a_camera_that_the_model_lacks():

@@ -30,12 +30,15 @@ class DepthStream:
         names: of image, info and cloud, as published.
         near, far: m, what counts as seen.
         wide: 32-bit floats in metres; else 16 bits in millimetres.
+        cloud: near and far of the points, where these are others.
     """
 
     def __init__(self, context: Context, lens: PictureStream, names: "tuple[str, str, str]",
-                 near: float, far: float, wide: bool) -> None:
+                 near: float, far: float, wide: bool,
+                 cloud: "Optional[tuple[float, float]]" = None) -> None:
         self._context, self._lens = context, lens
-        self._near, self._far, self._wide = near, far, wide
+        self._span, self._wide = (near, far), wide
+        self._cloud_span = cloud or self._span
         self._frame = lens.topics.frame
         self._image = context.publish(names[0], "sensor_msgs/Image")
         self._info = context.publish(names[1], "sensor_msgs/CameraInfo")
@@ -60,16 +63,13 @@ class DepthStream:
             self._info.publish(self._lens.calibration.message(head))
         if depth is None:
             return
-        seen = Once(lambda: self._seen(depth))
+        seen = Once(lambda: _within(self._span, depth))
+        points = seen if self._cloud_span == self._span else Once(
+            lambda: _within(self._cloud_span, depth))
         if self._image.wanted:
             self._image.publish_later(lambda: self._picture(head, seen.get()))
         if self._points is not None and self._points.wanted:
-            self._points.publish_later(lambda: self._cloud(head, seen.get(), rgb))
-
-    def _seen(self, depth: Any) -> Any:
-        import numpy as np
-
-        return np.where((depth > self._near) & (depth < self._far), depth, np.float32(np.nan))
+            self._points.publish_later(lambda: self._cloud(head, points.get(), rgb))
 
     def _picture(self, head: Any, depth: Any) -> Any:
         if self._wide:
@@ -84,6 +84,13 @@ class DepthStream:
             spec = self._lens.spec
             self._geometry = DepthGeometry(spec.width, spec.height, spec.focal_length)
         return cloud_message(self._context, head, *self._geometry.cloud(depth, rgb))
+
+
+def _within(span: "tuple[float, float]", depth: Any) -> Any:
+    """Depths between two, m; NaN for others."""
+    import numpy as np
+
+    return np.where((depth > span[0]) & (depth < span[1]), depth, np.float32(np.nan))
 
 
 class DepthCamera(Plugin):

@@ -1,8 +1,9 @@
 """librealsense_gazebo_plugin.so: colour, depth, two infrared pictures and points of a RealSense.
 
 A plugin of the model: it looks through the model's sensors whose names end with `color`, `depth`,
-`ired1` and `ired2`, after `<prefix>`. Parameters are those of realsense_gazebo_plugin; a sensor
-that the model lacks is told and left out (there the simulation ends).
+`ired1` and `ired2`, after `<prefix>`. Parameters are those of realsense_gazebo_plugin; its topics
+lie below the plugin's name, and `<robotNamespace>` is not heeded. A sensor that the model lacks is
+told and left out (there the simulation ends).
 """
 from __future__ import annotations
 
@@ -13,7 +14,7 @@ from ...description.sensor import Sensor
 from ...sensing.api import DEPTH, RGB
 from ..base import Plugin
 from ..context import PluginError
-from .camera_parameters import USUAL_RATE, CameraTopics, enter_namespace
+from .camera_parameters import USUAL_RATE, CameraTopics
 from .depth_camera import DepthStream
 from .picture_stream import PictureStream
 
@@ -28,7 +29,7 @@ class RealSense(Plugin):
     def load(self) -> None:
         """Find the sensors."""
         context = self.context
-        enter_namespace(context)
+        context.use_namespace(context.parameters.attribute("name"))
         self._prefix = context.parameters.text("prefix")
         found = 0
         for name, words in _EYES:
@@ -58,24 +59,22 @@ class RealSense(Plugin):
 
     def _stream(self, found: Tuple[str, Sensor], words: str, published: bool) -> PictureStream:
         p, (link, sensor) = self.context.parameters, found
-        usual = words if published else f"{words}/intensity"
-        topics = CameraTopics(
-            "", (p.text(f"{words}TopicName") if published else "") or f"camera/{usual}/image_raw",
-            (p.text(f"{words}CameraInfoTopicName") if published else "")
-            or f"camera/{usual}/camera_info", p.text(f"{words}OpticalframeName"))
+        usual = f"{words if published else f'{words}/intensity'}/image_raw"
+        name = (p.text(f"{words}TopicName") if published else "") or usual
+        topics = CameraTopics("", name, _info_of(name), p.text(f"{words}OpticalframeName"))
         return PictureStream(self.context, sensor, link, sensor.cameras[0], topics,
                              calibrated=False)
 
     def _load_depth(self, found: Tuple[str, Sensor]) -> None:
         context, p = self.context, self.context.parameters
         self._gray = self._stream(found, "depth", False)
-        cloud = p.text("pointCloudTopicName") or "camera/depth/points"
+        name = p.text("depthTopicName") or "depth/image_raw"
+        cloud = p.text("pointCloudTopicName") or "depth/points"
         self._depth = DepthStream(
             context, self._gray,
-            (p.text("depthTopicName") or "camera/depth/image_raw",
-             p.text("depthCameraInfoTopicName") or "camera/depth/camera_info",
-             cloud if p.flag("pointCloud", False) else ""),
-            p.number("rangeMinDepth", 0.2), p.number("rangeMaxDepth", 10.0), False)
+            (name, _info_of(name), cloud if p.flag("pointCloud", False) else ""),
+            p.number("rangeMinDepth", 0.2), p.number("rangeMaxDepth", 10.0), False,
+            (p.number("pointCloudCutoff", 0.0), p.number("pointCloudCutoffMax", 5.0)))
         context.every(self._rate("depth", found[1]), self._look_deep)
 
     def _look(self, name: str, stream: PictureStream) -> None:
@@ -104,3 +103,9 @@ class RealSense(Plugin):
             tell(pictures[0], ns)
 
         self.context.photograph([stream.view(*outputs)], seen, name)
+
+
+def _info_of(image: str) -> str:
+    """The CameraInfo beside an image (image_transport's CameraPublisher)."""
+    above, slash, _ = image.rpartition("/")
+    return f"{above}{slash}camera_info"
