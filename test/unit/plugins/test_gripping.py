@@ -85,11 +85,30 @@ def test_what_is_pressed_from_opposite_sides_is_fixed_to_the_palm(gripper):
     [press("robot::left", "cube::link", (0.0, 1.0, 0.0))],
     [press("robot::left", "cube::link", (0.0, 1.0, 0.0)),
      press("robot::right", "cube::link", (1.0, 0.5, 0.0))],
+    [press("robot::left", "cube::link", (0.0, 1.0, 0.0)),
+     press("cube::link", "robot::right", (0.0, 1.0, 0.0), 0.01)],
+    [press("robot::left", "cube::link", (0.0, 1.0, 0.0)),
+     press("cube::link", "robot::palm", (0.0, 1.0, 0.0))],
     squeezed("table::top"), squeezed("robot::other")])
 def test_one_side_or_what_cannot_move_is_not_held(gripper, touching):
     gripper.touching = touching
     gripper.advance(2.0)
     assert not gripper.attached
+
+
+@pytest.mark.parametrize("said, looks", [
+    ("", 6), ("<max_grip_count>4</max_grip_count>", 3),
+    ("<grip_count_threshold>12</grip_count_threshold>", 13)])
+def test_more_than_half_of_the_most_counts_hold(said, looks):
+    context = FakeContext(ARM.replace("<grip_count_threshold>3</grip_count_threshold>", said),
+                          links=("palm", "left", "right"))
+    world(context)
+    GraspFix(context).load()
+    context.touching = squeezed()
+    for look in range(1, looks + 1):
+        assert not context.attached, look
+        context.advance(0.1)
+    assert context.attached
 
 
 def test_a_short_loss_of_contact_costs_a_count(gripper):

@@ -16,6 +16,9 @@ from ..context import PluginError
 from ..parameters import Parameters
 
 _FORGET = 1e-6  # N: a contact that does not press
+_COUNTS = 10    # the usual most of counts
+_LEAST_RATIO = 0.3  # of two forces that oppose each other, and the smallest, N: gazebo_grasp_plugin
+_LEAST_FORCE = 1e-4
 
 
 class Press(NamedTuple):
@@ -55,8 +58,10 @@ class GraspFix(Plugin):
         if not self._arms:
             raise PluginError("it has no <arm>")
         self._least_angle = math.radians(p.number("forces_angle_tolerance", 120.0))
-        self._threshold = p.integer("grip_count_threshold", 10)
-        self._most = p.integer("max_grip_count", 2 * self._threshold)
+        self._most = p.integer("max_grip_count", _COUNTS)
+        self._threshold = p.integer("grip_count_threshold", self._most // 2)
+        if "max_grip_count" not in p:  # there a threshold of the usual most is never passed
+            self._most = max(self._most, 2 * self._threshold)
         self._release = p.number("release_tolerance", 0.005)
         context.every(p.number("update_rate", 5.0), self.update)
 
@@ -88,7 +93,7 @@ class GraspFix(Plugin):
     def _pressed(self, arm: Arm, contacts: list) -> Dict[str, List[Press]]:
         """What presses movable links of other models, by their names."""
         prefix, models = f"{self.context.model}::", self.context.models()
-        parts = {prefix + name: name for name in (arm.palm, *arm.fingers)}
+        parts = {prefix + name: name for name in arm.fingers}
         found: Dict[str, Dict[str, Press]] = {}
         for one, other, contact in contacts:
             for mine, theirs, sign in ((one, other, -1.0), (other, one, 1.0)):
@@ -118,9 +123,11 @@ class GraspFix(Plugin):
     def _opposed(self, presses: List[Press]) -> bool:
         for n, one in enumerate(presses):
             for other in presses[n + 1:]:
-                size = norm(one.force) * norm(other.force)
-                if size > 0.0 and math.acos(max(-1.0, min(1.0, dot(
-                        one.force, other.force) / size))) > self._least_angle:
+                less, more = sorted((norm(one.force), norm(other.force)))
+                if less < _LEAST_FORCE or less < _LEAST_RATIO * more:
+                    continue
+                cosine = dot(one.force, other.force) / (less * more)
+                if math.acos(max(-1.0, min(1.0, cosine))) > self._least_angle:
                     return True
         return False
 
