@@ -129,7 +129,7 @@ def test_a_command_by_angles_goes_sideways():
     assert [robot.at(name) for name in STEERS] == pytest.approx([0.3] * 4, abs=1e-6)
     twist = robot.published("drive/odom")[-1].twist.twist
     assert (twist.linear.x, twist.linear.y, twist.angular.z) == pytest.approx(
-        (0.5, 0.5 * math.tan(0.3), 0.0), abs=1e-6)
+        (0.5 * math.cos(0.3), 0.5 * math.sin(0.3), 0.0), abs=1e-6)
 
 
 def test_an_axle_without_two_wheels_is_told():

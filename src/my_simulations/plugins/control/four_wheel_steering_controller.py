@@ -17,6 +17,7 @@ from .hardware import POSITION, VELOCITY, HardwareJoint
 from .speed_limits import clamped
 
 _HALF_TURN = math.pi / 2.0
+_ALIKE = 0.01     # rad: angles of axles that go straight (ros_controllers)
 _SLOWEST = 0.001  # m/s: below it wheels stand (ros_controllers)
 _MESSAGES = "four_wheel_steering_msgs"
 
@@ -152,10 +153,12 @@ class FourWheelSteeringController(BaseController):
 
     def _by_two_angles(self, speed: float, front: float, rear: float) -> List[Tuple[float, float]]:
         """Axles are steered by an angle each; the wheels of an axle stand for their own circles."""
+        moving = speed if abs(speed) > _SLOWEST else 0.0
+        if abs(front - rear) < _ALIKE:  # sideways: the speed is that along the wheels
+            return [((front + rear) / 2.0, moving)] * len(self._corners)
         ahead, behind = math.tan(front), math.tan(rear)
         motion = (1.0, (ahead + behind) / 2.0, (ahead - behind) / self._base)
         angles = wheel_motions(self._corners, motion)
-        moving = speed if abs(speed) > _SLOWEST else 0.0
         return [(angle, rim * moving) for angle, rim in angles]
 
     def begin_count(self) -> None:
