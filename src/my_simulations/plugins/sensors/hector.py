@@ -21,6 +21,7 @@ _EQUATOR = 6378137.0            # WGS 84, m
 _FLATTENING = 1.0 / 298.257223563
 _DIAGONAL_KNOWN = 2             # of sensor_msgs/NavSatFix
 _ULTRASOUND = 0                 # of sensor_msgs/Range
+_SONAR_HERTZ = 10.0             # where it has no rate of its own, whatever its sensor's is
 _SCALE_HEIGHT, _EXPONENT = 44330.0, 5.263157  # of the standard atmosphere
 
 
@@ -215,8 +216,7 @@ class Sonar(RayPlugin):
         self._view = min((angle for angle in wide if angle > 0.0), default=0.0)
         self._errors = SensorErrors(context, width=1)
         self._topic = context.publish(p.text("topicName") or "sonar", "sensor_msgs/Range")
-        assert context.sensor is not None
-        context.every(rate_of(p, context.sensor.update_rate), self.update)
+        context.every(rate_of(p, _SONAR_HERTZ), self.update)
 
     def reset(self) -> None:
         """Errors begin anew."""
