@@ -71,6 +71,8 @@ class TricycleDrive(OdometryDrive):
     def update(self) -> None:
         """Odometry first, then the command (as the original)."""
         dt = self.elapsed()
+        if dt <= 0.0:
+            return  # the step in which the world was reset
         pose, velocity = self.motion(dt)
         self._odometer.transform(pose)
         self._odometer.publish(pose, velocity)
