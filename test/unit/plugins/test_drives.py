@@ -160,6 +160,20 @@ def test_planar_move_passes_the_command_on_and_forgets_an_old_one():
     assert context.level == (0.0, 0.0, 0.0)
 
 
+def test_a_command_is_forgotten_also_when_the_clock_is_set_back():
+    context = FakeContext("<plugin><cmdTimeout>0.1</cmdTimeout></plugin>")
+    plugin = PlanarMove(context)
+    plugin.load()
+    context.advance(60.0)
+    context.hear("cmd_vel", linear={"x": 0.2, "y": 0.1}, angular={"z": 0.5})
+    context.step = 0
+    plugin.clock_set()
+    context.advance(0.05)
+    assert context.level == (0.2, 0.1, 0.5)
+    context.advance(0.2)
+    assert context.level == (0.0, 0.0, 0.0)
+
+
 def test_planar_move_tells_the_velocity_since_the_last_message():
     context = FakeContext("<plugin><odometryRate>10</odometryRate></plugin>")
     PlanarMove(context).load()
@@ -200,6 +214,16 @@ def test_a_tricycle_steers_no_faster_than_it_may_and_stops_at_the_angle():
     context.advance(0.4)
     assert context.joints["front_steering_joint"].position == pytest.approx(0.2, abs=0.01)
     assert context.joints["front_steering_joint"].motor[0] == 0.0
+
+
+def test_a_tricycle_goes_on_in_the_step_of_a_reset():
+    context, plugin = tricycle("<steeringSpeed>0.4</steeringSpeed>")
+    context.hear("robot/cmd_vel", linear={"x": 0.0}, angular={"z": 0.5})
+    context.advance(0.5)
+    plugin.reset()
+    plugin.update()  # an update of the same step; joints keep their angles
+    context.advance(1.0)
+    assert context.joints["front_steering_joint"].position == pytest.approx(0.0, abs=0.01)
 
 
 def test_a_tricycle_accelerates_and_brakes_as_it_is_told():

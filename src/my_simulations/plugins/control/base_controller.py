@@ -128,6 +128,8 @@ class BaseController(Controller):
             return
         self._count(dt)
         wanted = self.command
+        if self._heard_ns is not None:
+            self._heard_ns = min(self._heard_ns, now)  # the clock may have been set back
         if self._heard_ns is None or (now - self._heard_ns) * 1e-9 > self._timeout:
             wanted = STANDING
         limited = self.limited(wanted, dt)

@@ -34,7 +34,9 @@ class VelocityCommand:
 
     def look(self) -> None:
         """Forget a command that is too old."""
-        if self._timeout >= 0.0 and (self._context.now_ns - self._heard_ns) * 1e-9 > self._timeout:
+        now = self._context.now_ns
+        self._heard_ns = min(self._heard_ns, now)  # the clock may have been set back
+        if self._timeout >= 0.0 and (now - self._heard_ns) * 1e-9 > self._timeout:
             self.x = self.y = self.yaw = 0.0
 
 
