@@ -3,9 +3,10 @@ from __future__ import annotations
 
 from typing import Any, Dict, Optional, Tuple
 
-from ..geometry import IDENTITY, Pose, compose, inverse, normalised
+from ..geometry import IDENTITY, Pose, compose, inverse, normalised, pose_is_finite
 from .context import Context
 
+_NEAR_UNIT = 1e-2  # of the square of a quaternion's length (tf2)
 _DEEPEST = 100  # frames above another: more is a loop
 
 
@@ -20,9 +21,12 @@ class Transforms:
     def _hear(self, message: Any) -> None:
         for one in message.transforms:
             at, turn = one.transform.translation, one.transform.rotation
-            self._parents[one.child_frame_id.lstrip("/")] = (
-                one.header.frame_id.lstrip("/"),
-                Pose((at.x, at.y, at.z), normalised((turn.x, turn.y, turn.z, turn.w))))
+            pose = Pose((at.x, at.y, at.z), (turn.x, turn.y, turn.z, turn.w))
+            child, parent = one.child_frame_id.lstrip("/"), one.header.frame_id.lstrip("/")
+            if child == parent or not pose_is_finite(pose) \
+                    or abs(sum(part * part for part in pose.orientation) - 1.0) > _NEAR_UNIT:
+                continue  # tf2 ignores these, too
+            self._parents[child] = (parent, Pose(pose.position, normalised(pose.orientation)))
 
     def look_up(self, frame: str, child: str) -> Optional[Pose]:
         """Where `child` is in `frame`; None where /tf has not connected them."""

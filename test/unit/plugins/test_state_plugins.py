@@ -13,6 +13,7 @@ from my_simulations.plugins.state.initial_velocity import InitialVelocity
 from my_simulations.plugins.state.joint_pose_trajectory import JointPoseTrajectory
 from my_simulations.plugins.state.mimic_joint import MimicJoint
 from my_simulations.plugins.testing import FakeContext, Message
+from my_simulations.plugins.transforms import Transforms
 
 STILL_FRAME = {"x": 0.0, "y": 0.0, "z": 0.0, "w": 1.0}
 
@@ -107,6 +108,20 @@ def test_the_link_of_the_frame_stays_where_it_is():
     assert context.pose.orientation == pytest.approx(quat_from_rpy(0, 0, -math.pi / 2))
 
 
+@pytest.mark.parametrize("value", [math.nan, math.inf])
+def test_a_trajectory_with_what_is_no_number_is_refused_and_the_next_is_played(arm, value):
+    play(arm, point(0.0, 0.1, 0.2), point(0.5, value, 0.4))
+    assert arm.said == ["a position of point 1 of the trajectory is not finite"]
+    request = Message(model_name="robot", set_model_pose=True, disable_physics_updates=True,
+                      model_pose={"position": {"x": value, "y": 0.0, "z": 0.0},
+                                  "orientation": {"x": 0.0, "y": 0.0, "z": 0.0, "w": 1.0}})
+    response = Message()
+    arm.services["set_joint_trajectory"](request, response)
+    assert not response.success and "pose of the model" in response.status_message
+    play(arm, point(0.0, 0.3, 0.4))
+    assert positions(arm) == [0.3, 0.4]
+
+
 def test_a_reset_ends_it(arm):
     plugin = JointPoseTrajectory(arm)
     plugin.load()
@@ -121,6 +136,19 @@ def transform(parent, child, x=0.0, yaw=0.0):
     return Message(header=Message(frame_id=parent), child_frame_id=child, transform={
         "translation": {"x": x, "y": 0.0, "z": 0.0},
         "rotation": {"x": qx, "y": qy, "z": qz, "w": qw}})
+
+
+@pytest.mark.parametrize("spoilt", [
+    transform("world", "hand", math.nan), transform("hand", "hand", 2.0),
+    Message(header=Message(frame_id="world"), child_frame_id="hand", transform={
+        "translation": {"x": 3.0, "y": 0.0, "z": 0.0},
+        "rotation": {"x": 0.0, "y": 0.0, "z": 0.0, "w": 0.0}})])
+def test_transforms_that_tf2_ignores_change_nothing(spoilt):
+    context = FakeContext()
+    heard = Transforms(context)
+    for one in (transform("world", "hand", 1.0), spoilt):
+        context.hear("/tf", transforms=[one])
+    assert heard.look_up("world", "hand").position == (1.0, 0.0, 0.0)
 
 
 def test_the_hand_of_god_pulls_like_a_critically_damped_spring():

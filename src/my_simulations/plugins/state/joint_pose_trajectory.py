@@ -9,9 +9,10 @@ from __future__ import annotations
 
 from typing import Any, List, Tuple
 
-from ...geometry import Pose, compose, inverse, normalised
+from ...geometry import Pose, compose, inverse, normalised, pose_is_finite
 from ..base import Plugin
 from ..context import Ending, Joint, Link, PluginError
+from ..finite_messages import is_all_finite
 from ..parameters import namespace_or
 
 _WORLD = ("world", "map")
@@ -56,8 +57,10 @@ class JointPoseTrajectory(Plugin):
                                   f" '{request.model_name}'")
             if request.set_model_pose:
                 at, turn = request.model_pose.position, request.model_pose.orientation
-                self.context.move(Pose((at.x, at.y, at.z),
-                                       normalised((turn.x, turn.y, turn.z, turn.w))))
+                pose = Pose((at.x, at.y, at.z), (turn.x, turn.y, turn.z, turn.w))
+                if not pose_is_finite(pose):
+                    raise PluginError("the pose of the model is not finite")
+                self.context.move(Pose(pose.position, normalised(pose.orientation)))
             self._begin(request.joint_trajectory, bool(request.disable_physics_updates))
             response.success, response.status_message = True, "the trajectory is played"
         except PluginError as fault:
@@ -70,6 +73,8 @@ class JointPoseTrajectory(Plugin):
             if len(point.positions) != len(message.joint_names):
                 raise PluginError(f"point {n} of the trajectory has {len(point.positions)} "
                                   f"positions for {len(message.joint_names)} joints")
+            if not is_all_finite(point.positions):
+                raise PluginError(f"a position of point {n} of the trajectory is not finite")
         anchor = None if frame.lstrip("/") in _WORLD else context.link(frame)
         self._end()
         stamp = message.header.stamp
