@@ -36,6 +36,8 @@ GROUPS = "/object_groups"
 LIST_MARK = "/my_simulations/object_list"
 """Parameter with world, file and package of the loaded list; written last by the upload."""
 
+_ENDING = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
+
 CALLER = "/my_simulations_object_tool"
 
 
@@ -237,7 +239,8 @@ class SimulatorClient:
     def paused(self) -> Iterator[None]:
         """Pause the world in the `with` block, unless it is paused or the simulator is Gazebo.
 
-        Use in the main thread: SIGTERM raises KeyboardInterrupt in the block.
+        Use in the main thread: the first SIGINT, SIGTERM or SIGHUP raises KeyboardInterrupt in the
+        block. No further one, and none after the block, keeps the world paused.
 
         Raises:
             ToolError: the simulator did not respond.
@@ -245,14 +248,25 @@ class SimulatorClient:
         if not self.replaces or self._call("get_physics_properties", "GetPhysicsProperties").pause:
             yield
             return
-        # SIGTERM must not leave the world paused.
-        before = signal.signal(signal.SIGTERM, signal.default_int_handler)
+        told: List[int] = []
+
+        def interrupt(number: int, _frame: Any) -> None:
+            told.append(number)
+            if len(told) == 1:
+                raise KeyboardInterrupt
+
+        before = {number: signal.signal(number, interrupt) for number in _ENDING
+                  if signal.getsignal(number) != signal.SIG_IGN}
         try:
-            self._call("pause_physics", "Empty")
-            yield
+            try:
+                self._call("pause_physics", "Empty")
+                yield
+            finally:
+                told.append(0)
         finally:
             self._call("unpause_physics", "Empty")
-            signal.signal(signal.SIGTERM, before)
+            for number, handler in before.items():
+                signal.signal(number, handler)
 
     def _checked(self, service: str, kind: str, **fields: Any) -> str:
         answer = self._call(service, kind, **fields)

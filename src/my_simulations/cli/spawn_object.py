@@ -62,11 +62,7 @@ def _spawn_all(options: argparse.Namespace, remappings: Sequence[str], launch: L
         if not failed:
             print(f"{NAME}: nothing to spawn")
         return client.FAILED if failed else client.OK
-    # Paused, objects that stand on others do not fall before those are spawned, and the engine
-    # does not spend its time on stepping.
-    many = len(selection.objects) > MANY
-    with simulator.paused() if many else contextlib.nullcontext():
-        wrong = _spawn_each(selection.objects, simulator, options.timeout, launch)
+    wrong = _spawn_each(selection.objects, simulator, options.timeout, launch)
     return client.FAILED if failed or wrong else client.OK
 
 
@@ -76,7 +72,10 @@ def _spawn_each(objects: List[PlacedObject], simulator: client.SimulatorClient, 
     there = set(simulator.model_names())
     progress = Progress(len(objects))
     wrong = 0
-    with Documents(objects, package_finder(), timeout) as documents:
+    # Paused, objects that stand on others do not fall before those are spawned, and the engine
+    # does not spend its time on stepping. Within Documents, whose end waits for a running xacro.
+    pause = simulator.paused() if len(objects) > MANY else contextlib.nullcontext()
+    with Documents(objects, package_finder(), timeout) as documents, pause:
         for placed in objects:
             progress.start(placed.name)
             try:
