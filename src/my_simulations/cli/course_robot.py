@@ -39,7 +39,7 @@ class Robot:
         self._wait(lambda: self._odometry is not None, "odometry on odom")
         self._wait(lambda: self._scan is not None, "a laser scan on scan")
         self._wait(lambda: self._command.get_num_connections() > 0, "a robot that hears cmd_vel")
-        self._rate = rospy.Rate(hertz)
+        self._rate = rospy.Rate(hertz, reset=True)  # goes on when the world's time is reset
         rospy.on_shutdown(self.stop)
 
     def _hear_odometry(self, message: Any) -> None:
