@@ -70,7 +70,7 @@ def main(words: List[str], program: str) -> int:
         return _refused(fault, say)
     say(f"the world file is {simulator.world.file}")
     ended = threading.Event()
-    for number in (signal.SIGINT, signal.SIGTERM):
+    for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
         signal.signal(number, lambda _number, _frame: ended.set())
     recorder = _record(front_ends, simulator, resolver, options.recording, say)
     try:
