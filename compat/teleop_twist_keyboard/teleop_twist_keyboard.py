@@ -5,6 +5,7 @@ Keys and parameters (`~speed`, `~turn`, `~repeat_rate`, `~key_timeout`) are thos
 """
 from __future__ import annotations
 
+import os
 import select
 import sys
 import termios
@@ -46,7 +47,8 @@ LOOK_SECONDS = 0.1
 def key_within(seconds: float) -> str:
     """The next key, or "" when none was pressed in time."""
     if select.select([sys.stdin], [], [], seconds)[0]:
-        return sys.stdin.read(1) or ENDS
+        # Not by sys.stdin, which would keep keys that came together where select does not look.
+        return os.read(sys.stdin.fileno(), 1).decode("latin-1") or ENDS
     return ""
 
 

@@ -82,7 +82,8 @@ class Teleop(unittest.TestCase):
         self.press("j", 0.0, 0.5)
         self.press("l", 0.0, -0.5)
         self.press(",", -0.2, 0.0)
-        self.press("k", 0.0, 0.0)
+        self.typist.type("ik")         # in one go: the last one counts
+        self.drives(0.0, 0.0)
         self.typist.type("w")          # 10 % faster
         self.press("i", 0.22, 0.0)
         self.typist.type(CTRL_C)
