@@ -211,15 +211,20 @@ def test_a_world_that_was_saved_opens_again(world, tmp_path):
         assert again.states().pose["ball"] == pytest.approx([1, 0, 2, 0, 0, 0, 1])
 
 
-def test_a_lost_engine_ends_the_run_and_reset_opens_it_anew(world):
+def test_a_lost_engine_ends_the_run_and_reset_opens_it_anew(world, tmp_path):
     world.spawn(BALL, pose=[0, 0, 1])
     world.step(100)
     os.kill(world.simulator.engine_pid, signal.SIGKILL)
     with pytest.raises(EngineLostError, match="reset"):
         for _step in range(100):
             world.step(10)
-    with pytest.raises(EngineLostError):
-        world.states()
+    changes = (lambda: world.set_pose("ball", [0, 0, 2, 0, 0, 0]), lambda: world.remove("ball"),
+               lambda: world.spawn(BALL, name="other"), lambda: world.apply_wrench("ball::link"),
+               lambda: world.save_world(str(tmp_path / "rolled_back.world")))
+    for call in (world.states, *changes):
+        with pytest.raises(EngineLostError):
+            call()
+    assert not list(tmp_path.glob("rolled_back*"))
     world.reset()
     assert world.time == 0.0 and world.names == ["ground_plane"]
     world.step(10)

@@ -127,7 +127,7 @@ class OpenWorld:
         steps = whole_number(steps, "steps")
         if not 0 <= steps <= _MOST_STEPS:
             raise CommandError(f"steps must be between 0 and {_MOST_STEPS}, is {steps}")
-        self._refuse_lost()
+        self._whole()
         if steps:
             try:
                 self.simulator.clock.advance(steps)
@@ -138,7 +138,7 @@ class OpenWorld:
             except BaseException:
                 self.simulator.clock.end_advance()
                 raise
-        self._refuse_lost()
+        self._whole()
 
     def reset(self, seed: Optional[int] = None) -> None:
         """Open the world anew, with another seed if one is given.
@@ -192,18 +192,15 @@ class OpenWorld:
 
     def states(self) -> Readings:
         """Where the models are, and how they move."""
-        self._refuse_lost()
-        return model_readings(*self.simulator.states.latest())
+        return model_readings(*self._whole().states.latest())
 
     def links(self) -> Readings:
         """Where all links are, and how they move."""
-        self._refuse_lost()
-        return link_readings(*self.simulator.states.latest())
+        return link_readings(*self._whole().states.latest())
 
     def joints(self) -> JointReadings:
         """Positions and rates of all joint axes."""
-        self._refuse_lost()
-        return joint_readings(*self.simulator.states.latest())
+        return joint_readings(*self._whole().states.latest())
 
     def render(self, pose: Sequence[float], *, frame: str = "",
                look_at: Optional[Sequence[float]] = None, width: int = 320, height: int = 240,
@@ -229,7 +226,7 @@ class OpenWorld:
         Raises:
             CommandError: also if nothing is installed to draw with; it says what is missing.
         """
-        self._refuse_lost()
+        self._whole()
         at = pose_of(pose)
         if look_at is not None:
             at = camera_pose(at.position, vector_of(look_at, "look_at"))
@@ -238,8 +235,7 @@ class OpenWorld:
 
     def contacts(self) -> List[ContactReading]:
         """The contact points of the last step."""
-        self._refuse_lost()
-        return [contact_reading(*found) for found in self.simulator.states.contacts()]
+        return [contact_reading(*found) for found in self._whole().states.contacts()]
 
     def description(self, name: str) -> Model:
         """The description of a model, with all links and joints."""
@@ -259,11 +255,12 @@ class OpenWorld:
         Raises:
             InputError: the document has no usable model.
         """
+        self._whole()
         return self._spawn(document, name, pose_of(pose), lambda model: model)
 
     def remove(self, name: str) -> None:
         """Take a model out of the world."""
-        self.simulator.models.delete(name)
+        self._whole().models.delete(name)
 
     def set_pose(self, name: str, pose: Sequence[float], twist: Optional[Sequence[float]] = None
                  ) -> None:
@@ -275,7 +272,7 @@ class OpenWorld:
             twist: m/s and rad/s (vx vy vz wx wy wz) that it then has; None for at rest.
         """
         speed = Twist() if twist is None else twist_of(twist)
-        states = self.simulator.states
+        states = self._whole().states
         if self.simulator.models.has(name):
             states.set_model_state(name, pose_of(pose), speed)
         else:
@@ -295,7 +292,7 @@ class OpenWorld:
                 for the world.
             point: m from the centre of mass, or from the frame's origin where one is given.
         """
-        self.simulator.wrenches.apply_wrench(
+        self._whole().wrenches.apply_wrench(
             link, vector_of(force, "force"), vector_of(torque, "torque"), frame=frame,
             point=vector_of(point, "point"), duration_ns=nanoseconds_of(duration))
 
@@ -307,7 +304,7 @@ class OpenWorld:
             effort: adds to others on the same axis.
             duration: s of sim time; None for until the world is reset.
         """
-        self.simulator.wrenches.apply_effort(joint, float(effort),
+        self._whole().wrenches.apply_effort(joint, float(effort),
                                              duration_ns=nanoseconds_of(duration))
 
     def drive_joint(self, joint: str, rate: float, effort: float) -> None:
@@ -318,7 +315,7 @@ class OpenWorld:
             rate: rad/s or m/s.
             effort: most that the motor spends, N m or N.
         """
-        self.simulator.drives.drive_axis(joint, float(rate), float(effort))
+        self._whole().drives.drive_axis(joint, float(rate), float(effort))
 
     def move_joint(self, joint: str, position: float, effort: float, rate: float = math.inf
                    ) -> None:
@@ -330,23 +327,21 @@ class OpenWorld:
             effort: most that the motor spends, N m or N.
             rate: fastest that it moves, rad/s or m/s.
         """
-        self.simulator.drives.hold_axis(joint, float(position), float(effort), float(rate))
+        self._whole().drives.hold_axis(joint, float(position), float(effort), float(rate))
 
     def release_joint(self, joint: str) -> None:
         """Switch off what `drive_joint` or `move_joint` has set."""
-        self.simulator.drives.release_axis(joint)
+        self._whole().drives.release_axis(joint)
 
     # -- keeping -----------------------------------------------------------------------------------
 
     def save(self) -> SavedState:
         """Keep the states of all models; see `SavedState` for what that is."""
-        self._refuse_lost()
-        return SavedState(self.time, self.simulator.states.capture())
+        return SavedState(self.time, self._whole().states.capture())
 
     def restore(self, saved: SavedState) -> None:
         """Put time and all models that still exist back to where they were."""
-        self._refuse_lost()
-        self.simulator.states.restore(saved.state)
+        self._whole().states.restore(saved.state)
 
     def save_world(self, path: str, *, overwrite: bool = False, state: bool = False) -> str:
         """Write the world to a .world file; returns its absolute path.
@@ -357,7 +352,7 @@ class OpenWorld:
             state: with sim time and velocities.
         """
         target = os.path.abspath(os.path.expanduser(path))
-        return save_world(self.simulator, target, roots=[os.path.dirname(target)],
+        return save_world(self._whole(), target, roots=[os.path.dirname(target)],
                           resolver=self._files.resolver, overwrite=overwrite, state=state)
 
     # -- helpers -----------------------------------------------------------------------------------
@@ -411,6 +406,8 @@ class OpenWorld:
         if self._listener is not None:
             self._listener(issue)
 
-    def _refuse_lost(self) -> None:
+    def _whole(self) -> Simulator:
+        """The simulator, whose engine was not lost. Raises EngineLostError."""
         if self._lost is not None:
             raise EngineLostError(f"the world has lost its state, call reset: {self._lost}")
+        return self.simulator
