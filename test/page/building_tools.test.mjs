@@ -6,7 +6,8 @@ import {FloorTool, MeasureTool, OpeningTool, StairsTool, WallTool, rescaled, seg
 } from '../../web/js/building/draw_tools.js';
 import {applied, fieldFault, fieldsOf, levelApplied, levelValues, roofApplied, roofValues, valuesOf,
 } from '../../web/js/building/inspector_fields.js';
-import {placeOf} from '../../web/js/building/plan.js';
+import {add, itemOf, placeOf, update} from '../../web/js/building/plan.js';
+import {moveItems} from '../../web/js/building/plan_moves.js';
 import {placingOps} from '../../web/js/building/building_preview.js';
 import {PaintTool, SelectTool} from '../../web/js/building/select_tool.js';
 import {Session} from '../../web/js/building/drawing_session.js';
@@ -268,12 +269,46 @@ test('fields refuse what is outside of their range', () => {
 
 test('level and roof are edited by their inspectors', () => {
   const session = withRoom();
-  const plan = levelApplied(session.plan, 0, {...levelValues(session.plan, 0), name: 'Ground', height: 3});
+  const level = levelValues(session.plan, 0);
+  const plan = levelApplied(session.plan, 0, {...level, name: 'Ground', height: 3}, level);
   assert.equal(plan.levels[0].name, 'Ground');
   assert.equal(plan.levels[0].walls[0].height, 3);
-  const roofed = roofApplied(plan, {...roofValues(plan), kind: 'gable', pitch: 45});
+  const roof = roofValues(plan);
+  const roofed = roofApplied(plan, {...roof, kind: 'gable', pitch: 45}, roof);
   assert.ok(Math.abs(roofed.roof.pitch - Math.PI / 4) < 1e-9);
-  assert.equal(roofApplied(roofed, {...roofValues(roofed), kind: 'none'}).roof, null);
+  assert.equal(roofApplied(roofed, {...roofValues(roofed), kind: 'none'}, roofValues(roofed)).roof, null);
+});
+
+test('an inspector applies what was typed and keeps what was edited beside it', () => {
+  const {plan, ref} = add(withRoom().plan, 0, 'stairs', {position: [0, 0]});
+  const wall = {kind: 'walls', id: 0};
+  const shown = (one) => valuesOf(itemOf(plan, 0, one), plan.levels[0]);
+  const dragged = moveItems(plan, 0, [ref], [5, 0]);
+  const stairs = itemOf(applied(dragged, 0, ref, {...shown(ref), steps: 20}, shown(ref)).plan, 0, ref);
+  assert.deepEqual([stairs.steps, stairs.position], [20, [5, 0]]);
+
+  const painted = update(moveItems(plan, 0, [wall], [0, -5]), 0, wall, {color: '#ff0000', height: 3});
+  const edited = itemOf(applied(painted, 0, wall, {...shown(wall), startX: -1}, shown(wall)).plan, 0, wall);
+  assert.deepEqual([edited.start, edited.end], [[-1, -5], [3.85, -5]]);
+  assert.deepEqual([edited.color, edited.height], ['#ff0000', 3]);
+
+  const level = levelValues(plan, 0);
+  const higher = update(levelApplied(plan, 0, {...level, height: 3}, level), 0, wall, {height: 2});
+  const named = levelApplied(higher, 0, {...level, name: 'Ground'}, level).levels[0];
+  assert.deepEqual([named.name, named.height, named.walls[0].height], ['Ground', 3, 2]);
+
+  const roof = roofValues(plan);
+  const gable = roofApplied(plan, {...roof, kind: 'gable'}, roof);
+  assert.equal(roofApplied(gable, {...roof, thickness: 0.2}, roof).roof.kind, 'gable');
+});
+
+test('a place typed for a free door is refused once the door is in a wall', () => {
+  const {plan, ref} = add(withRoom().plan, 0, 'doors', {position: [9, 9]});
+  const before = valuesOf(itemOf(plan, 0, ref), plan.levels[0]);
+  const put = update(plan, 0, ref, {wall: 0, along: 2});
+  assert.match(applied(put, 0, ref, {...before, x: 8}, before).fault, /open its inspector again/);
+  const lower = applied(put, 0, ref, {...before, height: 1.8}, before).plan.levels[0].doors[0];
+  assert.deepEqual([lower.height, lower.wall, lower.along], [1.8, 0, 2]);
 });
 
 test('what is drawn of an item are paths in pixels of the sheet', () => {

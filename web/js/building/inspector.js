@@ -45,8 +45,8 @@ export function inspectLevel(session) {
   return inspect({
     title: 'Level Inspector', fields: levelFields(session.plan, at),
     values: () => levelValues(session.plan, at),
-    apply(values) {
-      session.commit(levelApplied(session.history.plan, at, values), 'edit level');
+    apply(values, before) {
+      session.commit(levelApplied(session.history.plan, at, values, before), 'edit level');
       return '';
     },
   });
@@ -56,8 +56,8 @@ export function inspectLevel(session) {
 export function inspectRoof(session) {
   return inspect({
     title: 'Roof', fields: ROOF_FIELDS, values: () => roofValues(session.plan),
-    apply(values) {
-      session.commit(roofApplied(session.history.plan, values), 'edit roof');
+    apply(values, before) {
+      session.commit(roofApplied(session.history.plan, values, before), 'edit roof');
       return '';
     },
   });
@@ -78,8 +78,9 @@ function inspect({title, fields, values, apply}) {
   const take = () => {
     const now = {...before};
     for (const {field, get} of inputs) {
-      const value = get(read(before, field));
-      const fault = fieldFault(field, value);
+      const old = read(before, field);
+      const value = get(old);
+      const fault = value === old ? '' : fieldFault(field, value);
       if (fault) {
         dialog.say(fault);
         return false;

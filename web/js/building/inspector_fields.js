@@ -104,20 +104,38 @@ export function valuesOf(item, level) {
 }
 
 /**
- * The plan after an inspector was applied.
+ * What was typed, by the fields' names.
+ * @param {Partial<Values>} values  what the fields hold
+ * @param {Partial<Values>} before  what they held when they were filled
+ * @returns {Partial<Values>}
+ */
+function typedOf(values, before) {
+  return Object.fromEntries(Object.entries(values).filter(([name, value]) =>
+    value !== before[/** @type {keyof Values} */ (name)]));
+}
+
+/**
+ * The plan after an inspector was applied. The plan may have been edited since the fields were
+ * filled: what was typed goes on top of what the item is now.
  * @param {Plan} plan
  * @param {number} at
  * @param {Ref} ref
- * @param {Values} values  what the fields hold
- * @param {Values} before  what they held when it was opened: only what differs is applied
+ * @param {Values} filled  what the fields hold
+ * @param {Values} before  what they held when they were filled: only what differs is applied
  * @returns {{plan: Plan, fault: string}}
  */
-export function applied(plan, at, ref, values, before) {
-  /** @param {string} name */
-  const differs = (name) =>
-    values[/** @type {keyof Values} */ (name)] !== before[/** @type {keyof Values} */ (name)];
+export function applied(plan, at, ref, filled, before) {
   const item = itemOf(plan, at, ref);
   if (!item) return {plan, fault: 'the item no longer exists'};
+  const present = valuesOf(item, plan.levels[at]);
+  const typed = typedOf(filled, before);
+  // A free opening has other fields than one in a wall.
+  if (Object.keys(typed).some((name) => !(name in present))) {
+    return {plan, fault: 'the item was taken into or out of a wall: open its inspector again'};
+  }
+  const values = /** @type {Values} */ ({...present, ...typed});
+  /** @param {string} name */
+  const differs = (name) => name in typed;
   if ('start' in item) return wallApplied(plan, at, ref, values, differs);
   if ('steps' in item) {
     const {x, y, angle, width, depth, height, steps, color, texture} = values;
@@ -202,14 +220,18 @@ export function levelValues(plan, at) {
 }
 
 /**
+ * The plan after the level's inspector was applied; see `applied` for the values.
  * @param {Plan} plan
  * @param {number} at
  * @param {Values} values
+ * @param {Values} before
  */
-export function levelApplied(plan, at, {name, height, color, texture}) {
-  const made = withLevel(setLevelHeight(plan, at, height), at, {name: name.trim() || plan.levels[at].name});
-  const floors = made.levels[at].floors.map((floor) => ({...floor, color, texture}));
-  return floors.length ? withLevel(made, at, {floors}) : made;
+export function levelApplied(plan, at, values, before) {
+  const {name, height, ...look} = typedOf(values, before);
+  let made = height === undefined ? plan : setLevelHeight(plan, at, height);
+  if (name?.trim()) made = withLevel(made, at, {name: name.trim()});
+  if (!Object.keys(look).length) return made;
+  return withLevel(made, at, {floors: made.levels[at].floors.map((floor) => ({...floor, ...look}))});
 }
 
 /** @type {InspectorField[]} */
@@ -225,9 +247,19 @@ export const ROOF_FIELDS = [
 export const roofValues = (plan) => ({thickness: 0.1, overhang: 0, color: '#ffffff', texture: '',
   ...plan.roof, kind: plan.roof?.kind ?? 'none', pitch: degrees(plan.roof?.pitch ?? Math.PI / 6)});
 
-/** @param {Plan} plan @param {Values} values */
-export const roofApplied = (plan, {kind, thickness, overhang, pitch, color, texture}) => ({...plan,
-  roof: kind === 'none' ? null : {kind, thickness, overhang, pitch: radians(pitch), color, texture}});
+/**
+ * The plan after the roof's inspector was applied; see `applied` for the values.
+ * @param {Plan} plan
+ * @param {Values} values
+ * @param {Values} before
+ * @returns {Plan}
+ */
+export function roofApplied(plan, values, before) {
+  const {kind, thickness, overhang, pitch, color, texture} = /** @type {Values} */ (
+    {...roofValues(plan), ...typedOf(values, before)});
+  return {...plan,
+    roof: kind === 'none' ? null : {kind, thickness, overhang, pitch: radians(pitch), color, texture}};
+}
 
 /**
  * What is wrong with a value of a field, '' when nothing is.
