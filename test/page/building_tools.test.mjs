@@ -6,7 +6,9 @@ import {FloorTool, MeasureTool, OpeningTool, StairsTool, WallTool, rescaled, seg
 } from '../../web/js/building/draw_tools.js';
 import {applied, fieldFault, fieldsOf, levelApplied, levelValues, roofApplied, roofValues, valuesOf,
 } from '../../web/js/building/inspector_fields.js';
-import {add, itemOf, placeOf, update} from '../../web/js/building/plan.js';
+import {followLevel} from '../../web/js/building/level_follower.js';
+import {add, addLevel, itemOf, placeOf, removeLevel, update, withLevel,
+} from '../../web/js/building/plan.js';
 import {moveItems} from '../../web/js/building/plan_moves.js';
 import {placingOps} from '../../web/js/building/building_preview.js';
 import {PaintTool, SelectTool} from '../../web/js/building/select_tool.js';
@@ -300,6 +302,34 @@ test('an inspector applies what was typed and keeps what was edited beside it', 
   const roof = roofValues(plan);
   const gable = roofApplied(plan, {...roof, kind: 'gable'}, roof);
   assert.equal(roofApplied(gable, {...roof, thickness: 0.2}, roof).roof.kind, 'gable');
+});
+
+test('a level is followed while others come and go, and lost with its building', () => {
+  const session = withRoom();
+  const commit = (plan) => session.commit(plan, 'edit');
+  commit(addLevel(session.plan));
+  commit(addLevel(session.plan));
+  session.goTo(1);
+  const level = followLevel(session);
+  commit(withLevel(session.plan, 1, {name: 'Middle'}));
+  commit(removeLevel(session.plan, 0));
+  assert.equal(session.plan.levels[level.at()].name, 'Middle');
+  commit(removeLevel(session.plan, 1));
+  commit(addLevel(session.plan));
+  assert.equal(session.plan.levels[level.at()].name, 'Middle');
+  session.undo();
+  assert.equal(level.at(), 0);
+  session.undo();
+  commit(removeLevel(session.plan, 0));
+  assert.equal(level.at(), -1);
+  commit(withLevel(session.plan, 0, {name: 'Top'}));
+  assert.equal(level.at(), -1);
+  session.undo();
+  session.undo();
+  assert.equal(session.plan.levels[level.at()].name, 'Middle');
+  session.open(session.plan);
+  assert.equal(level.at(), -1);
+  level.end();
 });
 
 test('a place typed for a free door is refused once the door is in a wall', () => {

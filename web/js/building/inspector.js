@@ -6,6 +6,7 @@ import {
   roofValues, valuesOf,
 } from './inspector_fields.js';
 import {itemOf, linkName} from './plan.js';
+import {followLevel} from './level_follower.js';
 import {NAMES} from './drawing_session.js';
 /** @import {InspectorField, Values} from './inspector_fields.js' */
 /** @import {Ref} from './plan.js' */
@@ -22,34 +23,41 @@ const shown = (value) => typeof value === 'number' ? String(Math.round(value * 1
  * @param {Session} session
  * @param {Ref} ref
  */
-export function inspectItem(session, ref) {
-  const {at} = session;
-  const item = itemOf(session.plan, at, ref);
-  if (!item) return Promise.resolve();
+export async function inspectItem(session, ref) {
+  const level = followLevel(session);
+  const item = itemOf(session.plan, level.at(), ref);
+  if (!item) {
+    level.end();
+    return;
+  }
   const titles = {walls: 'Wall', windows: 'Window', doors: 'Door', stairs: 'Stairs', floors: 'Floor'};
-  return inspect({
+  await inspect({
     title: `${titles[ref.kind]} Inspector: ${linkName(ref)}`, fields: fieldsOf(ref.kind, item),
-    values: () => valuesOf(itemOf(session.plan, at, ref) ?? item, session.plan.levels[at]),
+    values: () => valuesOf(itemOf(session.plan, level.at(), ref) ?? item, session.plan.levels[level.at()]),
     apply(values, before) {
-      const {plan, fault} = applied(session.history.plan, at, ref, values, before);
+      const {plan, fault} = applied(session.history.plan, level.at(), ref, values, before);
       if (fault) return fault;
       session.commit(plan, `edit ${NAMES[ref.kind]}`);
       return '';
     },
   });
+  level.end();
 }
 
 /** The inspector of the level being drawn. @param {Session} session */
-export function inspectLevel(session) {
-  const {at} = session;
-  return inspect({
-    title: 'Level Inspector', fields: levelFields(session.plan, at),
-    values: () => levelValues(session.plan, at),
+export async function inspectLevel(session) {
+  const level = followLevel(session);
+  await inspect({
+    title: 'Level Inspector', fields: levelFields(session.plan, level.at()),
+    values: () => levelValues(session.plan, level.at()),
     apply(values, before) {
+      const at = level.at();
+      if (at < 0) return 'the level no longer exists';
       session.commit(levelApplied(session.history.plan, at, values, before), 'edit level');
       return '';
     },
   });
+  level.end();
 }
 
 /** @param {Session} session */
