@@ -60,6 +60,26 @@ test('the outline of the walls is the outer one of closed walls, else their boun
   assert.equal(outlineOf([]), null);
 });
 
+test('an outline is a simple one where rooms touch at a corner or are joined by a wall', () => {
+  const box = (x, y) => ring([[x, y], [x + 2, y], [x + 2, y + 2], [x, y + 2]]);
+  const touching = outlineOf(walls(...box(0, 0), ...box(2, 2)));
+  assert.ok(isSimple(touching));
+  close(signedArea(touching), 4.2 * 4.2);
+  const joined = outlineOf(walls(...box(0, 0), ...box(6, 0), [[2, 1], [6, 1]]));
+  assert.ok(isSimple(joined));
+  close(signedArea(joined), 8.2 * 2.2);
+});
+
+test('the outline leaves out no wall', () => {
+  const house = ring([[0, 0], [5, 0], [5, 5], [0, 5]]);
+  const wing = ring([[10, 0], [13, 0], [13, 3], [10, 3]]);
+  close(signedArea(outlineOf(walls(...house, ...wing))), 13.2 * 5.2);
+  close(signedArea(outlineOf(walls(...house, [[5, 5], [8, 5]], [[8, 5], [8, 8]]))), 8.2 * 8.2);
+  close(signedArea(outlineOf(walls(...house, [[1, 1], [2, 1]], [[-0.05, 3], [3, 3]]))), 25);
+  const thick = {...walls([[0, 4], [9, 4]])[0], thickness: 0.6};
+  close(signedArea(outlineOf([...walls([[0, 0], [0, 4]]), thick])), 9.6 * 4.4);
+});
+
 test('the end of a wall snaps to 15 degrees and, with its thickness, to 0.25 m', () => {
   const {point, on} = snapEnd([0, 0], [3.93, 0.2], {thickness: 0.15});
   assert.equal(on, 'grid');

@@ -1,5 +1,5 @@
 /** Closed rooms between walls, and the outline of all walls, by the faces of a plane graph. */
-import {crossing, distance, inPolygon, minus, plus, same, side, signedArea} from './plane_geometry.js';
+import {crossing, distance, inPolygon, minus, nearest, plus, same, side, signedArea} from './plane_geometry.js';
 /** @import {Point} from './plane_geometry.js' */
 /** @import {Wall} from '../protocol.js' */
 
@@ -8,7 +8,13 @@ import {crossing, distance, inPolygon, minus, plus, same, side, signedArea} from
  * @typedef {{point: Point, edges: Map<number, number>}} Corner
  */
 
-/** @type {WeakMap<Wall[], {rooms: Room[], outer: Point[][]}>} */
+/**
+ * The rooms, the outer loops of what stands together, clockwise and with every corner on them, and
+ * all corners.
+ * @typedef {{rooms: Room[], outer: Point[][], corners: Corner[]}} Faces
+ */
+
+/** @type {WeakMap<Wall[], Faces>} */
 const known = new WeakMap();
 
 /**
@@ -27,19 +33,39 @@ const known = new WeakMap();
 export const roomsOf = (walls) => facesOf(walls).rooms;
 
 /**
- * The outer outline of the walls that enclose most; their bounding box where nothing is closed.
+ * The outline of a floor below all walls: the closed loop that no wall leaves, else the bounding box
+ * of the walls, as Gazebo lays every floor.
  * @param {Wall[]} walls
+ * @returns {Point[]|null}
  */
 export function outlineOf(walls) {
   if (!walls.length) return null;
-  const {outer} = facesOf(walls);
-  if (outer.length) return outer.reduce((a, b) => signedArea(b) > signedArea(a) ? b : a);
-  const xs = walls.flatMap(({start, end}) => [start[0], end[0]]);
-  const ys = walls.flatMap(({start, end}) => [start[1], end[1]]);
-  const half = walls[0].thickness / 2;
-  const [x0, x1] = [Math.min(...xs) - half, Math.max(...xs) + half];
-  const [y0, y1] = [Math.min(...ys) - half, Math.max(...ys) + half];
+  // A wall drawn a little too far ends in the wall it crosses.
+  const loop = enclosing(facesOf(walls), Math.max(...walls.map(({thickness}) => thickness)) / 2);
+  if (loop) return loop;
+  const [x0, y0] = [0, 1].map((axis) => Math.min(...walls.map(({start, end, thickness}) =>
+    Math.min(start[axis], end[axis]) - thickness / 2)));
+  const [x1, y1] = [0, 1].map((axis) => Math.max(...walls.map(({start, end, thickness}) =>
+    Math.max(start[axis], end[axis]) + thickness / 2)));
   return [[x0, y0], [x1, y0], [x1, y1], [x0, y1]];
+}
+
+/**
+ * The outer loop that has all walls on it or inside; null where there is none, or where it passes a
+ * corner twice, as about rooms that touch at a corner: no floor can have such an outline.
+ * @param {Faces} faces
+ * @param {number} slack  how far walls may end outside of it, m
+ */
+function enclosing({outer, corners}, slack) {
+  if (!outer.length) return null;
+  const largest = outer.reduce((a, b) => signedArea(b) < signedArea(a) ? b : a);
+  const on = new Set(largest);
+  if (on.size < largest.length) return null;
+  const loop = straightened([...largest].reverse());
+  /** @param {Point} point */
+  const near = (point) => loop.some((corner, at) =>
+    nearest(point, corner, loop[(at + 1) % loop.length]).distance <= slack);
+  return corners.every(({point}) => on.has(point) || inPolygon(point, loop) || near(point)) ? loop : null;
 }
 
 /** @param {Wall[]} walls */
@@ -64,20 +90,20 @@ export function* neighbours(walls) {
   }
 }
 
-/** @param {Wall[]} walls */
+/** @param {Wall[]} walls @returns {Faces} */
 function faces(walls) {
-  const graph = prune(graphOf(walls));
-  const loops = loopsOf(graph);
+  const corners = prune(graphOf(walls));
+  const loops = loopsOf(corners);
   const inner = loops.filter(({points}) => signedArea(points) > 1e-6);
-  const outer = loops.filter(({points}) => signedArea(points) < -1e-6)
-    .map(({points}) => straightened([...points].reverse()));
+  const outer = loops.map(({points}) => points).filter((points) => signedArea(points) < -1e-6);
   const rooms = inner.map(({points, halves}) => {
     const inside = inset(points, halves);
     /** @type {Room} */
     const room = {outline: straightened(points), inside, holes: [], area: signedArea(inside)};
     return room;
   });
-  for (const loop of outer) {
+  for (const points of outer) {
+    const loop = straightened([...points].reverse());
     const holder = rooms.filter((room) => signedArea(room.outline) > signedArea(loop) + 1e-6 &&
       loop.every((point) => inPolygon(point, room.outline)))
       .sort((a, b) => signedArea(a.outline) - signedArea(b.outline))[0];
@@ -85,7 +111,7 @@ function faces(walls) {
     holder.holes.push(loop);
     holder.area -= signedArea(loop);
   }
-  return {rooms, outer};
+  return {rooms, outer, corners};
 }
 
 /**
