@@ -92,6 +92,13 @@ test('a new level copies the walls alone, begins at the highest wall top and has
   assert.equal(upper.floors[0].outline.length, 4);
 });
 
+test('a new level has a name of its own, also after a lower one was deleted', () => {
+  const names = (plan) => plan.levels.map(({name}) => name);
+  const two = addLevel(room());
+  assert.deepEqual(names(addLevel(two)), ['Level 1', 'Level 2', 'Level 3']);
+  assert.deepEqual(names(addLevel(plans.removeLevel(two, 0))), ['Level 2', 'Level 3']);
+});
+
 test('without a wall there is no new level, and the last level stays', () => {
   assert.equal(addLevel(emptyPlan()), null);
   assert.equal(plans.removeLevel(room(), 0), null);

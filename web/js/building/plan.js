@@ -65,15 +65,15 @@ export const DEFAULTS = Object.freeze({
 /** A floor on the ground is thin, so that robots can drive in through the doors. */
 export const GROUND_FLOOR_THICKNESS = 0.01;
 
-/** @param {number} number @returns {Level} */
-const emptyLevel = (number) => ({
-  name: `Level ${number}`, height: 2.5, walls: [], windows: [], doors: [], stairs: [], floors: [],
+/** @param {string} name @returns {Level} */
+const emptyLevel = (name) => ({
+  name, height: 2.5, walls: [], windows: [], doors: [], stairs: [], floors: [],
   image: null,
 });
 
 /** @returns {Plan} */
 export const emptyPlan = (name = 'Untitled') => ({
-  format: FORMAT, name, levels: [emptyLevel(1)], roof: null,
+  format: FORMAT, name, levels: [emptyLevel('Level 1')], roof: null,
   next: {wall: 0, window: 0, door: 0, stairs: 0, floor: 0},
 });
 
@@ -243,6 +243,14 @@ export const detached = (opening, point, yaw) =>
 
 // ---- levels
 
+/** A name by the place above all levels; a later one where lower levels were deleted. @param {Plan} plan */
+function newLevelName({levels}) {
+  const taken = new Set(levels.map(({name}) => name));
+  let number = levels.length + 1;
+  while (taken.has(`Level ${number}`)) number++;
+  return `Level ${number}`;
+}
+
 /**
  * Adds a level on top: a copy of the walls, and a floor.
  * @param {Plan} plan
@@ -254,7 +262,7 @@ export function addLevel(plan) {
   if (!below.walls.length) return null;
   const height = Math.max(...below.walls.map((wall) => wall.height));
   let made = withLevel(plan, at, {height});
-  made = {...made, levels: [...made.levels, emptyLevel(plan.levels.length + 1)]};
+  made = {...made, levels: [...made.levels, emptyLevel(newLevelName(plan))]};
   for (const {id: _, ...wall} of below.walls) made = add(made, at + 1, 'walls', wall).plan;
   return add(made, at + 1, 'floors', {outline: outlineOf(below.walls) ?? [], fit: 'walls'}).plan;
 }
