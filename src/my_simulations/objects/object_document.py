@@ -46,7 +46,7 @@ def decoded(raw: bytes, file: str) -> str:
     encoding = declared.group(1).decode("ascii") if declared else "utf-8"
     try:
         text = raw.decode("utf-8-sig" if encoding.lower() in ("utf-8", "utf8") else encoding)
-    except (UnicodeDecodeError, LookupError) as fault:
+    except (UnicodeError, LookupError) as fault:
         raise InputError([error("object-encoding", f"this is not {encoding} text: {fault}",
                                 file=file, hint="save it as UTF-8")]) from fault
     if declared and encoding.lower() not in ("utf-8", "utf8"):

@@ -8,6 +8,7 @@ from ..errors import CommandError
 from ..geometry import Pose, Twist, Vec3, normalised, pose_from_xyzrpy
 
 _POSE_WIDTH = 7
+_LONGEST = 2.0 ** 62 / 1e9  # s, 146 years
 
 
 def pose_of(values: Sequence[float]) -> Pose:
@@ -44,15 +45,17 @@ def twist_of(values: Sequence[float]) -> Twist:
 
 
 def nanoseconds_of(duration: Optional[float]) -> int:
-    """A duration in s as nanoseconds; -1 for None and infinity, which are for ever.
+    """A duration in s as nanoseconds; -1, for ever, for None and what 64 bits cannot hold.
 
     Raises:
         CommandError: it is no number.
     """
-    if duration is None or duration == math.inf:
+    if duration is None:
         return -1
     if math.isnan(duration):
         raise CommandError("a duration must be a number of seconds, not NaN")
+    if duration >= _LONGEST:
+        return -1
     return max(0, round(max(0.0, duration) * 1e9))
 
 

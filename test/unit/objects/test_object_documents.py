@@ -46,7 +46,8 @@ def test_a_declared_encoding_is_decoded_and_no_longer_declared(tmp_path):
 
 @pytest.mark.parametrize("content,code", [
     (b"", "object-empty"), (b"  \n", "object-empty"), (b"<robot name='\xff'/>", "object-encoding"),
-    (b"<?xml version='1.0' encoding='no-such'?><robot/>", "object-encoding")])
+    (b"<?xml version='1.0' encoding='no-such'?><robot/>", "object-encoding"),
+    (b"<?xml version='1.0' encoding='undefined'?><robot/>", "object-encoding")])
 def test_an_unusable_file_is_an_input_error(tmp_path, content, code):
     path = tmp_path / "bad.urdf"
     path.write_bytes(content)
