@@ -118,6 +118,7 @@ class Body:
         seen_at: its centre of mass at the last read-out; parting an overlap moves it without
             velocity.
         ties: how many joints connect it with other models.
+        loads: how many timed forces act on it now.
         shapes: its collision shapes, by PyBullet's numbers.
         pieces: of its links, with rows, centres of mass and axes of those (`surface_pieces`).
     """
@@ -137,6 +138,7 @@ class Body:
     still: int = 0
     seen_at: Optional[Vec3] = None
     ties: int = 0
+    loads: int = 0
     shapes: Tuple[Tuple[Recipe, int], ...] = ()
     pieces: Tuple[Part, ...] = ()
     lead_row: int = field(init=False)
@@ -159,6 +161,12 @@ class Body:
         """Of each piece, by PyBullet's index, the index of the link it belongs to."""
         indices = {part.row: part.index for part in self.parts}
         return {piece.index: indices[piece.row] for piece in self.pieces}
+
+    @property
+    def sleeps(self) -> bool:
+        """Whether it may sleep as things are: nothing ties or pushes it."""
+        return (self.rigid and self.moves and self.may_sleep
+                and not self.ties and not self.loads)
 
     @property
     def base(self) -> Optional[Part]:
@@ -193,6 +201,18 @@ def set_dynamics(uid: int, index: int, link: Link, mass: float, moments: Vec3,
                sleepThreshold=SLEEP_THRESHOLD)
     elif mass > 0.0:
         change(activationState=pybullet.ACTIVATION_STATE_DISABLE_SLEEPING)
+
+
+def set_sleep(body: Body) -> None:
+    """Let a rigid body sleep from now on, or keep it awake: what ties or pushes it has changed.
+
+    Bullet ignores the forces on a sleeper (measured), and lets one that speeds up slowly sleep.
+    """
+    if body.rigid and body.moves and body.may_sleep:
+        pybullet.changeDynamics(
+            body.uid, BASE, sleepThreshold=SLEEP_THRESHOLD,
+            activationState=pybullet.ACTIVATION_STATE_ENABLE_SLEEPING if body.sleeps
+            else pybullet.ACTIVATION_STATE_DISABLE_SLEEPING)
 
 
 def set_decay(uid: int, link: Link, dt: float) -> None:

@@ -17,11 +17,11 @@ wheels were not solved in 50 iterations (measured). While one that touches somet
 world is solved to 3e-8 m/s and with more iterations, which takes five times as long. One that has
 then stood still for half a second, that nothing acts on but gravity and static bodies, and of which
 no motor moves an axis, is held: put back with its joints every 16 steps, at rest. Until something
-touches it, the world is solved as if it were not there. Rigid bodies that may not
-sleep creep where friction holds them up; while there are such, it is solved to 3e-6 m/s. What
-moves, sleeps, or stands on the level costs nothing. Small ones that may not sleep creep on the
-level too, for which 3e-4 m/s is much: twenty cards of 2 mm went 2.7 mm apart in 20 s, solved so
-0.3 mm.
+touches it, the world is solved as if it were not there. Rigid bodies that may not sleep, or that a
+force or a tie keeps awake, creep where friction holds them; while there are such, it is solved to
+3e-6 m/s. What moves, sleeps, or stands on the level costs nothing. Small ones that may not sleep
+creep on the level too, for which 3e-4 m/s is much: twenty cards of 2 mm went 2.7 mm apart in 20 s,
+solved so 0.3 mm.
 """
 from __future__ import annotations
 
@@ -92,7 +92,7 @@ class ContactSettling:
         self._loaded, self._driven, self._on_held = loaded, driven, on_held
         self._trees: Dict[int, _Tree] = {}
         self._moving: Set[int] = set()
-        self._rigid: Dict[int, Body] = {}
+        self._rigid: Dict[int, Body] = {}     # awake, or reached by a command since the last look
         self._level = 0
         self._leaning = False
         self._iterations = 50
@@ -118,7 +118,7 @@ class ContactSettling:
             self._moving.add(body.uid)
         if body.moves and not body.rigid:
             self._trees[body.uid] = _Tree(body, [axis.index for axis in body.axes])
-        elif body.moves and not body.may_sleep:
+        elif body.moves and not body.sleeps:
             self._rigid[body.uid] = body
 
     def forget(self, body: Body) -> None:
@@ -139,7 +139,9 @@ class ContactSettling:
         self._new, self._until = False, None
 
     def touched(self, body: Body) -> None:
-        """A command reached a body: it may move from now on."""
+        """A command reached a body: it may move from now on, or may not sleep any more."""
+        if body.rigid and body.moves:
+            self._rigid[body.uid] = body
         tree = self._trees.get(body.uid)
         if tree is not None:
             held, tree.held = tree.held, None
@@ -182,6 +184,7 @@ class ContactSettling:
             self._until = None
             self._split(False)
         if step % _RIGID_EVERY == 0:
+            self._rigid = {uid: body for uid, body in self._rigid.items() if not body.sleeps}
             self._leaning = any(_creeps(body) for body in self._rigid.values())
         standing = False
         for tree in self._trees.values():

@@ -10,7 +10,7 @@ import pybullet
 
 from ...geometry import Quat, Vec3, add, conjugate, cross, rotate, scale
 from ..commands import TimedEffort, TimedForce, TimedWrench
-from .bodies import Axis, Body, Part
+from .bodies import Axis, Body, Part, set_sleep
 from .force_dependent_slip import ForceDependentSlip
 from .implicit_axes import ImplicitAxes
 from .joint_pid import MOST_EFFORT, PidController
@@ -100,16 +100,16 @@ class Forces:
         self.slip.forget(body)
         self.set_implicit(body, None)
         self.servos.forget(body)
+        rows = {part.row for part in body.parts}
+        axes = {axis.row for axis in body.axes}
+        self.drop([force.force_id for force in self._timed.values()
+                   if force.row in (rows if isinstance(force, TimedWrench) else axes)])
         for part in body.parts:
             self._parts.pop(part.row, None)
             self._weightless.pop(part.row, None)
         for axis in body.axes:
             self._axes.pop(axis.row, None)
             self._limits.pop(axis.row, None)
-        rows = {part.row for part in body.parts}
-        axes = {axis.row for axis in body.axes}
-        self.drop([force.force_id for force in self._timed.values()
-                   if force.row in (rows if isinstance(force, TimedWrench) else axes)])
 
     def add(self, forces: Sequence[TimedForce]) -> str:
         """Queue timed forces; returns why not, or ""."""
@@ -124,7 +124,12 @@ class Forces:
         ended = [self._loops.pop(force_id, None) for force_id in force_ids]
         for force_id in force_ids:
             self._timed.pop(force_id, None)
-            self._acting.pop(force_id, None)
+            force = self._acting.pop(force_id, None)
+            if force is not None:
+                body = self._target(force)
+                body.loads -= 1
+                if not body.loads:
+                    set_sleep(body)
         if any(ended):
             self._tell_loops()
 
@@ -248,7 +253,13 @@ class Forces:
         if len(self._loops) != loops:
             self._tell_loops()
         if beginning:
-            self._wake([self._target(force) for force in beginning])
+            targets = [self._target(force) for force in beginning]
+            self._wake(targets)
+            for body in targets:
+                # As in Gazebo, where a force wakes its body in each step.
+                body.loads += 1
+                if body.loads == 1:
+                    set_sleep(body)
 
     def _target(self, force: TimedForce) -> Body:
         if isinstance(force, TimedWrench):

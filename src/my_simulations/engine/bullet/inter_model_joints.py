@@ -14,7 +14,7 @@ from ...geometry import IDENTITY
 from ..api import CommandRefusedError
 from ..body_plan import BASE, TIE_TYPES
 from ..commands import ConnectModels
-from .bodies import SLEEP_THRESHOLD, Body, Part
+from .bodies import Body, Part, set_sleep
 from .constraint_book import ConstraintBook, Number
 from .joint_constraints import End, tie
 
@@ -69,9 +69,8 @@ class InterModelJoints:
         _let_collide(found, False)
         for body in found.bodies:
             body.ties += 1
-            if body.ties == 1 and body.rigid and body.moves:
-                pybullet.changeDynamics(body.uid, BASE,
-                                        activationState=pybullet.ACTIVATION_STATE_DISABLE_SLEEPING)
+            if body.ties == 1:
+                set_sleep(body)
 
     def _world(self) -> End:
         """An immovable body without a shape: PyBullet ties rigid bodies to bodies only."""
@@ -104,10 +103,8 @@ class InterModelJoints:
         self._book.remove(one.constraints)
         for tied in one.bodies:
             tied.ties -= 1
-            if not tied.ties and tied.rigid and tied.moves and tied.may_sleep:
-                pybullet.changeDynamics(
-                    tied.uid, BASE, sleepThreshold=SLEEP_THRESHOLD,
-                    activationState=pybullet.ACTIVATION_STATE_ENABLE_SLEEPING)
+            if not tied.ties:
+                set_sleep(tied)
 
     def clear(self) -> None:
         """All bodies are gone."""

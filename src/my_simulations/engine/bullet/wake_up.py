@@ -44,7 +44,7 @@ class WakeUp:
                 queue.append(near)
 
     def _rouse(self, body: Body) -> None:
-        if body.moves and body.rigid and body.may_sleep and not body.ties:
+        if body.sleeps:
             pybullet.changeDynamics(body.uid, BASE,
                                     activationState=pybullet.ACTIVATION_STATE_WAKE_UP)
         self._touch(body)
