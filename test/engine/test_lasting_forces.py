@@ -2,10 +2,11 @@
 from __future__ import annotations
 
 import pytest
-from conftest import Lab, box, slab
+from conftest import Lab, box, inertial_of_box, link_of, slab
 from laws import Laws
 
-from my_simulations.description.shapes import Surface
+from my_simulations.description.model import Model
+from my_simulations.description.shapes import Box, Surface
 from my_simulations.engine.commands import (
     FOREVER,
     AddTimedForces,
@@ -78,3 +79,24 @@ def test_what_friction_holds_against_a_force_stays(lab: Lab, laws: Laws, size: f
     lab.seconds(30)
     laws.near("lasting force: creep of what friction holds in 30 s, m", lab.pose(held).position,
               start, abs=5e-5)
+
+
+@pytest.mark.parametrize("force, torque, height", [
+    ((1.0, 0.0, 0.0), (0.0, 0.0, 0.0), 0.15), ((1.0, 0.0, 0.0), (0.0, 0.0, 0.0), -0.15),
+    ((0.0, 0.0, 0.0), (0.0, 0.15, 0.0), 0.0), ((0.0, 0.0, 0.0), (0.0, 0.0, 0.02), 0.0),
+], ids=["at its top", "at its foot", "torque that tips", "torque that turns"])
+@pytest.mark.parametrize("articulated", [False, True])
+def test_what_friction_holds_against_a_torque_stays(lab: Lab, laws: Laws, force, torque,
+                                                    height: float, articulated: bool):
+    lab.load(slab("floor", (40, 40, 1)), (0, 0, -0.5))
+    column = Model("column", links=[link_of(Box((0.1, 0.1, 0.3)),
+                                            inertial_of_box(1.0, 0.1, 0.1, 0.3))])
+    held = lab.load(column, (0, 0, 0.15), articulated=articulated)
+    lab.seconds(1)
+    start = lab.pose(held)
+    _push(lab, held, force, torque, (0.0, 0.0, height))
+    lab.seconds(4)
+    laws.near("lasting torque: creep of what friction holds in 4 s, m", lab.pose(held).position,
+              start.position, abs=1e-5)
+    laws.near("lasting torque: how far it turns in 4 s", lab.pose(held).orientation,
+              start.orientation, abs=1e-5)

@@ -47,13 +47,11 @@ class Forces:
         self._implicit: Dict[int, ImplicitAxes] = {}
         self._resting: Dict[int, ImplicitAxes] = {}   # dampers of bodies that are held
         self._limits: Dict[int, Tuple[float, float]] = {}
-        self._placed: Set[int] = set()
         self.servos = JointServos(self._axes, wake, release)
         self.slip = ForceDependentSlip()
 
     def add_body(self, body: Body) -> None:
         """Know the rows of a new body."""
-        self._placed.add(body.uid)
         for part in body.parts:
             self._parts[part.row] = (body, part)
             if not part.gravity and body.moves:
@@ -89,14 +87,12 @@ class Forces:
 
     def disturbed(self, body: Body) -> None:
         """A body was put somewhere, or its joints were set."""
-        self._placed.add(body.uid)
         if body.uid in self._implicit:
             self._implicit[body.uid].disturbed()
         self.servos.disturbed(body)
 
     def forget(self, body: Body) -> None:
         """Drop a body and every timed force on it."""
-        self._placed.discard(body.uid)
         self.slip.forget(body)
         self.set_implicit(body, None)
         self.servos.forget(body)
@@ -145,7 +141,6 @@ class Forces:
                       self._weightless, self._implicit, self._resting, self._limits):
             table.clear()
         self.slip.clear()
-        self._placed.clear()
         self.servos.clear()
         if ended:
             self._tell_loops()
@@ -174,14 +169,12 @@ class Forces:
         return {self._target(force).uid for force in self._acting.values()} | self.servos.moving
 
     def due(self, step: int) -> int:
-        """Each step while something acts anew in it, or was put somewhere before it."""
+        """Each step while something acts anew in it."""
         return step if (self._timed or self._weightless or self._implicit
-                        or self._placed or not self.slip.idle
-                        or not self.servos.idle) else FAR
+                        or not self.slip.idle or not self.servos.idle) else FAR
 
     def after(self, step: int, dt: float, gravity: Vec3) -> None:
-        """Forget who was put somewhere before the step."""
-        self._placed.clear()
+        """Do nothing after a step."""
 
     def before(self, step: int, dt: float, gravity: Vec3) -> None:
         """Everything that acts in the step that begins at count `step`."""
@@ -274,7 +267,7 @@ class Forces:
         force, torque = _in_world(wrench, part, turn)
         if force != _NOTHING:
             pybullet.applyExternalForce(body.uid, part.index, force, at, pybullet.WORLD_FRAME)
-        if torque != _NOTHING and body.rigid and body.uid in self._placed:
+        if torque != _NOTHING and body.rigid:
             _spin_up(body.uid, turn, part.moments, scale(torque, dt))
         elif torque != _NOTHING:
             pybullet.applyExternalTorque(body.uid, part.index, torque, pybullet.WORLD_FRAME)
@@ -287,14 +280,16 @@ def _in_world(wrench: TimedWrench, part: Part, turn: Quat) -> Tuple[Vec3, Vec3]:
         # The link's axes, not the principal ones that PyBullet's frame follows.
         back = conjugate(part.link_from_com.orientation)
         force, torque, point = (rotate(turn, rotate(back, v)) for v in (force, torque, point))
-    return force, add(torque, cross(point, force))
+    return force, add(torque, cross(point, force)) if any(point) else torque
 
 
 def _spin_up(uid: int, turn: Quat, moments: Vec3, impulse: Vec3) -> None:
     """Give a rigid body angular momentum (N m s, world axes).
 
-    In its first step, and in the first after it was put somewhere, a torque would meet the inertia
-    of its shape, or of its former attitude: Bullet turns the inertia along at the end of a step.
+    Bullet leaves torques out of its friction: what friction holds would creep by the velocity that
+    a torque gives in one step. And in a body's first step, and in the first after it was put
+    somewhere, a torque would meet the inertia of its shape, or of its former attitude: Bullet turns
+    the inertia along at the end of a step.
     """
     linear, angular = pybullet.getBaseVelocity(uid)
     a, b, c = rotate(conjugate(turn), impulse)
