@@ -10,8 +10,10 @@ from laws import Laws
 
 from my_simulations.description.model import Inertial, Joint, JointAxis, Link, Model
 from my_simulations.description.shapes import Surface
-from my_simulations.engine.commands import SetModelState
+from my_simulations.engine.commands import FOREVER, AddTimedForces, SetModelState, TimedWrench
 from my_simulations.geometry import Pose, Twist, conjugate, quat_from_rpy, rotate
+
+G = 9.8
 
 
 def test_free_fall_is_the_integrators_own_formula(lab: Lab, laws: Laws):
@@ -99,17 +101,36 @@ def test_gravity_can_change_while_bodies_sleep(lab: Lab):
     assert math.isfinite(lab.twist(resting).linear[2])
 
 
-@pytest.mark.parametrize("dt", [0.001, 0.004])
-def test_velocity_decay_takes_its_share_off_in_every_step(lab: Lab, dt: float):
+@pytest.mark.parametrize("dt", [0.001, 0.004, 0.0001])
+@pytest.mark.parametrize("linear, angular", [(0.01, 0.005), (0.002, 0.05), (0.3, 0.001),
+                                             (1.0, 1.0)])
+def test_velocity_decay_takes_its_share_off_in_every_step(lab: Lab, dt: float, linear: float,
+                                                          angular: float):
     lab.configure(gravity=(0.0, 0.0, 0.0))
     model = box()
-    model.links[0].linear_decay, model.links[0].angular_decay = 0.01, 0.005
+    model.links[0].linear_decay, model.links[0].angular_decay = linear, angular
     coasting = lab.load(model)
     lab.configure(step_size=dt)
     lab.push(coasting, (10, 0, 0), (0, 0, 2))
     lab.steps(100)
-    assert lab.twist(coasting).linear[0] == pytest.approx(10 * 0.99 ** 100, rel=1e-6)
-    assert lab.twist(coasting).angular[2] == pytest.approx(2 * 0.995 ** 100, rel=1e-6)
+    assert lab.twist(coasting).linear[0] == pytest.approx(10 * (1 - linear) ** 100, rel=1e-6)
+    assert lab.twist(coasting).angular[2] == pytest.approx(2 * (1 - angular) ** 100, rel=1e-6)
+
+
+@pytest.mark.parametrize("share", [0.001, 0.01, 0.03, 0.04, 0.05])
+def test_a_damped_body_falls_and_turns_at_its_terminal_velocity(lab: Lab, laws: Laws,
+                                                                share: float):
+    model = box()
+    model.links[0].linear_decay = model.links[0].angular_decay = share
+    sinking = lab.load(model)
+    lab.apply(AddTimedForces((TimedWrench(1, lab.rows[sinking, "link"], 0, FOREVER,
+                                          torque=(0.0, 0.0, G / 6)),)))
+    lab.steps(2000)
+    left = 1.0 - (1.0 - share) ** 2000
+    laws.near("velocity decay: terminal velocity, m/s", lab.twist(sinking).linear[2],
+              -G * 0.001 / share * left, rel=1e-6)
+    laws.near("velocity decay: terminal rate, rad/s", lab.twist(sinking).angular[2],
+              G * 0.001 / share * left, rel=1e-6)
 
 
 def test_a_free_asymmetric_body_keeps_its_momentum_and_flips(lab: Lab, laws: Laws):

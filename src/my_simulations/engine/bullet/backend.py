@@ -110,7 +110,7 @@ class BulletBackend:
         self._planar = PlanarMotion(self._models, self._mover.model_pose, driver.around)
         self._wrenches = JointWrenches(self._models, self._forces, self._sliding)
         # What acts around the steps, in the order in which it does.
-        helpers = (self._friction, self._bounces, self._settling, self._forces, self._decay,
+        helpers = (self._friction, self._bounces, self._settling, self._decay, self._forces,
                    self._planar, self._rolling, self._spin, self._residual, self._sliding,
                    self._holds, self._stop, self._landing, self._seams)
         self._loop = StepLoop(helpers, pybullet.stepSimulation)
@@ -169,9 +169,7 @@ class BulletBackend:
             for entry in self._models.values():
                 for body in entry.bodies:
                     self._set_up_axes(body, entry.model)
-                    if body.rigid and body.moves:
-                        link = entry.model.links[body.parts[0].row - entry.first_row]
-                        bodies.set_decay(body.uid, link, settings.step_size)
+                    self._decay.add(body, settings.step_size)
 
     def step(self, first: int, count: int) -> None:
         """Make `count` steps."""
@@ -241,7 +239,7 @@ class BulletBackend:
         """Build a model and know it."""
         dt, first_row = self._settings.step_size, builder.link_rows.start
         try:
-            built = builder.build(pose, dt)
+            built = builder.build(pose)
         except ShapeError as fault:
             raise CommandRefusedError(str(fault)) from fault
         constraints = Constraints(self._book, model, builder.plans, built, pose,
@@ -253,8 +251,8 @@ class BulletBackend:
             list(constraints.closing), model, pose, first_row, rows.start))
         for body in built:
             self._register(body)
+            self._decay.add(body, dt)
             for part in body.parts:
-                self._decay.add(body, part, part.link)
                 self._rolling.add(body, part, part.link)
                 if not slips(part.link):
                     self._sliding.add(body, part, part.link)

@@ -119,6 +119,7 @@ class Body:
             velocity.
         ties: how many joints connect it with other models.
         loads: how many timed forces act on it now.
+        turn_kept: share of its angular velocity that Bullet's damping leaves in a step.
         shapes: its collision shapes, by PyBullet's numbers.
         pieces: of its links, with rows, centres of mass and axes of those (`surface_pieces`).
     """
@@ -139,6 +140,7 @@ class Body:
     seen_at: Optional[Vec3] = None
     ties: int = 0
     loads: int = 0
+    turn_kept: float = 1.0
     shapes: Tuple[Tuple[Recipe, int], ...] = ()
     pieces: Tuple[Part, ...] = ()
     lead_row: int = field(init=False)
@@ -213,17 +215,6 @@ def set_sleep(body: Body) -> None:
             body.uid, BASE, sleepThreshold=SLEEP_THRESHOLD,
             activationState=pybullet.ACTIVATION_STATE_ENABLE_SLEEPING if body.sleeps
             else pybullet.ACTIVATION_STATE_DISABLE_SLEEPING)
-
-
-def set_decay(uid: int, link: Link, dt: float) -> None:
-    """SDF's velocity_decay of a rigid body.
-
-    Gazebo's ODE takes the share off in every step; Bullet's damping d leaves (1 - d) ** dt of it.
-    """
-    if link.linear_decay or link.angular_decay:
-        damping = [1.0 - (1.0 - min(1.0, decay)) ** (1.0 / dt)
-                   for decay in (link.linear_decay, link.angular_decay)]
-        pybullet.changeDynamics(uid, BASE, linearDamping=damping[0], angularDamping=damping[1])
 
 
 def let_rest(uid: int) -> None:

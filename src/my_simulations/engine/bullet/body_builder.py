@@ -26,7 +26,6 @@ from .bodies import (
     piece_pose,
     radius_of,
     remove,
-    set_decay,
     set_dynamics,
     sweep,
 )
@@ -107,15 +106,15 @@ class Builder:
         self._prints = [self._rigid(plan, command.meshes) if self._is_rigid(plan)
                         else self._tree(plan, command.meshes) for plan in self.plans]
 
-    def build(self, pose: Pose, dt: float) -> List[Body]:
+    def build(self, pose: Pose) -> List[Body]:
         """All bodies, with the model frame at `pose` and Gazebo's dynamics, not PyBullet's.
 
-        `dt` is the step size, s. Raises ShapeError; then what had been built is gone.
+        Raises ShapeError; then what had been built is gone.
         """
         built: List[Body] = []
         try:
             for each in self._prints:
-                built.append(self._build_rigid(each, pose, dt) if isinstance(each, _Rigid)
+                built.append(self._build_rigid(each, pose) if isinstance(each, _Rigid)
                              else self._build_tree(each, pose))
             self._ignore_each_other(built)
         except Exception:
@@ -140,7 +139,7 @@ class Builder:
         return _Rigid(number, static, masses, compose(link.pose, masses.com), tuple(
             self._shapes.recipes(link.collisions, meshes, inverse(masses.com), static)))
 
-    def _build_rigid(self, rigid: _Rigid, pose: Pose, dt: float) -> Body:
+    def _build_rigid(self, rigid: _Rigid, pose: Pose) -> Body:
         link, masses = self._model.links[rigid.number], rigid.masses
         at = compose(pose, rigid.model_from_com)
         taken = tuple((piece, self._shapes.take(piece)) for piece in rigid.pieces)
@@ -163,8 +162,6 @@ class Builder:
         for uid in uids:
             set_dynamics(uid, BASE, link, masses.mass, masses.moments,
                          body.may_sleep and not rigid.static)
-            if body.rigid:
-                set_decay(uid, link, dt)
             if body.rigid and rigid.static:
                 let_rest(uid)
         body.radius = radius_of(uids[0])

@@ -268,7 +268,8 @@ class Forces:
         if force != _NOTHING:
             pybullet.applyExternalForce(body.uid, part.index, force, at, pybullet.WORLD_FRAME)
         if torque != _NOTHING and body.rigid:
-            _spin_up(body.uid, turn, part.moments, scale(torque, dt))
+            # Bullet's damping, of the step, would take its share off it.
+            _spin_up(body.uid, turn, part.moments, scale(torque, dt / body.turn_kept))
         elif torque != _NOTHING:
             pybullet.applyExternalTorque(body.uid, part.index, torque, pybullet.WORLD_FRAME)
 

@@ -1,7 +1,9 @@
-"""SDF's velocity_decay of links of articulated bodies.
+"""SDF's velocity_decay.
 
-Gazebo's ODE takes the share off a link's velocities in every step, and the joints then have their
-say. Here the force and torque that would take it off a free link act on each of them.
+Gazebo's ODE takes the share off a link's velocities in every step, and what acts on it then has its
+say. For joint-free bodies Bullet's damping d is the same, which leaves (1 - d) ** dt of a velocity;
+but where little is left of it in one second, d cannot be told from 1, and there it is taken off
+here. On links of articulated bodies the force and torque act that would take it off a free link.
 """
 from __future__ import annotations
 
@@ -9,24 +11,31 @@ from typing import Dict, Tuple
 
 import pybullet
 
-from ...description.model import Link
 from ...geometry import Vec3, conjugate, rotate, scale
+from ..body_plan import BASE
 from .bodies import Body, Part
 from .link_states import motion
 from .step_helper import FAR
 
+_LEAST_LEFT = 1e-9   # of a velocity after 1 s; the share of a step is exact to 1e-7 of dt, in s
+
 
 class VelocityDecay:
-    """Slows links down in every step."""
+    """Slows links down in every step, before anything else acts on them."""
 
     def __init__(self) -> None:
         self._links: Dict[int, Tuple[Body, Part, float, float]] = {}
 
-    def add(self, body: Body, part: Part, link: Link) -> None:
-        """Know a link of a body; rigid bodies have Bullet's own damping."""
-        shares = min(1.0, link.linear_decay), min(1.0, link.angular_decay)
-        if not body.rigid and body.moves and any(shares):
-            self._links[part.row] = (body, part, *shares)
+    def add(self, body: Body, dt: float) -> None:
+        """Know a body, or anew after the step size was set; `dt`: step size, s."""
+        for part in body.parts if body.moves else ():
+            link = part.link
+            linear, angular = min(1.0, link.linear_decay), min(1.0, link.angular_decay)
+            if body.rigid and (linear or angular):
+                linear, angular = _damp(body, linear, angular, dt)
+            self._links.pop(part.row, None)
+            if linear or angular:
+                self._links[part.row] = (body, part, linear, angular)
 
     def forget(self, body: Body) -> None:
         """A body is gone."""
@@ -47,15 +56,40 @@ class VelocityDecay:
     def before(self, step: int, dt: float, gravity: Vec3) -> None:
         """Act in the next step, of `dt` s."""
         for body, part, linear_share, angular_share in self._links.values():
-            at, turn, linear, angular = motion(body.uid, part.index)
-            if linear_share:
-                pybullet.applyExternalForce(
-                    body.uid, part.index, scale(linear, -linear_share * part.mass / dt), at,
-                    pybullet.WORLD_FRAME)
-            if angular_share:
-                own = rotate(conjugate(turn), angular)
-                torque = tuple(i * w for i, w in zip(part.moments, own))
-                pybullet.applyExternalTorque(
-                    body.uid, part.index,
-                    scale(rotate(turn, (torque[0], torque[1], torque[2])), -angular_share / dt),
-                    pybullet.WORLD_FRAME)
+            if body.rigid:
+                _slow_down(body.uid, linear_share, angular_share)
+            else:
+                _hold_back(body.uid, part, linear_share / dt, angular_share / dt)
+
+
+def _damp(body: Body, linear: float, angular: float, dt: float) -> Tuple[float, float]:
+    """Set Bullet's damping of a rigid body; returns the shares that it cannot take off."""
+    most = 1.0 - _LEAST_LEFT ** dt
+    taken = [share if 0.0 <= share <= most else 0.0 for share in (linear, angular)]
+    damping = [1.0 - (1.0 - share) ** (1.0 / dt) for share in taken]
+    pybullet.changeDynamics(body.uid, BASE, linearDamping=damping[0], angularDamping=damping[1])
+    body.turn_kept = 1.0 - taken[1]
+    return linear - taken[0], angular - taken[1]
+
+
+def _slow_down(uid: int, linear_share: float, angular_share: float) -> None:
+    """Take shares off the velocities of a rigid body."""
+    linear, angular = pybullet.getBaseVelocity(uid)
+    if any(linear) or any(angular):
+        pybullet.resetBaseVelocity(uid, scale(linear, 1.0 - linear_share),
+                                   scale(angular, 1.0 - angular_share))
+
+
+def _hold_back(uid: int, part: Part, linear_rate: float, angular_rate: float) -> None:
+    """Let a force and a torque act against the velocities of a link, by rates in 1/s."""
+    at, turn, linear, angular = motion(uid, part.index)
+    if linear_rate:
+        pybullet.applyExternalForce(uid, part.index, scale(linear, -linear_rate * part.mass), at,
+                                    pybullet.WORLD_FRAME)
+    if angular_rate:
+        own = rotate(conjugate(turn), angular)
+        torque = tuple(i * w for i, w in zip(part.moments, own))
+        pybullet.applyExternalTorque(
+            uid, part.index,
+            scale(rotate(turn, (torque[0], torque[1], torque[2])), -angular_rate),
+            pybullet.WORLD_FRAME)
