@@ -5,11 +5,11 @@ import math
 
 import numpy as np
 import pytest
-from conftest import Lab, ball, box, ground, slab
+from conftest import Lab, ball, box, ground, inertial_of_box, link_of, slab
 from laws import Laws
 
 from my_simulations.description.model import Inertial, Joint, JointAxis, Link, Model
-from my_simulations.description.shapes import Surface
+from my_simulations.description.shapes import Box, Surface
 from my_simulations.engine.commands import FOREVER, AddTimedForces, SetModelState, TimedWrench
 from my_simulations.geometry import Pose, Twist, conjugate, quat_from_rpy, rotate
 
@@ -131,6 +131,42 @@ def test_a_damped_body_falls_and_turns_at_its_terminal_velocity(lab: Lab, laws: 
               -G * 0.001 / share * left, rel=1e-6)
     laws.near("velocity decay: terminal rate, rad/s", lab.twist(sinking).angular[2],
               G * 0.001 / share * left, rel=1e-6)
+
+
+@pytest.mark.parametrize("size", [(0.2, 0.2, 0.2), (0.1, 0.2, 0.4)])
+@pytest.mark.parametrize("articulated", [False, True])
+@pytest.mark.parametrize("share", [0.001, 0.03])
+def test_velocity_decay_slows_what_tumbles_freely(lab: Lab, laws: Laws, size, articulated: bool,
+                                                  share: float):
+    lab.configure(gravity=(0.0, 0.0, 0.0))
+    link = link_of(Box(size), inertial_of_box(1.0, *size))
+    link.angular_decay = share
+    satellite = lab.load(Model("satellite", links=[link]), articulated=articulated)
+    lab.push(satellite, angular=(0.0, 0.0, 10.0))
+    lab.steps(1000)
+    laws.near("velocity decay: rate of what tumbles after 1000 steps, rad/s",
+              lab.twist(satellite).angular[2], 10.0 * (1.0 - share) ** 1000, abs=1e-5)
+
+
+def test_a_damped_body_tumbles_as_eulers_equations_say(lab: Lab, laws: Laws):
+    """The share is taken off the momentum, which keeps its direction."""
+    lab.configure(gravity=(0.0, 0.0, 0.0))
+    moments = (0.1, 0.2, 0.3)
+    brick = Model("brick", links=[Link("link", inertial=Inertial(
+        1.0, Pose(), moments[0], 0, 0, moments[1], 0, moments[2]), angular_decay=2e-4)])
+    model = lab.load(brick)
+    lab.push(model, angular=(1.0, 10.0, 1.0))
+
+    def momentum():
+        turn = lab.pose(model).orientation
+        own = rotate(conjugate(turn), lab.twist(model).angular)
+        return rotate(turn, tuple(i * w for i, w in zip(moments, own)))
+
+    lab.backend.read()
+    before = momentum()
+    lab.steps(5000)
+    laws.near("velocity decay: momentum of what tumbles after 5 s, N m s", momentum(),
+              [each * (1.0 - 2e-4) ** 5000 for each in before], abs=1e-3)
 
 
 def test_a_free_asymmetric_body_keeps_its_momentum_and_flips(lab: Lab, laws: Laws):

@@ -44,9 +44,10 @@ class GyroscopicArticulated:
         self._then: Dict[int, Whole] = {}
 
     def add(self, body: Body) -> None:
-        """Know a body; those joined to the world, and those gravity turns, are left alone."""
+        """Know a body; those joined to the world, turned by gravity or damped are left alone."""
         if (not body.rigid and body.moves and body.base is not None
-                and all(part.gravity for part in body.parts)):
+                and all(part.gravity and not part.link.linear_decay and not part.link.angular_decay
+                        for part in body.parts)):
             self._bodies[body.uid] = body
 
     def forget(self, body: Body) -> None:

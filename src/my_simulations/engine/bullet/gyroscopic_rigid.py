@@ -3,7 +3,8 @@
 Bullet integrates the gyroscopic torque to first order: a body with three different moments that
 turns at 10 rad/s loses 3 to 5 % of its momentum and 10 % of its energy in 20 s. Without torque the
 momentum L = R I R^T w stays (Euler's equations), so the attitude follows q' = w(q) q / 2 with
-w = R I^-1 R^T L alone: after a free step it is put where Runge-Kutta 4 says.
+w = R I^-1 R^T L alone: after a free step it is put where Runge-Kutta 4 says. Of a damped body the
+damping's share is taken off L.
 
 Only bodies that turn fast are looked at in each step; which they are is asked now and then.
 """
@@ -14,7 +15,7 @@ from typing import Callable, Dict, List, Set, Tuple
 
 import pybullet
 
-from ...geometry import Quat, Vec3, conjugate, normalised, rotate
+from ...geometry import Quat, Vec3, conjugate, normalised, rotate, scale
 from .bodies import Body
 from .gyroscopic_articulated import GyroscopicArticulated
 from .step_helper import FAR, next_multiple
@@ -95,7 +96,7 @@ class GyroscopicRigid:
                     or pybullet.getContactPoints(bodyA=uid)):
                 continue
             moments = self._moments[uid]
-            momentum = _momentum(turn, angular, moments)
+            momentum = scale(_momentum(turn, angular, moments), body.turn_kept)
             turn = _turned(turn, momentum, moments, dt)
             linear = pybullet.getBaseVelocity(uid)[0]  # first: placing a body stops it
             pybullet.resetBasePositionAndOrientation(
