@@ -2,13 +2,13 @@
 from __future__ import annotations
 
 import math
-from typing import Any, Dict
+from typing import Any, Dict, Tuple
 
 import pybullet
 
 from ...description.model import Link
 from ...description.shapes import Collision, Surface
-from ...geometry import Vec3, conjugate, rotate
+from ...geometry import Vec3, conjugate, rotate, scale
 from .bodies import Body, Part
 from .surface_coefficients import directed
 
@@ -58,17 +58,24 @@ def gives_way(link: Link) -> bool:
 
 
 def _shares(collision: Collision, part: Part) -> Vec3:
-    """Shares of the larger coefficient along the principal axes, which are PyBullet's.
-
-    Exact where the first direction is one of them; else the diagonal of the tensor.
-    """
+    """Shares of the larger coefficient along the principal axes, which are PyBullet's."""
     surface = collision.surface
     inward = rotate(conjugate(part.link_from_com.orientation),
                     rotate(collision.pose.orientation, surface.fdir1))
-    length = math.hypot(*inward)
-    most = max(surface.mu, surface.mu2)
-    along, across = (max(mu / most, _LEAST_SHARE) for mu in (surface.mu, surface.mu2))
-    x, y, z = (across + (along - across) * (value / length) ** 2 for value in inward)
+    return anisotropy((surface.mu, surface.mu2), scale(inward, 1.0 / math.hypot(*inward)))
+
+
+def anisotropy(mus: Tuple[float, float], first: Vec3, left: Tuple[float, float] = (1.0, 1.0),
+               ) -> Vec3:
+    """PyBullet's anisotropicFriction for coefficients along and across a direction of length 1.
+
+    `left` are shares of them that count. Exact where the direction is one of PyBullet's axes; else
+    the diagonal of the tensor.
+    """
+    most = max(mus)
+    along, across = (share * (max(mu / most, _LEAST_SHARE) if most > 0.0 else 1.0)
+                     for mu, share in zip(mus, left))
+    x, y, z = (across + (along - across) * value ** 2 for value in first)
     return (x, y, z)
 
 

@@ -36,6 +36,7 @@ from ...geometry import (
 from ..body_plan import BASE
 from ..commands import WheelSlip
 from .bodies import Axis, Body, Part
+from .extra_surfaces import anisotropy
 from .surface_coefficients import directed, of_link
 
 _STIFF = 0.02           # of h: a slip below it is none
@@ -248,9 +249,9 @@ def _take(key: Key, link: _Slippery, ours: Tuple[bool, bool]) -> None:
     if ours == link.ours:
         return
     link.ours = ours
-    along, across = (_LEFT if each else 1.0 for each in ours)
-    x, y, z = (across + (along - across) * part * part for part in link.first or ZERO3)
-    pybullet.changeDynamics(*key, anisotropicFriction=(x, y, z))
+    left = _LEFT if ours[0] else 1.0, _LEFT if ours[1] else 1.0
+    pybullet.changeDynamics(
+        *key, anisotropicFriction=anisotropy(link.mus, link.first or ZERO3, left))
 
 
 _State = Tuple[Vec3, Any, Vec3, Vec3]   # position, orientation, velocities
