@@ -85,6 +85,48 @@ def test_each_collision_of_a_link_of_a_tree_has_its_own_friction(lab: Lab, laws:
               rel=1e-3)
 
 
+@pytest.mark.parametrize("jointed", [False, True])
+@pytest.mark.parametrize("directed_touches", [False, True])
+def test_the_surface_that_touches_tells_coefficient_and_directions(lab: Lab, laws: Laws,
+                                                                   directed_touches: bool,
+                                                                   jointed: bool):
+    lab.load(slab("floor", (60, 60, 1)), (0, 0, -0.5))
+    surfaces = [Surface(mu=1.0, mu2=0.2, fdir1=(1, 0, 0)), Surface(mu=0.8)]
+    if directed_touches:
+        surfaces.reverse()
+    plate = Model("plate", links=[Link("link", inertial=inertial_of_box(2.0, 0.4, 0.4, 0.1),
+                                       collisions=[
+        Collision(f"c{n}", Box((0.4, 0.4, 0.1)), Pose((0, 0, height)), surface=surface)
+        for n, (height, surface) in enumerate(zip((0.1, 0.0), surfaces))])])
+    for yaw, mu in ((0.0, 1.0), (math.pi / 2, 0.2)):
+        moving = lab.load(plate, (0, 0, 0.05), quat_from_rpy(0, 0, yaw), articulated=jointed)
+        lab.steps(100)
+        lab.push(moving, (1.5, 0, 0))
+        start = lab.pose(moving).position[0]
+        lab.seconds(1.0)
+        laws.near("directions of the collision that touches: way to a stop, m",
+                  lab.pose(moving).position[0] - start,
+                  1.5 ** 2 / (2 * (mu if directed_touches else 0.8) * G), rel=0.04)
+        lab.remove(moving)
+
+
+@pytest.mark.parametrize("soft_first", [False, True])
+@pytest.mark.parametrize("soft_touches", [False, True])
+def test_the_surface_that_touches_tells_how_soft_it_is(lab: Lab, laws: Laws, soft_touches: bool,
+                                                       soft_first: bool):
+    lab.load(ground())
+    found = [(Surface(mu=0.9, kp=1e3), 0.0 if soft_touches else 0.2),
+             (Surface(mu=0.8), 0.2 if soft_touches else 0.0)]
+    link = Link("link", inertial=inertial_of_box(1, 1, 1, 1), collisions=[
+        Collision(f"c{n}", Box((1, 1, 1)), Pose((0, 0, height)), surface=surface)
+        for n, (surface, height) in enumerate(found if soft_first else found[::-1])])
+    block = lab.load(Model("block", links=[link]), (0, 0, 0.5))
+    lab.seconds(5)
+    # A spring at each of four points.
+    laws.near("softness of the collision that touches: how deep it rests, m",
+              0.5 - lab.pose(block).position[2], G / 4e3 if soft_touches else 0.0, abs=1e-4)
+
+
 def test_a_slippery_direction_lets_the_other_one_hold(lab: Lab, laws: Laws):
     lab.load(slab("floor", (60, 60, 1)), (0, 0, -0.5))
     along = lab.load(_plate("along", Surface(mu=0.0, mu2=1.0, fdir1=(1, 0, 0))), (0, 0, 0.05))

@@ -6,9 +6,11 @@ from typing import Any, Dict, Tuple
 
 import pybullet
 
+from ...description.link_surface import counting_collision
 from ...description.model import Link
 from ...description.shapes import Collision, Surface
 from ...geometry import Vec3, conjugate, rotate, scale
+from ..surface_pieces import by_friction
 from .bodies import Body, Part
 from .surface_coefficients import directed
 
@@ -28,14 +30,15 @@ def store(body: Body, part: Part, link: Link, dt: float) -> None:
     """Give one link what its surface has besides friction and bounces. `dt`: step size, s.
 
     Directions of friction (mu2, fdir1), softness (kp, kd, max_vel) and torsional friction; of the
-    first collision (SDF 1.7, collision/surface).
+    collision whose coefficient holds (SDF 1.7, collision/surface; Gazebo has one each).
     """
-    if not link.collisions:
+    collision = counting_collision(link)
+    if collision is None:
         return
-    surface = link.collisions[0].surface
+    surface = collision.surface
     settings: Dict[str, Any] = {}
     if directed(surface):
-        settings["anisotropicFriction"] = _shares(link.collisions[0], part)
+        settings["anisotropicFriction"] = _shares(collision, part)
     if surface.kp < SOFT and body.moves and not body.rigid:
         settings["contactStiffness"] = max(surface.kp, 1e-9)
         settings["contactDamping"] = _damping(surface, dt)
@@ -51,10 +54,10 @@ def gives_way(link: Link) -> bool:
     """A joint-free link on springs so soft that one sees it: it must be an articulated body.
 
     Contacts of rigid bodies part overlaps without forces (`contact_settling`), so they cannot be
-    springs.
+    springs. In an articulated one each surface with a friction of its own counts.
     """
-    return bool(link.collisions) and link.collisions[0].surface.kp * _SEEN < (
-        _WEIGHT * link.inertial.mass)
+    return any(link.collisions[group[0]].surface.kp * _SEEN < _WEIGHT * link.inertial.mass
+               for group in by_friction(link))
 
 
 def _shares(collision: Collision, part: Part) -> Vec3:

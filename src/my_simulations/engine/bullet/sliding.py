@@ -24,7 +24,7 @@ from .bodies import Body, Part
 from .edge_loads import Loads, axle_of, carrying, shared
 from .link_states import Motion, motion, motions
 from .step_helper import FAR, next_multiple
-from .surface_coefficients import directed
+from .surface_coefficients import directed, of_link
 
 EVERY = 16
 """Steps between two looks at who slides."""
@@ -87,7 +87,7 @@ class Sliding:
 
     def add(self, body: Body, part: Part, link: Link) -> None:
         """Know a link of a body. Those with two coefficients of friction are left to Bullet."""
-        if not link.collisions or directed(link.collisions[0].surface):
+        if not link.collisions or directed(of_link(link)):
             return
         if not body.moves:
             self._static.update({uid: part.mu for uid in body.uids})
