@@ -18,6 +18,7 @@ from my_simulations.engine.commands import (
     SetPlanarVelocities,
     SetServos,
 )
+from my_simulations.geometry import STILL
 
 Z = (0.0, 0.0, 1.0)
 
@@ -117,6 +118,20 @@ def test_a_model_drives_a_circle_as_it_is_told(lab: Lab):
     lab.apply(SetPlanarVelocities(()))
     lab.seconds(0.1)  # without friction it goes straight on
     assert lab.pose(model).position[:2] == pytest.approx((radius, radius + 0.05), abs=2e-3)
+
+
+def test_a_model_that_is_told_to_move_slowly_does_not_fall_asleep(lab: Lab):
+    lab.load(ground(mu=0.0))
+    model = lab.load(box(size=0.2), (0, 0, 0.1))
+    lab.seconds(4)
+    lab.apply(SetPlanarVelocities((PlanarVelocity(model, 0.05, 0.0, 0.0),)))
+    lab.seconds(5)
+    lab.apply(SetPlanarVelocities((PlanarVelocity(model, 0.04, 0.0, 0.0),)))
+    lab.seconds(5)
+    assert lab.pose(model).position[0] == pytest.approx(0.45, abs=1e-3)
+    lab.apply(SetPlanarVelocities(()))
+    lab.seconds(3)
+    assert lab.twist(model) == STILL
 
 
 def test_a_model_that_is_driven_level_does_not_fall(lab: Lab):

@@ -118,7 +118,7 @@ class Body:
         seen_at: its centre of mass at the last read-out; parting an overlap moves it without
             velocity.
         ties: how many joints connect it with other models.
-        loads: how many timed forces act on it now.
+        loads: how many timed forces and planar velocities act on it now.
         turn_kept: share of its angular velocity that Bullet's damping leaves in a step.
         shapes: its collision shapes, by PyBullet's numbers.
         pieces: of its links, with rows, centres of mass and axes of those (`surface_pieces`).

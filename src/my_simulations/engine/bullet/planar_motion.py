@@ -8,7 +8,7 @@ import pybullet
 
 from ...geometry import Pose, Vec3, cross, rpy_from_quat, subtract
 from ..commands import PlanarVelocity
-from .bodies import Body
+from .bodies import Body, set_sleep
 from .state_restore import Entry
 from .step_helper import FAR
 
@@ -31,6 +31,15 @@ class PlanarMotion:
         changed = [number for number, one in self._velocities.items() if before.get(number) != one]
         if changed:
             self._wake([body for number in changed for body in self._models[number].bodies])
+        self._load(self._velocities.keys() - before.keys(), 1)
+        self._load(before.keys() - self._velocities.keys(), -1)
+
+    def _load(self, numbers: Iterable[int], change: int) -> None:
+        """Keep bodies awake while they are moved, or let them sleep again."""
+        for number in sorted(numbers):
+            for body in self._models[number].bodies:
+                body.loads += change
+                set_sleep(body)
 
     def forget(self, body: Body) -> None:
         """A body is gone, and its model with it."""
