@@ -256,6 +256,18 @@ def test_a_can_stands_on_a_disc_that_turns(lab: Lab, laws: Laws):
     laws.near("the same: rate, rad/s", lab.twist(can).angular[2], 0.5, abs=0.01)
 
 
+@pytest.mark.parametrize("above", [-1e-4, 0.0])
+def test_a_can_that_touches_the_floor_stays_there_without_gravity(lab: Lab, above: float):
+    lab.configure(gravity=(0.0, 0.0, 0.0))
+    lab.load(ground())
+    can = _drop(lab, "can", (0, 0, above))
+    lab.seconds(1.0)
+    assert abs(lab.pose(can).position[2] - HALF) < 2e-4
+    lab.push(can, (0, 0, 0.5))
+    lab.seconds(1.0)
+    assert abs(lab.pose(can).position[2] - HALF - 0.5) < 1e-3
+
+
 def test_landings_repeat_bit_for_bit_however_many_steps_are_made_in_one_go(lab: Lab):
     def fallen(burst: int) -> List[List[float]]:
         numbers = [_drop(lab, name, (0.05 * (n % 3), 0.06 * (n // 3), 0.05 + 0.25 * n),

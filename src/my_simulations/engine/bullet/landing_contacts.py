@@ -262,13 +262,14 @@ class LandingContacts:
         touches: List[_Touch] = []
         for other in self._within(flight, low, high, reach):
             moves = other in self._moving
-            towards = speed + (speed_of(other) if moves else 0.0)
-            points = pybullet.getClosestPoints(uid, other, towards * dt * (_AHEAD + 2))
-            if not points:
+            way = dt * (speed + (speed_of(other) if moves else 0.0))   # of a step, at most
+            points = pybullet.getClosestPoints(uid, other, way * (_AHEAD + 2))
+            if not points or way == 0.0:   # without gravity what is at rest meets nothing
                 continue
             nearest = min(points, key=lambda point: point[8])
             gap: float = nearest[8]
-            ahead = min(ahead, int(gap / (towards * dt)))
+            if gap < ahead * way:
+                ahead = int(max(0.0, gap) / way)
             if gap > 0.0:
                 continue
             normal: Vec3 = nearest[7]
