@@ -18,7 +18,7 @@ from my_simulations.description.shapes import (
     Surface,
     mesh_key,
 )
-from my_simulations.engine.commands import SetJoints
+from my_simulations.engine.commands import FOREVER, AddTimedForces, SetJoints, TimedWrench
 from my_simulations.geometry import Pose, multiply, quat_from_rpy
 
 SIZES = [(0.03, 0.02), (0.03, 0.1), (0.1, 0.3), (0.5, 0.02), (0.5, 0.5)]   # radius, width
@@ -119,6 +119,26 @@ def test_a_cylinder_rolls_on_at_its_speed(lab: Lab, laws: Laws, floor: str, spee
     for can, radius, _ in rolling:
         laws.at_most(f"cylinders rolling on a {floor}: depth, m",
                      radius - lab.pose(can).position[2], 1e-4)
+
+
+@pytest.mark.parametrize("floor", ["plane", "box"])
+@pytest.mark.parametrize("step_size", [0.001, 0.0002])
+@pytest.mark.parametrize("pull", [0.1, 2.0])
+def test_a_force_rolls_a_cylinder_that_lay_still(lab: Lab, laws: Laws, floor: str,
+                                                 step_size: float, pull: float):
+    lab.configure(step_size=step_size)
+    _floor(lab, floor)
+    cans = [lab.load(cylinder(radius, width), (0, 3 * n, radius), lying(0.0))
+            for n, (radius, width) in enumerate([(0.033, 0.12), (0.3, 0.9), (0.02, 0.5)])]
+    lab.seconds(1)
+    starts = [lab.pose(can).position[0] for can in cans]
+    lab.apply(AddTimedForces(tuple(
+        TimedWrench(can, lab.rows[can, "link"], lab.step, FOREVER, (pull, 0, 0))
+        for can in cans)))
+    lab.seconds(1)
+    for can, start in zip(cans, starts):
+        laws.near("a force at the axle of a lying cylinder of 1 kg for 1 s: way, m",
+                  lab.pose(can).position[0] - start, pull / 1.5 / 2, rel=0.01)
 
 
 def _wheel(name: str, radius: float, width: float, at: "Tuple[float, float, float]") -> Link:

@@ -84,7 +84,8 @@ class BulletBackend:
         self._axes: Dict[int, Tuple[Body, bodies.Axis]] = {}
         self._readout = StateReadout(self._on_diverged, self._on_raced)
         self._residual = ResidualFriction()
-        self._rolling = RollingContacts(lambda links, step: self._landing.see_rolling(links, step))
+        self._rolling = RollingContacts(lambda links, step: self._landing.see_rolling(links, step),
+                                        lambda: self._forces.loaded_bodies)
         self._seams = SeamContacts(self._rolling)
         self._sliding = Sliding()
         self._waker = WakeUp(self._bodies, self._touched)

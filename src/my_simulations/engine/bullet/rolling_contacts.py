@@ -11,7 +11,8 @@ on boxes that it loses 2 % of 0.05 m/s in 20 s (measured). Where a cylinder roll
 not move, its overlaps are therefore parted as fast as that gives it no velocity to jump with.
 
 A cylinder at rest would rock on such points. So one that hardly moves, where the floor is level and
-nothing that moves touches it, keeps its points, and is stopped in every step and put back.
+nothing that moves, no joint and no timed force acts on it, keeps its points, and is stopped in
+every step and put back.
 """
 from __future__ import annotations
 
@@ -82,13 +83,15 @@ class RollingContacts:
 
     Args:
         dropping: is told, before that, of which links points are dropped, and in which step.
+        loaded: tells the bodies that timed forces act on in this step.
 
     Attributes:
         on_seams: what rolls on triangles just now, and its axis in the frame of its principal axes.
     """
 
-    def __init__(self, dropping: Callable[[AbstractSet[Key], int], None]) -> None:
-        self._dropping = dropping
+    def __init__(self, dropping: Callable[[AbstractSet[Key], int], None],
+                 loaded: Callable[[], AbstractSet[int]]) -> None:
+        self._dropping, self._loaded = dropping, loaded
         self.on_seams: Dict[Key, Vec3] = {}
         self._rollers: Dict[Key, _Roller] = {}
         self._rolling: Dict[Key, collision_groups.Filter] = {}
@@ -154,11 +157,12 @@ class RollingContacts:
 
     def before(self, step: int, dt: float, gravity: Vec3) -> None:
         """Find out now and then who rolls, and let it roll in the next step."""
-        if step % EVERY == 0:
+        if step % EVERY == 0 and self._rollers:
+            loaded = self._loaded()
             for key, roller in self._rollers.items():
                 if roller.wait:
                     roller.wait -= 1
-                elif self._rolls(roller, dt, gravity):
+                elif self._rolls(roller, dt, gravity, roller.body.uid in loaded):
                     self._rolling[key] = roller.meets
                 else:
                     self._rolling.pop(key, None)
@@ -182,7 +186,7 @@ class RollingContacts:
     def after(self, step: int, dt: float, gravity: Vec3) -> None:
         """Do nothing after a step."""
 
-    def _rolls(self, roller: _Roller, dt: float, gravity: Vec3) -> bool:
+    def _rolls(self, roller: _Roller, dt: float, gravity: Vec3, loaded: bool) -> bool:
         """Whether a link lies on its side and does not stand; finds out whether it does."""
         uid, index = roller.body.uid, roller.part.index
         if roller.body.rigid:
@@ -211,7 +215,8 @@ class RollingContacts:
             return False
         if roller.body.rigid:
             before = self._standing.pop(uid, None)
-            if _slow(linear, angular) and self._on_level(contacts, gravity):
+            if (_slow(linear, angular) and not loaded and not roller.body.ties
+                    and self._on_level(contacts, gravity)):
                 self._stand(uid, before)
                 return False
         else:
