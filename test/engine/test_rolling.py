@@ -11,6 +11,7 @@ from laws import Laws
 
 from my_simulations.description.model import Inertial, Joint, JointAxis, Link, Model
 from my_simulations.description.shapes import (
+    Capsule,
     Collision,
     Cylinder,
     Mesh,
@@ -34,6 +35,17 @@ def cylinder(radius: float, width: float, name: str = "can", asleep: bool = True
 def lying(yaw: float) -> "Tuple[float, float, float, float]":
     """With its axis along y, turned by `yaw` about z."""
     return multiply(quat_from_rpy(0, 0, yaw), quat_from_rpy(math.pi / 2, 0, 0))
+
+
+RODS = [(0.005, 0.14), (0.01, 0.1), (0.04, 0.3), (0.1, 2.0)]   # radius, whole length
+
+
+def _rod(kind: str, radius: float, length: float) -> Model:
+    across, about = (3 * radius * radius + length * length) / 12, radius * radius / 2
+    shape = (Cylinder(radius, length) if kind == "cylinder"
+             else Capsule(radius, length - 2 * radius))
+    return Model("rod", links=[link_of(shape, Inertial(1.0, ixx=across, iyy=across, izz=about),
+                                       Surface(mu=1.0))])
 
 
 def _floor(lab: Lab, kind: str) -> None:
@@ -119,6 +131,38 @@ def test_a_cylinder_rolls_on_at_its_speed(lab: Lab, laws: Laws, floor: str, spee
     for can, radius, _ in rolling:
         laws.at_most(f"cylinders rolling on a {floor}: depth, m",
                      radius - lab.pose(can).position[2], 1e-4)
+
+
+@pytest.mark.parametrize("floor", ["plane", "box"])
+@pytest.mark.parametrize("kind", ["cylinder", "capsule"])
+@pytest.mark.parametrize("above", [0.001, 0.02])
+def test_a_rod_that_is_put_down_comes_to_rest_on_the_floor(lab: Lab, laws: Laws, floor: str,
+                                                           kind: str, above: float):
+    _floor(lab, floor)
+    rods = [(lab.load(_rod(kind, radius, length), (3 * n, n, radius + above), lying(0.3 * n)),
+             radius) for n, (radius, length) in enumerate(RODS)]
+    lab.seconds(3)
+    for rod, radius in rods:
+        laws.at_most("rods put down from 1 mm and 2 cm, 3 s: depth, m",
+                     abs(radius - lab.pose(rod).position[2]), 2e-4)
+        laws.at_most("the same: angular velocity, rad/s",
+                     math.hypot(*lab.twist(rod).angular), 0.01)
+
+
+@pytest.mark.parametrize("kind", ["cylinder", "capsule"])
+@pytest.mark.parametrize("speed", [0.05, 2.0])
+def test_a_rod_rolls_on_at_its_speed(lab: Lab, laws: Laws, kind: str, speed: float):
+    _floor(lab, "plane")
+    rods = [(lab.load(_rod(kind, radius, length), (0, 4 * n, radius), lying(0.0)), radius)
+            for n, (radius, length) in enumerate(RODS)]
+    for rod, radius in rods:
+        lab.push(rod, (speed, 0, 0), (0, speed / radius, 0))
+    lab.seconds(3)
+    for measured in _speed(lab, [(rod, "link") for rod, _ in rods]):
+        laws.near("rods rolling on a plane at 0.05 and 2 m/s for 4 s: speed, m/s", measured, speed,
+                  rel=0.005)
+    for rod, radius in rods:
+        laws.at_most("rods rolling on a plane: depth, m", radius - lab.pose(rod).position[2], 1e-4)
 
 
 @pytest.mark.parametrize("floor", ["plane", "box"])

@@ -33,7 +33,7 @@ from .collision_shapes import MAX_SHAPES, Recipe, ShapeFactory
 from .extra_surfaces import gives_way
 from .implicit_axes import mobility
 from .mass_matrix import MassMatrix
-from .rims import with_rims
+from .rims import with_ends, with_rims
 
 _LIGHT = 1e-6  # share of a link's mass for the piece between the two axes it hangs on
 _JOINT_TYPES = {"revolute": pybullet.JOINT_REVOLUTE, "prismatic": pybullet.JOINT_PRISMATIC,
@@ -136,8 +136,9 @@ class Builder:
         static = self._model.static or link.kinematic
         masses = (_FIXED if static
                   else _Masses(link.inertial.mass, *principal(link.inertial)))
+        collisions = link.collisions if static else with_ends(link, MAX_SHAPES)
         return _Rigid(number, static, masses, compose(link.pose, masses.com), tuple(
-            self._shapes.recipes(link.collisions, meshes, inverse(masses.com), static)))
+            self._shapes.recipes(collisions, meshes, inverse(masses.com), static)))
 
     def _build_rigid(self, rigid: _Rigid, pose: Pose) -> Body:
         link, masses = self._model.links[rigid.number], rigid.masses

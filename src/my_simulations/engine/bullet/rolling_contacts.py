@@ -105,7 +105,7 @@ class RollingContacts:
             self._moving.add(body.uid)
         elif any(isinstance(each.geometry, (Heightmap, Mesh)) for each in link.collisions):
             self._seams.update(body.uids)
-        axis = _axis_of(link)
+        axis = axis_of(link)
         if axis is not None and body.moves:
             own = rotate(conjugate(part.link_from_com.orientation), axis)
             self._rollers[body.uid, part.index] = _Roller(body, part, own,
@@ -264,7 +264,7 @@ def _slow(linear: Vec3, angular: Vec3) -> bool:
     return norm(linear) < _CREEP and norm(angular) < _TURN
 
 
-def _axis_of(link: Link) -> Optional[Vec3]:
+def axis_of(link: Link) -> Optional[Vec3]:
     """The one axis that all shapes of a link are round about, in the link frame, or None."""
     found: List[Pose] = []
     for collision in link.collisions:
