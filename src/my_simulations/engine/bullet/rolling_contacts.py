@@ -12,7 +12,8 @@ not move, its overlaps are therefore parted as fast as that gives it no velocity
 
 A cylinder at rest would rock on such points. So one that hardly moves, where the floor is level and
 nothing that moves, no joint and no timed force acts on it, keeps its points, and is stopped in
-every step and put back.
+every step and put back. One that rocks already is judged by its way between two looks, an even
+count of steps: the velocity of a step says nothing then.
 """
 from __future__ import annotations
 
@@ -24,7 +25,19 @@ import pybullet
 
 from ...description.model import Link
 from ...description.shapes import Capsule, Cylinder, Empty, Heightmap, Mesh
-from ...geometry import Pose, Vec3, conjugate, cross, dot, norm, rotate
+from ...geometry import (
+    Pose,
+    Vec3,
+    conjugate,
+    cross,
+    dot,
+    multiply,
+    norm,
+    rotate,
+    rotation_vector,
+    scale,
+    subtract,
+)
 from ..body_plan import BASE
 from . import collision_groups
 from .bodies import Body, Part
@@ -64,6 +77,7 @@ class _Roller:
     Attributes:
         hard: its contacts are no springs, so how they part is ours to say.
         wait: looks at which it need not be looked at.
+        seen: where it was at the last look, if it lay on its side.
         seamed: it touches triangles.
     """
 
@@ -74,6 +88,7 @@ class _Roller:
     hard: bool
     still: int = 0
     wait: int = 0
+    seen: Optional[Pose] = None
     seamed: bool = False
     share: float = 0.0   # of an overlap, parted in each step; 0: as PyBullet has it
 
@@ -136,6 +151,7 @@ class RollingContacts:
         roller = self._rollers.get((body.uid, BASE)) if body.rigid else None
         if roller is not None:
             roller.still = roller.wait = 0
+            roller.seen = None
             self._rolling[body.uid, BASE] = roller.meets
 
     def landed(self, uid: int, normal: Vec3) -> None:
@@ -191,13 +207,15 @@ class RollingContacts:
         uid, index = roller.body.uid, roller.part.index
         if roller.body.rigid:
             linear, angular = pybullet.getBaseVelocity(uid)
+            seen, roller.seen = roller.seen, None
             roller.still = roller.still + 1 if linear == angular == _NONE else 0
             if roller.still:
                 if roller.still >= _ASLEEP:
                     self._standing.pop(uid, None)
                     roller.wait = _PATIENCE
                 return False
-            turn = pybullet.getBasePositionAndOrientation(uid)[1]
+            at = Pose(*pybullet.getBasePositionAndOrientation(uid))
+            turn = at.orientation
         elif index != BASE and abs(pybullet.getJointState(uid, index)[1]) < _TURNS:
             return False
         else:
@@ -215,7 +233,10 @@ class RollingContacts:
             return False
         if roller.body.rigid:
             before = self._standing.pop(uid, None)
-            if (_slow(linear, angular) and not loaded and not roller.body.ties
+            roller.seen = at
+            rocks = seen is not None and norm(linear) < _CREEP + norm(gravity) * dt and _slow(
+                *_mean(seen, at, EVERY * dt))
+            if ((rocks or _slow(linear, angular)) and not loaded and not roller.body.ties
                     and self._on_level(contacts, gravity)):
                 self._stand(uid, before)
                 return False
@@ -262,6 +283,13 @@ class RollingContacts:
 
 def _slow(linear: Vec3, angular: Vec3) -> bool:
     return norm(linear) < _CREEP and norm(angular) < _TURN
+
+
+def _mean(before: Pose, after: Pose, duration: float) -> Tuple[Vec3, Vec3]:
+    """The velocities, linear and angular, that lead from one pose to another in `duration` s."""
+    turn = rotation_vector(multiply(after.orientation, conjugate(before.orientation)))
+    return (scale(subtract(after.position, before.position), 1.0 / duration),
+            scale(turn, 1.0 / duration))
 
 
 def axis_of(link: Link) -> Optional[Vec3]:
