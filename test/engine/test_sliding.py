@@ -7,8 +7,8 @@ import pytest
 from conftest import Lab, box, ground, inertial_of_box, link_of, slab
 from laws import Laws
 
-from my_simulations.description.model import Link, Model
-from my_simulations.description.shapes import Box, Collision, Surface
+from my_simulations.description.model import Inertial, Link, Model
+from my_simulations.description.shapes import Box, Collision, Cylinder, Surface
 from my_simulations.geometry import Pose
 
 G = 9.8
@@ -100,3 +100,64 @@ def test_what_is_spawned_after_a_model_of_two_bodies_left_collides(lab: Lab):
     lab.push(right, (-1, 0, 0))
     lab.seconds(2)
     assert lab.pose(left).position[0] < -0.1
+
+
+def _upright(radius: float, height: float, mu: float) -> Model:
+    across = (3 * radius * radius + height * height) / 12
+    return Model("can", links=[link_of(
+        Cylinder(radius, height), Inertial(1.0, ixx=across, iyy=across, izz=radius * radius / 2),
+        Surface(mu=mu))])
+
+
+CANS = [(0.1, 0.1), (0.03, 0.12)]   # radius, height
+
+
+@pytest.mark.parametrize("speed", [0.3, 1.0, 2.7])
+@pytest.mark.parametrize("mu", [0.0, 0.3])
+def test_an_upright_cylinder_slides_on_a_floor_not_in_it(lab: Lab, laws: Laws, speed: float,
+                                                         mu: float):
+    _floor(lab, "plane")
+    cans = [(lab.load(_upright(radius, height, mu), (0, n, height / 2)), height / 2)
+            for n, (radius, height) in enumerate(CANS)]
+    lab.seconds(1)
+    for can, _ in cans:
+        lab.push(can, (speed, 0, 0))
+    for _ in range(100):
+        lab.steps(10)
+        for can, half in cans:
+            laws.at_most("upright cylinders that slide at 0.3 to 2.7 m/s: depth, m",
+                         half - lab.pose(can).position[2], 3e-4)
+    for can, _ in cans:
+        way = speed if mu == 0.0 else speed ** 2 / (2 * mu * G)
+        laws.near("upright cylinders that slide at 0.3 to 2.7 m/s: way in 1 s, m",
+                  lab.pose(can).position[0], way, rel=0.02)
+
+
+@pytest.mark.parametrize("speed", [0.3137, 0.7071, 1.618, 2.718])
+@pytest.mark.parametrize("start", [-1.5, -1.4563])
+def test_an_upright_cylinder_slides_over_the_seams_of_level_boxes(lab: Lab, laws: Laws,
+                                                                  speed: float, start: float):
+    for x in range(-2, 8):
+        lab.load(slab(f"tile{x}", (1.0, 10.0, 0.2)), (x + 0.5, 0, -0.1))
+    cans = [(lab.load(_upright(radius, height, 0.0), (start, n, height / 2)), height / 2)
+            for n, (radius, height) in enumerate(CANS)]
+    lab.seconds(0.1)
+    for can, _ in cans:
+        lab.push(can, (speed, 0, 0))
+    for _ in range(240):
+        lab.steps(10)
+        for can, half in cans:
+            laws.at_most("upright cylinders that slide over level boxes: lifted by, m",
+                         lab.pose(can).position[2] - half, 1e-3)
+    for can, _ in cans:
+        laws.near("upright cylinders that slide over level boxes: speed, m/s",
+                  lab.twist(can).linear[0], speed, rel=0.02)
+
+
+def test_an_upright_cylinder_stops_at_a_step(lab: Lab):
+    for n, height in enumerate((0.2, 0.21)):
+        lab.load(slab(f"tile{n}", (1.0, 10.0, height)), (n - 0.5, 0, height / 2 - 0.2))
+    can = lab.load(_upright(0.1, 0.1, 0.0), (-0.5, 0, 0.05))
+    lab.push(can, (0.3, 0, 0))
+    lab.seconds(2.4)
+    assert lab.pose(can).position[0] < -0.095 and lab.twist(can).linear[0] < 0.05

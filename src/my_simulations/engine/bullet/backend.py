@@ -53,6 +53,7 @@ from .joint_constraints import Constraints
 from .joint_motors import JointMotors
 from .joint_wrenches import JointWrenches
 from .landing_contacts import LandingContacts
+from .level_seams import LevelSeams
 from .pair_friction import FrictionBalance
 from .pair_restitution import PairRestitution
 from .pinned_bodies import PinnedBodies
@@ -87,6 +88,7 @@ class BulletBackend:
         self._rolling = RollingContacts(lambda links, step: self._landing.see_rolling(links, step),
                                         lambda: self._forces.loaded_bodies)
         self._seams = SeamContacts(self._rolling)
+        self._level = LevelSeams(lambda: self._residual.fast)
         self._sliding = Sliding()
         self._waker = WakeUp(self._bodies, self._touched)
         driver = WakeUp(self._bodies, self._driven)
@@ -113,7 +115,7 @@ class BulletBackend:
         # What acts around the steps, in the order in which it does.
         helpers = (self._friction, self._bounces, self._settling, self._decay, self._forces,
                    self._planar, self._rolling, self._spin, self._residual, self._sliding,
-                   self._holds, self._stop, self._landing, self._seams)
+                   self._holds, self._stop, self._landing, self._level, self._seams)
         self._loop = StepLoop(helpers, pybullet.stepSimulation)
         # Everything that remembers bodies one by one.
         self._keepers = (*helpers, self._ties, self._motors, self._wrenches,
@@ -255,6 +257,7 @@ class BulletBackend:
             self._decay.add(body, dt)
             for part in body.parts:
                 self._rolling.add(body, part, part.link)
+                self._level.add(body, part, part.link)
                 if not slips(part.link):
                     self._sliding.add(body, part, part.link)
             for part in body.colliders:

@@ -69,6 +69,11 @@ class ResidualFriction:
             self._watched[body.uid] = None
             self._rounds = None
 
+    @property
+    def fast(self) -> List[int]:
+        """The bodies that slide just now, as far as is known."""
+        return list(self._fast)
+
     def forget(self, body: Body) -> None:
         """A body is gone."""
         for table in (self._bodies, self._watched, self._fast, self._mended, self._clear):

@@ -1,0 +1,170 @@
+"""Lets upright cylinders slide on level floors, and over the seam of two as over one.
+
+Bullet drops a contact point once the two surfaces have slid apart by a fiftieth of the body's size,
+and finds one new point a step: what is fast stands on one or two, and sinks by up to 3 mm.
+So the points of what begins to slide are dropped, and the new ones may slide apart ten times as
+far.
+
+Where such a body, a little in the floor, gets to the next box of the same height, less of it is in
+the side of that box than in its top, and Bullet pushes it back: a can of 0.7 m/s turned round at
+the first seam of a floor of tiles. A side that lies below the floor cannot be met in truth. So what
+it pushed has the velocity of before the step again, without what would tilt or sink it; friction of
+that step is lost with it.
+
+Bullet finds four points of two boxes in each step; what rolls meets no sides.
+"""
+from __future__ import annotations
+
+from typing import Callable, Collection, Dict, List, Set, Tuple
+
+import pybullet
+
+from ...description.model import Link
+from ...description.shapes import Cylinder, Plane
+from ...geometry import Vec3, conjugate, norm, rotate
+from ..body_plan import BASE
+from . import collision_groups
+from .bodies import Body, Part
+from .rolling_contacts import axis_of
+from .step_helper import FAR, next_multiple
+
+EVERY = 8
+"""Steps between two looks at what slides."""
+
+_WIDE, _USUAL = 0.2, 0.02   # of a body's size: points that slid farther apart are dropped
+_FAST = 0.05       # m/s: what is slower does not sink
+_LEVEL = 1e-4      # m: two floors of one height differ by less
+_UP = 0.999        # of a normal, or an axis, along z: less is a side, or leans
+_NEAR = 0.06       # m beyond the way until the next look: Bullet knows a pair 5 cm ahead
+
+_Velocity = Tuple[Vec3, Vec3]
+
+
+class LevelSeams:
+    """Keeps what slides on level floors on them, and takes back what their sides do to it.
+
+    Args:
+        fast: tells the rigid bodies that slide just now.
+    """
+
+    def __init__(self, fast: Callable[[], Collection[int]]) -> None:
+        self._fast = fast
+        self._bodies: Dict[int, Tuple[collision_groups.Filter, Vec3]] = {}   # and their axis
+        self._static: Set[int] = set()
+        self._floors: Set[int] = set()         # those that have sides
+        self._sliding: Set[int] = set()
+        self._level: Dict[int, Set[int]] = {}  # floors of one height about those near a seam
+        self._before: Dict[int, _Velocity] = {}
+        self._is_wide = False
+
+    def add(self, body: Body, part: Part, link: Link) -> None:
+        """Know one link of a body."""
+        shapes = [collision.geometry for collision in link.collisions]
+        if body.moves:
+            axis = axis_of(link)
+            if body.rigid and axis is not None and any(
+                    isinstance(each, Cylinder) for each in shapes):
+                self._bodies[body.uid] = (collision_groups.moving(link), rotate(
+                    conjugate(part.link_from_com.orientation), axis))
+            return
+        self._static.update(body.uids)
+        if not any(isinstance(each, Plane) for each in shapes):
+            self._floors.update(body.uids)
+
+    def forget(self, body: Body) -> None:
+        """A body is gone."""
+        for table in (self._bodies, self._level, self._before):
+            table.pop(body.uid, None)
+        self._sliding.discard(body.uid)
+        self._static.difference_update(body.uids)
+        self._floors.difference_update(body.uids)
+
+    def clear(self) -> None:
+        """All bodies are gone."""
+        for table in (self._bodies, self._level, self._before):
+            table.clear()
+        for group in (self._static, self._floors, self._sliding):
+            group.clear()
+
+    def due(self, step: int) -> int:
+        """Each step while something is near a seam, else the next look."""
+        if self._level:
+            return step
+        return next_multiple(step, EVERY) if self._bodies else FAR
+
+    def before(self, step: int, dt: float, gravity: Vec3) -> None:
+        """See now and then who slides; remember how fast those near a seam are."""
+        begins = step % EVERY == 0 and self._look(dt, gravity)
+        self._before = {uid: pybullet.getBaseVelocity(uid) for uid in self._level}
+        if begins or self._level:
+            self._is_wide = True
+            pybullet.setPhysicsEngineParameter(contactBreakingThreshold=_WIDE)
+
+    def after(self, step: int, dt: float, gravity: Vec3) -> None:
+        """Give the velocities of before the step back to those that a side pushed."""
+        if not self._is_wide:
+            return
+        self._is_wide = False
+        pybullet.setPhysicsEngineParameter(contactBreakingThreshold=_USUAL)
+        for uid, ((x, y, z), (_, _, turn)) in self._before.items():
+            if self._is_caught(uid, self._level[uid]):
+                pybullet.resetBaseVelocity(uid, (x, y, max(0.0, z)), (0.0, 0.0, turn))
+
+    def _look(self, dt: float, gravity: Vec3) -> bool:
+        """Find out who slides, and who will be at a seam before the next look.
+
+        Returns whether something began to slide: then its points are found anew.
+        """
+        self._level.clear()
+        fast = self._fast()
+        self._sliding.intersection_update(fast)
+        begins = False
+        if gravity[0] == gravity[1] == 0.0:
+            for uid in fast:
+                floors = self._floors_under(uid) if uid in self._bodies else []
+                if not floors:
+                    self._sliding.discard(uid)
+                    continue
+                if uid not in self._sliding:
+                    self._sliding.add(uid)
+                    self._bodies[uid][0].set(uid, BASE)
+                    begins = True
+                if len(self._floors) > 1:
+                    self._see_seam(uid, floors[0], EVERY * dt)
+        return begins
+
+    def _floors_under(self, uid: int) -> List[int]:
+        """What a body slides on, when it is upright and touches nothing that moves."""
+        if norm((*pybullet.getBaseVelocity(uid)[0][:2], 0.0)) < _FAST:
+            return []
+        turn = pybullet.getBasePositionAndOrientation(uid)[1]
+        if abs(rotate(turn, self._bodies[uid][1])[2]) < _UP:
+            return []
+        contacts = pybullet.getContactPoints(bodyA=uid)
+        if any(contact[2] not in self._static for contact in contacts):
+            return []
+        return [contact[2] for contact in contacts if contact[7][2] > _UP]
+
+    def _see_seam(self, uid: int, floor: int, duration: float) -> None:
+        """Remember the floors of one height that a body may reach within `duration`, s."""
+        reach = norm(pybullet.getBaseVelocity(uid)[0]) * duration + _NEAR
+        low, high = pybullet.getAABB(uid, BASE)
+        found = pybullet.getOverlappingObjects([c - reach for c in low],
+                                               [c + reach for c in high]) or ()
+        near = {other for other, _ in found if other in self._floors}
+        if floor in near and len(near) > 1:
+            level = {other for other in near if abs(_top(other) - _top(floor)) < _LEVEL}
+            if len(level) > 1:
+                self._level[uid] = level
+
+    @staticmethod
+    def _is_caught(uid: int, level: Set[int]) -> bool:
+        """Whether a body that touches nothing but level floors is pushed by a side of one."""
+        pushing = [contact for contact in pybullet.getContactPoints(bodyA=uid)
+                   if contact[9] > 0.0 and contact[8] <= 0.0]
+        return (all(contact[2] in level for contact in pushing)
+                and any(contact[7][2] < _UP for contact in pushing))
+
+
+def _top(uid: int) -> float:
+    return float(pybullet.getAABB(uid, BASE)[1][2])
