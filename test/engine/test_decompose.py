@@ -257,6 +257,19 @@ def test_the_cache_gives_up_what_was_longest_unused(tmp_path):
     assert os.listdir(tmp_path) == ["d.parts"]
 
 
+def test_an_entry_that_belongs_to_somebody_else_is_used(filled, monkeypatch):
+    """As in a cache on a read-only disk, or one that root has made."""
+    folder, first = filled
+
+    def refuse(path, *times):
+        raise PermissionError(13, "Permission denied", path)
+
+    monkeypatch.setattr(os, "utime", refuse)
+    parts, _, told = divided(angle(), folder)
+    assert told == []
+    assert [part.vertices.tolist() for part in parts] == [p.vertices.tolist() for p in first]
+
+
 def test_what_an_interrupted_writer_left_is_removed_in_time(tmp_path):
     for name, at in (("old.new", 1e9), ("new.new", None)):
         (tmp_path / name).write_bytes(b"")

@@ -120,8 +120,6 @@ class PartsCache:
         path = self._path(key)
         try:
             made = load(path)
-            os.utime(path)
-            return made
         except FileNotFoundError:
             return None
         except (OSError, ValueError) as fault:
@@ -129,6 +127,9 @@ class PartsCache:
             with contextlib.suppress(OSError):  # it will be replaced
                 os.remove(path)
             return None
+        with contextlib.suppress(OSError):  # of another user, or on a read-only disk
+            os.utime(path)
+        return made
 
     def put(self, key: str, made: Decomposition) -> None:
         """Store a decomposition atomically."""
