@@ -100,9 +100,37 @@ def test_a_mesh_that_is_inside_out_gives_parts_that_are_not(tmp_path):
 def test_a_large_hull_keeps_its_bounding_box_with_few_corners(tmp_path):
     ball = trimesh.creation.icosphere(subdivisions=4, radius=2.0)
     parts, codes, _ = divided(mesh_of(ball), tmp_path)
-    assert len(parts) == 1 and len(parts[0].vertices) <= 64 and codes == []
+    assert len(parts) == 1 and len(parts[0].vertices) <= 256 and codes == []
     assert bounds(parts) == (pytest.approx([-2] * 3), pytest.approx([2] * 3))
-    assert volume(parts) > 0.85 * ball.volume
+    assert volume(parts) > 0.97 * ball.volume
+
+
+def test_a_wheel_of_128_sides_keeps_all_corners_of_both_rims(tmp_path):
+    wheel = trimesh.creation.cylinder(0.1, 0.05, sections=128)
+    parts, _, _ = divided(mesh_of(wheel), tmp_path)
+    assert len(parts) == 1 and len(parts[0].vertices) == 256
+    assert volume(parts) == pytest.approx(wheel.volume)
+
+
+def test_a_reduced_tyre_keeps_its_tread_before_its_shoulders(tmp_path):
+    """A rounded rim of 1200 corners, of which no place may be lower than 1 % of the radius."""
+    turns = np.linspace(0.0, 2.0 * np.pi, 100, endpoint=False)
+    rings = [np.stack([(0.9 + 0.1 * np.cos(bend)) * np.cos(turns),
+                       (0.9 + 0.1 * np.cos(bend)) * np.sin(turns),
+                       np.full(100, 0.1 * np.sin(bend))], 1) for bend in np.linspace(-1.5, 1.5, 12)]
+    solid = full_hull(np.concatenate(rings))
+    (part,), _, _ = divided(MeshData(solid.vertices, solid.faces), tmp_path)
+    planes = full_hull(part.vertices).planes
+    beyond = (solid.vertices @ planes[:, :3].T + planes[:, 3]).max()
+    assert len(part.vertices) == 256 and beyond < 0.01
+
+
+def test_several_convex_pieces_share_their_corners(tmp_path):
+    balls = [trimesh.creation.icosphere(subdivisions=3, radius=1.0) for _ in range(3)]
+    for n, one in enumerate(balls):
+        one.apply_translation((3.0 * n, 0.0, 0.0))
+    parts, _, _ = divided(mesh_of(trimesh.util.concatenate(balls)), tmp_path)
+    assert [len(part.vertices) for part in parts] == [85, 85, 85]
 
 
 def test_separate_convex_pieces_are_kept_exactly(tmp_path):

@@ -31,7 +31,7 @@ _log = logging.getLogger(__name__)
 _VHACD: Dict[str, Any] = {"concavity": 0.0025, "alpha": 0.04, "resolution": 100000,
                           "planeDownsampling": 8, "convexhullDownsampling": 8,
                           "maxNumVerticesPerCH": 64}
-_VERSION = 2  # increase it when a mesh gives other parts than before
+_VERSION = 3  # increase it when a mesh gives other parts than before
 _PARAMETERS = f"{_VERSION} {sorted(_VHACD.items())!r}"
 _THICKNESS_M = (0.001, 0.01)  # a flat mesh gets 1/100 of its extent, within these
 _INPUT, _RESULT, _FALLBACK, _FAULTS = "mesh.npz", "result.parts", "hull.parts", "faults"
@@ -264,7 +264,8 @@ def _divided(mesh: Any, folder: str) -> List[Any]:
                                group_material=False)
     hull = hulls.full_hull(mesh.vertices)
     pieces = [hulls.drawn_in(piece.vertices, hull) for piece in found.geometry.values()]
-    pieces = [hulls.hull_of(points).vertices for points in pieces if not hulls.is_flat(points)]
+    pieces = [hulls.hull_of(points, hulls.PART_VERTICES).vertices for points in pieces
+              if not hulls.is_flat(points)]
     return [hulls.full_hull(points) for points in hulls.stretched(pieces, mesh.vertices)] \
         if pieces else []
 
