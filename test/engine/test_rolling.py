@@ -16,6 +16,7 @@ from my_simulations.description.shapes import (
     Capsule,
     Collision,
     Cylinder,
+    Heightmap,
     Mesh,
     MeshData,
     Surface,
@@ -67,7 +68,7 @@ def _floor(lab: Lab, kind: str) -> None:
         above = at + along + 1
         faces = np.concatenate([np.stack([at, at + 1, above], 1),
                                 np.stack([at + 1, above + 1, above], 1)]).astype(np.int32)
-        mesh = Mesh("terrain", "/terrain")
+        mesh = Heightmap("terrain", "/terrain")   # flat faces of other meshes are boxes
         lab.load(Model("floor", static=True, links=[Link("link", collisions=[
             Collision("c", mesh, surface=Surface(mu=1.0))])]),
             meshes={mesh_key(mesh): MeshData(points, faces)})

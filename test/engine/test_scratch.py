@@ -8,12 +8,12 @@ import sys
 import tempfile
 import time
 
+import numpy as np
 import pytest
 from conftest import ball
-from test_contact import _cube_mesh
 
 from my_simulations.description.model import Link, Model
-from my_simulations.description.shapes import Collision, Mesh, mesh_key
+from my_simulations.description.shapes import Collision, Mesh, MeshData, mesh_key
 from my_simulations.engine.commands import LoadModel
 from my_simulations.engine.process_engine import ProcessEngine
 from my_simulations.engine.scratch_folder import Scratch, sweep
@@ -28,10 +28,13 @@ def temporary(tmp_path, monkeypatch):
     return tmp_path
 
 
-def _cube() -> LoadModel:
-    mesh = Mesh("cube", "/cube")
-    model = Model("cube", static=True, links=[Link("link", collisions=[Collision("c", mesh)])])
-    return LoadModel(1, model, Pose(), 0, 0, {mesh_key(mesh): _cube_mesh()})
+def _pyramid() -> LoadModel:
+    """A model that needs a file: it has no faces that are rectangles."""
+    mesh = Mesh("pyramid", "/pyramid")
+    model = Model("pyramid", static=True, links=[Link("link", collisions=[Collision("c", mesh)])])
+    data = MeshData(np.array([(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)], float),
+                    np.array([(0, 2, 1), (0, 1, 3), (0, 3, 2), (1, 2, 3)], np.int32))
+    return LoadModel(1, model, Pose(), 0, 0, {mesh_key(mesh): data})
 
 
 def test_a_folder_is_made_when_needed_and_removed_at_the_end(temporary):
@@ -56,7 +59,7 @@ def test_an_engine_without_meshes_makes_no_folder(temporary):
 def test_the_folder_of_a_killed_engine_goes_with_it(temporary):
     engine = ProcessEngine()
     try:
-        assert not engine.submit(_cube()).result(20).error
+        assert not engine.submit(_pyramid()).result(20).error
         assert len(list(temporary.iterdir())) == 1
         os.kill(engine.pid, signal.SIGKILL)
         deadline = time.monotonic() + 60

@@ -25,12 +25,12 @@ def principal(inertial: Inertial) -> Tuple[Pose, Vec3]:
     moments, axes = np.linalg.eigh(tensor)
     if np.linalg.det(axes) < 0.0:
         axes[:, 2] *= -1.0
-    turn = multiply(inertial.pose.orientation, _quat_of(axes))
+    turn = multiply(inertial.pose.orientation, quat_of(axes))
     return Pose(inertial.pose.position, normalised(turn)), (
         float(moments[0]), float(moments[1]), float(moments[2]))
 
 
-def _quat_of(r: np.ndarray[Any, Any]) -> Quat:
+def quat_of(r: np.ndarray[Any, Any]) -> Quat:
     """The quaternion (x y z w) of a rotation matrix, by its largest component (Shepperd 1978)."""
     candidates = [
         r[0, 0] - r[1, 1] - r[2, 2], r[1, 1] - r[0, 0] - r[2, 2],

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
-from typing import Dict, List, Optional, Tuple
+from typing import Dict, List, Optional, Set, Tuple
 
 import pybullet
 
@@ -152,6 +152,11 @@ class Body:
     def uids(self) -> Tuple[int, ...]:
         """All PyBullet numbers it holds."""
         return (self.uid,) + self.more
+
+    @property
+    def faces(self) -> Set[int]:
+        """PyBullet's numbers of those that are boxes in place of the flat faces of meshes."""
+        return {uid for uid, (recipe, _) in zip(self.uids, self.shapes) if recipe.role == "faces"}
 
     @property
     def colliders(self) -> Tuple[Part, ...]:

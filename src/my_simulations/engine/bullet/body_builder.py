@@ -232,7 +232,7 @@ class Builder:
     def _tree_shape(self, node: TreeLink, meshes: MeshTable) -> Optional[Recipe]:
         link = carried_by(node, self._model)
         if link.kinematic:
-            still = self._shapes.recipes(link.collisions, meshes, IDENTITY, True)
+            still = self._shapes.recipes(link.collisions, meshes, IDENTITY, True, whole=True)
             if len(still) <= 1:     # a link of a tree has one shape
                 return still[0] if still else None
         found = self._shapes.recipes(with_rims(node, link.collisions, MAX_SHAPES), meshes,

@@ -30,6 +30,7 @@ from ...errors import SimulationError
 from ...geometry import IDENTITY, Pose, compose, multiply, rotate, transform
 from ..convex.hull_points import hull_points, naming_triangles, shrunk
 from ..scratch_folder import Scratch
+from .face_boxes import FaceBoxes
 
 MAX_SHAPES = 16
 """Shapes in one compound; one more kills the process (measured, PyBullet 3.2.7)."""
@@ -50,8 +51,8 @@ class Recipe:
     """A compound as PyBullet is asked for it, as often as wanted: the file's names, arguments.
 
     Attributes:
-        role: "plane", "floor" for the box that stands below a plane, or "" (see
-            `collision_groups`).
+        role: "plane", "floor" for the box that stands below a plane, "faces" for boxes in place of
+            the flat faces of meshes, or "" (see `collision_groups`).
         is_hull: it is one convex hull of points.
         frame: where its body stands, seen from that of the link.
     """
@@ -81,6 +82,7 @@ class ShapeFactory:
     def __init__(self) -> None:
         self._scratch = Scratch()
         self._files: Dict[str, str] = {}
+        self._faces = FaceBoxes()
         self._count = 0
         self._unseen = -1
         self._unused: Dict[str, List[int]] = {}
@@ -121,14 +123,16 @@ class ShapeFactory:
         self._unused.clear()
 
     def recipes(self, collisions: Sequence[Collision], meshes: MeshTable, frame: Pose,
-                static: bool) -> List[Recipe]:
+                static: bool, whole: bool = False) -> List[Recipe]:
         """What makes the shape of a link, files written: one, or several for a large static link.
 
         Args:
             collisions: the link's, poses in the link frame.
             meshes: loaded meshes by `mesh_key`.
             frame: the link frame seen from the frame the body is built in.
-            static: static meshes collide as triangles, others as their convex hull.
+            static: static meshes collide as triangles, and boxes in place of their flat faces,
+                others as their convex hull.
+            whole: all triangles of static meshes, and no boxes.
 
         Raises:
             ShapeError: there is no such shape.
@@ -140,8 +144,13 @@ class ShapeFactory:
             parted = [recipe for plane in planes for recipe in (
                 replace(self._recipe([plane], meshes, frame, True), role="plane"),
                 self._floor(plane, meshes, frame))]
+            faces: List[Collision] = []
+            if not whole:
+                solid, faces, meshes = self._faces.parted(solid, meshes)
             return parted + [self._recipe(solid[at:at + MAX_SHAPES], meshes, frame, static)
-                             for at in range(0, len(solid), MAX_SHAPES)]
+                             for at in range(0, len(solid), MAX_SHAPES)] + [
+                replace(self._recipe(faces[at:at + MAX_SHAPES], meshes, frame, True), role="faces")
+                for at in range(0, len(faces), MAX_SHAPES)]
         if len(solid) <= MAX_SHAPES:
             return [self._recipe(solid, meshes, frame, static)] if solid else []
         # A moving link must be one body: curved shapes first, the rest as hulls of one file.
@@ -244,7 +253,7 @@ class ShapeFactory:
 
         Static ones as their triangles, moving ones as their convex pieces, smaller by `margin` m.
         """
-        key = f"{key} {'triangles' if static else 'pieces'} {margin}"
+        key = f"{key} {len(mesh.triangles) if static else 'pieces'} {margin}"
         if key not in self._files:
             self._count += 1
             path = os.path.join(self._scratch.path, f"{self._count}.obj")

@@ -119,7 +119,7 @@ class RollingContacts:
         if body.moves:
             self._moving.add(body.uid)
         elif any(isinstance(each.geometry, (Heightmap, Mesh)) for each in link.collisions):
-            self._seams.update(body.uids)
+            self._seams.update(set(body.uids) - body.faces)
         axis = axis_of(link)
         if axis is not None and body.moves:
             own = rotate(conjugate(part.link_from_com.orientation), axis)

@@ -1,1 +1,1 @@
-"""Convex parts of concave meshes, for bodies that move."""
+"""Simpler solids for meshes: convex parts where they move, flat faces where they do not."""
