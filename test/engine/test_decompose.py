@@ -140,6 +140,14 @@ def test_separate_convex_pieces_are_kept_exactly(tmp_path):
     assert volume(parts) == pytest.approx(2 * 0.1 + 0.009)
 
 
+def test_what_is_closed_is_solid_and_its_inner_side_is_no_part(tmp_path):
+    outer, inner = box((1, 1, 1)), box((0.9, 0.9, 0.9))
+    inner.invert()
+    parts, codes, _ = divided(mesh_of(trimesh.util.concatenate([inner, outer])), tmp_path)
+    assert [len(p.vertices) for p in parts] == [8] and codes == []
+    assert volume(parts) == pytest.approx(1.0)
+
+
 def test_a_concave_mesh_is_divided_and_its_notch_stays_free(tmp_path):
     parts, codes, told = divided(angle(), tmp_path)
     assert len(parts) > 1 and codes == []

@@ -172,7 +172,11 @@ def _areas(corners: Any) -> Any:
 
 
 def convex_pieces(mesh: Any) -> Optional[List[Hull]]:
-    """The hulls of a mesh's separate pieces, if all are convex, such as a table of boxes."""
+    """The hulls of a mesh's separate pieces, if all are convex, such as a table of boxes.
+
+    Those inside of another one are left out, such as the inner side of a closed shell: V-HACD fills
+    what is closed, too, and nothing can get there.
+    """
     import numpy as np
     from trimesh.graph import connected_components
 
@@ -182,8 +186,20 @@ def convex_pieces(mesh: Any) -> Optional[List[Hull]]:
     pieces = [cleaned(mesh.vertices, mesh.faces[group]) for group in groups]
     if not all(map(is_convex, pieces)):
         return None
-    most = max(PART_VERTICES, MOST_VERTICES // len(pieces))
-    return [hull_of(piece.vertices, most) for piece in pieces]
+    outer = _not_inside([full_hull(piece.vertices) for piece in pieces])
+    most = max(PART_VERTICES, MOST_VERTICES // len(outer))
+    return [hull_of(hull.vertices, most) for hull in outer]
+
+
+def _not_inside(hulls: List[Hull]) -> List[Hull]:
+    """Hulls without those that lie in a larger one, in their order."""
+    kept: List[int] = []
+    for n in sorted(range(len(hulls)), key=lambda n: -hulls[n].volume):
+        points = hulls[n].vertices
+        if not any((points @ hulls[k].planes[:, :3].T + hulls[k].planes[:, 3]).max() <= 0.0
+                   for k in kept):
+            kept.append(n)
+    return [hulls[n] for n in sorted(kept)]
 
 
 def drawn_in(points: Any, hull: Hull) -> Any:
