@@ -1,7 +1,9 @@
 """Textures of surfaces, read or drawn once, and uploaded."""
 from __future__ import annotations
 
-from typing import Any, Callable, Dict
+import weakref
+from collections import deque
+from typing import Any, Callable, Deque, Dict
 
 import numpy as np
 
@@ -23,11 +25,13 @@ class Textures:
     def __init__(self, context: Any, trouble: Callable[[str], None]) -> None:
         self._context, self._trouble = context, trouble
         self._made: Dict[Any, Any] = {}
+        self._gone: Deque[int] = deque()   # ids of pictures that were, whose textures are to go
 
     def of(self, surface: Surface) -> Any:
         """The texture of a surface; None where it has none, or one that cannot be read."""
         if surface.picture is None and not surface.pattern:
             return None
+        self._release_gone()
         key = surface.picture if isinstance(surface.picture, str) else (
             id(surface.picture) if surface.picture is not None else ("pattern", surface.pattern))
         if key not in self._made:
@@ -39,7 +43,17 @@ class Textures:
                 self._trouble(f"the picture {surface.picture} cannot be read: cameras see its "
                               "material without")
             self._made[key] = None if pixels is None else self._uploaded(pixels)
+            if isinstance(key, int):
+                # Another picture may get its id then; what draws it keeps the picture until then.
+                weakref.finalize(surface.picture, self._gone.append, key)
         return self._made[key]
+
+    def _release_gone(self) -> None:
+        """In the thread of the context: pictures end in any."""
+        while self._gone:
+            texture = self._made.pop(self._gone.popleft(), None)
+            if texture is not None:
+                texture.release()
 
     def of_layer(self, layer: TerrainLayer) -> Any:
         """The texture of a terrain's layer: grey where it has none that can be read."""

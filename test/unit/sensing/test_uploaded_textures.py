@@ -1,0 +1,46 @@
+"""Textures of decoded pictures end with them."""
+from __future__ import annotations
+
+import gc
+
+from PIL import Image
+
+from my_simulations.sensing.camera.uploaded_textures import Textures
+from my_simulations.sensing.surfaces import Surface
+
+
+class Texture:
+    def __init__(self, pixels):
+        self.pixels, self.released = pixels, False
+
+    def build_mipmaps(self):
+        pass
+
+    def release(self):
+        self.released = True
+
+
+class Context:
+    """Of moderngl, without a card."""
+
+    LINEAR = LINEAR_MIPMAP_LINEAR = 0
+
+    def __init__(self):
+        self.made = []
+
+    def texture(self, size, components, data, internal_format):
+        self.made.append(Texture(data))
+        return self.made[-1]
+
+
+def test_a_picture_at_the_address_of_a_former_one_is_uploaded_and_the_former_released():
+    context = Context()
+    textures = Textures(context, lambda text: None)
+    for n in range(50):
+        surface = Surface(picture=Image.new("RGB", (2, 2), (n, 0, 0)))
+        assert textures.of(surface).pixels[0] == n
+        assert textures.of(surface) is textures.of(surface)
+        del surface
+        gc.collect()
+    assert len(context.made) == 50
+    assert sum(not texture.released for texture in context.made) <= 1
