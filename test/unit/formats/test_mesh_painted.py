@@ -5,6 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import trimesh
 from walking_figures import rod
 
 from my_simulations.description.shapes import Mesh
@@ -105,3 +106,16 @@ def test_an_stl_file_has_no_colour_and_flat_faces():
 def test_a_file_that_does_not_load_is_refused_as_ever():
     with pytest.raises(InputError):
         painted_parts(Mesh("none.dae", "/nowhere/none.dae"))
+
+
+def test_a_flattened_node_of_a_glb_keeps_its_colour_and_normals(tmp_path):
+    box = trimesh.creation.box()
+    red = trimesh.visual.material.PBRMaterial(baseColorFactor=[1.0, 0.0, 0.0, 1.0])
+    box.visual = trimesh.visual.TextureVisuals(uv=np.zeros((8, 2)), material=red)
+    scene = trimesh.Scene()
+    scene.add_geometry(box, transform=np.diag([1.0, 1.0, 0.0, 1.0]))
+    assert box.vertex_normals is not None  # the file gets those that were asked for
+    scene.export(tmp_path / "flat.glb", include_normals=True)
+    (part,) = painted_parts(mesh(tmp_path / "flat.glb"))
+    assert part.color[:3] == pytest.approx((1.0, 0.0, 0.0))
+    assert np.abs(part.normals[:, :2]).max() == pytest.approx(0.0, abs=1e-9)

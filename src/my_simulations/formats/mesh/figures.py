@@ -138,8 +138,9 @@ def _told() -> Iterator[None]:
     """Faults of the file, which is not checked before it is read, as what they are."""
     try:
         yield
-    except (LookupError, TypeError, ValueError, AttributeError, RecursionError, StopIteration,
-            OverflowError) as fault:
+    except MeshError:
+        raise
+    except Exception as fault:  # of any library that reads it
         raise MeshError("its skin or animation cannot be read: "
                         f"{type(fault).__name__}: {fault}") from None
 

@@ -10,10 +10,8 @@ from urllib.parse import unquote
 import numpy as np
 
 from ...description.shapes import Color, Mesh, MeshData
-from ...errors import InputError
 from .collada import instances, unit_of
 from .loading import load_mesh
-from .part import MeshError
 
 _PAINTED = (".obj", ".glb", ".gltf", ".ply")
 
@@ -58,8 +56,7 @@ def painted_parts(mesh: Mesh) -> List[PaintedPart]:
     plain = load_mesh(mesh)
     try:
         parts = _read(mesh)
-    except (MeshError, InputError, LookupError, TypeError, ValueError, AttributeError, OSError,
-            ImportError, RecursionError, OverflowError):
+    except Exception:  # of any library that reads them
         parts = []  # materials are optional; the shape was read
     if sum(len(part.triangles) for part in parts) != len(plain.triangles):
         return [flat(plain)]
@@ -256,13 +253,20 @@ def _trimesh(mesh: Mesh, extension: str) -> List[PaintedPart]:
         vertices = np.asarray(shape.vertices) @ matrix[:3, :3].T + matrix[:3, 3]
         normals = None
         if "vertex_normals" in shape._cache:
-            turned = np.linalg.inv(matrix[:3, :3]).T
+            turned = _cofactors(matrix[:3, :3])
             normals = (np.asarray(shape.vertex_normals) @ turned.T)[faces].reshape(-1, 3)
         uv = getattr(shape.visual, "uv", None)
         uv = None if uv is None else np.asarray(uv)[faces].reshape(-1, 2)
         parts.append(_indexed(vertices[faces].reshape(-1, 3), normals, uv,
                               _trimesh_material(getattr(shape.visual, "material", None))))
     return parts
+
+
+def _cofactors(matrix: Any) -> Any:
+    """What turns normals: the transposed inverse times |det|, also of a flat, singular matrix."""
+    one, two, three = matrix
+    found = np.array([np.cross(two, three), np.cross(three, one), np.cross(one, two)])
+    return -found if np.linalg.det(matrix) < 0 else found
 
 
 def _trimesh_material(material: Any) -> Paint:
