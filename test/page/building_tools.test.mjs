@@ -233,6 +233,27 @@ test('deleting, copying and selecting go through history', () => {
   assert.deepEqual(session.level.walls.map(({id}) => id), [0, 1, 2, 3]);
 });
 
+test('an edit by key during a drag ends the drag and stays', () => {
+  for (const {edit, walls, label} of [
+    {edit: (session) => session.removeSelected(), walls: 3, label: 'delete wall'},
+    {edit: (session) => session.paste(), walls: 5, label: 'paste'},
+  ]) {
+    const session = withRoom();
+    session.select([{kind: 'walls', id: 0}]);
+    session.copy();
+    session.tool.press(mouse(2, 0));
+    session.tool.move(mouse(2, -1));
+    edit(session);
+    const {plan} = session.history;
+    session.tool.move(mouse(2, -1.5));
+    assert.equal(session.plan, plan);
+    session.tool.release(mouse(2, -2));
+    assert.equal(session.history.plan, plan);
+    assert.equal(session.level.walls.length, walls);
+    assert.equal(session.history.undoLabel, label);
+  }
+});
+
 test('the inspector of an attached door speaks of distances to the wall ends', () => {
   const session = withRoom();
   session.tool = new OpeningTool(session, 'doors');

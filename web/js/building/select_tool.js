@@ -58,7 +58,7 @@ export class SelectTool extends Tool {
       session.changed();
       return;
     }
-    const drag = this.#drag;
+    const drag = this.#currentDrag();
     if (!drag) {
       this.hovered = hitOf(session.plan, session.at, mouse.point,
         {tolerance: mouse.tolerance, selection: session.selection});
@@ -69,7 +69,6 @@ export class SelectTool extends Tool {
     session.preview(dragged(drag, mouse, session));
   }
 
-  /** @param {Mouse} mouse */
   /** @param {Mouse} mouse @returns {void} */
   release(mouse) {
     const {session} = this;
@@ -81,7 +80,7 @@ export class SelectTool extends Tool {
       session.changed();
       return;
     }
-    const drag = this.#drag;
+    const drag = this.#currentDrag();
     this.#drag = null;
     if (!drag?.moved) return;
     const plan = dragged(drag, mouse, session);
@@ -93,6 +92,15 @@ export class SelectTool extends Tool {
       return;
     }
     session.commit(plan, `${VERBS[drag.part] ?? 'resize'} ${NAMES[drag.ref.kind]}`);
+  }
+
+  /**
+   * The drag, unless the plan was changed since the press: by a key, or in an inspector. Its end
+   * would bring the plan of the press back.
+   */
+  #currentDrag() {
+    if (this.#drag?.plan !== this.session.history.plan) this.#drag = null;
+    return this.#drag;
   }
 
   /** Esc: first the drag, then the selection. */
