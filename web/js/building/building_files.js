@@ -76,11 +76,20 @@ export class Files {
   /** @param {string} name @param {SaveOptions} options */
   async #write(name, options) {
     const {session} = this;
-    const plan = {...session.history.plan, name: name.trim() || session.plan.name};
+    const {history} = session;
+    const present = history.plan;
+    const renamed = name.trim() || present.name;
+    const plan = renamed === present.name ? present : {...present, name: renamed};
     const given = Object.fromEntries(Object.entries(options).filter(([, value]) => value !== ''));
     const saved = await this.request('building_save', {plan, name: plan.name, options: given});
-    if (plan.name !== session.history.plan.name) session.commit(plan, 'rename building');
-    session.history.markSaved();
+    // Another building was opened meanwhile.
+    if (session.history !== history) return;
+    if (plan !== present) {
+      // Saving leaves the sheet usable: what was drawn meanwhile stays, unsaved.
+      const untouched = history.plan === present;
+      session.commit(untouched ? plan : {...history.plan, name: renamed}, 'rename building');
+    }
+    history.markSaved(plan);
     session.file = {path: saved.path, name: plan.name};
     session.say(`Saved to ${saved.path}`);
     for (const issue of saved.issues) session.say(`Saved with a warning: ${issue.message}`);
@@ -132,7 +141,8 @@ export class Files {
     const answer = await ask('Save building?', 'The building has unsaved changes.',
       [{title: 'Cancel'}, {title: "Don't Save", value: 'drop', danger: true},
         {title: 'Save', value: 'save', primary: true}]);
-    return answer === 'drop' || (answer === 'save' && this.save());
+    // Asks again for what was drawn while it was saved.
+    return answer === 'drop' || (answer === 'save' && await this.save() && this.mayDiscard());
   }
 
   /** Asks before leaving. @returns {Promise<'cancel'|'saved'|'dropped'>} */
@@ -144,7 +154,7 @@ export class Files {
     [{title: 'Cancel'}, {title: "Don't Save, Exit", value: 'drop', danger: true},
       {title: 'Save and Exit', value: 'save', primary: true}]);
     if (answer === 'drop') return session.file ? 'saved' : 'dropped';
-    return answer === 'save' && await this.save() ? 'saved' : 'cancel';
+    return answer === 'save' && await this.save() ? this.leave() : 'cancel';
   }
 }
 

@@ -53,8 +53,11 @@ export class History {
   get undoLabel() { return this.#past[this.#past.length - 1]?.label ?? null; }
   get redoLabel() { return this.#future[this.#future.length - 1]?.label ?? null; }
 
-  /** The present plan is what the file holds. */
-  markSaved() { this.#saved = this.plan; }
+  /**
+   * What the file holds, by default the present plan.
+   * @param {Plan} [plan]
+   */
+  markSaved(plan = this.plan) { this.#saved = plan; }
   /** The plan that the file holds. */
   get saved() { return this.#saved; }
   get dirty() { return this.plan !== this.#saved; }
