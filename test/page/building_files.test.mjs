@@ -61,3 +61,25 @@ test('a building that is saved undisturbed has no unsaved changes', async () => 
   assert.equal(session.dirty, false);
   assert.equal(session.file.path, `${HOME}/House`);
 });
+
+test('saving a building whose folder is not named after it replaces no other building', async () => {
+  const {files, session, asked} = filesWith({path: `${HOME}/House2`});
+  let questions = 0;
+  files.saveAs = async () => { questions += 1; return false; };
+  await files.load(`${HOME}/House2`);
+  addWall(session, 1);
+  assert.equal(await files.save(), false);
+  assert.equal(questions, 1);
+  assert.deepEqual(asked.map(({kind}) => kind), ['building_load']);
+});
+
+test('saving goes to the folder that was opened, also under a name with spaces', async () => {
+  const {files, session, asked} = filesWith({path: '/ws/models/Two_rooms', plan: plans.emptyPlan('Two rooms')});
+  await files.load('/ws/models/Two_rooms');
+  addWall(session, 1);
+  assert.equal(await files.save(), true);
+  assert.deepEqual(asked.at(-1).options, {...ABOUT, folder: '/ws/models', overwrite: true});
+  assert.equal(session.file.path, '/ws/models/Two_rooms');
+  await files.save();
+  assert.equal(asked.at(-1).kind, 'building_save');
+});

@@ -13,6 +13,12 @@ const LARGEST_IMAGE = 16 * 1024 * 1024;
 /** How a building is saved, besides its plan. */
 /** @typedef {BuildingOptions & BuildingAbout & {folder: string}} SaveOptions */
 
+/** The folder that a building's name becomes, as on the server. @param {string} name */
+const folderName = (name) => name.trim().split(/\s+/).join('_');
+
+/** The folder that contains a building's folder. @param {string} path */
+const parentOf = (path) => path.slice(0, path.lastIndexOf('/'));
+
 /** @returns {BuildingAbout & {folder: string}} */
 const blankAbout = () => ({folder: '', version: '1.0', description: '', author: '', email: ''});
 
@@ -24,10 +30,14 @@ export class Files {
     this.about = blankAbout();
   }
 
-  /** Saves where the building was saved before; asks the first time. @returns {Promise<boolean>} */
+  /**
+   * Saves where the building was saved before. Asks the first time, and where the building's name
+   * would lead to another folder than its own: a copied or renamed one.
+   * @returns {Promise<boolean>}
+   */
   async save() {
     const {file} = this.session;
-    if (!file) return this.saveAs();
+    if (!file || !this.#isOwn(file.name, this.about.folder)) return this.saveAs();
     try {
       await this.#write(file.name, {...this.about, overwrite: true});
       return true;
@@ -36,6 +46,14 @@ export class Files {
       await ask('Failed to save the building', faultText(fault), [{title: 'OK', primary: true}]);
       return false;
     }
+  }
+
+  /**
+   * Whether a building of this name in this folder is the one that is drawn.
+   * @param {string} name @param {string} folder
+   */
+  #isOwn(name, folder) {
+    return this.session.file?.path === `${folder.replace(/\/+$/, '')}/${folderName(name)}`;
   }
 
   /** @returns {Promise<boolean>} whether it was saved */
@@ -59,14 +77,13 @@ export class Files {
         const chosen = {folder: folder.value.trim(), version: fields.version.value,
           description: fields.description.value, author: fields.author.value,
           email: fields.email.value};
-        const own = session.file && session.file.name === name.value.trim() && about.folder === chosen.folder;
+        const own = this.#isOwn(name.value, chosen.folder);
         try {
-          await this.#write(name.value, {...chosen, overwrite: overwrite.checked || Boolean(own)});
+          await this.#write(name.value, {...chosen, overwrite: overwrite.checked || own});
         } catch (fault) {
           if (/already exists|exists already/.test(faultText(fault))) replace.hidden = false;
           throw fault;
         }
-        this.about = chosen;
         return 'saved';
       }}],
     });
@@ -91,6 +108,8 @@ export class Files {
     }
     history.markSaved(plan);
     session.file = {path: saved.path, name: plan.name};
+    const {version, description, author, email} = options;
+    this.about = {version, description, author, email, folder: parentOf(saved.path)};
     session.say(`Saved to ${saved.path}`);
     for (const issue of saved.issues) session.say(`Saved with a warning: ${issue.message}`);
   }
@@ -120,9 +139,8 @@ export class Files {
   /** Opens a building by name or path. @param {string} name */
   async load(name) {
     const {plan, path, issues, about} = await this.request('building_load', {name});
-    const parts = path.split('/');
     const isFolder = !/\.(sdf|world)$/.test(path);
-    this.about = {...blankAbout(), ...about, folder: isFolder ? parts.slice(0, -1).join('/') : ''};
+    this.about = {...blankAbout(), ...about, folder: isFolder ? parentOf(path) : ''};
     this.session.open(plan, isFolder ? {path, name: plan.name} : null);
     this.session.say(issues.length ? `Opened with a warning: ${issues[0].message}` : '');
   }
@@ -135,7 +153,7 @@ export class Files {
     return true;
   }
 
-  /** Asks what becomes of changes: true when the plan may go. */
+  /** Asks what becomes of changes: true when the plan may go. @returns {Promise<boolean>} */
   async mayDiscard() {
     if (!this.session.dirty) return true;
     const answer = await ask('Save building?', 'The building has unsaved changes.',
