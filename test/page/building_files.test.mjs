@@ -5,8 +5,15 @@ import test from 'node:test';
 import {installPlainDom} from './plain_dom.mjs';
 
 installPlainDom();
+const storage = new Map();
+let leavePage = () => {};
+globalThis.localStorage = {
+  getItem: (key) => storage.get(key) ?? null, setItem: (key, value) => storage.set(key, value)};
+globalThis.window = {
+  addEventListener: (_, listener) => { leavePage = listener; }, removeEventListener() {}};
 const {Files} = await import('../../web/js/building/building_files.js');
 const {Session} = await import('../../web/js/building/drawing_session.js');
+const {forgetDraft, keepDraft, leftDraft} = await import('../../web/js/building/unsaved_plan.js');
 const plans = await import('../../web/js/building/plan.js');
 
 const HOME = '/home/u/building_editor_models';
@@ -82,4 +89,86 @@ test('saving goes to the folder that was opened, also under a name with spaces',
   assert.equal(session.file.path, '/ws/models/Two_rooms');
   await files.save();
   assert.equal(asked.at(-1).kind, 'building_save');
+});
+
+const SCAN = {file: 'floor_plan_1.png', resolution: 50, data: 'data:image/png;base64,AAAA'};
+
+/** A saved building with a picture. */
+function withScan() {
+  const plan = plans.emptyPlan('House');
+  return {...plan, levels: [{...plan.levels[0], image: SCAN}]};
+}
+
+test('a restored draft is saved to its own folder, with author and pictures', async () => {
+  const saved = {path: '/ws/models/House', plan: withScan()};
+  const before = filesWith(saved);
+  keepDraft(before.session);
+  await before.files.load('/ws/models/House');
+  addWall(before.session, 1);
+  leavePage();
+  assert.equal([...storage.values()].join('').includes('base64'), false);
+
+  const {files, session, asked} = filesWith(saved);
+  await files.restore(leftDraft());
+  assert.equal(session.dirty, true);
+  assert.deepEqual(session.level.image, SCAN);
+  assert.equal(await files.save(), true);
+  assert.deepEqual(asked.at(-1).options, {...ABOUT, folder: '/ws/models', overwrite: true});
+  assert.equal(wallsOf(asked.at(-1).plan), 1);
+  assert.deepEqual(asked.at(-1).plan.levels[0].image, SCAN);
+  forgetDraft();
+});
+
+test('a picture that was not saved is told missing when the draft is restored', async () => {
+  const before = filesWith();
+  keepDraft(before.session);
+  before.session.commit(withScan(), 'import floor plan');
+  leavePage();
+  const {files, session} = filesWith();
+  await files.restore(leftDraft());
+  assert.equal(session.level.image, null);
+  assert.match(session.hint, /floor plan of Level 1 again/);
+  forgetDraft();
+});
+
+test('a draft whose building cannot be opened asks where it is saved', async () => {
+  const before = filesWith();
+  keepDraft(before.session);
+  await before.files.load('House');
+  addWall(before.session, 1);
+  leavePage();
+  const session = new Session();
+  const files = new Files(session, async () => { throw new Error('it was removed'); });
+  await files.restore(leftDraft());
+  assert.equal(wallsOf(session.history.plan), 1);
+  assert.equal(session.file, null);
+  assert.match(session.hint, /House cannot be opened: it was removed/);
+  forgetDraft();
+});
+
+test('a session that draws nothing forgets no draft of an earlier one', () => {
+  const before = new Session();
+  keepDraft(before);
+  addWall(before, 1);
+  leavePage();
+  const session = new Session();
+  const stop = keepDraft(session);
+  session.commit({...session.history.plan}, 'edit');
+  session.undo();
+  leavePage();
+  stop();
+  assert.equal(wallsOf(leftDraft().plan), 1);
+  forgetDraft();
+});
+
+test('a draft is forgotten when its plan is saved', async () => {
+  const {files, session} = filesWith();
+  keepDraft(session);
+  await files.load('House');
+  addWall(session, 1);
+  leavePage();
+  assert.equal(wallsOf(leftDraft().plan), 1);
+  await files.save();
+  leavePage();
+  assert.equal(leftDraft(), null);
 });

@@ -22,6 +22,7 @@ import {isEmpty, withoutImages} from './plan.js';
 /** @import {Pose7} from '../pose.js' */
 /** @import {RequestFunction} from '../connection.js' */
 /** @import {Store} from '../store.js' */
+/** @import {Draft} from './unsaved_plan.js' */
 
 /**
  * The model of a building that was opened, at its pose as drawn.
@@ -111,14 +112,16 @@ export async function mount(element, {store, request, actions}) {
     ...(/** @type {const} */ (['document', 'entity', 'poses'])).map((event) => store.listen(event, around)),
     listenToKeys(element, {session, files: opening, exit: leave, draw: drawSoon}),
     listenToView(byId('view'), {session, actions}), () => preview.end(),
-    watchSize(sheet, canvas), askBeforeUnload(session), keepDraft(session),
-    unlisten,
+    watchSize(sheet, canvas), askBeforeUnload(session), unlisten,
   ];
   const wasRunning = !store.stats.paused;
   if (wasRunning) await actions.pause();
   canvas.fit();
   canvas.element.focus();
-  if (draft) restore(session, draft).then(() => canvas.fit());
+  let left = false;
+  // Kept from the answer on: until then the earlier draft is the only one there is.
+  const offered = draft ? open(() => offer(files, draft)) : Promise.resolve();
+  offered.then(() => { if (!left) ends.push(keepDraft(session)); });
 
   /** @type {Promise<boolean>|null} */
   let closing = null;
@@ -128,6 +131,7 @@ export async function mount(element, {store, request, actions}) {
     const how = await files.leave();
     if (how === 'cancel') return false;
     if (how === 'saved' && !await place()) return false;
+    left = true;
     for (const end of ends.splice(0)) end();
     if (opened) actions.setOverlay('transparent', false, opened.name);
     element.replaceChildren();
@@ -174,19 +178,17 @@ const bound = (files) => ({
 });
 
 /**
- * Offers what an earlier page left unsaved; it stays unsaved.
- * @param {Session} session
- * @param {{plan: Plan, file: Session['file']}} draft
+ * Offers what an earlier page left unsaved; without an answer it is offered again the next time.
+ * @param {Files} files
+ * @param {Draft} draft
+ * @returns {Promise<boolean>} whether it was restored
  */
-async function restore(session, {plan, file}) {
-  const answer = await ask('Restore unsaved building?', `The building ${plan.name} has unsaved changes from an earlier session.`,
-    [{title: 'Discard', value: 'drop', danger: true}, {title: 'Restore', value: 'restore', primary: true}]);
-  if (answer === 'restore') {
-    session.file = file;
-    session.commit(plan, 'restore');
-  } else if (answer === 'drop') {
-    forgetDraft();
-  }
+async function offer(files, draft) {
+  const answer = await ask('Restore unsaved building?', `The building ${draft.plan.name} has unsaved changes from an earlier session.`,
+    [{title: 'Discard', value: 'drop', danger: true},
+      {title: 'Restore', value: 'restore', primary: true, run: () => files.restore(draft)}]);
+  if (answer === 'drop') forgetDraft();
+  return answer === 'restore';
 }
 
 /**
@@ -196,7 +198,8 @@ async function restore(session, {plan, file}) {
  * @param {RequestFunction} request
  */
 async function modelOf(session, store, request) {
-  const {plan} = session.history;
+  // A restored draft differs from what the world was given.
+  const plan = session.history.saved;
   try {
     const {model} = await request('building_sdf', {plan: withoutImages(plan), text: false});
     return store.model(model.name) ? {name: model.name, pose: model.pose, plan} : null;

@@ -6,6 +6,7 @@ import {rescaled, withImage} from './draw_tools.js';
 /** @import {BuildingAbout, BuildingOptions} from '../protocol.js' */
 /** @import {RequestFunction} from '../connection.js' */
 /** @import {Session} from './drawing_session.js' */
+/** @import {Draft} from './unsaved_plan.js' */
 
 /** The largest picture that is taken as a floor plan. */
 const LARGEST_IMAGE = 16 * 1024 * 1024;
@@ -143,6 +144,36 @@ export class Files {
     this.about = {...blankAbout(), ...about, folder: isFolder ? parentOf(path) : ''};
     this.session.open(plan, isFolder ? {path, name: plan.name} : null);
     this.session.say(issues.length ? `Opened with a warning: ${issues[0].message}` : '');
+  }
+
+  /**
+   * Takes up what an earlier page left unsaved, on top of the saved building: that gives folder,
+   * author and pictures. Says what is missing.
+   * @param {Draft} draft
+   */
+  async restore({plan, file, pictures = []}) {
+    const {session} = this;
+    let trouble = '';
+    if (file) {
+      try {
+        await this.load(file.path);
+      } catch (fault) {
+        // Without its folder, saving asks for a place.
+        trouble = `${file.path} cannot be opened: ${faultText(fault)}. `;
+      }
+    }
+    const {levels} = session.history.saved;
+    /** @type {string[]} */
+    const missing = [];
+    let restored = plan;
+    for (const {at, savedAt, resolution} of pictures) {
+      const image = savedAt === null ? null : levels[savedAt]?.image;
+      if (image) restored = withImage(restored, at, {...image, resolution});
+      else missing.push(plan.levels[at].name);
+    }
+    session.commit(restored, 'restore');
+    if (missing.length) trouble += `Import the floor plan of ${missing.join(', ')} again: it was not saved.`;
+    if (trouble) session.say(trouble);
   }
 
   /** An empty plan, after a question where something would be lost. */
