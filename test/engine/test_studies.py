@@ -344,6 +344,33 @@ def test_parquet_holds_the_table(folder):
     assert found["touched"].to_pylist() == [row["touched"] == "True" for row in rows]
 
 
+def test_a_study_file_that_gained_parameters_and_measurements_goes_on(folder):
+    from pyarrow import parquet
+
+    short = "duration: 0.01\nmeasure:\n  t: final(time)\n"
+    assert run(folder, short) == 0
+    varied = "vary:\n  g: {set: gravity.z, values: [-9.8, -5]}\n"
+    assert run(folder, short + varied) == 0
+    more = short.replace("final(time)", "final(time) > 0.005") + "  most: max(time)\n" + varied
+    assert run(folder, more) == 0
+    rows = table(folder)
+    assert [(row["g"], row["most"] != "") for row in rows] == [
+        ("", False), ("-9.8", False), ("-9.8", True), ("-5.0", False), ("-5.0", True)]
+    found = parquet.read_table(str(folder / "s" / "results.parquet"))
+    assert found["g"].to_pylist() == [None, -9.8, -9.8, -5.0, -5.0]
+    assert found["t"].to_pylist() == [None, None, True, None, True]  # was a number
+    assert found["most"].null_count == 3
+    assert "most" in (folder / "s" / "report.html").read_text()
+
+
+def test_a_parameter_of_numbers_and_texts_is_a_column_of_texts(folder):
+    from pyarrow import parquet
+
+    assert run(folder, "duration: 0.01\nvary:\n  n: {values: [1, many]}\n") == 0
+    found = parquet.read_table(str(folder / "s" / "results.parquet"))
+    assert found["n"].to_pylist() == ["1.0", "many"]
+
+
 def test_a_pyarrow_that_cannot_be_imported_costs_only_its_file(folder, capsys, monkeypatch):
     broken = folder / "broken" / "pyarrow"
     broken.mkdir(parents=True)

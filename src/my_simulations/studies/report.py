@@ -85,8 +85,9 @@ def _plots(study: Study, found: _Collected) -> str:
     drawn: List[str] = []
     for name, expression in study.measure:
         for parameter in study.parameters:
+            # Rows of former ids lack what the study file has gained since.
             points = [(float(point[parameter.name]), float(point[name])) for point in found.points
-                      if _finite(point[parameter.name]) and _finite(point[name])]
+                      if _finite(point.get(parameter.name)) and _finite(point.get(name))]
             if points and not expression.condition and len(drawn) < _MOST_PLOTS:
                 drawn.append(scatter(points, parameter.name, name))
     if not drawn:

@@ -83,16 +83,20 @@ def parquet_fault() -> Optional[str]:
 def write_parquet(path: str, study: Study, paths: Sequence[str]) -> int:
     """Write the table as parquet; returns the number of rows.
 
-    Only where `parquet_fault` is None.
+    Only where `parquet_fault` is None. A column has the type of the study file as it is now: what
+    a former one left of another kind, such as a number where there is a condition now, is null.
     """
     arrow = importlib.import_module("pyarrow")
     parquet = importlib.import_module("pyarrow.parquet")
-    schema = arrow.schema(_types(arrow, study))
+    kinds = _kinds(study)
+    types = {int: arrow.int64(), str: arrow.string(), float: arrow.float64(), bool: arrow.bool_()}
+    schema = arrow.schema([(name, types[kind]) for name, kind in kinds.items()])
     count = 0
     with replaced(path) as part, parquet.ParquetWriter(part, schema) as writer:
         group: List[Dict[str, Any]] = []
         for row in rows_in_order(paths):
-            group.append(cells(row))
+            group.append({name: _of_kind(value, kinds[name])
+                          for name, value in cells(row).items() if name in kinds})
             count += 1
             if len(group) == _GROUP:
                 writer.write_table(arrow.Table.from_pylist(group, schema))
@@ -101,16 +105,25 @@ def write_parquet(path: str, study: Study, paths: Sequence[str]) -> int:
     return count
 
 
-def _types(arrow: Any, study: Study) -> List[Tuple[str, Any]]:
-    whole, text, number, truth = arrow.int64(), arrow.string(), arrow.float64(), arrow.bool_()
-    kinds: Dict[str, Any] = {"index": whole, "seed": whole, "attempt": whole, "step": whole,
-                             "flaky": truth}
+def _kinds(study: Study) -> Dict[str, type]:
+    """The type of each column, in order."""
+    kinds: Dict[str, type] = {"index": int, "seed": int, "attempt": int, "step": int,
+                              "flaky": bool}
     for parameter in study.parameters:
         numeric = all(isinstance(value, (int, float)) for value in parameter.values)
-        kinds[parameter.name] = number if numeric else text
+        kinds[parameter.name] = float if numeric else str
     for name, condition in study.results:
-        kinds[name] = truth if condition else whole if study.scenarios else number
-    return [(name, kinds.get(name, text)) for name in columns_of(study)]
+        kinds[name] = bool if condition else int if study.scenarios else float
+    return {name: kinds.get(name, str) for name in columns_of(study)}
+
+
+def _of_kind(value: Any, kind: type) -> Any:
+    """A cell as a column takes it; None if it is of another kind."""
+    if kind is str:
+        return str(value)
+    if kind is float and type(value) is int:
+        return float(value)
+    return value if type(value) is kind else None
 
 
 def _plain(value: Any) -> Any:
