@@ -137,6 +137,29 @@ def test_shards_make_the_table_of_the_whole(folder, capsys):
     assert len(list((folder / "parts").glob("journal-*-of-3.jsonl"))) == 3
 
 
+def test_rows_of_former_ids_do_not_count_as_cases_of_the_study(folder, capsys):
+    def told(action):
+        code = main(["study", action, "s", "--json"])
+        found = json.loads(capsys.readouterr().out.splitlines()[-1])
+        return code, found["cases"], found["done"], found["ok"], found["failed"]
+
+    text = "duration: 0.01\nseeds: 2\n"
+    assert run(folder, text, "--slots", "1") == 0
+    failing = text + "require:\n  late: final(time) > 1\n"
+    (folder / "s.yaml").write_text(failing)
+    capsys.readouterr()
+    assert told("status") == (1, 2, 0, 0, 0)
+    assert told("resume") == (1, 2, 2, 0, 2)
+    assert told("status") == (1, 2, 2, 0, 2)
+    report = (folder / "s" / "report.html").read_text()
+    assert "2 of 2 have run" in report and "2 rows of the table are of former ids" in report
+    (folder / "s.yaml").write_text(text.replace("2", "3"))
+    assert told("status") == (1, 3, 2, 2, 0)
+    assert main(["study", "resume", "s"]) == 0
+    assert "1/1" in capsys.readouterr().err   # only what has no row is to be done
+    assert len(table(folder)) == 5
+
+
 def test_what_became_of_a_case_is_told(folder, capsys):
     (folder / "bad.world").write_text("<sdf version='1.6'><world name='w'>")
     text = """duration: 0.1

@@ -9,7 +9,7 @@ import shlex
 import signal
 import sys
 from types import FrameType
-from typing import Any, Callable, Dict, List, Mapping, Optional, Protocol, Sequence, Set, Tuple
+from typing import Callable, List, Mapping, Optional, Protocol, Sequence, Set, Tuple
 
 from ..errors import CommandError, InputError, SimulationError
 from ..python_api import OpenWorld
@@ -18,8 +18,8 @@ from .case_world import opened, play
 from .cluster_address import SLURM, TlsFiles, scheduler_address
 from .command_line import parser
 from .folder import REPORT, StudyFolder, shard_of
-from .journal import Journal, counts, finished_cases, header_of
-from .plan import Case, CasePlan, Shard
+from .journal import Journal, finished_cases
+from .plan import WHOLE, Case, CasePlan, Shard, number_of
 from .report import write_report
 from .row import OK
 from .row_recorder import Recorder
@@ -133,12 +133,12 @@ def _work(options: argparse.Namespace, folder: StudyFolder, plan: CasePlan, shar
     address = scheduler_address(options.on)
     if plan.study.scenarios and not address:
         require_ros()
-    total = len(range(shard.index - 1, len(plan), shard.of))
+    total = _count(plan, shard)
     journal = Journal(folder.journal_of(shard), {
         "study": plan.study.name, "file": plan.study.file, "cases": total,
         "all_cases": len(plan), "shard": [shard.index, shard.of], "versions": plan.versions})
     try:
-        finished = finished_cases(journal.path)
+        finished = _finished(plan, shard, journal.path)
         recorder = Recorder(journal, folder.path, folder.stem("trajectories", shard))
         rate = Rate(total - len(finished))
         progress = Progress(rate, sys.stderr, options.json)
@@ -155,9 +155,16 @@ def _work(options: argparse.Namespace, folder: StudyFolder, plan: CasePlan, shar
     finally:
         journal.close()
     files = []
-    if shard.of == 1 or folder.is_complete():  # of many, the last one writes the table
+    if shard.of == 1 or folder.is_complete(plan):  # of many, the last one writes the table
         files = [*folder.write_tables(plan, _tell), _report(folder, plan)]
-    return _tell_status(folder, journal.path, options.json, files)
+    return _tell_status(folder, plan, shard, options.json, files)
+
+
+def _finished(plan: CasePlan, shard: Shard, journal: str) -> Set[int]:
+    """The cases of a shard that have a row; rows of former ids are not of the plan any more."""
+    found = finished_cases(journal)
+    return {number for number in (number_of(case.id) for case in plan.cases(shard))
+            if number in found} if found else found
 
 
 def _run_on_dask(options: argparse.Namespace, plan: CasePlan, recorder: Recorder,
@@ -177,37 +184,35 @@ def _interrupt(_: int, __: Optional[FrameType]) -> None:
 
 
 def _status(options: argparse.Namespace, _: Optional[Hook]) -> int:
-    return _tell_status(StudyFolder(options.dir), None, options.json, [])
+    folder, plan = _opened(options.dir)
+    return _tell_status(folder, plan, WHOLE, options.json, [])
 
 
-def _tell_status(folder: StudyFolder, shard: Optional[str], as_json: bool, files: List[str]
-                 ) -> int:
-    """Tell what became of the cases of one journal, or of all; returns the exit code."""
-    total: Dict[str, int] = {}
-    cases = 0
-    header: Dict[str, Any] = {}
-    for path in folder.journals() if shard is None else [shard]:
-        header = header_of(path)
-        cases += header["cases"]
-        for status, count in counts(path).items():
-            total[status] = total.get(status, 0) + count
-    if shard is None:  # shards that have not begun count, too
-        cases = max(cases, header.get("all_cases", 0))
+def _tell_status(folder: StudyFolder, plan: CasePlan, shard: Shard, as_json: bool,
+                 files: List[str]) -> int:
+    """Tell what became of the cases of a shard, or of all; returns the exit code."""
+    total = folder.became(plan, shard)
+    cases, name = _count(plan, shard), plan.study.name
     done = sum(total.values())
     if as_json:
-        _say(json.dumps({"study": header["study"], "folder": folder.path, "cases": cases,
+        _say(json.dumps({"study": name, "folder": folder.path, "cases": cases,
                          "done": done, **total, "files": files}))
     else:
         became = ", ".join(f"{count} {status}" for status, count in total.items() if count)
-        _say(f"{header['study']}: {done} of {cases} cases" + (f": {became}" if became else ""))
+        _say(f"{name}: {done} of {cases} cases" + (f": {became}" if became else ""))
         for file in files:
             _say(f"  {file}")
-    return 0 if total.get(OK, 0) >= cases else NOT_ALL_OK
+    return 0 if total[OK] == cases else NOT_ALL_OK
+
+
+def _count(plan: CasePlan, shard: Shard) -> int:
+    return len(range(shard.index - 1, len(plan), shard.of))
 
 
 def _report(folder: StudyFolder, plan: CasePlan) -> str:
     path = os.path.join(folder.path, REPORT)
-    write_report(path, plan.study, folder.journals(), f"study show --in {folder.path}")
+    write_report(path, plan.study, folder.journals(), sum(folder.became(plan).values()),
+                 f"study show --in {folder.path}")
     return path
 
 

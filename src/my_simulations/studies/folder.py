@@ -8,9 +8,10 @@ import shutil
 from typing import Any, Callable, Dict, List
 
 from ..errors import CommandError
-from .journal import counts, header_of
-from .plan import WHOLE, CasePlan, Shard
+from .journal import header_of, statuses
+from .plan import WHOLE, CasePlan, Shard, number_of
 from .replacing import replaced
+from .row import STATUSES
 from .table import parquet_fault, write_csv, write_parquet
 
 COPY = "study.yaml"
@@ -62,11 +63,33 @@ class StudyFolder:
                     f"{self.path} holds a run in {found} shard{'s' * (found > 1)}, not in {of}:"
                     " go on with that number or name another folder with --out")
 
-    def is_complete(self) -> bool:
-        """Whether there is a journal of each shard, and it has a row for each of its cases."""
-        paths = self.journals()
-        return len(paths) >= shard_of(paths[0]).of and all(
-            sum(counts(path).values()) >= header_of(path)["cases"] for path in paths)
+    def missing_shards(self) -> List[Shard]:
+        """The shards of the run that have no journal here: they have not begun, or elsewhere."""
+        found = {shard_of(path).index for path in self.journals()}
+        of = shard_of(self.journals()[0]).of
+        return [Shard(index, of) for index in range(1, of + 1) if index not in found]
+
+    def is_complete(self, plan: CasePlan) -> bool:
+        """Whether each case of the plan has a row."""
+        if self.missing_shards():
+            return False
+        found = statuses(self.journals())
+        return len(found) >= len(plan) and all(number_of(case.id) in found
+                                               for case in plan.cases())
+
+    def became(self, plan: CasePlan, shard: Shard = WHOLE) -> Dict[str, int]:
+        """How many cases of a shard of the plan, or of all, have each status.
+
+        Rows of former ids, which the plan does not have any more, do not count.
+        """
+        paths = self.journals() if shard == WHOLE else [self.journal_of(shard)]
+        found = statuses(paths)
+        count = dict.fromkeys(STATUSES, 0)
+        for case in plan.cases(shard) if found else ():
+            status = found.get(number_of(case.id))
+            if status is not None:
+                count[status] += 1
+        return count
 
     def header(self) -> Dict[str, Any]:
         """What the first journal says about the study."""

@@ -15,14 +15,14 @@ import json
 import os
 import threading
 import time
-from typing import Any, Dict, Iterator, List, Optional, Set, Tuple
+from typing import Any, Dict, Iterator, List, Optional, Sequence, Set, Tuple
 
 from ..errors import CommandError
 from .row import STATUSES, Row, row_of
 
 FORMAT = 1
 _FSYNC_S = 1.0
-_BLOCK = 1 << 22
+_STATUS_AT = len('{"status":"')  # where the status stands in a row
 
 
 class Journal:
@@ -122,31 +122,28 @@ def rows(path: str) -> Iterator[Row]:
             raise CommandError(f"{path}: the line at byte {offset} is no row: {fault}") from None
 
 
-def finished_cases(path: str) -> Set[int]:
-    """The ids of the cases that have a row, as numbers, which need less memory."""
-    found = set()
-    for _, line in lines(path):
-        at = line.find(b'"case":"')
-        found.add(int(line[at + 8:at + 24], 16))
+def statuses(paths: Sequence[str]) -> Dict[int, str]:
+    """The status of each case that has a row, by its id as a number, which needs less memory.
+
+    Of two rows of one case the first counts. Raises CommandError for a broken line.
+    """
+    known = {status.encode(): status for status in STATUSES}
+    found: Dict[int, str] = {}
+    for path in paths:
+        for offset, line in lines(path):
+            at = line.find(b'"case":"') + 8
+            try:
+                status = known[line[_STATUS_AT:line.index(b'"', _STATUS_AT)]]
+                found.setdefault(int(line[at:at + 16], 16), status)
+            except (ValueError, KeyError) as fault:
+                raise CommandError(f"{path}: the line at byte {offset} is no row: {fault}"
+                                   ) from None
     return found
 
 
-def counts(path: str) -> Dict[str, int]:
-    """How many rows there are of each status; reads a million of them in about a second."""
-    starts = {status: b'\n{"status":"' + status.encode() + b'"' for status in STATUSES}
-    found = dict.fromkeys(STATUSES, 0)
-    with open(path, "rb") as stream:
-        kept = b""
-        while True:
-            block = stream.read(_BLOCK)
-            if not block:
-                return found
-            # Whole lines are counted; what follows the last end of a line waits for the next block.
-            block = kept + block
-            end = block.rfind(b"\n")
-            for status, start in starts.items():
-                found[status] += block.count(start, 0, end)
-            kept = block[max(end, 0):]
+def finished_cases(path: str) -> Set[int]:
+    """The ids of the cases that have a row, as numbers."""
+    return set(statuses([path]))
 
 
 def _cut_unfinished_line(file: int) -> None:

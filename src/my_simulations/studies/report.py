@@ -23,13 +23,15 @@ svg{border:1px solid #ddd}svg text{font:11px sans-serif}.grid{stroke:#e4e4e4;fil
 circle{fill:#1f6fb2;fill-opacity:.6}.scroll{overflow-x:auto}"""
 
 
-def write_report(path: str, study: Study, paths: Sequence[str], command: str) -> None:
+def write_report(path: str, study: Study, paths: Sequence[str], have_run: int, command: str
+                 ) -> None:
     """Write the report.
 
     Args:
         path: of the HTML file.
         study: the study.
         paths: its journals.
+        have_run: how many cases of the study have a row; other rows are of former ids.
         command: what shows a case when its id is appended.
     """
     found = _Collected(study)
@@ -38,7 +40,7 @@ def write_report(path: str, study: Study, paths: Sequence[str], command: str) ->
     parts = [f'<!DOCTYPE html><html lang="en"><head><meta charset="utf-8"><title>'
              f'{escape(study.name)}</title><style>{_STYLE}</style></head><body>'
              f'<h1>{escape(study.name)}</h1><p><code>{escape(study.file)}</code></p>',
-             _summary(study, found), _plots(study, found), _failures(found, command),
+             _summary(study, found, have_run), _plots(study, found), _failures(found, command),
              _table(study, found), "</body></html>\n"]
     with replaced(path) as part, open(part, "w", encoding="utf-8") as stream:
         stream.write("\n".join(text for text in parts if text))
@@ -72,12 +74,14 @@ class _Collected:
         self.total += 1
 
 
-def _summary(study: Study, found: _Collected) -> str:
+def _summary(study: Study, found: _Collected, have_run: int) -> str:
     rows = "".join(f"<tr><td>{status}</td><td>{count}</td></tr>"
                    for status, count in found.counts.items() if count)
     each = "" if study.scenarios else f", {study.duration:g} s of sim time each"
-    return (f"<h2>Cases</h2><p>{found.total} of {study.count} have run{each}; {found.flaky} are"
-            f" flaky (crashed once, ran the second time).</p>"
+    former = found.total - have_run
+    note = f" {former} rows of the table are of former ids." if former > 0 else ""
+    return (f"<h2>Cases</h2><p>{have_run} of {study.count} have run{each}; {found.flaky} are"
+            f" flaky (crashed once, ran the second time).{note}</p>"
             f"<table><tr><th>status</th><th>cases</th></tr>{rows}</table>")
 
 

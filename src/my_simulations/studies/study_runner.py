@@ -6,7 +6,7 @@ import time
 from typing import Callable, Dict, Iterator, List, Optional, Set
 
 from .kept import Kept
-from .plan import WHOLE, Case, CasePlan, Shard
+from .plan import WHOLE, Case, CasePlan, Shard, number_of
 from .row import Row
 from .row_recorder import Recorder
 from .slot import Hook
@@ -18,7 +18,7 @@ Told = Callable[[Row], None]
 def waiting_cases(plan: CasePlan, shard: Shard, finished: Set[int]) -> Iterator[Case]:
     """The cases of a shard whose ids, as numbers, are not among the finished ones."""
     for case in plan.cases(shard):
-        if int(case.id, 16) not in finished:
+        if number_of(case.id) not in finished:
             yield case
 
 

@@ -11,14 +11,14 @@ import pytest
 from my_simulations.errors import CommandError
 from my_simulations.studies.journal import (
     Journal,
-    counts,
     finished_cases,
     header_of,
     lines,
     rows,
+    statuses,
 )
 from my_simulations.studies.kept import CaseTrajectory
-from my_simulations.studies.row import CRASHED, OK, Row
+from my_simulations.studies.row import CRASHED, OK, TIMED_OUT, Row
 from my_simulations.studies.row_recorder import Recorder
 
 HEADER = {"study": "s", "cases": 3}
@@ -37,7 +37,7 @@ def test_rows_are_read_as_they_were_written(tmp_path):
     assert header_of(path)["cases"] == 3
     assert list(rows(path)) == [first, row(2, CRASHED, signal="SIGSEGV")]
     assert finished_cases(path) == {1, 2}
-    assert counts(path)[OK] == 1 and counts(path)[CRASHED] == 1
+    assert statuses([path]) == {1: OK, 2: CRASHED}
 
 
 def test_nan_is_kept(tmp_path):
@@ -115,17 +115,17 @@ def test_what_is_no_journal_is_told(tmp_path):
     path.write_text('{"journal": 1}\n{"status":"ok"}\n')
     with pytest.raises(CommandError, match="no row"):
         list(rows(str(path)))
+    with pytest.raises(CommandError, match="no row"):
+        statuses([str(path)])
 
 
-def test_counts_do_not_depend_on_blocks(tmp_path, monkeypatch):
-    path = str(tmp_path / "j.jsonl")
-    journal = Journal(path, HEADER)
-    journal.append([row(number, OK if number % 3 else CRASHED) for number in range(50)])
-    journal.close()
-    for block in (1, 7, 100, 1000, 1 << 20):
-        monkeypatch.setattr("my_simulations.studies.journal._BLOCK", block)
-        found = counts(path)
-        assert (found[OK], found[CRASHED]) == (33, 17)
+def test_of_two_rows_of_a_case_the_first_counts(tmp_path):
+    paths = [str(tmp_path / name) for name in ("a.jsonl", "b.jsonl")]
+    for path, found in zip(paths, ([row(1), row(2, TIMED_OUT)], [row(2), row(3, CRASHED)])):
+        journal = Journal(path, HEADER)
+        journal.append(found)
+        journal.close()
+    assert statuses(paths) == {1: OK, 2: TIMED_OUT, 3: CRASHED}
 
 
 def test_a_row_is_written_after_the_file_with_its_trajectory(tmp_path):

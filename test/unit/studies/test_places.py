@@ -6,8 +6,11 @@ import pytest
 from my_simulations.errors import CommandError
 from my_simulations.studies.cluster_address import scheduler_address
 from my_simulations.studies.folder import StudyFolder, shard_of
-from my_simulations.studies.plan import WHOLE, Shard
+from my_simulations.studies.journal import Journal
+from my_simulations.studies.plan import WHOLE, CasePlan, Shard
+from my_simulations.studies.row import OK, Row
 from my_simulations.studies.slurm import job_script
+from my_simulations.studies.study_file import read_study
 
 
 @pytest.mark.parametrize("where, address", [
@@ -48,4 +51,27 @@ def test_a_folder_keeps_its_number_of_shards(tmp_path):
     with pytest.raises(CommandError, match="in 3 shards, not in 1"):
         folder.check_shards(1)
     assert shard_of("x/journal-2-of-3.jsonl") == Shard(2, 3) and shard_of("journal.jsonl") == WHOLE
-    assert not folder.is_complete()
+
+
+def row(case):
+    return Row(OK, case.id, case.index, case.seed)
+
+
+def test_a_folder_is_complete_once_each_case_of_the_plan_has_a_row(tmp_path):
+    (tmp_path / "s.yaml").write_text("duration: 1\nseeds: 4\n")
+    plan = CasePlan(read_study(str(tmp_path / "s.yaml"))[0])
+    folder = StudyFolder(str(tmp_path))
+    header = {"study": "s", "file": plan.study.file}
+    former = Row(OK, 16 * "0", 0, 0)
+    for shard, found in ((Shard(1, 2), [former, row(plan.case(0)), row(plan.case(2))]),
+                         (Shard(2, 2), [former, row(plan.case(1))])):
+        journal = Journal(folder.journal_of(shard), header)
+        journal.append(found)
+        journal.close()
+        assert not folder.is_complete(plan)
+    assert folder.became(plan)[OK] == 3
+    assert folder.became(plan, Shard(2, 2))[OK] == 1
+    journal = Journal(folder.journal_of(Shard(2, 2)), header)
+    journal.append([row(plan.case(3))])
+    journal.close()
+    assert folder.is_complete(plan) and folder.became(plan)[OK] == 4
