@@ -8,7 +8,7 @@ import shutil
 from typing import Any, Callable, Dict, List
 
 from ..errors import CommandError
-from .journal import header_of, statuses
+from .journal import has_header, header_of, statuses
 from .plan import WHOLE, CasePlan, Shard, number_of
 from .replacing import replaced
 from .row import STATUSES
@@ -44,19 +44,26 @@ class StudyFolder:
         return kind if shard.of == 1 else f"{kind}-{shard.index}-of-{shard.of}"
 
     def journals(self) -> List[str]:
-        """All journals. Raises CommandError if there is none."""
-        found = sorted(glob.glob(os.path.join(glob.escape(self.path), "journal*.jsonl")))
+        """All journals. Raises CommandError if there is none.
+
+        One without a whole first line is none yet: its process was killed, or the disk was full,
+        before it said of which study it is. No case has run then.
+        """
+        found = [path for path in self._files() if has_header(path)]
         if not found:
             raise CommandError(f"there is no study in {self.path}; start one with"
                                " `study run FILE`")
         return found
+
+    def _files(self) -> List[str]:
+        return sorted(glob.glob(os.path.join(glob.escape(self.path), "journal*.jsonl")))
 
     def check_shards(self, of: int) -> None:
         """Raise CommandError if the folder has journals of another number of shards.
 
         Each shard knows only its own journal: cases would run twice.
         """
-        for path in glob.glob(os.path.join(glob.escape(self.path), "journal*.jsonl")):
+        for path in self._files():
             found = shard_of(path).of
             if found != of:
                 raise CommandError(

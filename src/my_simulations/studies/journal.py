@@ -91,6 +91,15 @@ class Journal:
             raise
 
 
+def has_header(path: str) -> bool:
+    """Whether the first line of a file has been written. Raises CommandError if it is no file."""
+    try:
+        with open(path, "rb") as stream:
+            return stream.readline().endswith(b"\n")
+    except OSError as fault:
+        raise CommandError(f"{path} cannot be read: {fault.strerror}") from None
+
+
 def header_of(path: str) -> Dict[str, Any]:
     """The first line of a journal. Raises CommandError if it is none."""
     try:

@@ -75,3 +75,14 @@ def test_a_folder_is_complete_once_each_case_of_the_plan_has_a_row(tmp_path):
     journal.append([row(plan.case(3))])
     journal.close()
     assert folder.is_complete(plan) and folder.became(plan)[OK] == 4
+
+
+@pytest.mark.parametrize("left", ["", '{"journal": 1, "stu'])
+def test_a_journal_without_its_first_line_is_none_yet(tmp_path, left):
+    folder = StudyFolder(str(tmp_path))
+    (tmp_path / "journal-1-of-2.jsonl").write_text(left)  # killed before it was written
+    with pytest.raises(CommandError, match="no study .*start one"):
+        folder.header()
+    Journal(folder.journal_of(Shard(2, 2)), {"study": "s", "file": "x"}).close()
+    assert folder.header()["file"] == "x"
+    assert folder.missing_shards() == [Shard(1, 2)]
