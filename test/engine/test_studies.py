@@ -137,6 +137,18 @@ def test_shards_make_the_table_of_the_whole(folder, capsys):
     assert len(list((folder / "parts").glob("journal-*-of-3.jsonl"))) == 3
 
 
+def test_resume_tells_of_shards_that_have_not_begun(folder, capsys):
+    text = "duration: 0.01\nseeds: 4\n"
+    assert run(folder, text, "--slots", "1", "--shard", "1/2") == 0
+    assert main(["study", "resume", "s", "--slots", "1"]) == 1
+    told = capsys.readouterr().err.splitlines()[-1]
+    assert "shard 2 of 2 has not begun" in told
+    command = told[told.index("study run"):].split()
+    assert main([*command, "--slots", "1"]) == 0
+    assert main(["study", "resume", "s", "--slots", "1"]) == 0
+    assert len(table(folder)) == 4
+
+
 def test_rows_of_former_ids_do_not_count_as_cases_of_the_study(folder, capsys):
     def told(action):
         code = main(["study", action, "s", "--json"])

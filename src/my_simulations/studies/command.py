@@ -94,7 +94,13 @@ def _resume(options: argparse.Namespace, hook: Optional[Hook]) -> int:
     plan = _plan(header["file"])
     if options.on == SLURM:
         return _on_slurm(options, folder, plan)
-    return max([_work(options, folder, plan, shard_of(path), hook) for path in folder.journals()])
+    code = max([_work(options, folder, plan, shard_of(path), hook) for path in folder.journals()])
+    for shard in folder.missing_shards():
+        _tell(f"study: shard {shard.index} of {shard.of} has not begun in {folder.path}: study run"
+              f" {shlex.quote(plan.study.file)} --shard {shard.index}/{shard.of} --out"
+              f" {shlex.quote(folder.path)}")
+        code = max(code, NOT_ALL_OK)
+    return code
 
 
 def _on_slurm(options: argparse.Namespace, folder: StudyFolder, plan: CasePlan) -> int:
