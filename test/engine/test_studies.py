@@ -242,6 +242,28 @@ def test_too_many_steps_are_refused(folder):
     assert "10000 steps" in table(folder)[0]["issue"]
 
 
+def test_drawn_values_that_cannot_be_set_and_cases_without_steps_are_refused(folder):
+    text = """duration: 0.01
+plan: {random: 12}
+models:
+  box: {file: box.sdf, pose: [0, 0, 1]}
+vary:
+  m: {set: mass.box, normal: [0.2, 1]}
+"""
+    assert run(folder, text, "--slots", "1") == 1
+    rows = table(folder)
+    assert {float(row["m"]) > 0 for row in rows} == {True, False}
+    for row in rows:
+        assert row["status"] == ("ok" if float(row["m"]) > 0 else "refused")
+        assert ("'m' must be above 0" in row["issue"]) == (row["status"] == "refused")
+    bad = next(row for row in rows if row["status"] == "refused")
+    assert main(["study", "show", bad["case"], "--in", "s", "--write", "x.world"]) == 2
+    step = "duration: 0.04\nvary:\n  dt: {set: physics.step_size, values: [0.1]}\n"
+    assert run(folder, step, name="t") == 1
+    (row,) = table(folder, "t")
+    assert row["status"] == "refused" and "no step to make" in row["issue"]
+
+
 def test_settings_reach_the_world(folder):
     text = """duration: 1.0
 models:

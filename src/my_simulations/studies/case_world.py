@@ -3,17 +3,27 @@ from __future__ import annotations
 
 from typing import Callable, Sequence, Tuple
 
-from ..errors import InputError, errors_of
+from ..errors import InputError, error, errors_of
 from ..python_api import OpenWorld, WorldChoice
 from .changes import CaseChanges
 from .plan import Case, CasePlan
+from .variation import needed_of
 
 _SLICE = 1000  # steps at a time
 
 
 def choice_of(plan: CasePlan, case: Case) -> Tuple[WorldChoice, CaseChanges]:
-    """What to open for a case, and the changes that it brings."""
+    """What to open for a case, and the changes that it brings.
+
+    Raises InputError for a value that cannot be set, such as a drawn mass below 0.
+    """
     study = plan.study
+    for parameter in study.parameters:
+        value = case.settings[parameter.name]
+        needed = needed_of(parameter.target, value)
+        if needed:
+            raise InputError([error("study-value", f"'{parameter.name}' must be {needed}, is"
+                                                   f" {value}", file=study.file)])
     changes = CaseChanges(study.parameters, case.settings)
     name, objects = plan.world_and_objects(case.settings)
     return WorldChoice(

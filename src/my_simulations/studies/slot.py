@@ -206,6 +206,9 @@ class Slot:
         steps = round(study.duration / world.step_size)
         if steps > study.limits.steps:
             raise RefusedError(f"the case needs {steps} steps, the limit is {study.limits.steps}")
+        if steps < 1:
+            raise RefusedError(f"the duration of {study.duration:g} s is less than half a step of"
+                               f" {world.step_size:g} s: there is no step to make")
         signals = [signal for _, expression in expressions for signal in expression.signals]
         run = _Run(world, SignalReader(world, signals, case.settings), steps, [], [])
         self._walk(run, any(expression.sampled for _, expression in expressions))

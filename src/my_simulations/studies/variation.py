@@ -61,6 +61,22 @@ def target_of(text: str) -> Optional[Target]:
     return Target(kind, part=rest) if kind == "gravity" and rest in "xyz" else None
 
 
+def needed_of(target: Target, value: Setting) -> str:
+    """What a value of a target would have to be; "" if it can be set.
+
+    As in a file: Gazebo refuses a link whose mass is not above 0.
+    """
+    if not isinstance(value, (int, float)):
+        return ""
+    if target.kind == "mass" or (target.kind, target.part) == ("physics", "step_size"):
+        return "" if value > 0.0 else "above 0"
+    if target.kind in ("friction", "restitution"):
+        return "" if value >= 0.0 else "at least 0"
+    if (target.kind, target.part) == ("physics", "iterations"):
+        return "" if value >= 1.0 else "at least 1"
+    return ""
+
+
 def uniform_number(*words: object) -> float:
     """A number in [0, 1) that depends on the words alone, the same on every machine."""
     digest = hashlib.sha256("\0".join(map(str, words)).encode()).digest()

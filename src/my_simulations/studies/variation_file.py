@@ -19,6 +19,7 @@ from .variation import (
     Parameter,
     Setting,
     Target,
+    needed_of,
     target_of,
 )
 
@@ -56,13 +57,18 @@ def parameter_of(reader: ValueReader, name: str, value: Any, path: KeyPath,
         return None
     if key == "values":
         values = _listed(reader, target, inside[key], below)
+        _check_values(reader, name, target, values, below)
         return Parameter(name, target, values) if len(reader.issues) == before else None
     if key == "range":
         numbers = _range(reader, inside[key], below)
+        _check_values(reader, name, target, numbers, below)
         return Parameter(name, target, numbers) if len(reader.issues) == before else None
     drawn = reader.numbers(inside[key], below, (2,))
     if len(reader.issues) == before:
         _check_distribution(reader, key, drawn, below)
+        needed = needed_of(target, drawn[0])
+        if needed and key == "uniform" and drawn[0] < 0.0:  # others are refused as they are drawn
+            reader.fault(below, f"'{name}' must be {needed}, and may be {drawn[0]:g}")
     samples = reader.whole(inside.get("samples", 0), (*path, "samples"), 0, _MOST_VALUES)
     if len(reader.issues) > before:
         return None
@@ -140,6 +146,18 @@ def _range(reader: ValueReader, value: Any, path: KeyPath) -> Tuple[float, ...]:
             return ()
         count = int(whole + 1e-9) + 1
     return tuple(first + step * index for index in range(count))
+
+
+def _check_values(reader: ValueReader, name: str, target: Target, values: Sequence[Setting],
+                  path: KeyPath) -> None:
+    """Note a fault of the first value that the target cannot have."""
+    for value in values:
+        needed = needed_of(target, value)
+        if target.part == "iterations" and isinstance(value, float) and not value.is_integer():
+            needed = needed or "a whole number"  # the table would tell of another than was used
+        if needed:
+            reader.fault(path, f"'{name}' must be {needed}, is {value:g}")
+            return
 
 
 def _check_distribution(reader: ValueReader, key: str, numbers: Tuple[float, ...],

@@ -91,6 +91,20 @@ def test_the_least_study_is_a_duration(tmp_path):
      "no world file 'none.world'"),
     ("duration: 1" + 400 * "0" + "\n", 1, "/duration", "must be a number"),
     ("duration: 1\nvary: 2\nmeasure:\n  z: final(pose.b.z)\n", 2, "/vary", "must be a mapping"),
+    ("duration: 1\nvary:\n  m: {set: mass.b, values: [1, 0]}\n", 3, "/vary/m/values",
+     "'m' must be above 0, is 0"),
+    ("duration: 1\nvary:\n  m: {set: mass.b, range: {from: -1, to: 1, count: 3}}\n", 3,
+     "/vary/m/range", "'m' must be above 0, is -1"),
+    ("duration: 1\nvary:\n  m: {set: mass.b, uniform: [-1, 1], samples: 2}\n", 3,
+     "/vary/m/uniform", "'m' must be above 0, and may be -1"),
+    ("duration: 1\nvary:\n  m: {set: friction.b, values: [-0.5]}\n", 3, "/vary/m/values",
+     "at least 0"),
+    ("duration: 1\nvary:\n  m: {set: physics.step_size, values: [0]}\n", 3, "/vary/m/values",
+     "above 0"),
+    ("duration: 1\nvary:\n  m: {set: physics.iterations, values: [10, 0]}\n", 3,
+     "/vary/m/values", "at least 1"),
+    ("duration: 1\nvary:\n  m: {set: physics.iterations, values: [2.5]}\n", 3,
+     "/vary/m/values", "a whole number"),
     ("[1]\n", 0, "", "must be a mapping")])
 def test_a_fault_is_told_with_its_line_and_key(tmp_path, text, line, xpath, said):
     (found,) = faults(tmp_path, text)
@@ -101,6 +115,19 @@ def test_a_fault_is_told_with_its_line_and_key(tmp_path, text, line, xpath, said
 def test_all_faults_are_told_at_once(tmp_path):
     found = faults(tmp_path, "duration: 0\nsample: x\nvary:\n  m: {set: 3}\n")
     assert [line for line, _, _ in found] == [4, 4, 1, 2]
+
+
+def test_values_at_their_bounds_are_taken(tmp_path):
+    study, issues = read(tmp_path, """duration: 1
+vary:
+  mass: {set: mass.b, uniform: [0, 1], samples: 2}
+  mu: {set: friction.b, values: [0]}
+  bounce: {set: restitution.b, values: [0]}
+  iterations: {set: physics.iterations, uniform: [1.5, 9], samples: 2}
+  pull: {set: gravity.x, values: [-1]}
+  place: {set: pose.b.z, values: [-1]}
+""")
+    assert issues == [] and study.count == 4
 
 
 @pytest.mark.parametrize(("text", "target"), [
