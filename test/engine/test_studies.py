@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import csv
+import fcntl
 import json
 import os
 import random
@@ -147,6 +148,20 @@ def test_resume_tells_of_shards_that_have_not_begun(folder, capsys):
     assert main([*command, "--slots", "1"]) == 0
     assert main(["study", "resume", "s", "--slots", "1"]) == 0
     assert len(table(folder)) == 4
+
+
+def test_a_run_that_is_refused_leaves_the_copy_of_the_study_file(folder, capsys):
+    text = "duration: 0.01\n"
+    assert run(folder, text) == 0
+    assert run(folder, text + "seeds: 2\n", "--out", "s", name="other") == 2
+    assert "of study 's'" in capsys.readouterr().err
+    assert (folder / "s" / "study.yaml").read_text() == text
+    with open(folder / "s" / "journal.jsonl", "rb") as journal:
+        fcntl.flock(journal, fcntl.LOCK_EX)  # as by a run that goes on
+        assert run(folder, text + "seeds: 2\n") == 2
+    assert (folder / "s" / "study.yaml").read_text() == text
+    assert main(["study", "resume", "s"]) == 0   # with the study file as it is now
+    assert (folder / "s" / "study.yaml").read_text() == text + "seeds: 2\n"
 
 
 def test_rows_of_former_ids_do_not_count_as_cases_of_the_study(folder, capsys):

@@ -82,7 +82,7 @@ def _run(options: argparse.Namespace, hook: Optional[Hook]) -> int:
     plan = _plan(options.file)
     if options.on != SLURM:
         folder.check_shards(options.shard.of)
-    folder.create(options.file)
+    folder.create()
     if options.on == SLURM:
         return _on_slurm(options, folder, plan)
     return _work(options, folder, plan, options.shard, hook)
@@ -144,6 +144,7 @@ def _work(options: argparse.Namespace, folder: StudyFolder, plan: CasePlan, shar
         "study": plan.study.name, "file": plan.study.file, "cases": total,
         "all_cases": len(plan), "shard": [shard.index, shard.of], "versions": plan.versions})
     try:
+        folder.keep(plan.study.file)  # not before: the folder may be that of another study
         finished = _finished(plan, shard, journal.path)
         recorder = Recorder(journal, folder.path, folder.stem("trajectories", shard))
         rate = Rate(total - len(finished))

@@ -102,10 +102,16 @@ class StudyFolder:
         """What the first journal says about the study."""
         return header_of(self.journals()[0])
 
-    def create(self, study_file: str) -> None:
-        """Make the folder, with a copy of the study file for the record."""
+    def create(self) -> None:
+        """Make the folder."""
         try:
             os.makedirs(self.path, exist_ok=True)
+        except OSError as fault:
+            raise CommandError(f"cannot write to {self.path}: {fault.strerror}") from None
+
+    def keep(self, study_file: str) -> None:
+        """Copy the study file for the record; for whoever has opened a journal of the folder."""
+        try:
             with replaced(os.path.join(self.path, COPY)) as part:
                 shutil.copyfile(study_file, part)
         except OSError as fault:
