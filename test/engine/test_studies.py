@@ -15,6 +15,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from my_simulations.errors import CommandError
 from my_simulations.python_api import OpenWorld, WorldChoice
 from my_simulations.studies.command import main
 from my_simulations.studies.plan import CasePlan
@@ -349,6 +350,35 @@ def test_a_case_is_recorded_as_a_state_log(folder):
     # The same again replaces the file; without its front end the command says so.
     assert study(["study", "export", row["case"], "--in", "s", "--log", "logs/state.log"]) == 0
     assert main(["study", "export", row["case"], "--in", "s", "--log", "x"]) == 2
+
+
+def test_a_log_is_only_replaced_by_a_whole_one(folder, capsys, monkeypatch):
+    from my_simulations.cli.study_command import main as study
+    from my_simulations.editor.logs.state_log import LogWriter
+
+    def full(*_):
+        raise CommandError("the disk is full")
+
+    world = "<sdf version='1.6'><world name='w'>"
+    (folder / "w.world").write_text(world + "</world></sdf>")
+    assert run(folder, "world: w.world\nduration: 0.01\n") == 0
+    (folder / "keep.log").write_text("of before")
+    export = ["study", "export", table(folder)[0]["case"], "--in", "s", "--log"]
+    monkeypatch.setattr(LogWriter, "poses", full)
+    assert study([*export, "keep.log"]) == 2
+    assert (folder / "keep.log").read_text() == "of before"
+    monkeypatch.undo()
+    monkeypatch.chdir(folder)
+    (folder / "logs").mkdir()
+    assert study([*export, "logs"]) == 2 and "is a folder" in capsys.readouterr().err
+    assert study([*export, "keep.log"]) == 0
+    assert (folder / "keep.log").read_bytes() != b"of before"
+    (folder / "w.world").write_text(world)  # cannot be read
+    bad = CasePlan(read_study(str(folder / "s.yaml"))[0]).case(0).id
+    before = (folder / "keep.log").read_bytes()
+    assert study(["study", "export", bad, "--in", "s", "--log", "keep.log"]) == 2
+    assert (folder / "keep.log").read_bytes() == before
+    assert not list(folder.glob("*.part"))
 
 
 def test_a_slurm_array_runs_every_case_once(folder, capsys, monkeypatch):

@@ -20,6 +20,7 @@ from .command_line import parser
 from .folder import REPORT, StudyFolder, shard_of
 from .journal import Journal, finished_cases
 from .plan import WHOLE, Case, CasePlan, Shard, number_of
+from .replacing import replaced
 from .report import write_report
 from .row import OK
 from .row_recorder import Recorder
@@ -277,10 +278,16 @@ def _record(options: argparse.Namespace, records: Records) -> int:
     if missing:
         raise CommandError(f"--{missing[0]} is of the command `study`, not of"
                            " `python3 -m my_simulations.studies`")
+    for path in wanted.values():
+        if os.path.isdir(path):
+            raise CommandError(f"{path} is a folder, not the name of a file")
     with contextlib.ExitStack() as stack:
-        files = [stack.enter_context(contextlib.closing(records[kind](path)))
-                 for kind, path in wanted.items()]
+        # A file that is there is replaced at the end, not lost to a case that cannot be run.
         world = stack.enter_context(opened(plan, case))
+        files = []
+        for kind, path in wanted.items():
+            part = stack.enter_context(replaced(path))
+            files.append(stack.enter_context(contextlib.closing(records[kind](part))))
         play(world, plan.study.duration, options.every, [file.look for file in files])
         found = final_hash(world)
     known = next((row for row in rows_in_order(folder.journals()) if row.case == case.id), None)
