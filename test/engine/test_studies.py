@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import csv
+import errno
 import fcntl
 import json
 import os
@@ -18,6 +19,7 @@ import pytest
 from my_simulations.errors import CommandError
 from my_simulations.python_api import OpenWorld, WorldChoice
 from my_simulations.studies.command import main
+from my_simulations.studies.journal import Journal
 from my_simulations.studies.plan import CasePlan
 from my_simulations.studies.slot import final_hash
 from my_simulations.studies.slot_pool import SlotPool
@@ -163,6 +165,18 @@ def test_a_run_that_is_refused_leaves_the_copy_of_the_study_file(folder, capsys)
     assert (folder / "s" / "study.yaml").read_text() == text
     assert main(["study", "resume", "s"]) == 0   # with the study file as it is now
     assert (folder / "s" / "study.yaml").read_text() == text + "seeds: 2\n"
+
+
+def test_a_full_disk_is_told(folder, capsys, monkeypatch):
+    def full(*_):
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    monkeypatch.setattr(Journal, "append", full)
+    assert run(folder, "duration: 0.01\n") == 2
+    told = capsys.readouterr().err
+    assert "No space left on device; `study resume` goes on" in told and "Traceback" not in told
+    monkeypatch.undo()
+    assert main(["study", "resume", str(folder / "s")]) == 0
 
 
 def test_rows_of_former_ids_do_not_count_as_cases_of_the_study(folder, capsys):

@@ -72,6 +72,11 @@ def main(argv: Optional[Sequence[str]] = None, hook: Optional[Hook] = None,
     except SimulationError as fault:
         _tell(f"study: {fault}")
         return INVALID
+    except BrokenPipeError:  # whoever read the output has gone: no fault of the study
+        raise
+    except OSError as fault:  # such as that of a full disk; what has finished is in the journal
+        _tell(f"study: {fault}; `study resume` goes on")
+        return INVALID
     except KeyboardInterrupt:
         _tell("study: interrupted; `study resume` goes on")
         return INTERRUPTED
