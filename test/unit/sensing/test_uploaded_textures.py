@@ -1,8 +1,6 @@
 """Textures of decoded pictures end with them."""
 from __future__ import annotations
 
-import gc
-
 from PIL import Image
 
 from my_simulations.sensing.camera.uploaded_textures import Textures
@@ -41,6 +39,5 @@ def test_a_picture_at_the_address_of_a_former_one_is_uploaded_and_the_former_rel
         assert textures.of(surface).pixels[0] == n
         assert textures.of(surface) is textures.of(surface)
         del surface
-        gc.collect()
     assert len(context.made) == 50
     assert sum(not texture.released for texture in context.made) <= 1

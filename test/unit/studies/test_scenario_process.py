@@ -56,10 +56,10 @@ def test_the_status_of_the_command_is_its_own(marked):
 
 
 def test_signals_in_a_row_end_all_that_was_started(marked):
-    for _ in range(5):
-        process = start(marked, "sh", "-c", "setsid sleep 1000 & sleep 1000")
-        wait_for_count(marked, 4)
-        while process.poll() is None:  # the kernel sends one for each thread of a killed driver
+    for _ in range(15):
+        process = start(marked, "sh", "-c", "setsid sleep 1000 & exec sleep 1000")
+        wait_for_count(marked, 3)
+        for _each in range(100):  # the kernel sends one for each thread of a killed driver
             process.send_signal(signal.SIGTERM)
         _, said = process.communicate(timeout=SECONDS)
         assert processes_with(marked) == [] and said == b""
