@@ -8,7 +8,15 @@ import pytest
 from conftest import STILL
 
 from my_simulations.description.model import Inertial, Joint, JointAxis, Link, Model
-from my_simulations.engine.commands import LinkState, ModelState, SetJoints, SetModelState
+from my_simulations.engine.commands import (
+    FOREVER,
+    AddTimedForces,
+    LinkState,
+    ModelState,
+    SetJoints,
+    SetModelState,
+    TimedWrench,
+)
 from my_simulations.geometry import Pose
 
 PITCH = 10.0
@@ -110,3 +118,21 @@ def test_an_axis_that_is_no_number_is_put_back_where_it_was(weightless):
     assert [event.kind for event in lab.backend.events()] == ["diverged"]
     lab.steps(10)
     assert lab.joint(model)[0] == pytest.approx(0.7, abs=1e-3)
+
+
+def test_what_is_thrown_away_in_each_step_is_told_of_once_until_it_is_put_elsewhere(weightless):
+    lab = weightless
+    model = lab.load(Model("m", links=[Link("link", inertial=mass())]))
+    row = lab.rows[model, "link"]
+    push = TimedWrench(1, row, 0, FOREVER, force=(1e308, 1e308, 0.0), torque=(0.0, 0.0, 1e308))
+    lab.apply(AddTimedForces((push,)))
+    told = []
+    for _ in range(50):
+        lab.steps(1)
+        told += lab.backend.events()
+    assert [event.kind for event in told] == ["diverged"]
+    lab.apply(SetModelState(model, Pose((0.0, 0.0, 1.0))))
+    for _ in range(50):
+        lab.steps(1)
+        told += lab.backend.events()
+    assert [event.kind for event in told] == ["diverged"] * 2

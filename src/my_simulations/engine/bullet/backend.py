@@ -2,7 +2,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Any, Callable, Dict, Iterable, List, Optional, Tuple, Type
+from typing import Any, Callable, Dict, Iterable, List, Optional, Set, Tuple, Type
 
 import pybullet
 
@@ -125,6 +125,7 @@ class BulletBackend:
             self._loop, self._friction, self._settling, self._residual, self._rolling,
             self._sliding, self._stop, self._landing, self._seams))
         self._events: List[Event] = []
+        self._lost: Set[int] = set()   # models that were thrown away by what acts on them
         self._starts = InitialStateCache(self._readout)
         self._put_off: Optional[List[Start]] = None
         self._is_fresh = True   # nothing has moved since the world began
@@ -274,6 +275,7 @@ class BulletBackend:
         Whoever asked need not wait for that, and several resets in a row build it once. What the
         tables show is also what another engine would begin with, should this one end on the way.
         """
+        self._lost.clear()
         starts = [(self._entry(number), pose) for number, pose in command.models]
         if len(starts) == len(self._models) and self._starts.show(starts):
             self._put_off = starts
@@ -332,6 +334,7 @@ class BulletBackend:
         entry = self._entry(command.model_id)
         self._waker.around(entry.bodies)
         del self._models[command.model_id]
+        self._lost.discard(command.model_id)
         entry.constraints.remove()
         self._readout.forget_joints(entry.builder.joint_rows)
         for body in entry.bodies:
@@ -357,6 +360,7 @@ class BulletBackend:
         self._put_off = None
         self._is_fresh = True
         self._models.clear()
+        self._lost.clear()
         for keeper in self._keepers:
             keeper.clear()
         self._book.clear()
@@ -426,6 +430,7 @@ class BulletBackend:
 
     def _touched(self, body: Body) -> None:
         """A command reached a body: it may be elsewhere."""
+        self._lost.discard(body.model_id)
         self._readout.touch(body)
         self._tell(body)
 
@@ -458,13 +463,18 @@ class BulletBackend:
     def _on_diverged(self, body: Body) -> None:
         self._loop.changed()
         self._mover.put_back(body)
-        name = self._models[body.model_id].model.name
-        self._events.append(Event("diverged", f"the state of model '{name}' became infinite; it "
-                                  "was put back where it was, at rest", body.model_id))
+        self._tell_lost(body, "the state of model '{}' became infinite; it was put back where it "
+                              "was, at rest")
 
     def _on_raced(self, body: Body) -> None:
-        name = self._models[body.model_id].model.name
-        self._events.append(Event(
-            "diverged", f"a joint of model '{name}' turns or moves with {bodies.FASTEST_RATE:g} "
-            "rad/s or m/s, the fastest that is computed: what drives it is too strong for steps of "
-            f"{self._settings.step_size:g} s", body.model_id))
+        self._tell_lost(body, f"a joint of model '{{}}' turns or moves with {bodies.FASTEST_RATE:g}"
+                              " rad/s or m/s, the fastest that is computed: what drives it is too "
+                              f"strong for steps of {self._settings.step_size:g} s")
+
+    def _tell_lost(self, body: Body, text: str) -> None:
+        """Say what became of a model: once, as it may come in each step, until it is put elsewhere.
+        """
+        if body.model_id not in self._lost:
+            self._lost.add(body.model_id)
+            name = self._models[body.model_id].model.name
+            self._events.append(Event("diverged", text.format(name), body.model_id))

@@ -45,14 +45,13 @@ class StateReadout:
                  raced: Callable[[Body], None]) -> None:
         """`diverged` gets bodies whose state is no number, to put them back where they were.
 
-        `raced` gets, once, bodies with a joint at the fastest rate that is computed.
+        `raced` gets bodies with a joint at the fastest rate that is computed.
         """
         self.links = np.zeros((LINKS, LINK_WIDTH))
         self.joints = np.zeros((JOINTS, JOINT_WIDTH))
         self.used_links = 0
         self.used_joints = 0
         self._diverged, self._raced = diverged, raced
-        self._racing: Set[int] = set()
         self._link_bytes = memoryview(self.links.data).cast("B")
         self._joint_bytes = memoryview(self.joints.data).cast("B")
         self._awake: Dict[int, Body] = {}
@@ -97,14 +96,13 @@ class StateReadout:
         """A body is gone; its rows stay as they are."""
         for table in (self._awake, self._trees, self._resting, self._guards, self._touched):
             table.pop(body.uid, None)
-        self._racing.discard(body.uid)
         for part in body.parts:
             self._offsets.pop(part.row, None)
 
     def clear(self) -> None:
         """All bodies are gone; their rows stay as they are."""
         for table in (self._awake, self._trees, self._resting, self._guards, self._touched,
-                      self._offsets, self._closing, self._racing):
+                      self._offsets, self._closing):
             table.clear()
 
     def touch(self, body: Body) -> None:
@@ -290,8 +288,7 @@ class StateReadout:
         if total - total != 0.0:
             self._diverged(body)    # which needs the rows as they were
             return
-        if fastest >= FASTEST_RATE and uid not in self._racing:
-            self._racing.add(uid)
+        if fastest >= FASTEST_RATE:
             self._raced(body)
         for part, one in zip(body.parts, found):
             _ROW.pack_into(links, part.row * _ROW.size, *one.position, *one.orientation,
