@@ -472,8 +472,7 @@ class BulletBackend:
                               f"strong for steps of {self._settings.step_size:g} s")
 
     def _tell_lost(self, body: Body, text: str) -> None:
-        """Say what became of a model: once, as it may come in each step, until it is put elsewhere.
-        """
+        """Say it once, as it may come in each step, until the model is put elsewhere."""
         if body.model_id not in self._lost:
             self._lost.add(body.model_id)
             name = self._models[body.model_id].model.name
