@@ -2,7 +2,7 @@ import assert from 'node:assert/strict';
 import {test} from 'node:test';
 import './with_plain_three.mjs';
 
-const {Meshes} = await import('../../web/js/view/mesh_files.js');
+const {Meshes, asGazeboReads} = await import('../../web/js/view/mesh_files.js');
 
 test('a picture that is missing is told by its name, also where that has a bare %', () => {
   const told = [];
@@ -11,4 +11,13 @@ test('a picture that is missing is told by its name, also where that has a bare 
   manager.onError('/meshes/wood 100%.png');
   assert.deepEqual(told, ['Failed to load texture /meshes/wood oak.png',
     'Failed to load texture /meshes/wood 100%.png']);
+});
+
+test('a COLLADA material is clear only where its file says how that is meant', () => {
+  const clear = (attribute) => `<phong><diffuse/><transparent${attribute}><color>1 1 1 1</color>
+    </transparent><transparency><float>0.4</float></transparency></phong>`;
+  const meant = clear(' opaque="A_ONE"');
+  const read = asGazeboReads(`<up_axis>Z_UP</up_axis>${clear('')}${meant}`);
+  assert.equal(read.replace(/\s/g, ''),
+    `<up_axis>Y_UP</up_axis><phong><diffuse/></phong>${meant}`.replace(/\s/g, ''));
 });

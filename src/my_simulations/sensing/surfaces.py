@@ -15,7 +15,6 @@ from .tessellation import triangles_of
 _OF_MESH: Color = (0.784, 0.784, 0.784, 1.0)
 _DULL: Color = (0.0, 0.0, 0.0, 1.0)
 _SIDES = 48
-_HOLE = 0.004   # alpha of what a mesh's own picture leaves out
 
 
 @dataclass(frozen=True)
@@ -98,8 +97,10 @@ def _terrain(part: Any, layers: Tuple[TerrainLayer, ...], base: float, opacity: 
 
 def own_surface(part: Any, opacity: float) -> Surface:
     """What a part of a mesh (`formats.mesh.painted`) looks like by its file."""
-    return Surface(part.color or _OF_MESH, emissive=part.emission or _DULL, picture=part.picture,
-                   opacity=opacity, alpha_test=_HOLE)
+    paint = part.paint
+    color = paint.color or _OF_MESH
+    return Surface(color, emissive=paint.emission or _DULL, picture=paint.picture,
+                   opacity=opacity * color[3], alpha_test=paint.alpha_test, blended=paint.blended)
 
 
 def piece_of(vertices: np.ndarray, normals: np.ndarray, uv: np.ndarray, triangles: np.ndarray,

@@ -6,12 +6,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 import trimesh
+from PIL import Image
 from walking_figures import rod
 
-from my_simulations.description.shapes import Mesh
+from my_simulations.description.shapes import Mesh, Visual
 from my_simulations.errors import InputError
 from my_simulations.formats.mesh.loading import load_mesh
 from my_simulations.formats.mesh.painted import painted_parts
+from my_simulations.sensing.surfaces import pieces_of
 
 REPOSITORY = Path(__file__).resolve().parents[3]
 MODELS = REPOSITORY / "Media" / "models"
@@ -23,13 +25,14 @@ def mesh(path: Path, **options: object) -> Mesh:
 
 def test_a_picture_of_a_collada_file_is_found_beside_it():
     (part,) = painted_parts(mesh(MODELS / "my_object.dae"))
-    assert Path(part.picture).name == "carton.png" and Path(part.picture).is_file()
+    assert Path(part.paint.picture).name == "carton.png" and Path(part.paint.picture).is_file()
     assert np.ptp(part.uv, axis=0).min() > 0.1
 
 
 def test_a_collada_colour_is_its_diffuse():
     (part,) = painted_parts(mesh(MODELS / "lab_table.dae"))
-    assert part.color == pytest.approx((0.72, 0.6, 0.42, 1.0), abs=0.01) and part.picture is None
+    assert part.paint.color == pytest.approx((0.72, 0.6, 0.42, 1.0), abs=0.01)
+    assert part.paint.picture is None
 
 
 BESIDE = {
@@ -61,13 +64,13 @@ def test_what_stands_beside_a_mesh_costs_no_colour(tmp_path, what):
     assert wrong in colored
     (tmp_path / "mesh.dae").write_text(colored.replace(wrong, right))
     (part,) = painted_parts(mesh(tmp_path / "mesh.dae"))
-    assert part.color == (0.0, 0.5, 0.0, 1.0) and len(part.triangles) == 36
+    assert part.paint.color == (0.0, 0.5, 0.0, 1.0) and len(part.triangles) == 36
 
 
 def test_a_skin_that_stands_still_has_its_colours(tmp_path):
     (tmp_path / "skin.dae").write_text(rod("0.2 0.4 0.6"))
     (part,) = painted_parts(mesh(tmp_path / "skin.dae"))
-    assert part.emission == (0.2, 0.4, 0.6, 1.0)
+    assert part.paint.emission == (0.2, 0.4, 0.6, 1.0)
     assert np.ptp(part.vertices, axis=0) == pytest.approx((0.4, 0.2, 2.0))
 
 
@@ -94,13 +97,13 @@ def test_negative_indices_of_obj_draw_the_triangles_that_collide(tmp_path):
     parts, plain = painted_parts(mesh(tmp_path / "two.obj")), load_mesh(mesh(tmp_path / "two.obj"))
     drawn = np.concatenate([part.vertices[part.triangles] for part in parts])
     assert sorted(drawn.tolist()) == sorted(plain.vertices[plain.triangles].tolist())
-    assert {part.color for part in parts} == {(1.0, 0.0, 0.0, 1.0)}
+    assert {part.paint.color for part in parts} == {(1.0, 0.0, 0.0, 1.0)}
     assert max(part.uv[:, 0].max() for part in parts) == 10.0
 
 
 def test_an_stl_file_has_no_colour_and_flat_faces():
     (part,) = painted_parts(mesh(REPOSITORY / "test" / "data" / "valid" / "cube.stl"))
-    assert part.color is None and len(part.vertices) == 24
+    assert part.paint.color is None and len(part.vertices) == 24
 
 
 def test_a_file_that_does_not_load_is_refused_as_ever():
@@ -117,5 +120,71 @@ def test_a_flattened_node_of_a_glb_keeps_its_colour_and_normals(tmp_path):
     assert box.vertex_normals is not None  # the file gets those that were asked for
     scene.export(tmp_path / "flat.glb", include_normals=True)
     (part,) = painted_parts(mesh(tmp_path / "flat.glb"))
-    assert part.color[:3] == pytest.approx((1.0, 0.0, 0.0))
+    assert part.paint.color[:3] == pytest.approx((1.0, 0.0, 0.0))
     assert np.abs(part.normals[:, :2]).max() == pytest.approx(0.0, abs=1e-9)
+
+
+def surface_of_file(path, transparency=0.0):
+    (piece,) = pieces_of(Visual("v", mesh(path), transparency=transparency), None)
+    return piece.surface
+
+
+def glb(folder, picture=None, **told):
+    """A square with a material of glTF."""
+    square = trimesh.Trimesh([[-1, 0, -1], [1, 0, -1], [1, 0, 1], [-1, 0, 1]],
+                             [[0, 1, 2], [0, 2, 3]], process=False)
+    square.visual = trimesh.visual.TextureVisuals(
+        [[0, 0], [1, 0], [1, 1], [0, 1]],
+        trimesh.visual.material.PBRMaterial(baseColorTexture=picture, **told))
+    square.export(folder / "mesh.glb")
+    return folder / "mesh.glb"
+
+
+def test_a_gltf_factor_is_linear_and_its_alpha_counts_where_it_blends(tmp_path):
+    told = {"baseColorFactor": [0.2, 0.2, 0.2, 0.4], "emissiveFactor": [0.0, 1.0, 0.0]}
+    clear = surface_of_file(glb(tmp_path, alphaMode="BLEND", **told), transparency=0.5)
+    assert clear.diffuse[:3] == pytest.approx([0.4845] * 3, abs=0.002)   # sRGB of 0.2
+    assert clear.emissive[:3] == pytest.approx((0.0, 1.0, 0.0))
+    assert clear.opacity == pytest.approx(0.2)
+    assert surface_of_file(glb(tmp_path, **told)).opacity == 1.0
+
+
+@pytest.mark.parametrize(("mode", "blended", "cut"), [
+    ("BLEND", True, 0.004), ("MASK", False, 0.7), ("OPAQUE", False, 0.0)])
+def test_a_gltf_picture_s_alpha_counts_as_the_file_says(tmp_path, mode, blended, cut):
+    surface = surface_of_file(glb(
+        tmp_path, Image.new("RGBA", (4, 4), (200, 0, 0, 90)), alphaMode=mode, alphaCutoff=0.7,
+        baseColorFactor=[0.0, 1.0, 0.0, 1.0]))
+    assert surface.picture is not None
+    assert surface.diffuse[:3] == pytest.approx((0.0, 1.0, 0.0))
+    assert (surface.blended, surface.alpha_test) == (blended, cut)
+
+
+@pytest.mark.parametrize(("line", "opacity"), [
+    ("d 0.3", 0.3), ("Tr 0.6", 0.4), ("d 0.3\nTr 0.7", 0.3), ("d -halo 0.3", 0.3), ("d 1", 1.0),
+    ("d 0", 1.0), ("Tr 1", 1.0), ("d some", 1.0)])
+def test_an_obj_material_is_as_clear_as_its_file_says(tmp_path, line, opacity):
+    (tmp_path / "one.mtl").write_text(f"newmtl glass\nKd 0.2 0.4 0.6\n{line}\n")
+    (tmp_path / "one.obj").write_text(
+        "mtllib one.mtl\nusemtl glass\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
+    assert surface_of_file(tmp_path / "one.obj").opacity == pytest.approx(opacity)
+
+
+CLEAR = "<transparent{0}><color>{1}</color></transparent>"
+CLEAR_FOR = CLEAR + "<transparency><float>{2}</float></transparency>"
+
+
+@pytest.mark.parametrize(("effect", "opacity"), [
+    (CLEAR_FOR.format(' opaque="A_ONE"', "1 1 1 0.5", 0.6), 0.3),
+    (CLEAR_FOR.format(' opaque="A_ZERO"', "1 1 1 0.5", 0.6), 0.7),
+    (CLEAR_FOR.format(' opaque="RGB_ONE"', "0.5 0.5 0.5 1", 0.6), 0.3),
+    (CLEAR_FOR.format(' opaque="RGB_ZERO"', "0.5 0.5 0.5 1", 0.6), 0.7),
+    (CLEAR.format(' opaque="A_ONE"', "1 1 1 0.5"), 0.5),
+    (CLEAR_FOR.format("", "1 1 1 1", 0.4), 1.0),
+    ("<transparency><float>0.4</float></transparency>", 1.0),
+    (CLEAR_FOR.format(' opaque="A_ONE"', "1 1 1 1", 0.0), 1.0),
+    (CLEAR_FOR.format(' opaque="RGB_ZERO"', "1 1 1 1", 1.0), 1.0),
+])
+def test_a_collada_effect_is_as_clear_as_its_opaque_mode_says(tmp_path, effect, opacity):
+    (tmp_path / "glass.dae").write_text(rod().replace("</lambert>", f"{effect}</lambert>"))
+    assert surface_of_file(tmp_path / "glass.dae").opacity == pytest.approx(opacity, abs=1e-5)

@@ -34,6 +34,18 @@ async function bytes(url) {
 const text = async (url) => new TextDecoder().decode(await bytes(url));
 /** three turns a scene unless its file says that y is up. */
 const UP_AXIS = /<up_axis>[^<]*<\/up_axis>/;
+const SHADING = /<(lambert|phong|blinn|constant)>.*?<\/\1>/gs;
+const HOW_CLEAR = /<(transparent|transparency)>.*?<\/\1>/gs;
+
+/**
+ * COLLADA as Gazebo reads it, for three: coordinates are Z up whatever the file says (public issue
+ * 1305); a material is clear only where the file says how that is meant (`opaque`).
+ * @param {string} content
+ */
+export function asGazeboReads(content) {
+  return content.replace(UP_AXIS, '<up_axis>Y_UP</up_axis>').replace(SHADING, (shading) =>
+    (/<transparent\s[^>]*opaque\s*=/.test(shading) ? shading : shading.replace(HOW_CLEAR, '')));
+}
 
 /** An address as a person reads it; files may name pictures with a bare %. @param {string} url */
 function readable(url) {
@@ -52,8 +64,7 @@ async function readCollada(url, manager) {
   const [{ColladaLoader}, content] = await Promise.all([
     import('three/addons/loaders/ColladaLoader.js'), text(url)]);
   const loader = new ColladaLoader(manager);
-  // Gazebo takes coordinates as Z up whatever the file says (public issue 1305), the unit it heeds.
-  const read = loader.parse(content.replace(UP_AXIS, '<up_axis>Y_UP</up_axis>'), folder(url));
+  const read = loader.parse(asGazeboReads(content), folder(url));
   if (!read) throw new Error(`${url} is not COLLADA`);
   return read.scene;
 }
@@ -172,8 +183,7 @@ function meshesOf(root) {
 }
 
 /**
- * Old exporters write an opaque material as one of transparency 0, which would be nothing at all;
- * Gazebo heeds transparency only where the file says how it is meant (ColladaLoader, `opaque`).
+ * Old exporters write an opaque material as one of transparency 0, which would be nothing at all.
  * @param {Material} material
  */
 function showUnseen(material) {

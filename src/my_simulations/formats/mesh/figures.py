@@ -8,7 +8,7 @@ from __future__ import annotations
 import io
 import os
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from types import SimpleNamespace
 from typing import Any, Dict, Iterator, List, Optional, Tuple
@@ -19,7 +19,8 @@ from .collada import unit_of
 from .collada_cleanup import parsed
 from .keyframes import Clip, clip_of
 from .node_tree import Array, NodeTree, floats
-from .painted import PaintedPart, corners_of, effect_of, indexed
+from .paint import effect_of
+from .painted import PaintedPart, corners_of, indexed
 from .part import MOST_TRIANGLES, MeshError
 
 _MOST_BONES = 4
@@ -248,8 +249,8 @@ class _Binding:
     def bound(self, part: PaintedPart) -> PaintedPart:
         """A part where the skin was bound."""
         turn = self._shape[:3, :3]
-        return PaintedPart(part.vertices @ turn.T + self._shape[:3, 3], part.normals @ turn.T,
-                           part.uv, part.triangles, part.color, part.picture, part.emission)
+        return replace(part, vertices=part.vertices @ turn.T + self._shape[:3, 3],
+                       normals=part.normals @ turn.T)
 
 
 def _inputs(element: Any) -> Dict[str, Tuple[str, int]]:

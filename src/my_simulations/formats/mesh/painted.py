@@ -3,23 +3,19 @@ from __future__ import annotations
 
 import io
 import os
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, List, Optional, Tuple
-from urllib.parse import unquote
 
 import numpy as np
 
-from ...description.shapes import Color, Mesh, MeshData
+from ...description.shapes import Mesh, MeshData
 from .collada import instances, unit_of
 from .loading import load_mesh
+from .paint import Paint, effect_of, paint_of
 
 _PAINTED = (".obj", ".glb", ".gltf", ".ply")
 
 Array = Any  # a NumPy array; its shape is documented at each use
-
-Paint = Tuple[Optional[Color], Any, Optional[Color]]
-"""Colour, picture and emission of a `PaintedPart`."""
-NO_PAINT: Paint = (None, None, None)
 
 
 @dataclass(frozen=True)
@@ -31,18 +27,14 @@ class PaintedPart:
         normals: (n, 3), unit vectors.
         uv: texture coordinates (n, 2), v upwards.
         triangles: int32 (m, 3), vertex indices.
-        color: diffuse colour of the file; None without a material.
-        picture: texture: a path that may not exist, a decoded PIL image, or None.
-        emission: what it glows, times the picture; None for nothing.
+        paint: the file's material.
     """
 
     vertices: Array
     normals: Array
     uv: Array
     triangles: Array
-    color: Optional[Color] = None
-    picture: Any = None
-    emission: Optional[Color] = None
+    paint: Paint = Paint()
 
 
 def painted_parts(mesh: Mesh) -> List[PaintedPart]:
@@ -66,7 +58,7 @@ def painted_parts(mesh: Mesh) -> List[PaintedPart]:
 def flat(data: MeshData) -> PaintedPart:
     """Triangles with one normal each (flat shading), as for STL files."""
     corners = np.asarray(data.vertices)[np.asarray(data.triangles)].reshape(-1, 3)
-    return _indexed(corners, None, None, NO_PAINT)
+    return _indexed(corners, None, None, Paint())
 
 
 def smooth(data: MeshData) -> PaintedPart:
@@ -100,17 +92,8 @@ def _placed(parts: List[PaintedPart], mesh: Mesh) -> List[PaintedPart]:
     for part in parts:
         normals = part.normals / np.where(scale == 0, 1.0, scale)
         triangles = part.triangles[:, ::-1] if mirrored else part.triangles
-        placed.append(
-            PaintedPart(
-                (part.vertices - shift) * scale,
-                _unit_rows(np.asarray(normals)),
-                part.uv,
-                triangles,
-                part.color,
-                part.picture,
-                part.emission,
-            )
-        )
+        placed.append(replace(part, vertices=(part.vertices - shift) * scale,
+                              normals=_unit_rows(np.asarray(normals)), triangles=triangles))
     return placed
 
 
@@ -148,7 +131,7 @@ def indexed(corners: Array, normals: Optional[Array], uv: Optional[Array], paint
                                   return_index=True, return_inverse=True)
     kept = rows[first].astype(np.float64)
     return PaintedPart(np.asarray(corners, dtype=np.float64)[first], kept[:, 3:6], kept[:, 6:8],
-                       inverse.reshape(-1, 3).astype(np.int32), *paint), first
+                       inverse.reshape(-1, 3).astype(np.int32), paint), first
 
 
 def _indexed(corners: Array, normals: Optional[Array], uv: Optional[Array],
@@ -209,26 +192,6 @@ def corners_of(primitive: Any, mirrored: bool = False,
     return index, triangles.vertex[index], normals, uv, triangles.material
 
 
-def effect_of(material: Any, folder: str) -> Paint:
-    """What a material of pycollada looks like; `folder`: where its pictures are looked for."""
-    effect = getattr(material, "effect", None)
-    diffuse, emission = getattr(effect, "diffuse", None), _glow(getattr(effect, "emission", None))
-    if diffuse is None:
-        return None, None, emission
-    if isinstance(diffuse, tuple):
-        return (diffuse[0], diffuse[1], diffuse[2], 1.0), None, emission
-    path = unquote(diffuse.sampler.surface.image.path or "")
-    path = path[len("file://"):] if path.startswith("file://") else path
-    return (1.0, 1.0, 1.0, 1.0), os.path.join(folder, path), emission
-
-
-def _glow(parts: Any) -> Optional[Color]:
-    """A colour that is not black; None for pictures."""
-    if not isinstance(parts, (tuple, list)) or len(parts) < 3 or not any(parts[:3]):
-        return None
-    return (float(parts[0]), float(parts[1]), float(parts[2]), 1.0)
-
-
 def _trimesh(mesh: Mesh, extension: str) -> List[PaintedPart]:
     import trimesh
     from trimesh.resolvers import FilePathResolver
@@ -258,7 +221,7 @@ def _trimesh(mesh: Mesh, extension: str) -> List[PaintedPart]:
         uv = getattr(shape.visual, "uv", None)
         uv = None if uv is None else np.asarray(uv)[faces].reshape(-1, 2)
         parts.append(_indexed(vertices[faces].reshape(-1, 3), normals, uv,
-                              _trimesh_material(getattr(shape.visual, "material", None))))
+                              paint_of(getattr(shape.visual, "material", None))))
     return parts
 
 
@@ -267,16 +230,3 @@ def _cofactors(matrix: Any) -> Any:
     one, two, three = matrix
     found = np.array([np.cross(two, three), np.cross(three, one), np.cross(one, two)])
     return -found if np.linalg.det(matrix) < 0 else found
-
-
-def _trimesh_material(material: Any) -> Paint:
-    if material is None:
-        return NO_PAINT
-    emission = _glow((getattr(material, "kwargs", None) or {}).get("ke"))
-    picture = getattr(material, "image", None) or getattr(material, "baseColorTexture", None)
-    color = getattr(material, "baseColorFactor", None)
-    color = getattr(material, "diffuse", None) if color is None else color
-    if picture is not None or color is None:
-        return (1.0, 1.0, 1.0, 1.0), picture, emission
-    red, green, blue = (float(part) / 255.0 for part in color[:3])
-    return (red, green, blue, 1.0), None, emission

@@ -1,0 +1,128 @@
+"""Materials of mesh files, as cameras draw them."""
+from __future__ import annotations
+
+import os
+from typing import Any, Dict, NamedTuple, Optional, Sequence, Tuple
+from urllib.parse import unquote
+
+from ...description.shapes import Color
+
+HOLE = 0.004
+"""Alpha below which a pixel of a picture is left out, unless the file says otherwise."""
+
+_LUMINANCE = 0.212671, 0.715160, 0.072169
+_WHITE = (1.0, 1.0, 1.0)
+
+
+class Paint(NamedTuple):
+    """What triangles look like; colours sRGB.
+
+    Attributes:
+        color: diffuse colour, times the picture; its alpha is the opacity. None without a material.
+        picture: texture: a path that may not exist, a decoded PIL image, or None.
+        emission: what it glows, times the picture; None for nothing.
+        blended: whether the picture's alpha makes it transparent.
+        alpha_test: what of the picture has less alpha is not drawn.
+    """
+
+    color: Optional[Color] = None
+    picture: Any = None
+    emission: Optional[Color] = None
+    blended: bool = False
+    alpha_test: float = HOLE
+
+
+def effect_of(material: Any, folder: str) -> Paint:
+    """What a material of pycollada looks like; `folder`: where its pictures are looked for."""
+    effect = getattr(material, "effect", None)
+    diffuse, emission = getattr(effect, "diffuse", None), _glow(getattr(effect, "emission", None))
+    if diffuse is None:
+        return Paint(emission=emission)
+    opacity = _opacity(effect)
+    if isinstance(diffuse, tuple):
+        return Paint((diffuse[0], diffuse[1], diffuse[2], opacity), None, emission)
+    path = unquote(diffuse.sampler.surface.image.path or "")
+    path = path[len("file://"):] if path.startswith("file://") else path
+    return Paint((*_WHITE, opacity), os.path.join(folder, path), emission)
+
+
+def _opacity(effect: Any) -> float:
+    """Of a COLLADA effect: 1 unless `<transparent opaque="...">` says how its colour is meant.
+
+    Gazebo's rule; pictures that say it are not heeded.
+    """
+    transparent = effect.transparent
+    element = effect.xmlnode.find(".//{*}transparent")
+    if element is None or not isinstance(transparent, tuple) or len(transparent) < 4:
+        return 1.0
+    written = effect.xmlnode.find(".//{*}transparency") is not None
+    times = effect.transparency if written else 1.0
+    if not isinstance(times, float):
+        return 1.0
+    luminance = sum(part * weight for part, weight in zip(transparent, _LUMINANCE))
+    found = {"A_ONE": transparent[3] * times, "A_ZERO": 1.0 - transparent[3] * times,
+             "RGB_ONE": luminance * times, "RGB_ZERO": 1.0 - luminance * times}
+    return _seen(found.get(element.get("opaque"), 1.0))
+
+
+def _seen(opacity: float) -> float:
+    """Old exporters call wholly transparent what is opaque; else it would be nothing at all."""
+    return min(opacity, 1.0) if opacity > 0.0 else 1.0
+
+
+def paint_of(material: Any) -> Paint:
+    """What a material of trimesh (of OBJ, glTF, PLY) looks like."""
+    if material is None:
+        return Paint()
+    if hasattr(material, "baseColorFactor"):
+        return _of_gltf(material)
+    told: Dict[str, Any] = getattr(material, "kwargs", None) or {}
+    emission, opacity = _glow(told.get("ke")), _dissolved(told)
+    picture, color = getattr(material, "image", None), getattr(material, "diffuse", None)
+    rgb = _WHITE if picture is not None or color is None else _rgb(color)
+    return Paint((*rgb, opacity), picture, emission)
+
+
+def _dissolved(told: Dict[str, Any]) -> float:
+    """The opacity of a material of an MTL file: `d`, or 1 - `Tr`."""
+    try:
+        if "d" in told:
+            return _seen(float(told["d"][-1]))
+        return _seen(1.0 - float(told["tr"][-1])) if "tr" in told else 1.0
+    except ValueError:
+        return 1.0
+
+
+def _of_gltf(material: Any) -> Paint:
+    """glTF tells factors in linear units, pictures in sRGB (glTF 2.0, 3.9.2)."""
+    factor, picture = material.baseColorFactor, material.baseColorTexture
+    rgb = _WHITE if factor is None else _encoded(_rgb(factor))
+    emission = None
+    if material.emissiveTexture is None or material.emissiveTexture is picture:
+        glow = _glow(tuple(material.emissiveFactor) if material.emissiveFactor is not None
+                     else None)
+        emission = None if glow is None else (*_encoded(glow[:3]), 1.0)
+    blends = material.alphaMode == "BLEND"
+    opacity = _seen(float(factor[3]) / 255.0) if blends and factor is not None else 1.0
+    cutoff = 0.5 if material.alphaCutoff is None else float(material.alphaCutoff)
+    return Paint((*rgb, opacity), picture, emission,
+                 blends and picture is not None and picture.mode not in ("RGB", "L", "1"),
+                 cutoff if material.alphaMode == "MASK" else HOLE if blends else 0.0)
+
+
+def _rgb(color: Any) -> Tuple[float, float, float]:
+    return float(color[0]) / 255.0, float(color[1]) / 255.0, float(color[2]) / 255.0
+
+
+def _encoded(linear: Sequence[float]) -> Tuple[float, float, float]:
+    """sRGB of linear units, 0 to 1."""
+    red, green, blue = (12.92 * part if part <= 0.0031308
+                        else 1.055 * min(part, 1.0) ** (1.0 / 2.4) - 0.055 for part in linear)
+    return red, green, blue
+
+
+def _glow(parts: Any) -> Optional[Color]:
+    """A colour that is not black; None for pictures."""
+    if not isinstance(parts, (tuple, list)) or len(parts) < 3 or not any(parts[:3]):
+        return None
+    return (float(parts[0]), float(parts[1]), float(parts[2]), 1.0)
