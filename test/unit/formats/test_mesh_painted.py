@@ -188,3 +188,53 @@ CLEAR_FOR = CLEAR + "<transparency><float>{2}</float></transparency>"
 def test_a_collada_effect_is_as_clear_as_its_opaque_mode_says(tmp_path, effect, opacity):
     (tmp_path / "glass.dae").write_text(rod().replace("</lambert>", f"{effect}</lambert>"))
     assert surface_of_file(tmp_path / "glass.dae").opacity == pytest.approx(opacity, abs=1e-5)
+
+
+def shown(part):
+    """Place and colour, 0 to 255, of each corner, with the picture's pixels blended evenly."""
+    pixels = np.asarray(part.paint.picture, dtype=float)[::-1]
+    height, width, _ = pixels.shape
+    found = {}
+    for place, (u, v) in zip(part.vertices, part.uv):
+        x, y = u * width - 0.5, v * height - 0.5
+        left, low = min(int(x), width - 2), min(int(y), height - 2)
+        right, high = x - left, y - low
+        found.setdefault(tuple(place), []).append(
+            (1 - high) * ((1 - right) * pixels[low, left] + right * pixels[low, left + 1])
+            + high * ((1 - right) * pixels[low + 1, left] + right * pixels[low + 1, left + 1]))
+    return found
+
+
+CORNERS = {(0.0, 0.0, 0.0): (255, 0, 0), (1.0, 0.0, 0.0): (0, 255, 0), (0.0, 1.0, 0.0): (0, 0, 255),
+           (1.0, 1.0, 0.0): (9, 9, 9)}
+FACES = [[0, 1, 2], [1, 3, 2]]
+
+
+@pytest.mark.parametrize("kind", ["ply", "obj"])
+def test_colours_of_vertices_are_drawn(tmp_path, kind):
+    square = trimesh.Trimesh([*CORNERS], FACES, vertex_colors=[*CORNERS.values()], process=False)
+    square.export(tmp_path / f"square.{kind}")
+    (part,) = painted_parts(mesh(tmp_path / f"square.{kind}"))
+    assert part.paint.color == (1.0, 1.0, 1.0, 1.0)
+    for place, colors in shown(part).items():
+        for color in colors:
+            assert color == pytest.approx(CORNERS[place], abs=1.0)
+
+
+def test_colours_of_vertices_of_gltf_are_linear_and_times_its_material(tmp_path):
+    square = trimesh.load(glb(tmp_path, baseColorFactor=[1.0, 0.0, 0.0, 1.0]), force="mesh")
+    square.visual.vertex_attributes["color"] = np.full((4, 4), [51, 51, 51, 255], dtype=np.uint8)
+    square.export(tmp_path / "mesh.glb")
+    (part,) = painted_parts(mesh(tmp_path / "mesh.glb"))
+    assert part.paint.color[:3] == pytest.approx((1.0, 0.0, 0.0))
+    assert {round(value) for colors in shown(part).values() for value in np.ravel(colors)} == {124}
+
+
+def test_triangles_of_one_colour_share_their_vertices(tmp_path):
+    colors = np.array([[200, 0, 0, 255]] * 6 + [[0, 0, 200, 255]] * 6)
+    trimesh.Trimesh(trimesh.creation.box().vertices, trimesh.creation.box().faces,
+                    face_colors=colors, process=False).export(tmp_path / "box.ply")
+    (part,) = painted_parts(mesh(tmp_path / "box.ply"))
+    assert part.paint.picture.size == (4, 2) and len(part.vertices) < 36
+    assert {tuple(np.rint(one)) for found in shown(part).values() for one in found} == {
+        (200, 0, 0), (0, 0, 200)}

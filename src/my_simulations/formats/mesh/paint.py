@@ -5,7 +5,11 @@ import os
 from typing import Any, Dict, NamedTuple, Optional, Sequence, Tuple
 from urllib.parse import unquote
 
+import numpy as np
+
 from ...description.shapes import Color
+
+Array = Any  # a NumPy array; its shape is documented at each use
 
 HOLE = 0.004
 """Alpha below which a pixel of a picture is left out, unless the file says otherwise."""
@@ -114,10 +118,15 @@ def _rgb(color: Any) -> Tuple[float, float, float]:
     return float(color[0]) / 255.0, float(color[1]) / 255.0, float(color[2]) / 255.0
 
 
-def _encoded(linear: Sequence[float]) -> Tuple[float, float, float]:
+def encoded(linear: Array) -> Array:
     """sRGB of linear units, 0 to 1."""
-    red, green, blue = (12.92 * part if part <= 0.0031308
-                        else 1.055 * min(part, 1.0) ** (1.0 / 2.4) - 0.055 for part in linear)
+    found: Array = np.where(linear <= 0.0031308, 12.92 * linear,
+                            1.055 * np.clip(linear, 0.0, 1.0) ** (1.0 / 2.4) - 0.055)
+    return found
+
+
+def _encoded(linear: Sequence[float]) -> Tuple[float, float, float]:
+    red, green, blue = map(float, encoded(np.array(linear)))
     return red, green, blue
 
 

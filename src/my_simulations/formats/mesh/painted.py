@@ -10,12 +10,11 @@ import numpy as np
 
 from ...description.shapes import Mesh, MeshData
 from .collada import instances, unit_of
+from .corner_colors import colored
 from .loading import load_mesh
-from .paint import Paint, effect_of, paint_of
+from .paint import Array, Paint, effect_of, paint_of
 
 _PAINTED = (".obj", ".glb", ".gltf", ".ply")
-
-Array = Any  # a NumPy array; its shape is documented at each use
 
 
 @dataclass(frozen=True)
@@ -220,8 +219,8 @@ def _trimesh(mesh: Mesh, extension: str) -> List[PaintedPart]:
             normals = (np.asarray(shape.vertex_normals) @ turned.T)[faces].reshape(-1, 3)
         uv = getattr(shape.visual, "uv", None)
         uv = None if uv is None else np.asarray(uv)[faces].reshape(-1, 2)
-        parts.append(_indexed(vertices[faces].reshape(-1, 3), normals, uv,
-                              paint_of(getattr(shape.visual, "material", None))))
+        uv, paint = colored(shape, faces, uv, paint_of(getattr(shape.visual, "material", None)))
+        parts.append(_indexed(vertices[faces].reshape(-1, 3), normals, uv, paint))
     return parts
 
 
