@@ -21,3 +21,9 @@ test('a COLLADA material is clear only where its file says how that is meant', (
   assert.equal(read.replace(/\s/g, ''),
     `<up_axis>Y_UP</up_axis><phong><diffuse/></phong>${meant}`.replace(/\s/g, ''));
 });
+
+test('animations of COLLADA are played whole, whatever clips the file names', () => {
+  const keys = '<library_animations><animation id="a"/></library_animations>';
+  assert.equal(asGazeboReads(`${keys}<library_animation_clips><animation_clip id="k" start="1" end="2">
+    <instance_animation url="#a"/></animation_clip></library_animation_clips>`), keys);
+});

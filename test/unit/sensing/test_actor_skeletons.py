@@ -157,11 +157,14 @@ def test_what_hangs_on_a_node_goes_with_it(read):
                        + (0.0, 0.0, 1.0))
 
 
-def test_a_clip_is_as_long_as_it_says(read):
+def test_all_keys_of_a_file_are_played_whatever_clips_it_names(read):
     moves = animation((0.0, 2.0), (RAISED, QUARTER)) + (
-        "<library_animation_clips><animation_clip id='k' start='0' end='3'>"
+        "<library_animation_clips><animation_clip id='k' start='1' end='4'>"
         "<instance_animation url='#a'/></animation_clip></library_animation_clips>")
-    assert Skeleton(read(rod(moves=moves)), 1.0).duration == 3.0
+    skeleton = Skeleton(read(rod(moves=moves)), 1.0)
+    rest = corners(skeleton, None)
+    assert skeleton.duration == 2.0
+    assert np.allclose(corners(skeleton, 1.0)[8:16], swung(rest, math.pi / 4)[8:16])
 
 
 @pytest.mark.parametrize(("wrong", "right", "message"), [

@@ -35,15 +35,18 @@ const text = async (url) => new TextDecoder().decode(await bytes(url));
 /** three turns a scene unless its file says that y is up. */
 const UP_AXIS = /<up_axis>[^<]*<\/up_axis>/;
 const SHADING = /<(lambert|phong|blinn|constant)>.*?<\/\1>/gs;
+const CLIPS = /<library_animation_clips\b.*?<\/library_animation_clips>/gs;
 const HOW_CLEAR = /<(transparent|transparency)>.*?<\/\1>/gs;
 
 /**
  * COLLADA as Gazebo reads it, for three: coordinates are Z up whatever the file says (public issue
- * 1305); a material is clear only where the file says how that is meant (`opaque`).
+ * 1305); a material is clear only where the file says how that is meant (`opaque`); animations are
+ * played whole, whatever clips it names.
  * @param {string} content
  */
 export function asGazeboReads(content) {
-  return content.replace(UP_AXIS, '<up_axis>Y_UP</up_axis>').replace(SHADING, (shading) =>
+  const upright = content.replace(UP_AXIS, '<up_axis>Y_UP</up_axis>').replace(CLIPS, '');
+  return upright.replace(SHADING, (shading) =>
     (/<transparent\s[^>]*opaque\s*=/.test(shading) ? shading : shading.replace(HOW_CLEAR, '')));
 }
 

@@ -51,23 +51,16 @@ class Clip:
 
 
 def clip_of(root: Any, tree: NodeTree) -> Optional[Clip]:
-    """The first clip of a file, or all its animations where it has no clips; None for none.
+    """All animations of a file at once; None for none.
 
-    Between keys all goes evenly, whatever `INTERPOLATION` says.
+    Gazebo heeds no `<animation_clip>`: a movement lasts until the last key. Between keys all goes
+    evenly, whatever `INTERPOLATION` says.
 
     Raises:
         ValueError, LookupError: numbers that do not fit each other.
     """
-    clips = root.find("{*}library_animation_clips/{*}animation_clip")
-    if clips is not None:
-        wanted = [tree.by_id.get((one.get("url") or "#")[1:])
-                  for one in clips.iterchildren("{*}instance_animation")]
-        animations = [one for one in wanted if one is not None]
-        length = float(clips.get("end") or 0.0) - float(clips.get("start") or 0.0)
-    else:
-        animations, length = root.findall("{*}library_animations/{*}animation"), 0.0
     channels: Dict[int, List[_Channel]] = {}
-    for animation in animations:
+    for animation in root.findall("{*}library_animations/{*}animation"):
         for channel in animation.iter("{*}channel"):
             made = _Channel(channel, tree)
             if made.node >= 0 and len(made.times):
@@ -79,7 +72,7 @@ def clip_of(root: Any, tree: NodeTree) -> Optional[Clip]:
     if not groups:
         return None
     keys_of_all = [_joined(group) for group in groups.values()]
-    return Clip(keys_of_all, length or max(float(keys.times[-1]) for keys in keys_of_all))
+    return Clip(keys_of_all, max(float(keys.times[-1]) for keys in keys_of_all))
 
 
 def _joined(group: "List[_NodeKeys]") -> Keys:
