@@ -106,6 +106,10 @@ AWAY = STILL.replace("1 0 0 0", "1 0 0 50", 1)
 SKINS = {
     "rod.dae": rod(), "swinging.dae": swinging(seconds=1.5),
     "going.dae": rod(moves=animation((0.0, 1.0, 2.5), (STILL, AWAY, STILL), "lower")),
+    "sitting.dae": rod(moves=animation((0.0, 1.5), (RAISED, RAISED.replace("100", "50")), "lower"),
+                       root=RAISED).replace("high", "arm").replace('meter="0.01"', 'meter="0.02"'),
+    "branching.dae": rod(moves=animation((0.2, 1.9), (RAISED, QUARTER))).replace(
+        "</node></node>", '<node id="hand" sid="hand" type="JOINT"/></node></node>', 1),
     "mover.dae": rod(moves=animation((0.5, 1.7), (RAISED, QUARTER.replace("100", "300")))),
 }
 PATH = [Waypoint(0.0, Pose((1.0, 0.0, 0.0))),
@@ -126,6 +130,10 @@ FIGURES = {
                                   Animation("go", "going.dae")],
                       trajectories=[Trajectory(n, kind, waypoints=PATH[:2]) for n, kind in
                                     enumerate(("fall", "go", "none", "unknown", "fall"))]),
+    "sitting": Actor("sitting", Pose(), "rod.dae", 0.5,
+                     animations=[Animation("sit", "sitting.dae", 0.7)]),
+    "branching": Actor("branching", Pose(), "rod.dae",
+                       animations=[Animation("fall", "branching.dae")]),
     "vain": Actor("vain", Pose(), "swinging.dae", animations=[Animation("none", "rod.dae")]),
 }
 TIMES = (0.0, 0.4, 1.0, 1.6, 2.2, 3.9, 4.4, 6.9, 8.5, 10.3)
@@ -168,7 +176,7 @@ def element(actor):
     path = "".join(f"<trajectory id='{one.id}' type='{one.type}'>{points}</trajectory>"
                    for one in actor.trajectories)
     animations = "".join(f"<animation name='{one.name}'><filename>{one.filename}</filename>"
-                         "</animation>" for one in actor.animations)
+                         f"<scale>{one.scale}</scale></animation>" for one in actor.animations)
     return (f"<actor name='{actor.name}'>{pose(actor.pose)}<skin><filename>{actor.skin}</filename>"
             f"<scale>{actor.skin_scale}</scale></skin>{animations}<script>"
             f"<loop>{str(actor.loop).lower()}</loop><delay_start>{actor.delay_start}</delay_start>"

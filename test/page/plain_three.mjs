@@ -138,8 +138,9 @@ export {
   Thing as AnimationClip, Thing as AnimationMixer, Thing as Box3, Thing as CanvasTexture,
   Thing as DataTexture, Thing as Fog,
   Thing as FogExp2, Thing as LoadingManager, Thing as Matrix4,
-  Thing as Path, Thing as Quaternion, Thing as Shape, Thing as Raycaster, Thing as Sphere, Thing as Texture,
-  Thing as TextureLoader, Thing as Vector2, Thing as WebGLRenderTarget, Thing as WebGLRenderer,
+  Thing as Path, Thing as Quaternion, Thing as QuaternionKeyframeTrack, Thing as Shape, Thing as Raycaster, Thing as Sphere, Thing as Texture,
+  Thing as TextureLoader, Thing as Vector2,
+  Thing as VectorKeyframeTrack, Thing as WebGLRenderTarget, Thing as WebGLRenderer,
 };
 export const ShaderChunk = {};
 export const CustomToneMapping = 5;

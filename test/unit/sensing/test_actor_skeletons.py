@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 from walking_figures import QUARTER, RAISED, STILL, animation, rod, swinging
 
-from my_simulations.formats.mesh.figures import read_clip, read_figure
+from my_simulations.formats.mesh.figures import read_figure, read_movement
 from my_simulations.formats.mesh.part import MeshError
-from my_simulations.sensing.actors.skeleton import Skeleton
+from my_simulations.sensing.actors.skeleton import Borrowed, Skeleton
 
 
 @pytest.fixture
@@ -21,10 +21,10 @@ def read(tmp_path):
 
 
 @pytest.fixture
-def clip(tmp_path):
+def movement(tmp_path):
     def of(text):
         (tmp_path / "mover.dae").write_text(text)
-        return read_clip(str(tmp_path / "mover.dae"))
+        return read_movement(str(tmp_path / "mover.dae"))
     return of
 
 
@@ -120,19 +120,64 @@ def test_parts_of_a_bone_s_place_are_animated_by_themselves(read, target, values
     assert np.allclose(corners(skeleton, 1.0)[8:16], expected(rest)[8:16])
 
 
-def test_another_file_says_how_bones_of_the_same_names_turn_and_for_how_long(read, clip):
-    higher = QUARTER.replace("100", "500")   # its bones are longer: that is not taken over
-    mover = clip(rod(moves=animation((0.0, 4.0), (RAISED, higher))))
-    skeleton = Skeleton(read(rod()), 1.0, mover, borrows=True)
+def test_another_file_says_where_bones_are_and_for_how_long(read, movement):
+    higher = QUARTER.replace("100", "120")   # as Gazebo has it: its bones take their places
+    mover = movement(rod(moves=animation((0.0, 4.0), (RAISED, higher))))
+    skeleton = Skeleton(read(rod()), 1.0, Borrowed(mover))
     rest = corners(skeleton, None)
     assert skeleton.duration == 4.0
-    assert np.allclose(corners(skeleton, 2.0)[8:16], swung(rest, math.pi / 4)[8:16])
+    assert np.allclose(corners(skeleton, 2.0)[8:16], swung(rest, math.pi / 4)[8:16] + (0, 0, 0.1))
 
 
-@pytest.mark.parametrize("mover", [
-    rod(), swinging().replace('sid="high"', 'sid="arm"').replace("low high", "low arm")])
-def test_a_file_without_movement_for_these_bones_moves_nothing(read, clip, mover):
-    skeleton = Skeleton(read(swinging()), 1.0, clip(mover), borrows=True)
+def at_height(*heights):
+    return [RAISED.replace("100", str(height)) for height in heights]
+
+
+@pytest.mark.parametrize(("unit", "scale"), [("0.01", 1.0), ("0.02", 0.5), ("0.0025", 4.0)])
+def test_another_file_moves_the_hips_in_its_unit_and_scale(read, movement, unit, scale):
+    standing, sitting = at_height(100, 50)
+    moves = animation((0.0, 2.0), (standing, sitting), "lower")
+    mover = movement(rod(moves=moves, root=standing).replace('meter="0.01"', f'meter="{unit}"'))
+    skeleton = Skeleton(read(rod(root=standing)), 1.0, Borrowed(mover, scale))
+    rest = corners(skeleton, None)
+    assert rest[0] == pytest.approx((-0.1, -0.1, 1.0))
+    assert np.allclose(corners(skeleton, 2.0), rest - (0.0, 0.0, 0.5))
+
+
+def test_a_borrowed_movement_is_for_a_skin_of_any_scale(read, movement):
+    standing, sitting = at_height(100, 50)
+    mover = movement(rod(moves=animation((0.0, 2.0), (standing, sitting), "lower"), root=standing))
+    skeleton = Skeleton(read(rod(root=standing)), 2.0, Borrowed(mover, 2.0))
+    assert corners(skeleton, 2.0)[0] == pytest.approx((-0.2, -0.2, 1.0))
+
+
+def renamed(text):
+    return text.replace('sid="high"', 'sid="arm"').replace("low high", "low arm")
+
+
+def test_bones_are_paired_by_their_order_whatever_they_are_called(read, movement):
+    skeleton = Skeleton(read(rod()), 1.0, Borrowed(movement(renamed(swinging()))))
+    rest = corners(skeleton, None)
+    assert np.allclose(corners(skeleton, 1.0)[8:16], swung(rest, math.pi / 4)[8:16])
+
+
+HAND = '<node id="hand" sid="hand" name="hand" type="JOINT"/>'
+
+
+def handed(text):
+    """With a third bone."""
+    return text.replace("</node></node>", f"{HAND}</node></node>", 1)
+
+
+def test_bones_of_skeletons_that_branch_otherwise_are_paired_by_name(read, movement):
+    skeleton = Skeleton(read(rod()), 1.0, Borrowed(movement(handed(swinging()))))
+    rest = corners(skeleton, None)
+    assert np.allclose(corners(skeleton, 1.0)[8:16], swung(rest, math.pi / 4)[8:16])
+
+
+@pytest.mark.parametrize("mover", [rod(), handed(renamed(swinging()))])
+def test_a_file_without_movement_for_these_bones_moves_nothing(read, movement, mover):
+    skeleton = Skeleton(read(swinging()), 1.0, Borrowed(movement(mover)))
     assert skeleton.duration is None
 
 

@@ -2,13 +2,15 @@
  * Actors: figures that walk by sim time alone. They are seen, never touched: nothing picks them,
  * and no pose frame tells of them.
  */
-import {AnimationClip, AnimationMixer, Bone, Group} from 'three';
+import {
+  AnimationClip, AnimationMixer, Bone, Group, QuaternionKeyframeTrack, VectorKeyframeTrack,
+} from 'three';
 import {ActorPath} from '../actor_path.js';
 import {LIMITS} from '../protocol.js';
 import {SimClock} from '../sim_clock.js';
 import {sourceOf} from './mesh_files.js';
 import {place} from './three_convert.js';
-/** @import {Actor, LogPush} from '../protocol.js' */
+/** @import {Actor, Geometry, LogPush} from '../protocol.js' */
 /** @import {MeshSource} from './mesh_files.js' */
 /** @import {AnimationAction, Object3D} from 'three' */
 /** @import {Stride} from '../actor_path.js' */
@@ -17,34 +19,78 @@ import {place} from './three_convert.js';
 /** Milliseconds between two steps, as between pose frames. */
 const PERIOD = 1000 / LIMITS.frames_hz;
 
-/** The bone that carries all others, or undefined. @param {Object3D} root */
-function rootBone(root) {
+/** @param {Object3D} root @returns {Bone[]} each after the one that it hangs on */
+function bonesOf(root) {
   /** @type {Bone[]} */
   const bones = [];
   root.traverse((object) => { if (object instanceof Bone) bones.push(object); });
-  return bones.find((bone) => !(bone.parent instanceof Bone));
+  return bones;
+}
+
+/** The bone that carries all others, or undefined. @param {Object3D} root */
+const rootBone = (root) => bonesOf(root).find((bone) => !(bone.parent instanceof Bone));
+
+/**
+ * What of a figure moves as each bone of another file. Bones are paired by their order where both
+ * skeletons branch alike, whatever they are called (Gazebo behaviour), else all by their names.
+ * @param {Object3D} owner
+ * @param {Object3D} figure
+ * @returns {Map<Object3D, Object3D>}
+ */
+function paired(owner, figure) {
+  const [theirs, ours] = [owner, figure].map((root) => {
+    /** @type {Bone[]} */
+    const joined = [];
+    rootBone(root)?.traverse((object) => {
+      if (object instanceof Bone && (!joined.length || joined.includes(/** @type {Bone} */ (object.parent)))) {
+        joined.push(object);
+      }
+    });
+    return joined;
+  });
+  const below = (/** @type {Bone} */ bone) =>
+    bone.children.filter((child) => child instanceof Bone).length;
+  if (ours.length && ours.length === theirs.length &&
+      ours.every((bone, index) => below(bone) === below(theirs[index]))) {
+    return new Map(theirs.map((bone, index) => [bone, ours[index]]));
+  }
+  /** @type {Map<Object3D, Object3D>} */
+  const named = new Map();
+  owner.traverse((object) => {
+    const own = object.name && figure.getObjectByName(object.name);
+    if (own) named.set(object, own);
+  });
+  return named;
 }
 
 /**
- * Another file's movement for the bones of this name: how they turn, not how long they are.
+ * Another file's movement for a figure: it places and turns the bones, as long as they are there
+ * (Gazebo behaviour).
  * @param {AnimationClip} clip
  * @param {Object3D} owner
  * @param {Object3D} figure
- * @returns {AnimationClip|null} null where no bone has a name in common
+ * @param {number} ratio  a length in the figure from one in the file
+ * @returns {AnimationClip|null} null where it moves nothing of the figure
  */
-function borrowed(clip, owner, figure) {
-  const tracks = [];
-  for (const track of clip.tracks) {
-    const [uuid, property] = track.name.split('.');
-    const {name} = owner.getObjectByProperty('uuid', uuid) ?? {};
-    const bone = name && figure.getObjectByName(name);
-    if (property !== 'quaternion' || !bone) continue;
-    const copy = track.clone();
-    copy.name = `${bone.uuid}.${property}`;
-    tracks.push(copy);
-  }
+function borrowed(clip, owner, figure, ratio) {
+  const pairs = paired(owner, figure);
+  const moved = new Map(clip.tracks.map((track) => [track.name, track]));
+  const tracks = [...pairs].flatMap(([bone, own]) => {
+    const [place, turn] = ['position', 'quaternion'].map((name) => moved.get(`${bone.uuid}.${name}`));
+    if (!place && !turn) return [];
+    const places = place ? [...place.values] : bone.position.toArray();
+    return [
+      new VectorKeyframeTrack(`${own.uuid}.position`, place?.times ?? [0],
+        places.map((value) => value * ratio)),
+      new QuaternionKeyframeTrack(`${own.uuid}.quaternion`, turn?.times ?? [0],
+        turn?.values ?? bone.quaternion.toArray()),
+    ];
+  });
   return tracks.length ? new AnimationClip(clip.name, clip.duration, tracks) : null;
 }
+
+/** @param {{geometry: Geometry}} told */
+const scaleOf = ({geometry}) => (geometry.type === 'mesh' ? geometry.scale[0] : 1);
 
 /** The movements of a skin's bones, of which one goes on at a time. */
 class Gaits {
@@ -144,11 +190,14 @@ export class Figure {
     const own = skin.animations[0] ?? null;
     const {foreign} = this;
     if (!foreign.length) return new Map([['', own]]);
-    return new Map(this.#actor.animations.map(({name}, index) => {
+    const length = skin.scale.x * scaleOf(this.#actor);
+    return new Map(this.#actor.animations.map((animation, index) => {
+      const {name} = animation;
       if (!foreign[index]) return [name, own];
       const mover = movers[index];
       const clip = mover?.animations[0];
-      return [name, mover && clip ? borrowed(clip, mover, skin) : null];
+      const ratio = (mover?.scale.x ?? 1) * scaleOf(animation) / (length || 1);
+      return [name, mover && clip ? borrowed(clip, mover, skin, ratio) : null];
     }));
   }
 

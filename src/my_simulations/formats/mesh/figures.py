@@ -71,6 +71,15 @@ class FigureFile:
     unit: float
 
 
+@dataclass(frozen=True)
+class Movement:
+    """The animation of a file: what moves, how, and the file's unit in m."""
+
+    tree: NodeTree
+    clip: Clip
+    unit: float
+
+
 def read_figure(path: str) -> Optional[FigureFile]:
     """The figure in a COLLADA file; None for other files, or one without surfaces.
 
@@ -82,8 +91,8 @@ def read_figure(path: str) -> Optional[FigureFile]:
     return _figure(path, _changed(path)) if _is_collada(path) else None
 
 
-def read_clip(path: str) -> Optional[Tuple[NodeTree, Clip]]:
-    """The animation of a COLLADA file, and what it moves; None where there is none.
+def read_movement(path: str) -> Optional[Movement]:
+    """The animation of a COLLADA file; None where there is none.
 
     Raises:
         MeshError: it cannot be read.
@@ -117,13 +126,15 @@ def _figure(path: str, _changed_at: Tuple[int, int]) -> Optional[FigureFile]:
 
 
 @lru_cache(maxsize=8)
-def _moves(path: str, _changed_at: Tuple[int, int]) -> Optional[Tuple[NodeTree, Clip]]:
+def _moves(path: str, _changed_at: Tuple[int, int]) -> Optional[Movement]:
     root = _root_of(path)
     with _told():
         tree = NodeTree(root)
         clip = clip_of(root, tree)
+        unit = root.find("{*}asset/{*}unit[@meter]")
+        metres = 1.0 if unit is None else float(unit.get("meter"))
     tree.release()
-    return None if clip is None else (tree, clip)
+    return None if clip is None else Movement(tree, clip, metres)
 
 
 def _root_of(path: str) -> Any:

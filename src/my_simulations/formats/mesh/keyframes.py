@@ -20,7 +20,6 @@ class Keys:
         nodes: (m,) their numbers.
         places: (k, m, 3), in the file's unit; turns: (k, m, 4) quaternions x, y, z, w;
             scales: (k, m, 3); all parent from node.
-        turned: (m,) whether the file says how it turns.
     """
 
     times: Array
@@ -28,7 +27,6 @@ class Keys:
     places: Array
     turns: Array
     scales: Array
-    turned: Array
 
     def at(self, time: float) -> Tuple[Array, Array, Array]:
         """Places, turns and scales at a time: even between keys, still before and after them."""
@@ -80,8 +78,7 @@ def _joined(group: "List[_NodeKeys]") -> Keys:
     if not (np.isfinite(matrices).all() and np.isfinite(group[0].times).all()):
         raise ValueError("keys that are not finite numbers")
     places, turns, scales = decomposed(matrices)
-    return Keys(group[0].times, np.array([one.node for one in group]), places, turns, scales,
-                np.array([one.turned for one in group]))
+    return Keys(group[0].times, np.array([one.node for one in group]), places, turns, scales)
 
 
 class _Channel:
@@ -123,8 +120,6 @@ class _NodeKeys:
     def __init__(self, node: int, channels: List[_Channel], rest: List[Placing]) -> None:
         self.node = node
         self.times = np.unique(np.concatenate([one.times for one in channels]))
-        by_sid = {sid: kind for sid, kind, _ in rest}
-        self.turned = any(by_sid.get(one.sid) in ("matrix", "rotate") for one in channels)
         if len(channels) == len(rest) == 1 and rest[0][:2] == (channels[0].sid, "matrix") \
                 and channels[0].member is None and len(channels[0].times) == len(self.times):
             self.matrices = channels[0].values.reshape(-1, 4, 4)  # as nearly all files have it

@@ -27,7 +27,7 @@ class NodeTree:
 
     Attributes:
         elements: XML of each.
-        names: by which animations of other files find it: the sid of a joint, else the name.
+        names: by which animations of other files may find it: the sid of a joint, else the name.
         joints: whether it is a joint.
         parents: number of the one that it hangs on, -1 for none.
         by_id: all elements of the file.
@@ -98,6 +98,30 @@ class NodeTree:
         return next((n for n, joint in enumerate(self.joints)
                      if joint and not (self.parents[n] >= 0 and self.joints[self.parents[n]])),
                     None)
+
+    def paired(self, other: "NodeTree") -> Dict[int, int]:
+        """Number of our node by that of the other tree's that moves it.
+
+        Joints are paired by their order where both skeletons branch alike, whatever they are
+        called (Gazebo behaviour), else nodes by their names.
+        """
+        ours, theirs = self._skeleton(), other._skeleton()
+        if ours and [below for _, below in ours] == [below for _, below in theirs]:
+            return {there: here for (here, _), (there, _) in zip(ours, theirs)}
+        numbers: Dict[str, int] = {}
+        for n, name in enumerate(self.names):
+            numbers.setdefault(name, n)
+        return {n: numbers[name] for n, name in enumerate(other.names) if name and name in numbers}
+
+    def _skeleton(self) -> List[Tuple[int, int]]:
+        """The joints from the root joint on, each with how many joints hang on it."""
+        root = self.root_joint
+        below: Dict[int, int] = {} if root is None else {root: 0}
+        for n, parent in enumerate(self.parents):
+            if self.joints[n] and parent in below:
+                below[n] = 0
+                below[parent] += 1
+        return list(below.items())
 
     def placings(self, number: int) -> List[Placing]:
         """What says where a node is, in its order."""

@@ -7,7 +7,7 @@ from typing import Callable, List, Optional, Tuple
 import numpy as np
 
 from ...errors import InputError
-from ...formats.mesh.figures import read_clip, read_figure
+from ...formats.mesh.figures import read_figure, read_movement
 from ...formats.mesh.loading import load_mesh
 from ...formats.mesh.painted import PaintedPart, painted_parts
 from ...formats.mesh.part import MeshError
@@ -15,7 +15,7 @@ from ...geometry import Pose
 from ..api import Figure
 from ..surfaces import Piece, own_surface, piece_of
 from .path import ActorPath
-from .skeleton import Skeleton
+from .skeleton import Borrowed, Skeleton
 
 Form = Tuple[int, float]
 """Number of an animation of the actor, and s in it."""
@@ -56,9 +56,11 @@ class FigureShape:
         found = read_figure(figure.skin.path)
         if found is None:
             return []
-        skeletons = [Skeleton(found, figure.skin.scale[0], read_clip(path) if path else None,
-                              borrows=bool(path), on_path=self._path.moves)
-                     for path in figure.animations or ("",)]
+        scales = [one.scale for one in figure.actor.animations] or [1.0]
+        skeletons = [Skeleton(found, figure.skin.scale[0],
+                              Borrowed(read_movement(path), scale) if path else None,
+                              on_path=self._path.moves)
+                     for path, scale in zip(figure.animations or ("",), scales)]
         surfaces = skeletons[0].surfaces(None)
         if not all(np.isfinite(vertices).all() for vertices, _ in surfaces):
             raise MeshError("its bones are not at finite places")

@@ -1,16 +1,29 @@
 """Where the surfaces of a figure are, in its own frame, as its bones carry them."""
 from __future__ import annotations
 
-from typing import Dict, List, Optional, Tuple
+from dataclasses import dataclass
+from typing import Any, List, Optional, Tuple
 
 import numpy as np
 
-from ...formats.mesh.figures import FigureFile, FigurePart
-from ...formats.mesh.keyframes import Clip, composed, decomposed
-from ...formats.mesh.node_tree import NodeTree
+from ...formats.mesh.figures import FigureFile, FigurePart, Movement
+from ...formats.mesh.keyframes import composed, decomposed
 
 Surface = Tuple[np.ndarray, np.ndarray]
 """Vertices (n, 3), m, and normals (n, 3)."""
+_Columns = Tuple[Any, np.ndarray]
+"""Of the nodes of some keys: which move the figure, and the figure's nodes that they move."""
+
+
+@dataclass(frozen=True)
+class Borrowed:
+    """The movement of another file, None where it has none, and the `scale` of its lengths.
+
+    It places and turns the bones, as long as they are there (Gazebo behaviour).
+    """
+
+    movement: Optional[Movement]
+    scale: float = 1.0
 
 
 class Skeleton:
@@ -19,30 +32,37 @@ class Skeleton:
     Args:
         figure: of the file.
         scale: of the actor's skin.
-        clip: the movement of another file and its nodes, which gives how bones of the same name
-            turn; None for the figure's own.
-        borrows: whether it is to move by another file alone.
+        borrowed: how it moves by another file; None for the figure's own movement.
         on_path: whether a path says how far the figure has come; then its root does not go along x
             (Gazebo behaviour).
     """
 
-    def __init__(self, figure: FigureFile, scale: float,
-                 clip: Optional[Tuple[NodeTree, Clip]] = None, borrows: bool = False,
+    def __init__(self, figure: FigureFile, scale: float, borrowed: "Optional[Borrowed]" = None,
                  on_path: bool = False) -> None:
         self._figure, self._factor = figure, scale * figure.unit
         self._rest = decomposed(figure.tree.rest)
-        self._moves: List[Tuple[int, np.ndarray, np.ndarray]] = []   # keys, their columns, nodes
         self._root = figure.tree.root_joint if on_path else None
-        if not borrows:
-            self._clip = figure.clip
-            self._borrowed = None
-        else:
-            self._clip = None if clip is None else clip[1]
-            self._borrowed = None if clip is None else _shared(clip[0], figure.tree)
-            if self._clip is not None and not any(
-                    keys.turned[n] and int(node) in (self._borrowed or {})
-                    for keys in self._clip.keys for n, node in enumerate(keys.nodes)):
-                self._clip = None
+        self._clip = figure.clip
+        self._columns: List[_Columns] = []
+        self._ratio, self._own = 1.0, borrowed is None
+        if self._clip is not None:
+            self._columns = [(slice(None), keys.nodes) for keys in self._clip.keys]
+        if borrowed is not None:
+            self._borrow(borrowed)
+
+    def _borrow(self, borrowed: "Borrowed") -> None:
+        movement, self._clip = borrowed.movement, None
+        if movement is None:
+            return
+        ours = self._figure.tree.paired(movement.tree)
+        self._columns = []
+        for keys in movement.clip.keys:
+            known = np.array([int(node) in ours for node in keys.nodes], dtype=bool)
+            nodes = np.array([ours[int(node)] for node in keys.nodes[known]], dtype=np.int64)
+            self._columns.append((known, nodes))
+        if any(len(nodes) for _, nodes in self._columns):
+            self._clip = movement.clip
+        self._ratio = movement.unit * borrowed.scale / (self._factor or 1.0)
 
     @property
     def duration(self) -> Optional[float]:
@@ -58,15 +78,12 @@ class Skeleton:
         """(n, 4, 4) figure from node, in the file's unit."""
         places, turns, scales = (one.copy() for one in self._rest)
         if at is not None and self._clip is not None:
-            for keys in self._clip.keys:
-                now = keys.at(at)
-                if self._borrowed is None:
-                    places[keys.nodes], turns[keys.nodes], scales[keys.nodes] = now
-                    continue
-                for n, node in enumerate(keys.nodes):
-                    own = self._borrowed.get(int(node))
-                    if own is not None and keys.turned[n]:
-                        turns[own] = now[1][n]
+            for keys, (columns, nodes) in zip(self._clip.keys, self._columns):
+                moved = keys.at(at)
+                places[nodes] = moved[0][columns] * self._ratio
+                turns[nodes] = moved[1][columns]
+                if self._own:
+                    scales[nodes] = moved[2][columns]
             if self._root is not None:
                 places[self._root, 0] = 0.0
         world = composed(places, turns, scales)
@@ -74,14 +91,6 @@ class Skeleton:
             if parent >= 0:
                 world[n] = world[parent] @ world[n]
         return world
-
-
-def _shared(theirs: NodeTree, ours: NodeTree) -> Dict[int, int]:
-    """Number of our node by that of theirs of the same name."""
-    numbers: Dict[str, int] = {}
-    for n, name in enumerate(ours.names):
-        numbers.setdefault(name, n)
-    return {n: numbers[name] for n, name in enumerate(theirs.names) if name and name in numbers}
 
 
 def _skinned(part: FigurePart, world: np.ndarray, factor: float) -> Surface:
