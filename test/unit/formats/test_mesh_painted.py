@@ -101,6 +101,16 @@ def test_negative_indices_of_obj_draw_the_triangles_that_collide(tmp_path):
     assert max(part.uv[:, 0].max() for part in parts) == 10.0
 
 
+@pytest.mark.parametrize("end", ["\n", "\r\n", "\r"])
+def test_an_obj_file_has_its_colours_whatever_ends_its_lines(tmp_path, end):
+    (tmp_path / "one.mtl").write_text("newmtl red\nKd 1 0 0\n")
+    (tmp_path / "one.obj").write_bytes(end.join([
+        "mtllib one.mtl", "usemtl red", "v 0 0 0", "v 1 0 0", "v 0 1 0", "v 1 1 0",
+        "f 1 2 3", "f 2\\", "4 3", ""]).encode())
+    (part,) = painted_parts(mesh(tmp_path / "one.obj"))
+    assert part.paint.color == (1.0, 0.0, 0.0, 1.0) and len(part.triangles) == 2
+
+
 def test_an_stl_file_has_no_colour_and_flat_faces():
     (part,) = painted_parts(mesh(REPOSITORY / "test" / "data" / "valid" / "cube.stl"))
     assert part.paint.color is None and len(part.vertices) == 24

@@ -12,6 +12,7 @@ from typing import Any, Dict, Iterator, List, Set, Tuple
 
 from .gltf import check_gltf
 from .part import MeshError, MeshPart, bounded
+from .plain_text import text_of, with_newlines
 
 _HEADER = 84
 _RECORD = 50
@@ -42,9 +43,8 @@ def read_stl(data: bytes) -> List[MeshPart]:
             return [_welded(part) for part in _read(data[:end], "stl")]
     if data.lstrip()[:5].lower() != b"solid":
         raise MeshError("neither a binary STL of that length nor an ASCII one")
-    text = data.decode("latin-1").replace("\r\n", "\n").replace("\r", "\n")
     rows: List[str] = []
-    for line, row in enumerate(text.split("\n"), 1):
+    for line, row in enumerate(text_of(data).split("\n"), 1):
         words = row.split()
         if words and words[0].lower() == "vertex":
             _three(words[1:4], line)
@@ -62,18 +62,9 @@ def read_obj(data: bytes) -> List[MeshPart]:
     Raises:
         MeshError: an invalid number, or an index out of range.
     """
-    plain, names = _plain_obj(_joined(_lines_of(data)))
+    plain, names = _plain_obj(_joined(text_of(data)))
     return [MeshPart(names[int(part.names[0])], part.vertices, part.triangles)
             for part in _read(plain.encode(), "obj", split_groups=True)]
-
-
-def _lines_of(data: bytes) -> str:
-    """The text of a file whose encoding nothing tells, with one kind of line end."""
-    try:
-        text = data.decode("utf-8")
-    except UnicodeDecodeError:
-        text = data.decode("latin-1")
-    return text.replace("\r\n", "\n").replace("\r", "\n")
 
 
 def _joined(text: str) -> str:
@@ -92,17 +83,17 @@ def _joined(text: str) -> str:
 
 
 def positive_obj(data: bytes) -> bytes:
-    """The text of an OBJ file with positive indices only, everything else as it is.
+    """An OBJ file as trimesh reads it: with positive indices, and no lines that go on in others.
 
     Raises:
         ValueError: an index is not a number.
     """
+    data = with_newlines(data).replace(b"\\\n", b" ")
     if not _NEGATIVE.search(data):
         return data
-    text = data.decode("latin-1").replace("\r\n", "\n").replace("\r", "\n").replace("\\\n", " ")
     counts = {"v": 0, "vt": 0, "vn": 0}
     rows = []
-    for row in text.split("\n"):
+    for row in data.decode("latin-1").split("\n"):
         words = row.partition("#")[0].split()
         key = words[0] if words else ""
         if key in counts:
