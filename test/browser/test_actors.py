@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from PIL import Image
 from support import wait_for
-from walking_figures import QUARTER, RAISED, STILL, animation, rod, swinging
+from walking_figures import BVH, QUARTER, RAISED, STILL, animation, rod, swinging
 
 from my_simulations.description.actor import Actor, Animation, Trajectory, Waypoint
 from my_simulations.description.shapes import Mesh
@@ -110,6 +110,7 @@ SKINS = {
                        root=RAISED).replace("high", "arm").replace('meter="0.01"', 'meter="0.02"'),
     "branching.dae": rod(moves=animation((0.2, 1.9), (RAISED, QUARTER))).replace(
         "</node></node>", '<node id="hand" sid="hand" type="JOINT"/></node></node>', 1),
+    "captured.bvh": BVH,
     "mover.dae": rod(moves=animation((0.5, 1.7), (RAISED, QUARTER.replace("100", "300")))),
 }
 PATH = [Waypoint(0.0, Pose((1.0, 0.0, 0.0))),
@@ -134,6 +135,8 @@ FIGURES = {
                      animations=[Animation("sit", "sitting.dae", 0.7)]),
     "branching": Actor("branching", Pose(), "rod.dae",
                        animations=[Animation("fall", "branching.dae")]),
+    "captured": Actor("captured", Pose(), "rod.dae", 0.5,
+                      animations=[Animation("fall", "captured.bvh", 0.7)]),
     "vain": Actor("vain", Pose(), "swinging.dae", animations=[Animation("none", "rod.dae")]),
 }
 TIMES = (0.0, 0.4, 1.0, 1.6, 2.2, 3.9, 4.4, 6.9, 8.5, 10.3)

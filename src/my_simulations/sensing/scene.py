@@ -4,7 +4,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Dict, List, Tuple
 
 from ..appearance.looks import Look
-from ..appearance.mesh_formats import PAGE_FORMATS
+from ..appearance.mesh_formats import MOVEMENTS, PAGE_FORMATS
 from ..description.actor import Actor
 from ..description.light import Light
 from ..description.model import Model
@@ -49,7 +49,7 @@ def scenery(world: World, materials: "Materials", resolver: "Resolver") -> SetSc
 
 
 def _figure(actor: Actor, resolver: "Resolver") -> Figure:
-    """The page's rule: an animation is the skin's own unless another COLLADA file has it."""
+    """The page's rule: an animation is the skin's own unless another file may have it."""
     def path_of(uri: str) -> str:
         try:
             return resolver.resolve(uri, actor.base_dir) if uri else ""
@@ -59,7 +59,7 @@ def _figure(actor: Actor, resolver: "Resolver") -> Figure:
     skin = Mesh(actor.skin, path_of(actor.skin), (actor.skin_scale,) * 3)
     paths = [path_of(animation.filename) for animation in actor.animations]
     return Figure(actor, skin, tuple(
-        path if path.lower().endswith(tuple(PAGE_FORMATS)) and path != skin.path else ""
+        path if path.lower().endswith((*PAGE_FORMATS, *MOVEMENTS)) and path != skin.path else ""
         for path in paths))
 
 

@@ -61,9 +61,11 @@ def test_an_actor_without_a_skin_has_no_shape(documents):
 
 def test_the_files_of_animations_are_served_too(documents, tmp_path):
     (tmp_path / "run.bvh").write_text("HIERARCHY")
+    documents.served.add_root(str(tmp_path))
     walk = Animation("walk", "model://man/meshes/man.dae")
     found = told(documents, Actor("man", animations=[walk, Animation("run", "run.bvh")],
                                   base_dir=str(tmp_path)))
     [first, second] = found["animations"]
     assert first["name"] == "walk" and first["geometry"]["url"].endswith("/man.dae")
-    assert second["geometry"]["url"] is None and "BVH" in second["geometry"]["problem"]
+    assert second["geometry"]["url"].endswith("/run.bvh")
+    assert second["geometry"]["format"] == "bvh"

@@ -5,7 +5,7 @@ import math
 
 import numpy as np
 import pytest
-from walking_figures import QUARTER, RAISED, STILL, animation, rod, swinging
+from walking_figures import BVH, QUARTER, RAISED, STILL, animation, rod, swinging
 
 from my_simulations.formats.mesh.figures import read_figure, read_movement
 from my_simulations.formats.mesh.part import MeshError
@@ -173,6 +173,17 @@ def test_bones_of_skeletons_that_branch_otherwise_are_paired_by_name(read, movem
     skeleton = Skeleton(read(rod()), 1.0, Borrowed(movement(handed(swinging()))))
     rest = corners(skeleton, None)
     assert np.allclose(corners(skeleton, 1.0)[8:16], swung(rest, math.pi / 4)[8:16])
+
+
+def test_a_bvh_file_moves_the_bones_of_a_skin_in_its_scale(read, tmp_path):
+    (tmp_path / "fall.bvh").write_text(BVH)
+    fall = read_movement(str(tmp_path / "fall.bvh"))
+    skeleton = Skeleton(read(rod()), 1.0, Borrowed(fall))
+    rest = corners(skeleton, None)
+    assert skeleton.duration == 1.5
+    assert np.allclose(corners(skeleton, 0.25)[8:16], swung(rest, math.pi / 4)[8:16])
+    half = Skeleton(read(rod()), 1.0, Borrowed(fall, 0.5))
+    assert corners(half, 1.5)[0, 0] == pytest.approx(0.1 - 0.1)
 
 
 @pytest.mark.parametrize("mover", [rod(), handed(renamed(swinging()))])

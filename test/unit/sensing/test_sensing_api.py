@@ -202,7 +202,7 @@ def test_the_files_of_an_actor_are_found_beside_its_world(resolved, tmp_path):
 
 @pytest.mark.parametrize(("files", "expected"), [
     (["run.dae", "man.dae"], ["run.dae", ""]), (["man.dae", "run.dae"], ["", "run.dae"]),
-    (["man.dae"], [""]), (["run.bvh"], [""]), (["gone.dae"], [""]), ([], [])])
+    (["man.dae"], [""]), (["run.bvh"], ["run.bvh"]), (["gone.dae"], [""]), ([], [])])
 def test_limbs_move_by_animations_of_other_files_or_the_skin_s_own(
         resolved, tmp_path, files, expected):
     [man] = resolved(world_of(Actor("man", skin="man.dae", base_dir=str(tmp_path), animations=[

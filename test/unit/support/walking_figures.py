@@ -101,3 +101,29 @@ def rod(color: str = "1 0 0", moves: str = "", root: str = STILL,
 def swinging(color: str = "1 0 0", seconds: float = 2.0) -> str:
     """The rod, whose upper half falls to -y within `seconds`, evenly."""
     return rod(color, animation((0.0, seconds), (RAISED, QUARTER)))
+
+
+BVH = """HIERARCHY
+ROOT hip
+{
+  OFFSET 0.0 0.0 0.25
+  CHANNELS 6 Xposition Yposition Zposition Zrotation Xrotation Yrotation
+  JOINT chest
+  {
+    OFFSET 0.0 0.0 1.0
+    CHANNELS 3 Zrotation Xrotation Yrotation
+    End Site
+    {
+      OFFSET 0.0 0.0 1.0
+    }
+  }
+}
+MOTION
+Frames: 4
+Frame Time: 0.5
+0 0 0 0 0 0 0 0 0
+0 0 0 0 0 0 0 90 0
+0 0 0.25 90 90 0 0 45 30
+0.2 0 0.5 0 30 0 10 0 0
+"""
+"""A skeleton that branches as that of `rod`, in metres, and what it does within 1.5 s."""

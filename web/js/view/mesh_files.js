@@ -132,9 +132,15 @@ async function readGltf(url, manager) {
   return scene;
 }
 
+/** @param {string} url */
+async function readBvh(url) {
+  const [{sceneOf}, content] = await Promise.all([import('./bvh.js'), text(url)]);
+  return sceneOf(content);
+}
+
 /** @type {Record<string, (url: string, manager: LoadingManager) => Promise<Object3D>>} */
 const READERS = {dae: readCollada, stl: readStl, obj: readObj, glb: readGltf, gltf: readGltf,
-  terrain: readTerrain};
+  terrain: readTerrain, bvh: readBvh};
 
 /** @param {MeshSource} meshSource */
 function formatOf({format, url}) {

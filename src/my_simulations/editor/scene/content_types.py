@@ -9,7 +9,7 @@ from __future__ import annotations
 import os
 
 MESHES = {".dae", ".stl", ".obj", ".glb", ".gltf", ".ply", ".off", ".stla", ".stlb", ".mtl",
-          ".bin", ".3ds", ".fbx"}
+          ".bin", ".3ds", ".fbx", ".bvh"}
 
 _PICTURES = {".png": "image/png", ".jpg": "image/jpeg", ".jpeg": "image/jpeg",
              ".gif": "image/gif", ".bmp": "image/bmp", ".webp": "image/webp",

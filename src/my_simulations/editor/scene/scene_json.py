@@ -4,7 +4,7 @@ from __future__ import annotations
 import os
 from typing import Any, Dict, Sequence
 
-from ...appearance.mesh_formats import PAGE_FORMATS
+from ...appearance.mesh_formats import MOVEMENTS, PAGE_FORMATS
 from ...description.actor import Actor
 from ...description.light import Light
 from ...description.model import Joint, Link, Model
@@ -108,9 +108,6 @@ class Documents:
             path = self._resolver.resolve(uri, base_dir)
         except ResourceNotFoundError:
             path = ""
-        if path.lower().endswith(".bvh"):  # a skeleton without triangles
-            return {"type": NAMES[Mesh], **plain_fields(Mesh(uri, path, (scale, scale, scale))),
-                    "url": None, "problem": f"{uri}: BVH files are not shown"}
         return self.geometry(Mesh(uri, path, (scale, scale, scale)))
 
     def _link(self, link: Link, known: int) -> Dict[str, Any]:
@@ -153,6 +150,8 @@ class Documents:
         if url is not None and extension in PAGE_FORMATS:
             return {"url": url, "format": PAGE_FORMATS[extension],
                     "fallback": self.solids.url(mesh)}
+        if url is not None and extension in MOVEMENTS:
+            return {"url": url, "format": MOVEMENTS[extension], "fallback": None}
         return {"url": self.solids.url(mesh), "format": "stl", "submesh": "", "center": False}
 
 

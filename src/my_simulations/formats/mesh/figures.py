@@ -15,10 +15,11 @@ from typing import Any, Dict, Iterator, List, Optional, Tuple
 
 import numpy as np
 
+from .bvh import read_bvh
 from .collada import unit_of
 from .collada_cleanup import parsed
 from .keyframes import Clip, clip_of
-from .node_tree import Array, NodeTree, floats
+from .node_tree import Array, Bones, NodeTree, floats
 from .paint import effect_of
 from .painted import PaintedPart, corners_of, indexed
 from .part import MOST_TRIANGLES, MeshError
@@ -75,7 +76,7 @@ class FigureFile:
 class Movement:
     """The animation of a file: what moves, how, and the file's unit in m."""
 
-    tree: NodeTree
+    tree: Bones
     clip: Clip
     unit: float
 
@@ -92,16 +93,21 @@ def read_figure(path: str) -> Optional[FigureFile]:
 
 
 def read_movement(path: str) -> Optional[Movement]:
-    """The animation of a COLLADA file; None where there is none.
+    """The animation of a COLLADA or BVH file; None where there is none.
 
     Raises:
         MeshError: it cannot be read.
     """
-    return _moves(path, _changed(path)) if _is_collada(path) else None
+    known = _is_collada(path) or _is_bvh(path)
+    return _moves(path, _changed(path)) if known else None
 
 
 def _is_collada(path: str) -> bool:
     return path.lower().endswith(".dae")
+
+
+def _is_bvh(path: str) -> bool:
+    return path.lower().endswith(".bvh")
 
 
 def _changed(path: str) -> Tuple[int, int]:
@@ -127,6 +133,8 @@ def _figure(path: str, _changed_at: Tuple[int, int]) -> Optional[FigureFile]:
 
 @lru_cache(maxsize=8)
 def _moves(path: str, _changed_at: Tuple[int, int]) -> Optional[Movement]:
+    if _is_bvh(path):
+        return Movement(*read_bvh(_bytes_of(path)), 1.0)
     root = _root_of(path)
     with _told():
         tree = NodeTree(root)
@@ -138,9 +146,13 @@ def _moves(path: str, _changed_at: Tuple[int, int]) -> Optional[Movement]:
 
 
 def _root_of(path: str) -> Any:
+    return parsed(_bytes_of(path))
+
+
+def _bytes_of(path: str) -> bytes:
     try:
         with open(path, "rb") as stream:
-            return parsed(stream.read())
+            return stream.read()
     except OSError as fault:
         raise MeshError(f"cannot be read: {fault.strerror}") from None
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from .part import MeshError
 
-_MOST_NODES, _DEEPEST = 20_000, 100
+MOST_NODES, _DEEPEST = 20_000, 100
 PLACINGS = ("matrix", "translate", "rotate", "scale")
 """Elements that say where a node is; others (lookat, skew) are not heeded."""
 
@@ -22,25 +22,66 @@ def floats(element: Any) -> Array:
     return np.array("".join(element.itertext()).split(), dtype=np.float64)
 
 
-class NodeTree:
-    """Nodes, each after the one that it hangs on.
+class Bones:
+    """What hangs on what, each after the one that it hangs on.
 
     Attributes:
-        elements: XML of each.
         names: by which animations of other files may find it: the sid of a joint, else the name.
         joints: whether it is a joint.
         parents: number of the one that it hangs on, -1 for none.
+    """
+
+    def __init__(self) -> None:
+        self.names: List[str] = []
+        self.joints: List[bool] = []
+        self.parents: List[int] = []
+
+    @property
+    def root_joint(self) -> Optional[int]:
+        """The joint that hangs on none."""
+        return next((n for n, joint in enumerate(self.joints)
+                     if joint and not (self.parents[n] >= 0 and self.joints[self.parents[n]])),
+                    None)
+
+    def paired(self, other: "Bones") -> Dict[int, int]:
+        """Number of our node by that of the other tree's that moves it.
+
+        Joints are paired by their order where both skeletons branch alike, whatever they are
+        called (Gazebo behaviour), else nodes by their names.
+        """
+        ours, theirs = self._skeleton(), other._skeleton()
+        if ours and [below for _, below in ours] == [below for _, below in theirs]:
+            return {there: here for (here, _), (there, _) in zip(ours, theirs)}
+        numbers: Dict[str, int] = {}
+        for n, name in enumerate(self.names):
+            numbers.setdefault(name, n)
+        return {n: numbers[name] for n, name in enumerate(other.names) if name and name in numbers}
+
+    def _skeleton(self) -> List[Tuple[int, int]]:
+        """The joints from the root joint on, each with how many joints hang on it."""
+        root = self.root_joint
+        below: Dict[int, int] = {} if root is None else {root: 0}
+        for n, parent in enumerate(self.parents):
+            if self.joints[n] and parent in below:
+                below[n] = 0
+                below[parent] += 1
+        return list(below.items())
+
+
+class NodeTree(Bones):
+    """The nodes of a scene.
+
+    Attributes:
+        elements: XML of each.
         by_id: all elements of the file.
         numbers: of nodes by id.
         rest: (n, 4, 4) where nodes are in their parents, as the file has them.
     """
 
     def __init__(self, root: Any) -> None:
+        super().__init__()
         self.by_id: Dict[str, Any] = {one.get("id"): one for one in root.iter() if one.get("id")}
         self.elements: List[Any] = []
-        self.names: List[str] = []
-        self.joints: List[bool] = []
-        self.parents: List[int] = []
         self.numbers: Dict[str, int] = {}
         instance = root.find("{*}scene/{*}instance_visual_scene")
         scene = (self.by_id.get(instance.get("url", "#")[1:]) if instance is not None
@@ -56,7 +97,7 @@ class NodeTree:
         self.by_id.clear()
 
     def _walk(self, element: Any, parent: int, depth: int) -> None:
-        if len(self.elements) >= _MOST_NODES or depth > _DEEPEST:
+        if len(self.elements) >= MOST_NODES or depth > _DEEPEST:
             raise MeshError("its nodes form a cycle or are nested too deeply", element.sourceline)
         number = len(self.elements)
         joint = element.get("type") == "JOINT"
@@ -91,37 +132,6 @@ class NodeTree:
                 return True
             number = self.parents[number]
         return False
-
-    @property
-    def root_joint(self) -> Optional[int]:
-        """The joint that hangs on none."""
-        return next((n for n, joint in enumerate(self.joints)
-                     if joint and not (self.parents[n] >= 0 and self.joints[self.parents[n]])),
-                    None)
-
-    def paired(self, other: "NodeTree") -> Dict[int, int]:
-        """Number of our node by that of the other tree's that moves it.
-
-        Joints are paired by their order where both skeletons branch alike, whatever they are
-        called (Gazebo behaviour), else nodes by their names.
-        """
-        ours, theirs = self._skeleton(), other._skeleton()
-        if ours and [below for _, below in ours] == [below for _, below in theirs]:
-            return {there: here for (here, _), (there, _) in zip(ours, theirs)}
-        numbers: Dict[str, int] = {}
-        for n, name in enumerate(self.names):
-            numbers.setdefault(name, n)
-        return {n: numbers[name] for n, name in enumerate(other.names) if name and name in numbers}
-
-    def _skeleton(self) -> List[Tuple[int, int]]:
-        """The joints from the root joint on, each with how many joints hang on it."""
-        root = self.root_joint
-        below: Dict[int, int] = {} if root is None else {root: 0}
-        for n, parent in enumerate(self.parents):
-            if self.joints[n] and parent in below:
-                below[n] = 0
-                below[parent] += 1
-        return list(below.items())
 
     def placings(self, number: int) -> List[Placing]:
         """What says where a node is, in its order."""

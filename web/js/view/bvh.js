@@ -1,0 +1,98 @@
+/**
+ * BVH files: a skeleton and its movement, as they come from motion capture. Numbers are lengths of
+ * no unit, taken for metres, and degrees; no axis is turned (Gazebo behaviour, as for cameras).
+ */
+import {
+  AnimationClip, Bone, Group, Quaternion, QuaternionKeyframeTrack, Vector3, VectorKeyframeTrack,
+} from 'three';
+
+/** @typedef {{name: string, parent: number, offset: number[], channels: string[]}} Joint */
+
+const AXES = [new Vector3(1, 0, 0), new Vector3(0, 1, 0), new Vector3(0, 0, 1)];
+
+/** @param {string[]} words @returns {number[]} */
+function numbers(words) {
+  const found = words.map(Number);
+  if (found.some((number) => !Number.isFinite(number))) {
+    throw new Error(`expected numbers, found ${words.join(' ')}`);
+  }
+  return found;
+}
+
+/** Joints, without end sites, up to `MOTION`. @param {Iterator<string[]>} rows @returns {Joint[]} */
+function jointsOf(rows) {
+  if (rows.next().value?.[0] !== 'HIERARCHY') throw new Error('it does not begin with HIERARCHY');
+  /** @type {Joint[]} */
+  const joints = [];
+  /** @type {number[]} */
+  const above = [];
+  let begun = -1;
+  for (let {value: words} = rows.next(); words && words[0] !== 'MOTION'; {value: words} = rows.next()) {
+    const [kind, ...rest] = words;
+    const joint = joints[above.at(-1) ?? -1];
+    if (kind === 'ROOT' || kind === 'JOINT') {
+      begun = joints.length;
+      joints.push({name: rest.join(' '), parent: above.at(-1) ?? -1, offset: [0, 0, 0], channels: []});
+    } else if (kind === 'End') begun = -1;
+    else if (kind === '{') above.push(begun);
+    else if (kind === '}') above.pop();
+    else if (kind === 'OFFSET' && joint) joint.offset = numbers(rest.slice(0, 3));
+    else if (kind === 'CHANNELS' && joint) joint.channels = rest.slice(1);
+  }
+  return joints;
+}
+
+/**
+ * @param {string} text
+ * @returns {{joints: Joint[], step: number, frames: number[][]}} step: s between two frames
+ */
+export function parsed(text) {
+  const rows = text.split(/\r\n?|\n/).map((row) => row.split(/\s+/).filter(Boolean))
+    .filter((words) => words.length).values();
+  const joints = jointsOf(rows);
+  const [count] = numbers((rows.next().value ?? []).slice(1, 2));
+  const [step] = numbers((rows.next().value ?? []).slice(2, 3));
+  const width = joints.reduce((sum, {channels}) => sum + channels.length, 0);
+  const frames = [...rows].slice(0, count).filter((words) => words.length >= width)
+    .map((words) => numbers(words.slice(0, width)));
+  if (!(step > 0) || !frames.length) throw new Error('it has no whole frame');
+  return {joints, step, frames};
+}
+
+/** Where a joint is in a frame. @param {Joint} joint @param {number[]} values  of its channels */
+export function placed({offset, channels}, values) {
+  const place = [...offset];
+  const turn = new Quaternion();
+  channels.forEach((channel, index) => {
+    const axis = 'XYZ'.indexOf(channel[0]);
+    if (channel.endsWith('position')) place[axis] = values[index];
+    else turn.multiply(new Quaternion().setFromAxisAngle(AXES[axis], values[index] * Math.PI / 180));
+  });
+  return {place, turn: turn.toArray()};
+}
+
+/** A scene of bones with one animation. @param {string} text */
+export function sceneOf(text) {
+  const {joints, step, frames} = parsed(text);
+  const scene = new Group();
+  const times = frames.map((_, index) => index * step);
+  let column = 0;
+  /** @type {Bone[]} */
+  const bones = [];
+  const tracks = joints.flatMap((joint) => {
+    const bone = new Bone();
+    bone.name = joint.name;
+    bone.position.fromArray(joint.offset);
+    (bones[joint.parent] ?? scene).add(bone);
+    bones.push(bone);
+    const first = column;
+    column += joint.channels.length;
+    const found = frames.map((frame) => placed(joint, frame.slice(first, column)));
+    return [
+      new VectorKeyframeTrack(`${bone.uuid}.position`, times, found.flatMap(({place}) => place)),
+      new QuaternionKeyframeTrack(`${bone.uuid}.quaternion`, times, found.flatMap(({turn}) => turn)),
+    ];
+  });
+  scene.animations = [new AnimationClip('', -1, tracks)];
+  return scene;
+}
