@@ -1,9 +1,11 @@
 """Where an actor is at a time: the rules of the editor's page (web/js/actor_path.js).
 
 Trajectories run one after the other, each from its first waypoint on, in world axes; a spline of
-the trajectory's `tension` joins their positions, the shorter way of turning their orientations
-(Gazebo behaviour). `delay_start` is waited for before each cycle (SDF spec 1.7,
-script/delay_start).
+the trajectory's `tension` joins their positions (Gazebo behaviour), the shorter way of turning
+their orientations; Gazebo joins these by a spline, too, whose turns swing by a few degrees about
+straight parts of a path. Unlike in Gazebo, trajectories without waypoints take no time, and limbs
+move by time where an animation says `interpolate_x`. `delay_start` is waited for before each cycle
+(SDF spec 1.7, script/delay_start).
 """
 from __future__ import annotations
 
