@@ -1,7 +1,8 @@
 """Polygons with holes as triangles, and as convex pieces."""
 from __future__ import annotations
 
-from typing import Dict, Iterator, List, Sequence, Set, Tuple
+import math
+from typing import Dict, Iterator, List, Optional, Sequence, Set, Tuple
 
 Point = Tuple[float, float]
 Triangle = Tuple[int, int, int]
@@ -37,30 +38,65 @@ def triangulated(loops: Sequence[Sequence[Point]]) -> Tuple[List[Point], List[Tr
 
 
 def _bridged(loops: List[List[int]], points: List[Point]) -> List[int]:
-    """One loop of indices; each hole is connected by a bridge that is passed twice."""
+    """One loop of indices; each hole is connected by a bridge that is passed twice.
+
+    Source: Eberly, Triangulation by Ear Clipping, section 5. Holes that lie farther in x come
+    first, so that nothing but the ring is on the way from a hole in that direction.
+    """
     ring = loops[0]
-    holes = sorted(loops[1:], key=lambda hole: -max(points[i][0] for i in hole))
-    for number, hole in enumerate(holes):
-        start = max(range(len(hole)), key=lambda k: points[hole[k]][0])
+    for hole in sorted(loops[1:], key=lambda hole: -max(points[i][0] for i in hole)):
+        start = max(range(len(hole)), key=lambda k: points[hole[k]])
         turned = hole[start:] + hole[:start]
-        walls = [ring, *holes[number:]]
-        at = _visible(turned[0], ring, walls, points)
+        at = _visible(points[turned[0]], ring, points)
         ring = ring[:at + 1] + turned + turned[:1] + ring[at:]
     return ring
 
 
-def _visible(start: int, ring: List[int], walls: List[List[int]], points: List[Point]) -> int:
-    """Index in the ring of the nearest corner visible from a point."""
-    x, y = points[start]
-    order = sorted(range(len(ring)), key=lambda k: (points[ring[k]][0] - x) ** 2
-                   + (points[ring[k]][1] - y) ** 2)
-    for k in order:
-        if not _opens_to(ring, k, points[start], points):
-            continue
-        if not any(_crosses(points[start], points[ring[k]], points[a], points[b])
-                   for wall in walls for a, b in _edges(wall)):
-            return k
-    return order[0]
+def _visible(start: Point, ring: List[int], points: List[Point]) -> int:
+    """Index in the ring of a corner that can be seen from a point inside, in the direction of x."""
+    met = _edge_ahead(start, ring, points)
+    if met is None:
+        return min(range(len(ring)), key=lambda k: _distance(start, points[ring[k]]))
+    x, k = met
+    farther = max(points[ring[k]], points[ring[(k + 1) % len(ring)]])
+    triangle = [start, (x, start[1]), farther]
+    if signed_area(triangle) < 0:
+        triangle.reverse()
+    seen = [n for n, i in enumerate(ring) if _opens_to(ring, n, start, points) and (
+        points[i] == farther or _covers(triangle, points[i]) and points[i] != start)]
+    if not seen:
+        return k if points[ring[k]] == farther else (k + 1) % len(ring)
+    # Of the corners in between, the one nearest to the direction of x hides the others.
+    return min(seen, key=lambda n: (_steepness(start, points[ring[n]]),
+                                    _distance(start, points[ring[n]])))
+
+
+def _edge_ahead(start: Point, ring: List[int], points: List[Point]) -> Optional[Tuple[float, int]]:
+    """The place (x) and number of the first edge that a ray along x meets from inside."""
+    met: Optional[Tuple[float, int]] = None
+    for k, (a, b) in enumerate(_edges(ring)):
+        (ax, ay), (bx, by) = points[a], points[b]
+        if ay < by and ay <= start[1] <= by:
+            x = ax + (start[1] - ay) / (by - ay) * (bx - ax)
+            if x >= start[0] and (met is None or x < met[0]):
+                met = x, k
+    return met
+
+
+def _covers(triangle: Sequence[Point], point: Point) -> bool:
+    """True if a counter-clockwise triangle has the point inside or on its edges."""
+    a, b, c = triangle
+    return _turn(a, b, point) >= 0 and _turn(b, c, point) >= 0 and _turn(c, a, point) >= 0
+
+
+def _steepness(start: Point, end: Point) -> float:
+    """The slope against the direction of x, of a way that does not lead back."""
+    ahead, aside = end[0] - start[0], abs(end[1] - start[1])
+    return aside / ahead if ahead > 0 else math.inf
+
+
+def _distance(a: Point, b: Point) -> float:
+    return math.hypot(a[0] - b[0], a[1] - b[1])
 
 
 def _opens_to(ring: List[int], k: int, target: Point, points: List[Point]) -> bool:
@@ -78,12 +114,6 @@ def _edges(loop: List[int]) -> Iterator[Tuple[int, int]]:
 
 def _turn(a: Point, b: Point, c: Point) -> float:
     return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
-
-
-def _crosses(a: Point, b: Point, c: Point, d: Point) -> bool:
-    """True if two segments cross in the interior of both."""
-    return (_turn(a, b, c) > 0) != (_turn(a, b, d) > 0) and (
-        (_turn(c, d, a) > 0) != (_turn(c, d, b) > 0)) and not ({a, b} & {c, d})
 
 
 def _clipped(ring: List[int], points: List[Point]) -> List[Triangle]:
@@ -111,10 +141,7 @@ def _is_ear(ring: List[int], at: int, points: List[Point]) -> bool:
     if _turn(a, b, c) <= 0:
         return False
     corners = (a, b, c)
-    return not any(
-        _turn(a, b, p) >= 0 and _turn(b, c, p) >= 0 and _turn(c, a, p) >= 0
-        for p in (points[i] for i in ring) if p not in corners
-    )
+    return not any(_covers(corners, p) for p in (points[i] for i in ring) if p not in corners)
 
 
 def convex_pieces(points: Sequence[Point], triangles: Sequence[Triangle]) -> List[List[int]]:
