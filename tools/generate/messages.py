@@ -7,7 +7,7 @@ import pathlib
 import sys
 from typing import Callable, Dict, Iterator, List, Tuple
 
-from source_messages import REPOSITORY, called, code_uses, constants_of, modules, text_of
+from source_messages import REPOSITORY, called, code_uses, constants_of, package_modules, text_of
 
 PAGE = REPOSITORY / "doc" / "messages.md"
 SERVICES = "ros/services/"
@@ -94,7 +94,7 @@ def _escaped(text: str) -> str:
 
 def page() -> str:
     """The text of doc/messages.md."""
-    trees = list(modules())
+    trees = list(package_modules())
     services = [(path, tree) for path, tree in trees if path.startswith(SERVICES)]
     lines = [HEAD.rstrip()]
     lines += _section("Status messages of services: success", _texts(services, _returned))

@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import ast
+import functools
 import pathlib
 import re
 from dataclasses import dataclass
@@ -84,9 +85,16 @@ def _placeholder(part: ast.expr) -> str:
     return "{" + name.lstrip("_").lower() + "}"
 
 
-def code_uses() -> List[Use]:
+@functools.lru_cache(maxsize=None)
+def package_modules() -> Tuple[Tuple[str, ast.Module], ...]:
+    """Those of the package, read once."""
+    return tuple(modules())
+
+
+@functools.lru_cache(maxsize=None)
+def code_uses() -> Tuple[Use, ...]:
     """Every place of the package where an issue code is given."""
-    trees = list(modules())
+    trees = package_modules()
     positions = _code_positions(tree for _, tree in trees)
     found: List[Use] = []
     for path, tree in trees:
@@ -95,7 +103,7 @@ def code_uses() -> List[Use]:
             for expression, severity, text in _codes_at(node, positions):
                 found += [Use(pattern, severity, text, path, expression.lineno)
                           for pattern in _patterns(expression, constants)]
-    return found
+    return tuple(found)
 
 
 def constants_of(tree: ast.Module) -> Iterator[Tuple[str, ast.expr]]:

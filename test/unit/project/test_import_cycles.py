@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import ast
+from functools import lru_cache
 from itertools import takewhile
 from pathlib import Path
 
@@ -32,6 +33,7 @@ def imports_of(path, name, modules):
     return {module for module in found if module in modules and module != name}
 
 
+@lru_cache(maxsize=None)
 def import_graph(source, package):
     paths = {module_name(path, source): path for path in (source / package).rglob("*.py")}
     return {name: imports_of(path, name, paths) for name, path in paths.items()}
