@@ -25,8 +25,9 @@ BUILT_IN: Mapping[str, str] = {
     "libgazebo_ros_wheel_slip.so": "drive.wheel_slip:RosWheelSlip",
     "libWheelSlipPlugin.so": "drive.wheel_slip:WheelSlip",
     "libgazebo_ros_force_based_move.so": "drive.force_based_move:ForceBasedMove",
-    "librobotnik_force_based_move.so": "drive.force_based_move:ForceBasedMove",
-    "libridgeback_ros_force_based_move.so": "drive.force_based_move:ForceBasedMove",
+    "librobotnik_force_based_move.so": "drive.force_based_move:RobotnikForceBasedMove",
+    "libridgeback_ros_force_based_move.so":
+        "drive.force_based_move:RidgebackForceBasedMove",
     "libgazebo_ros_joint_state_publisher.so": "state.joint_state_publisher:JointStatePublisher",
     "libgazebo_ros_control.so": "control.gazebo_ros_control:GazeboRosControl",
     "libgazebo_ros_p3d.so": "state.p3d:P3d",

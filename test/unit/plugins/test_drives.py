@@ -10,7 +10,11 @@ from my_simulations.description.shapes import Collision, Cylinder
 from my_simulations.geometry import Pose, Twist, quat_from_rpy, rpy_from_quat
 from my_simulations.plugins.context import PluginError
 from my_simulations.plugins.drive.diff_drive import DiffDrive
-from my_simulations.plugins.drive.force_based_move import ForceBasedMove
+from my_simulations.plugins.drive.force_based_move import (
+    ForceBasedMove,
+    RidgebackForceBasedMove,
+    RobotnikForceBasedMove,
+)
 from my_simulations.plugins.drive.planar_move import PlanarMove
 from my_simulations.plugins.drive.skid_steer_drive import SkidSteerDrive
 from my_simulations.plugins.drive.tricycle_drive import TricycleDrive
@@ -265,20 +269,51 @@ def test_forces_move_a_base_as_it_is_told():
     context.advance(0.001)
     force, torque = context.pushes["base_footprint"]
     assert force == pytest.approx((0.0, 2000.0, 0.0)) and torque == pytest.approx((0, 0, 3.0))
-    context.advance(0.6)  # the watchdog has stopped it
-    assert context.pushes["base_footprint"][0] == pytest.approx((0.0, -1000.0, 0.0))
+    context.advance(10.0)  # a command holds for ever
+    assert context.pushes["base_footprint"][0] == pytest.approx((0.0, 2000.0, 0.0))
 
 
-def test_a_base_moved_by_forces_stops_after_the_time_that_ridgeback_names():
-    context = FakeContext("<plugin><cmdVelTimeOut>0.2</cmdVelTimeOut></plugin>",
-                          links=("base_footprint",))
+def moved_by_forces(library, inside=""):
+    context = FakeContext(f"<plugin>{inside}</plugin>", links=("base_footprint",))
     context.description.links.append(Link("base_footprint"))
-    ForceBasedMove(context).load()
+    library(context).load()
+    return context
+
+
+@pytest.mark.parametrize("library, inside, seconds", [
+    (ForceBasedMove, "<commandTimeoutDuration>0.3</commandTimeoutDuration>", 0.3),
+    (RobotnikForceBasedMove, "", 2.0),
+    (RobotnikForceBasedMove, "<commandWatchdog>0.5</commandWatchdog>", 0.5),
+    (RidgebackForceBasedMove, "", 0.25),
+    (RidgebackForceBasedMove, "<cmdVelTimeOut>0.2</cmdVelTimeOut>", 0.2),
+])
+def test_a_base_moved_by_forces_stops_after_the_time_of_its_library(library, inside, seconds):
+    context = moved_by_forces(library, inside)
     context.hear("cmd_vel", linear={"x": 0.3, "y": 0.0}, angular={"z": 0.0})
-    context.advance(0.1)
+    context.advance(seconds)
     assert context.pushes["base_footprint"][0] == pytest.approx((3000.0, 0.0, 0.0))
-    context.advance(0.15)
+    context.advance(0.001)
     assert context.pushes["base_footprint"][0] == pytest.approx((0.0, 0.0, 0.0))
+
+
+def test_a_base_moved_by_forces_goes_sideways_unless_it_must_not():
+    for inside, force in (("", 3000.0),
+                          ("<allowLateralMotion>false</allowLateralMotion>", 0.0)):
+        context = moved_by_forces(ForceBasedMove, inside)
+        context.hear("cmd_vel", linear={"x": 0.0, "y": 0.3}, angular={"z": 0.0})
+        context.advance(0.1)
+        assert context.pushes["base_footprint"][0] == pytest.approx((0.0, force, 0.0))
+
+
+def test_a_base_moved_by_forces_trusts_its_yaw_while_it_does_not_turn():
+    context = moved_by_forces(ForceBasedMove)
+    context.advance(0.1)
+    context.twist = Twist((0.0, 0.0, 0.0), (0.0, 0.0, 0.2))
+    context.advance(0.1)
+    still, turning = context.published["odom"][1], context.published["odom"][-1]
+    for message, yaw in ((still, 0.01), (turning, 100.0)):
+        assert message.pose.covariance[::7] == [1e-3, 1e-3, 1e12, 1e12, 1e12, yaw]
+        assert message.twist.covariance[::7] == [1e-3, 1e-3, 1e-3, 1e12, 1e12, yaw]
 
 
 def test_a_tricycle_whose_wheels_have_the_names_of_the_other_side_counts_a_left_turn_as_one():

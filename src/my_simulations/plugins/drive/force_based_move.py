@@ -1,9 +1,11 @@
 """libgazebo_ros_force_based_move.so (hector): forces on the base make it move as it is told.
 
 Parameters, defaults, topics and laws are those of hector_gazebo_plugins and of its copies
-(librobotnik_force_based_move.so, and libridgeback_ros_force_based_move.so, which names its
-watchdog `<cmdVelTimeOut>`): in every step a force along x and y of the base, and a torque about its
-vertical, in proportion to what its velocity lacks.
+(librobotnik_force_based_move.so, libridgeback_ros_force_based_move.so), which differ in their
+watchdogs: in every step a force along x and y of the base, and a torque about its vertical, in
+proportion to what its velocity lacks. Odometry is the truth, from where the robot began. Where it
+differs: Robotnik's robots brake when the watchdog has stopped them (there, they are put back to one
+place), and go on telling their odometry.
 """
 from __future__ import annotations
 
@@ -15,9 +17,14 @@ from ..parameters import namespace_or
 from .odometry import Odometer, planar
 from .wheels import VelocityCommand
 
+_STRAIGHT = 1e-4  # rad/s: a robot that turns no faster knows where it heads (hector_gazebo)
+
 
 class ForceBasedMove(Plugin):
     """Pushes the link `<robotBaseFrame>`, or the model's first one."""
+
+    watchdog = ("commandTimeoutDuration", 0.0)
+    """Its element and default: s until a command counts no more, 0 for never."""
 
     def load(self) -> None:
         """Read parameters."""
@@ -31,12 +38,12 @@ class ForceBasedMove(Plugin):
                        p.number("yaw_velocity_p_gain", 100.0))
         self._odometer = Odometer(context, p.text("odometryTopic", "odom"),
                                   p.text("odometryFrame", "odom"), base,
-                                  (1e-3, 1e-3, 1e12, 1e12, 1e12, 1e-3),
-                                  (1e-3, 1e-3, 1e12, 1e12, 1e12, 1e-3))
+                                  (1e-3, 1e-3, 1e12, 1e12, 1e12, 0.01),
+                                  (1e-3, 1e-3, 1e-3, 1e12, 1e12, 0.01))
         self._broadcasts = p.flag("publishOdometryTf", True)
+        self._sideways = p.flag("allowLateralMotion", True)
         self._command = VelocityCommand(context, p.text("commandTopic", "cmd_vel"),
-                                        p.number("commandWatchdog",
-                                                 p.number("cmdVelTimeOut", 0.5)))
+                                        p.number(*self.watchdog) or -1.0)
         self._begin()
         context.every(0.0, self.push)
         hertz = p.number("odometryRate", 20.0)
@@ -58,8 +65,8 @@ class ForceBasedMove(Plugin):
         self._command.look()
         pose, twist = self._base.pose, self._base.twist
         vx, vy, _ = rotate(conjugate(pose.orientation), twist.linear)
-        along = (self._gains[0] * (self._command.x - vx), self._gains[1] * (self._command.y - vy),
-                 0.0)
+        sideways = self._command.y if self._sideways else 0.0
+        along = (self._gains[0] * (self._command.x - vx), self._gains[1] * (sideways - vy), 0.0)
         torque = self._gains[2] * (self._command.yaw - twist.angular[2])
         self.context.push(self._base.name, rotate(pose.orientation, along), (0.0, 0.0, torque))
 
@@ -75,4 +82,18 @@ class ForceBasedMove(Plugin):
             self._odometer.transform(here)
         c, s = math.cos(yaw), math.sin(yaw)
         vx, vy, _ = twist.linear
-        self._odometer.publish(here, (c * vx + s * vy, c * vy - s * vx, twist.angular[2]))
+        turning = twist.angular[2]
+        self._odometer.publish(here, (c * vx + s * vy, c * vy - s * vx, turning),
+                               0.01 if abs(turning) < _STRAIGHT else 100.0)
+
+
+class RobotnikForceBasedMove(ForceBasedMove):
+    """The copy in robotnik_gazebo_plugins."""
+
+    watchdog = ("commandWatchdog", 2.0)
+
+
+class RidgebackForceBasedMove(ForceBasedMove):
+    """The copy in ridgeback_gazebo_plugins."""
+
+    watchdog = ("cmdVelTimeOut", 0.25)

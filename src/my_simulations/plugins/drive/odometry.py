@@ -2,7 +2,7 @@
 from __future__ import annotations
 
 import math
-from typing import Any, List, Tuple
+from typing import Any, List, Optional, Tuple
 
 from ...geometry import Pose, Twist, quat_from_rpy, rpy_from_quat
 from ..context import Context, Joint
@@ -92,8 +92,12 @@ class Odometer:
         """Broadcast odom -> base."""
         self._context.transform(self.frame, self.base, pose)
 
-    def publish(self, pose: Pose, velocity: Tuple[float, float, float]) -> None:
-        """Publish a pose, and (forward, sideways, yaw) velocity in the base frame."""
+    def publish(self, pose: Pose, velocity: Tuple[float, float, float],
+                yaw_variance: Optional[float] = None) -> None:
+        """Publish a pose, and (forward, sideways, yaw) velocity in the base frame.
+
+        `yaw_variance`: of the yaw and of its rate in this message, rad^2 and rad^2/s^2.
+        """
         if self._topic is None:
             return
         message = stamped(self._context, "nav_msgs/Odometry")
@@ -103,6 +107,8 @@ class Odometer:
         message.twist.twist.linear.x, message.twist.twist.linear.y = velocity[:2]
         message.twist.twist.angular.z = velocity[2]
         message.twist.covariance = list(self._twist_covariance)
+        if yaw_variance is not None:
+            message.pose.covariance[35] = message.twist.covariance[35] = yaw_variance
         self._topic.publish(message)
 
 
