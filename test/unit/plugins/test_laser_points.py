@@ -45,10 +45,15 @@ def test_a_block_laser_of_one_row_lies_level():
 
 
 def velodyne_points(cloud):
-    kind = np.dtype({"names": ["x", "y", "z", "intensity", "ring"],
-                     "formats": ["<f4"] * 4 + ["<u2"], "offsets": [0, 4, 8, 16, 20],
+    kind = np.dtype({"names": [field.name for field in cloud.fields],
+                     "formats": [{4: "<u2", 7: "<f4"}[field.datatype] for field in cloud.fields],
+                     "offsets": [field.offset for field in cloud.fields],
                      "itemsize": cloud.point_step})
     return np.frombuffer(cloud.data, kind)
+
+
+def away(points):
+    return np.sqrt(points["x"] ** 2 + points["y"] ** 2 + points["z"] ** 2)
 
 
 def test_a_velodyne_publishes_what_is_met_column_by_column():
@@ -59,10 +64,11 @@ def test_a_velodyne_publishes_what_is_met_column_by_column():
     points = velodyne_points(cloud)
     assert (cloud.height, cloud.width, cloud.is_dense) == (1, 3, True)
     assert [(f.name, f.offset, f.datatype) for f in cloud.fields] == [
-        ("x", 0, 7), ("y", 4, 7), ("z", 8, 7), ("intensity", 16, 7), ("ring", 20, 4)]
+        ("x", 0, 7), ("y", 4, 7), ("z", 8, 7), ("intensity", 12, 7), ("ring", 16, 4),
+        ("time", 18, 7)]
+    assert (cloud.point_step, cloud.row_step) == (22, 66) and not points["time"].any()
     assert points["ring"].tolist() == [0, 1, 1] and points["intensity"].tolist() == [9.0, 0, 0]
-    away = np.sqrt(points["x"] ** 2 + points["y"] ** 2 + points["z"] ** 2)
-    assert away == pytest.approx([1.0, 2.0, 3.0])
+    assert away(points) == pytest.approx([1.0, 2.0, 3.0])
     assert points["z"][1] > 0 > points["z"][0]
 
 
@@ -72,10 +78,33 @@ def test_faint_returns_are_left_out_and_noise_is_along_the_ray():
                     "<gaussianNoise>0.02</gaussianNoise>", retro=[0.0, 1.0] * 1000)
     context.advance(0.1)
     points = velodyne_points(context.published["points"][0])
-    away = np.sqrt(points["x"] ** 2 + points["y"] ** 2 + points["z"] ** 2)
-    assert len(away) == 1000
-    assert away.mean() == pytest.approx(2.0, abs=0.003) and away.std() == pytest.approx(
+    ranges = away(points)
+    assert len(ranges) == 1000
+    assert ranges.mean() == pytest.approx(2.0, abs=0.003) and ranges.std() == pytest.approx(
         0.02, rel=0.1)
+
+
+@pytest.mark.filterwarnings("error")
+def test_an_organized_cloud_has_nan_and_the_ring_where_a_point_is_left_out():
+    context = laser(Velodyne, [1.0, math.inf, 0.05, 2.0, 3.0, 4.0],
+                    "<min_intensity>0</min_intensity><organize_cloud>true</organize_cloud>",
+                    retro=[9.0, 0.0, 0.0, 0.0, 0.0, -1.0])
+    context.advance(0.1)
+    (cloud,) = context.published["points"]
+    points = velodyne_points(cloud)
+    assert (cloud.height, cloud.width, cloud.row_step, cloud.is_dense) == (3, 2, 44, False)
+    assert points["ring"].tolist() == [0, 1] * 3
+    assert away(points) == pytest.approx([1.0, 2.0, math.nan, 3.0, math.nan, math.nan],
+                                         nan_ok=True)
+    assert np.isnan(points["intensity"]).tolist() == [False, False, True, False, True, True]
+
+
+def test_what_noise_moves_out_of_the_limits_is_left_out():
+    context = laser(Velodyne, [2.0] * 2000, "<gaussianNoise>0.02</gaussianNoise>"
+                    "<min_range>1.99</min_range><max_range>2.01</max_range>")
+    context.advance(0.1)
+    ranges = away(velodyne_points(context.published["points"][0]))
+    assert 500 < len(ranges) < 1000 and 1.99 < ranges.min() and ranges.max() < 2.01
 
 
 def test_the_namespace_of_a_velodyne_is_its_prefix():

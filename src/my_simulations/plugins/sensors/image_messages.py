@@ -19,6 +19,7 @@ _LUMINANCE = (0.299, 0.587, 0.114)  # ITU-R BT.601
 _WIDE = 257                         # 255 becomes 65535
 POINT_STEP = 32
 _RGB_AT = 16
+UINT16, FLOAT32 = 4, 7  # of sensor_msgs/PointField
 
 
 class Once:
@@ -139,8 +140,8 @@ def cloud_message(context: Context, header: Any, points: Any, dense: bool) -> An
     return message
 
 
-def point_field(context: Context, name: str, offset: int, kind: int = 7) -> Any:
-    """A sensor_msgs/PointField; `kind` 7 is FLOAT32, 4 UINT16."""
+def point_field(context: Context, name: str, offset: int, kind: int = FLOAT32) -> Any:
+    """A sensor_msgs/PointField."""
     field = context.message("sensor_msgs/PointField")
     field.name, field.offset, field.datatype, field.count = name, offset, kind, 1
     return field

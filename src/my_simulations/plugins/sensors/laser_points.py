@@ -11,11 +11,10 @@ from ...description.sensor import Noise as NoiseSpec
 from ...sensing.noise import GAUSSIAN, Noise
 from ..frames import prefixed, resolve
 from ..parameters import namespace_or
-from .image_messages import header, point_field
+from .image_messages import FLOAT32, UINT16, header, point_field
 from .rays import RayPlugin, SampledNoise
 
-_STEP = 32       # bytes of a Velodyne's point
-_UINT16 = 4      # of sensor_msgs/PointField
+_STEP = 22       # bytes of a Velodyne's point, as PointXYZIRT of its drivers
 _FURTHEST = float("inf")
 
 
@@ -101,7 +100,12 @@ def _point(context: Any, x: float, y: float, z: float) -> Any:
 
 
 class Velodyne(_Points):
-    """sensor_msgs/PointCloud2 of what is met: x, y, z, intensity, ring; column by column."""
+    """sensor_msgs/PointCloud2 of what is met: x, y, z, intensity, ring, time; column by column.
+
+    All rays are of one moment, so `time` is 0. With `<organize_cloud>` a row of the cloud is a
+    column of the scan, and a point that is left out is NaN and keeps its ring; faint ones, too
+    (there `<min_intensity>` counts in clouds without order alone).
+    """
 
     usual_topic = "/points"
     message_type = "sensor_msgs/PointCloud2"
@@ -113,6 +117,7 @@ class Velodyne(_Points):
         self._near = max(p.number("min_range", 0.0), self._fan.near)
         self._far = min(p.number("max_range", _FURTHEST), self._fan.far)
         self._faintest = p.number("min_intensity", -_FURTHEST)
+        self._organized = p.flag("organize_cloud", False)
         self._rings: Optional[Any] = None
 
     def _named(self, frame: str) -> str:
@@ -129,21 +134,27 @@ class Velodyne(_Points):
             self._rings = np.repeat(np.arange(fan.rows, dtype=np.uint16), fan.samples)
             order = np.arange(fan.rows * fan.samples).reshape(fan.rows, fan.samples).T.ravel()
             self._order = order
-        order = self._order[((ranges > self._near) & (ranges < self._far)
-                             & (retro >= self._faintest))[self._order]]
-        away = self._noise.apply(ranges, ns, 0.0)[order]
+        away = self._noise.apply(ranges, ns, 0.0)
+        kept = self._within(ranges) & self._within(away) & (retro >= self._faintest)
+        order = self._order if self._organized else self._order[kept[self._order]]
         points: np.ndarray = np.zeros(len(order), np.dtype({
-            "names": ["place", "intensity", "ring"], "formats": ["(3,)<f4", "<f4", "<u2"],
-            "offsets": [0, 16, 20], "itemsize": _STEP}))
-        points["place"] = away[:, None] * self._directions[order]
-        points["intensity"], points["ring"] = retro[order], self._rings[order]
+            "names": ["place", "intensity", "ring", "time"],
+            "formats": ["(3,)<f4", "<f4", "<u2", "<f4"], "offsets": [0, 12, 16, 18],
+            "itemsize": _STEP}))
+        points["place"] = np.where(kept, away, np.nan)[order, None] * self._directions[order]
+        points["intensity"] = np.where(kept, retro, np.nan)[order]
+        points["ring"] = self._rings[order]
         message = context.message("sensor_msgs/PointCloud2")
         message.header = head
-        message.height, message.width = 1, len(order)
-        message.fields = [point_field(context, name, offset) for name, offset in (
-            ("x", 0), ("y", 4), ("z", 8), ("intensity", 16))] + [
-                point_field(context, "ring", 20, _UINT16)]
-        message.is_bigendian, message.is_dense = False, True
-        message.point_step, message.row_step = _STEP, _STEP * len(order)
+        message.width = fan.rows if self._organized else len(order)
+        message.height = fan.samples if self._organized else 1
+        message.fields = [point_field(context, name, offset, kind) for name, offset, kind in (
+            ("x", 0, FLOAT32), ("y", 4, FLOAT32), ("z", 8, FLOAT32), ("intensity", 12, FLOAT32),
+            ("ring", 16, UINT16), ("time", 18, FLOAT32))]
+        message.is_bigendian, message.is_dense = False, not self._organized
+        message.point_step, message.row_step = _STEP, _STEP * message.width
         message.data = points.tobytes()
         return message
+
+    def _within(self, ranges: Any) -> Any:
+        return (ranges > self._near) & (ranges < self._far)
