@@ -248,6 +248,20 @@ def test_torsional_friction_stops_a_spinning_ball(lab: Lab, laws: Laws):
               5.0 - slowing * 0.5, rel=0.03)
 
 
+@pytest.mark.parametrize("shape", [Box((0.2, 0.2, 0.2)), Sphere(0.1)])
+def test_bodies_that_are_apart_have_no_contact(lab: Lab, shape):
+    lab.configure(gravity=(0.0, 0.0, 0.0))
+    lab.load(slab("wall", (0.2, 2, 1)))
+    body = lab.load(Model("box", links=[Link("link", inertial=Inertial(1, Pose(), .01, 0, 0, .01, 0,
+                                                                       .01),
+                                             collisions=[Collision("c", shape)])]), (0.1999, 0, 0))
+    lab.steps(10)
+    assert lab.apply(ReadContacts())
+    lab.push(body, (0.1, 0, 0))
+    lab.steps(25)   # 2.4 mm: Bullet still keeps the points
+    assert lab.apply(ReadContacts()) == ()
+
+
 @pytest.mark.parametrize("kind", ["rigid", "articulated"])
 def test_contacts_carry_the_weight_and_what_holds_a_body_on_a_slope(lab: Lab, laws: Laws,
                                                                     kind: str):

@@ -445,7 +445,8 @@ class Contact:
         row_a, row_b: link rows.
         position: m, world axes, on b.
         normal: unit vector from b to a, world axes.
-        depth: m, how far they overlap; negative while apart.
+        depth: m, how far they overlap; negative where they press each other
+            across a gap.
         force: N, along the normal, on a.
         friction: N, across the normal, on a, world axes.
     """

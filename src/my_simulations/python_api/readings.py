@@ -94,7 +94,8 @@ class ContactReading:
         links: the scoped names of both links.
         position: (3,) m, world frame, on the second link.
         normal: (3,) unit vector along which the first link is pushed, world frame.
-        depth: m, how far the links overlap; negative while apart.
+        depth: m, how far the links overlap; negative where they press each other
+            across a gap.
         force: N along the normal.
         friction: (3,) N across the normal, on the first link, world frame.
     """

@@ -17,7 +17,8 @@ def read_contacts(bodies: Dict[int, Body], limit: int,
     """At most `limit` contacts between known links; `bodies` by PyBullet's number.
 
     `more_friction` tell what acts on a link, of body and index, at a point besides Bullet's; `load`
-    what presses there, where that is not what Bullet says.
+    what presses there, where that is not what Bullet says. Points that are apart and carry nothing
+    are none, as in Gazebo, whose engines have contacts of overlapping shapes alone.
     """
     found: List[Contact] = []
     for contact in pybullet.getContactPoints():
@@ -29,16 +30,16 @@ def read_contacts(bodies: Dict[int, Body], limit: int,
                 if part.index == index or (body.rigid and part.index == BASE)][:1]
         if len(rows) == 2:
             # Bullet does not solve points that are apart: what they tell is of an older step.
-            friction = add(scale(contact[11], contact[10]), scale(contact[13], contact[12]))
-            for more in more_friction:
-                friction = add(friction, more(contact[1], contact[3], contact[5]))
-                friction = add(friction, scale(more(contact[2], contact[4], contact[6]), -1))
             force = contact[9] if contact[8] <= 0.0 else 0.0
             for place in (contact[1], contact[3], contact[5]), (contact[2], contact[4], contact[6]):
                 told = load(*place)
                 force = force if told is None else told
             if force <= 0.0 and contact[8] > 0.0:
-                friction = (0.0, 0.0, 0.0)
+                continue
+            friction = add(scale(contact[11], contact[10]), scale(contact[13], contact[12]))
+            for more in more_friction:
+                friction = add(friction, more(contact[1], contact[3], contact[5]))
+                friction = add(friction, scale(more(contact[2], contact[4], contact[6]), -1))
             found.append(Contact(rows[0], rows[1], contact[6], contact[7], -contact[8], force,
                                  friction))
         if len(found) >= limit:
