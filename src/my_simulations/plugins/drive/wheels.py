@@ -36,7 +36,7 @@ class VelocityCommand:
         """Forget a command that is too old."""
         now = self._context.now_ns
         self._heard_ns = min(self._heard_ns, now)  # the clock may have been set back
-        if self._timeout >= 0.0 and (now - self._heard_ns) * 1e-9 > self._timeout:
+        if self._timeout >= 0.0 and now - self._heard_ns > self._timeout * 1e9:
             self.x = self.y = self.yaw = 0.0
 
 
