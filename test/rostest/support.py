@@ -160,6 +160,17 @@ class Collected:
         """Names of the nodes it listens to."""
         return [connection.callerid_pub for connection in self._subscriber.impl.connections]
 
+    def is_served_by(self, node):
+        """Whether a node sends its messages here from now on.
+
+        rospy's publishers answer a subscriber before they add it to those that get messages.
+        """
+        ports = [connection.socket.getsockname()[1]
+                 for connection in list(self._subscriber.impl.connections)
+                 if connection.callerid_pub == node]
+        told = [row[6] for row in node_answer(node, "getBusInfo") or [] if len(row) > 6]
+        return any(f":{port} on socket" in text for port in ports for text in told)
+
     def close(self):
         self._subscriber.unregister()
 
@@ -183,14 +194,19 @@ class Transforms:
         return self._buffer.lookup_transform(target, source, at).transform
 
 
-def is_running(node):
-    """Whether a node of that name runs, however long it takes to say so."""
+def node_answer(node, method):
+    """What a node answers to a call of its own interface; None if it does not run."""
     # rosnode.rosnode_ping would limit every later connection of this process to 3 s.
     found = master_api.call(rosgraph.get_master_uri(), "lookupNode", "/test", node, seconds=SECONDS)
     try:
-        return bool(found) and bool(master_api.call(found, "getPid", "/test", seconds=SECONDS))
+        return master_api.call(found, method, "/test", seconds=SECONDS) if found else None
     except OSError:
-        return False
+        return None
+
+
+def is_running(node):
+    """Whether a node of that name runs, however long it takes to say so."""
+    return bool(node_answer(node, "getPid"))
 
 
 def is_alive(pid):
@@ -209,7 +225,7 @@ def heard_on_rosout(text, node="/gazebo"):
     """
     lines = Collected("/rosout", Log)
     if is_running(node):
-        wait_for(lambda: node in lines.sources(), "a connection to the node's log")
+        wait_for(lambda: lines.is_served_by(node), "a connection to the node's log")
 
     def wait():
         found = wait_for(lambda: [line for line in lines.all()
