@@ -47,14 +47,15 @@ class HandOfGod(Plugin):
 
     def update(self) -> None:
         """Before each step."""
+        lift = scale(self.context.gravity, -self._link.inertial.mass)
         wanted = self._transforms.look_up("world", f"{self._frame}_desired")
         if wanted is None:
             if not self._told:
                 self._told = True
                 self.context.warn(f"there is no tf frame {self._frame}_desired in world yet")
+            self.context.push(self._link.name, lift, (0.0, 0.0, 0.0))
             return
         pose, twist = self._link.pose, self._link.twist
-        lift = scale(self.context.gravity, -self._link.inertial.mass)
         (kl, ka), (cl, ca) = self._stiffness, self._damping
         force = subtract(scale(subtract(wanted.position, pose.position), kl),
                          scale(twist.linear, cl))
