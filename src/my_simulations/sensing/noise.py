@@ -74,7 +74,7 @@ class Noise:
         noisy = plain + (self._wandering + spec.mean)
         if spec.stddev > 0.0:
             noisy = noisy + generator(*self._name, sample).normal(0.0, spec.stddev, plain.shape)
-        if spec.type == QUANTIZED and spec.precision > 0.0:
+        if spec.precision > 0.0:  # whichever of the two types, as in Gazebo
             steps = noisy / spec.precision
             noisy = np.copysign(np.floor(np.abs(steps) + 0.5), steps) * spec.precision
         noisy = np.where(np.isfinite(plain), noisy, plain)

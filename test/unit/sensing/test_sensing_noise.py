@@ -78,8 +78,9 @@ def test_a_bias_that_wanders_leaves_where_it_was_drawn():
     assert noise.apply(0.0, 2, 2.0) == pytest.approx(noise.bias * math.exp(-1.0), rel=1e-6)
 
 
-def test_quantized_values_are_multiples_of_the_precision():
-    noise = Noise(NoiseSpec("gaussian_quantized", 0.0, 0.3, precision=0.25), 1, "s")
+@pytest.mark.parametrize("name", ["gaussian", "gaussian_quantized"])
+def test_values_with_a_precision_are_multiples_of_it(name):
+    noise = Noise(NoiseSpec(name, 0.0, 0.3, precision=0.25), 1, "s")
     found = noise.apply(np.zeros(1000), 0, 0.1) / 0.25
     assert (found == np.rint(found)).all() and len(set(found)) > 4
     exact = Noise(NoiseSpec("gaussian_quantized", precision=0.1), 1, "s")
