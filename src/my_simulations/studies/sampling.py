@@ -113,7 +113,7 @@ def _between(signal: Signal, contacts: Sequence[ContactReading]) -> float:
              or (_in(contact.links[0], second) and _in(contact.links[1], first))]
     if signal.kind == "force":
         return float(sum(contact.force for contact in found))
-    return float(any(contact.depth >= 0.0 or contact.force > 0.0 for contact in found))
+    return float(bool(found))
 
 
 def _in(link: str, name: str) -> bool:
