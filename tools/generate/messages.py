@@ -5,9 +5,9 @@ from __future__ import annotations
 import ast
 import pathlib
 import sys
-from typing import Callable, Dict, Iterator, List, Tuple
+from typing import Callable, Dict, Iterator, List, Sequence, Tuple
 
-from source_messages import REPOSITORY, called, code_uses, constants_of, package_modules, text_of
+from source_messages import REPOSITORY, called, code_uses, constants_of, modules, text_of
 
 PAGE = REPOSITORY / "doc" / "messages.md"
 SERVICES = "ros/services/"
@@ -20,7 +20,7 @@ read at one sitting. `{name}` stands for a value. Codes of issues are explained 
 """
 
 Rows = List[Tuple[str, str]]
-Trees = List[Tuple[str, ast.Module]]
+Trees = Sequence[Tuple[str, ast.Module]]
 
 
 def _texts(trees: Trees, finds: Callable[[ast.AST], Iterator[ast.expr]]) -> Rows:
@@ -94,7 +94,7 @@ def _escaped(text: str) -> str:
 
 def page() -> str:
     """The text of doc/messages.md."""
-    trees = list(package_modules())
+    trees = modules()
     services = [(path, tree) for path, tree in trees if path.startswith(SERVICES)]
     lines = [HEAD.rstrip()]
     lines += _section("Status messages of services: success", _texts(services, _returned))

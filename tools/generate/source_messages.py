@@ -39,10 +39,12 @@ class Use:
     line: int
 
 
-def modules(folder: pathlib.Path = PACKAGE) -> Iterator[Tuple[str, ast.Module]]:
-    """Path below `folder` and syntax tree of every module."""
-    for file in sorted(folder.rglob("*.py")):
-        yield file.relative_to(folder).as_posix(), ast.parse(file.read_text(encoding="utf-8"))
+@functools.lru_cache(maxsize=None)
+def modules() -> Tuple[Tuple[str, ast.Module], ...]:
+    """Path below the package and syntax tree of each of its modules, read once."""
+    return tuple((file.relative_to(PACKAGE).as_posix(),
+                  ast.parse(file.read_text(encoding="utf-8")))
+                 for file in sorted(PACKAGE.rglob("*.py")))
 
 
 def text_of(node: Optional[ast.expr], constants: Optional[Dict[str, ast.expr]] = None) -> str:
@@ -86,15 +88,9 @@ def _placeholder(part: ast.expr) -> str:
 
 
 @functools.lru_cache(maxsize=None)
-def package_modules() -> Tuple[Tuple[str, ast.Module], ...]:
-    """Those of the package, read once."""
-    return tuple(modules())
-
-
-@functools.lru_cache(maxsize=None)
 def code_uses() -> Tuple[Use, ...]:
     """Every place of the package where an issue code is given."""
-    trees = package_modules()
+    trees = modules()
     positions = _code_positions(tree for _, tree in trees)
     found: List[Use] = []
     for path, tree in trees:
