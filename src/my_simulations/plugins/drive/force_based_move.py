@@ -84,7 +84,7 @@ class ForceBasedMove(Plugin):
         vx, vy, _ = twist.linear
         turning = twist.angular[2]
         self._odometer.publish(here, (c * vx + s * vy, c * vy - s * vx, turning),
-                               0.01 if abs(turning) < _STRAIGHT else 100.0)
+                               None if abs(turning) < _STRAIGHT else 100.0)
 
 
 class RobotnikForceBasedMove(ForceBasedMove):

@@ -96,7 +96,8 @@ class Odometer:
                 yaw_variance: Optional[float] = None) -> None:
         """Publish a pose, and (forward, sideways, yaw) velocity in the base frame.
 
-        `yaw_variance`: of the yaw and of its rate in this message, rad^2 and rad^2/s^2.
+        `yaw_variance`: of the yaw and of its rate in this message, rad^2 and rad^2/s^2; None for
+        those of the diagonals.
         """
         if self._topic is None:
             return
