@@ -56,7 +56,7 @@ def _visible(start: Point, ring: List[int], points: List[Point]) -> int:
     """Index in the ring of a corner that can be seen from a point inside, in the direction of x."""
     met = _edge_ahead(start, ring, points)
     if met is None:
-        return min(range(len(ring)), key=lambda k: _distance(start, points[ring[k]]))
+        return min(range(len(ring)), key=lambda k: math.dist(start, points[ring[k]]))
     x, k = met
     farther = max(points[ring[k]], points[ring[(k + 1) % len(ring)]])
     triangle = [start, (x, start[1]), farther]
@@ -68,7 +68,7 @@ def _visible(start: Point, ring: List[int], points: List[Point]) -> int:
         return k if points[ring[k]] == farther else (k + 1) % len(ring)
     # Of the corners in between, the one nearest to the direction of x hides the others.
     return min(seen, key=lambda n: (_steepness(start, points[ring[n]]),
-                                    _distance(start, points[ring[n]])))
+                                    math.dist(start, points[ring[n]])))
 
 
 def _edge_ahead(start: Point, ring: List[int], points: List[Point]) -> Optional[Tuple[float, int]]:
@@ -93,10 +93,6 @@ def _steepness(start: Point, end: Point) -> float:
     """The slope against the direction of x, of a way that does not lead back."""
     ahead, aside = end[0] - start[0], abs(end[1] - start[1])
     return aside / ahead if ahead > 0 else math.inf
-
-
-def _distance(a: Point, b: Point) -> float:
-    return math.hypot(a[0] - b[0], a[1] - b[1])
 
 
 def _opens_to(ring: List[int], k: int, target: Point, points: List[Point]) -> bool:
