@@ -19,16 +19,19 @@ import {place} from './three_convert.js';
 /** Milliseconds between two steps, as between pose frames. */
 const PERIOD = 1000 / LIMITS.frames_hz;
 
-/** @param {Object3D} root @returns {Bone[]} each after the one that it hangs on */
-function bonesOf(root) {
+/** The bone that carries all others, or undefined. @param {Object3D} root */
+function rootBone(root) {
   /** @type {Bone[]} */
   const bones = [];
   root.traverse((object) => { if (object instanceof Bone) bones.push(object); });
-  return bones;
+  return bones.find((bone) => !(bone.parent instanceof Bone));
 }
 
-/** The bone that carries all others, or undefined. @param {Object3D} root */
-const rootBone = (root) => bonesOf(root).find((bone) => !(bone.parent instanceof Bone));
+/** @param {Bone} bone @returns {Bone[]} those that hang on it */
+const bonesBelow = (bone) => bone.children.filter((child) => child instanceof Bone);
+
+/** @param {Bone} bone @returns {Bone[]} it and all below, each after the one that it hangs on */
+const skeletonOf = (bone) => [bone, ...bonesBelow(bone).flatMap(skeletonOf)];
 
 /**
  * What of a figure moves as each bone of another file. Bones are paired by their order where both
@@ -39,19 +42,11 @@ const rootBone = (root) => bonesOf(root).find((bone) => !(bone.parent instanceof
  */
 function paired(owner, figure) {
   const [theirs, ours] = [owner, figure].map((root) => {
-    /** @type {Bone[]} */
-    const joined = [];
-    rootBone(root)?.traverse((object) => {
-      if (object instanceof Bone && (!joined.length || joined.includes(/** @type {Bone} */ (object.parent)))) {
-        joined.push(object);
-      }
-    });
-    return joined;
+    const bone = rootBone(root);
+    return bone ? skeletonOf(bone) : [];
   });
-  const below = (/** @type {Bone} */ bone) =>
-    bone.children.filter((child) => child instanceof Bone).length;
   if (ours.length && ours.length === theirs.length &&
-      ours.every((bone, index) => below(bone) === below(theirs[index]))) {
+      ours.every((bone, index) => bonesBelow(bone).length === bonesBelow(theirs[index]).length)) {
     return new Map(theirs.map((bone, index) => [bone, ours[index]]));
   }
   /** @type {Map<Object3D, Object3D>} */

@@ -7,7 +7,7 @@ from typing import Any, List, Optional, Tuple
 import numpy as np
 
 from ...formats.mesh.figures import FigureFile, FigurePart, Movement
-from ...formats.mesh.keyframes import composed, decomposed
+from ...formats.mesh.keyframes import Clip, composed, decomposed
 
 Surface = Tuple[np.ndarray, np.ndarray]
 """Vertices (n, 3), m, and normals (n, 3)."""
@@ -42,27 +42,24 @@ class Skeleton:
         self._figure, self._factor = figure, scale * figure.unit
         self._rest = decomposed(figure.tree.rest)
         self._root = figure.tree.root_joint if on_path else None
-        self._clip = figure.clip
+        self._clip: Optional[Clip] = None
         self._columns: List[_Columns] = []
         self._ratio, self._own = 1.0, borrowed is None
-        if self._clip is not None:
-            self._columns = [(slice(None), keys.nodes) for keys in self._clip.keys]
-        if borrowed is not None:
-            self._borrow(borrowed)
+        if borrowed is None and figure.clip is not None:
+            self._clip = figure.clip
+            self._columns = [(slice(None), keys.nodes) for keys in figure.clip.keys]
+        elif borrowed is not None and borrowed.movement is not None:
+            self._borrow(borrowed.movement, borrowed.scale)
 
-    def _borrow(self, borrowed: "Borrowed") -> None:
-        movement, self._clip = borrowed.movement, None
-        if movement is None:
-            return
+    def _borrow(self, movement: Movement, scale: float) -> None:
         ours = self._figure.tree.paired(movement.tree)
-        self._columns = []
         for keys in movement.clip.keys:
             known = np.array([int(node) in ours for node in keys.nodes], dtype=bool)
             nodes = np.array([ours[int(node)] for node in keys.nodes[known]], dtype=np.int64)
             self._columns.append((known, nodes))
         if any(len(nodes) for _, nodes in self._columns):
             self._clip = movement.clip
-        self._ratio = movement.unit * borrowed.scale / (self._factor or 1.0)
+        self._ratio = movement.unit * scale / (self._factor or 1.0)
 
     @property
     def duration(self) -> Optional[float]:
