@@ -118,10 +118,7 @@ class _Reader:
     def _begin(self, name: str, parent: int) -> int:
         if len(self.bones.names) >= MOST_NODES:
             raise self._fault(f"it has more than {MOST_NODES} joints")
-        self.bones.names.append(name)
-        self.bones.joints.append(True)
-        self.bones.parents.append(parent)
-        return len(self.bones.names) - 1
+        return self.bones.add(name, True, parent)
 
     def _describe(self, joint: _Joint, words: List[str]) -> None:
         if words[0] == "OFFSET":

@@ -28,7 +28,7 @@ def read_collada(data: bytes) -> List[MeshPart]:
     root = tidied(data)
     try:
         document = _loaded(etree.tostring(root))
-        unit = unit_of(document, root)
+        unit = unit_of(root)
         with np.errstate(all="ignore"):  # non-finite numbers are reported later
             made = (_part(names, geometry, unit) for names, geometry in instances(document))
             return bounded(part for part in made if part is not None)
@@ -69,16 +69,23 @@ def _line_of_fault(root: Any) -> int:
     return 0
 
 
-def unit_of(document: Any, root: Any) -> float:
+def unit_of(root: Any) -> float:
+    """The length of a file's unit, m.
+
+    Raises:
+        MeshError: it is no length.
+    """
     element = root.find("{*}asset/{*}unit")
     text = element.get("meter") if element is not None else None
     if text is None:
         return 1.0
-    # pycollada reads an invalid number as None, as if it were missing.
-    unit = document.assetInfo.unitmeter
-    if unit is None or not (unit > 0 and math.isfinite(unit)):
+    try:
+        unit = float(text)
+    except ValueError:
+        unit = math.nan
+    if not (unit > 0 and math.isfinite(unit)):
         raise MeshError(f"the unit {text!r} is not a length in metres", element.sourceline)
-    return float(unit)
+    return unit
 
 
 def instances(document: Any) -> Iterator[Tuple[Tuple[str, ...], Any]]:

@@ -139,10 +139,9 @@ def _moves(path: str, _changed_at: Tuple[int, int]) -> Optional[Movement]:
     with _told():
         tree = NodeTree(root)
         clip = clip_of(root, tree)
-        unit = root.find("{*}asset/{*}unit[@meter]")
-        metres = 1.0 if unit is None else float(unit.get("meter"))
+        unit = unit_of(root)
     tree.release()
-    return None if clip is None else Movement(tree, clip, metres)
+    return None if clip is None else Movement(tree, clip, unit)
 
 
 def _root_of(path: str) -> Any:
@@ -187,8 +186,7 @@ class _Reader:
                     self._add_skin(node, instance)
         if not self._found:
             return None
-        return FigureFile(self._tree, self._found, self._clip,
-                          unit_of(self._document, self._root))
+        return FigureFile(self._tree, self._found, self._clip, unit_of(self._root))
 
     def _add_skin(self, node: int, instance: Any) -> None:
         controller = self._tree.by_id[instance.get("url")[1:]]

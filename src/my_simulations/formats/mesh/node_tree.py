@@ -36,6 +36,13 @@ class Bones:
         self.joints: List[bool] = []
         self.parents: List[int] = []
 
+    def add(self, name: str, is_joint: bool, parent: int) -> int:
+        """Put one more at the end; returns its number."""
+        self.names.append(name)
+        self.joints.append(is_joint)
+        self.parents.append(parent)
+        return len(self.names) - 1
+
     @property
     def root_joint(self) -> Optional[int]:
         """The joint that hangs on none."""
@@ -99,12 +106,10 @@ class NodeTree(Bones):
     def _walk(self, element: Any, parent: int, depth: int) -> None:
         if len(self.elements) >= MOST_NODES or depth > _DEEPEST:
             raise MeshError("its nodes form a cycle or are nested too deeply", element.sourceline)
-        number = len(self.elements)
         joint = element.get("type") == "JOINT"
         self.elements.append(element)
-        self.names.append((element.get("sid") if joint else element.get("name")) or "")
-        self.joints.append(joint)
-        self.parents.append(parent)
+        number = self.add((element.get("sid") if joint else element.get("name")) or "", joint,
+                          parent)
         self.numbers.setdefault(element.get("id") or "", number)
         for child in element.iterchildren("{*}node", "{*}instance_node"):
             if child.tag.endswith("instance_node"):

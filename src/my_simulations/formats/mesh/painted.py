@@ -145,7 +145,7 @@ def _collada(mesh: Mesh) -> List[PaintedPart]:
     with open(mesh.path, "rb") as stream:
         data = stream.read()
     document = collada.Collada(io.BytesIO(data), ignore=[collada.DaeError])
-    unit = unit_of(document, etree.fromstring(data))
+    unit = unit_of(etree.fromstring(data))
     parts = []
     for names, geometry in instances(document):
         if mesh.submesh and mesh.submesh not in names:
