@@ -284,7 +284,7 @@ def test_a_file_is_replaced_only_after_a_question(editor, node):
 
 def test_unsaved_changes_are_asked_for_before_another_world_is_opened(editor, node):
     with_box(editor)
-    save(editor, "one_box")
+    save(editor, "one_box").wait_for(state="detached")
     editor.until("!editor.store.history.dirty", "the saved world")
     with_box(editor, (2.0, 1.0))
     editor.page.keyboard.press("Control+o")
@@ -320,7 +320,7 @@ def test_what_is_wrong_in_an_opened_file_is_told_with_its_line(editor, node):
 def test_a_file_that_cannot_be_read_leaves_the_world_and_says_why(editor, node):
     write_world(node, "hollow.world", "<sdf version='1.6'>\n</sdf>\n")
     with_box(editor)
-    save(editor, "kept")
+    save(editor, "kept").wait_for(state="detached")
     editor.until("!editor.store.history.dirty", "the saved world")
     editor.page.keyboard.press("Control+o")
     dialog = in_dialog(editor, "Open World")
