@@ -154,7 +154,7 @@ def test_a_link_is_moved_by_its_handles_and_back_by_undo(editor):
     editor.drag((0.3, -0.5, 0.3), (1.3, -0.5, 0.3), keys=("x",))
     editor.until("editor.store.history.undo[0].startsWith('Move')", "the move")
     pose = "editor.store.model('untitled').links[0].pose"
-    assert editor.get(pose)[:3] == approx([1.0, 0.0, 0.5], abs=0.05)
+    wait_for(lambda: editor.get(pose)[:3] == approx([1.0, 0.0, 0.5], abs=0.05), "its new place")
     assert editor.get("editor.store.model('untitled').links[1].pose")[1] == approx(2.5, abs=0.05)
     editor.page.keyboard.press("Control+z")
     wait_for(lambda: editor.get(pose)[:3] == approx([0.0, 0.0, 0.5], abs=1e-6), "the way back")
