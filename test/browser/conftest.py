@@ -13,6 +13,14 @@ def browser():
     running.close()
 
 
+@pytest.fixture(scope="session")
+def node(tmp_path_factory):
+    """One node for all tests that make its world anew."""
+    running = Node(tmp_path_factory.mktemp("node"), "worlds/empty.world")
+    yield running
+    running.close()
+
+
 @pytest.fixture(scope="module")
 def visit(browser):
     """Opens a page for a test, in place of that of the test before it: in half of the time."""

@@ -10,7 +10,7 @@ from geometry_msgs.msg import Pose
 from PIL import Image
 from pytest import approx
 from std_srvs.srv import Empty
-from support import Node, wait_for
+from support import wait_for
 from test_lab_sheet import save_as
 
 BALL = """<sdf version="1.6"><model name="ball"><link name="link">
@@ -189,18 +189,11 @@ def wall_parts(editor):
             for part in link["collisions"]]
 
 
-@pytest.fixture(scope="module")
-def shared(tmp_path_factory):
-    """A node for the tests that leave its world as it is."""
-    running = Node(tmp_path_factory.mktemp("buildings"), "worlds/empty.world")
-    yield running
-    running.close()
-
-
 @pytest.fixture
-def sheet(shared, visit):
+def sheet(node, visit):
     """The empty sheet of the building editor in a page."""
-    editor = visit(shared.url)
+    editor = visit(node.url)
+    editor.get("editor.request('new', {discard: true})")
 
     def accept(question):
         question.accept()

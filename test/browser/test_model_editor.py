@@ -9,7 +9,7 @@ import rospy
 from gazebo_msgs.srv import ApplyJointEffort, GetJointProperties
 from pytest import approx
 from std_srvs.srv import Empty
-from support import Node, wait_for
+from support import wait_for
 
 WORLD = """<sdf version="1.7"><world name="default">
   <include><uri>model://ground_plane</uri></include><include><uri>model://sun</uri></include>
@@ -125,17 +125,9 @@ def test_a_cart_built_by_mouse_loads_without_a_warning_and_its_wheels_turn(launc
             joint_name=f"cart::{name}").position[0] > 0.5, f"turns of {wheel}")
 
 
-@pytest.fixture(scope="module")
-def shared(tmp_path_factory):
-    """A node whose world each test makes anew."""
-    running = Node(tmp_path_factory.mktemp("models"), "worlds/empty.world")
-    yield running
-    running.close()
-
-
 @pytest.fixture
-def editor(shared, visit):
-    page = visit(shared.url)
+def editor(node, visit):
+    page = visit(node.url)
     for request, fields in (("pause", {}), ("new", {"discard": True})):
         page.page.evaluate("([type, fields]) => editor.request(type, fields)", [request, fields])
     page.until("editor.store.document.models.length === 1 && editor.store.stats.paused",

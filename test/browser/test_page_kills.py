@@ -9,7 +9,7 @@ import xml.etree.ElementTree as ElementTree
 
 import pytest
 from gazebo_msgs.srv import GetModelState, GetWorldProperties
-from support import Node, wait_for
+from support import wait_for
 
 SEEDS = 100 if os.environ.get("MY_SIMULATIONS_LONG") == "1" else 10
 EDITS = 40
@@ -25,13 +25,6 @@ WORK = """(async (edits) => {
       (fault) => console.log(`refused ${number}: ${fault}`));
   }
 })"""
-
-
-@pytest.fixture(scope="module")
-def node(tmp_path_factory):
-    running = Node(tmp_path_factory.mktemp("kills"), "worlds/empty.world")
-    yield running
-    running.close()
 
 
 def planned(chance, folder, seed):

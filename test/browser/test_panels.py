@@ -9,7 +9,7 @@ import pytest
 import trimesh
 from gazebo_msgs.srv import GetModelState, GetPhysicsProperties
 from pytest import approx
-from support import Node, wait_for
+from support import wait_for
 
 HINGED = """<sdf version="1.7"><model name="gate"><pose>0 0 1 0 0 0</pose>
   <link name="post"><inertial><mass>1</mass></inertial></link>
@@ -18,13 +18,6 @@ HINGED = """<sdf version="1.7"><model name="gate"><pose>0 0 1 0 0 0</pose>
   <joint name="hinge" type="revolute"><parent>post</parent><child>leaf</child>
     <axis><xyz>0 0 1</xyz></axis></joint>
 </model></sdf>"""
-
-
-@pytest.fixture(scope="module")
-def node(tmp_path_factory):
-    running = Node(tmp_path_factory.mktemp("node"), "worlds/empty.world")
-    yield running
-    running.close()
 
 
 @pytest.fixture

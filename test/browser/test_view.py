@@ -5,15 +5,7 @@ import pytest
 from free_ports import free_port
 from gazebo_msgs.srv import GetModelState
 from pytest import approx
-from support import Node, wait_for
-
-
-@pytest.fixture(scope="module")
-def node(tmp_path_factory):
-    """One node for the tests that leave the world as they found it, or make it anew."""
-    running = Node(tmp_path_factory.mktemp("view"), "worlds/empty.world")
-    yield running
-    running.close()
+from support import wait_for
 
 
 @pytest.fixture

@@ -8,7 +8,7 @@ import pathlib
 import pytest
 from PIL import Image
 from pytest import approx
-from support import Node, wait_for
+from support import wait_for
 
 LAB_COURSE = str(pathlib.Path(__file__).resolve().parents[2] / "world" / "lab_course.world")
 OVERLAPS = """(() => {
@@ -27,13 +27,6 @@ OVERLAPS = """(() => {
   }));
   return found;
 })()"""
-
-
-@pytest.fixture(scope="module")
-def node(tmp_path_factory):
-    running = Node(tmp_path_factory.mktemp("windows"), "worlds/empty.world")
-    yield running
-    running.close()
 
 
 @pytest.fixture
