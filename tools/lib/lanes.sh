@@ -2,7 +2,7 @@
 # Checks side by side, each told of in one line when it has ended.
 
 # Most checks wait half of their time, for a node or for sim time.
-LANES=${MY_SIMULATIONS_TEST_LANES:-$(($(nproc) + 1))}
+LANES=${MY_SIMULATIONS_TEST_LANES:-$(($(nproc) + 2))}
 QUEUE=()          # commands, their words quoted
 declare -A LANE=()   # process of each that runs, by its number in QUEUE
 OUTCOMES=         # folder of what came of each, set by run_queue
