@@ -89,6 +89,16 @@ def test_a_tricycle_counts_the_circle_that_it_drives(case):
     assert told[2] == pytest.approx(true[2], rel=0.06)
 
 
+def test_encoder_wheels_that_a_service_puts_somewhere_move_no_odometry(case):
+    one = case(ground(), tricycle(""))
+    one.sim.clock.advance(205)  # a while after an update
+    before = odometry(one.last("tricycle/odom", 200 * 10 ** 6))
+    one.sim.joints.set_positions({"tricycle::left_wheel_joint": 6.0,
+                                  "tricycle::right_wheel_joint": -3.0})
+    one.sim.clock.advance(95)
+    assert odometry(one.last("tricycle/odom", 300 * 10 ** 6)) == pytest.approx(before, abs=1e-3)
+
+
 def test_a_force_accelerates_by_its_mass(case):
     model = box("load", 0.5, 4.0)
     model.plugins = [plugin("libgazebo_ros_force.so",

@@ -69,6 +69,10 @@ class Joint(Protocol):
     def velocity(self) -> float:
         """rad/s or m/s."""
 
+    @property
+    def puts(self) -> int:
+        """Changes where somebody puts the joint somewhere: before it is there, and after that."""
+
     def drive(self, rate: float, effort: float) -> None:
         """Turn the motor: to `rate` with `effort` at most; 0 effort turns it off."""
 

@@ -69,6 +69,11 @@ class SimulatedJoint:
         """rad/s or m/s."""
         return self._states.axis_at(self.row)[1]
 
+    @property
+    def puts(self) -> int:
+        """Beginnings and ends of being put somewhere."""
+        return self._states.axis_puts(self.row)
+
     def drive(self, rate: float, effort: float) -> None:
         """Turn the motor."""
         self.motor = JointMotor(self.row, rate, effort)

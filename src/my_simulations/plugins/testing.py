@@ -254,7 +254,7 @@ class FakeContext:
     def set_joint_positions(self, positions: Dict[str, float]) -> None:
         """Joints jump."""
         for name, value in positions.items():
-            self.joint(name).position = value
+            self.joint(name).put(value)
 
     def scan(self, fan: Any, visuals: bool, call: Callable[[Any, int], None],
              place: Optional[Tuple[str, Pose]] = None) -> None:

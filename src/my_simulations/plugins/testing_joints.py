@@ -27,6 +27,7 @@ class FakeJoint:
         spec: its description.
         effort: what the servo spent in the last step.
         stuck: something holds it.
+        puts: how often a test or a plugin has put it somewhere.
     """
 
     def __init__(self, name: str) -> None:
@@ -37,7 +38,13 @@ class FakeJoint:
         self.spec = JointSpec(name, "revolute", "base", name, axis=JointAxis())
         self.effort = 0.0
         self.stuck = False
+        self.puts = 0
         self._law: Optional[ServoLaw] = None
+
+    def put(self, position: float) -> None:
+        """Jump to a position, at rest."""
+        self.position, self.velocity = position, 0.0
+        self.puts += 1
 
     def drive(self, rate: float, effort: float) -> None:
         """Turn the motor."""

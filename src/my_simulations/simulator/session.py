@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import threading
 from dataclasses import replace
-from typing import Any, Callable, List, Optional
+from typing import Any, Callable, Counter, List, Optional
 
 from ..description.model import Model
 from ..description.shapes import MeshTable
@@ -39,6 +39,7 @@ class Session:
         world: the description, with lights and scene as last set; models as they were loaded.
         registry: the entities in the world. Read and changed with `registry_lock` held.
         log: receives issues that no caller waits for.
+        axis_puts: see `States.axis_puts`; by joint row. Changed with `registry_lock` held.
     """
 
     def __init__(self, world: World, supervisor: Supervisor, log: Callable[[Issue], None]) -> None:
@@ -52,6 +53,7 @@ class Session:
         self._link_rows = RowAllocator(LINKS)
         self._joint_rows = RowAllocator(JOINTS)
         self._last_id = 0
+        self.axis_puts: Counter[int] = Counter()
 
     def call(self, command: Command) -> Reply:
         """Send an engine command and wait for its reply; see `Supervisor.call` for errors."""

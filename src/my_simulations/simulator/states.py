@@ -85,6 +85,13 @@ class States:
         """Position (rad or m) and rate (rad/s or m/s) of the joint axis in a row."""
         return self._session.ring.joint(row)
 
+    def axis_puts(self, row: int) -> int:
+        """How many times putting the joint axis in a row somewhere has begun or ended.
+
+        Who finds the same count before and after it read positions has seen none of it.
+        """
+        return self._session.axis_puts[row]
+
     def latest(self) -> Tuple[List[Entity], Snapshot]:
         """All entities in load order, and the newest snapshot (an old one if nothing moves)."""
         session = self._session

@@ -71,6 +71,19 @@ def test_encoder_odometry_of_a_circle_is_the_circle():
     assert odom.pose.covariance[::7] == [1e-5, 1e-5, 1e12, 1e12, 1e12, 1e-3]
 
 
+def test_wheels_that_are_put_somewhere_are_no_way_that_was_driven():
+    """Gazebo's drive integrates the rates of its wheels."""
+    context, _ = diff_drive("<odometrySource>encoder</odometrySource>")
+    context.hear("robot/cmd_vel", linear={"x": 0.5}, angular={"z": 0.0})
+    context.advance(1.01)
+    for name in WHEELS:
+        context.joints[name].put(100.0)
+    context.advance(1.0)
+    odom = context.published["robot/odom"]
+    assert odom[-1].pose.pose.position.x == pytest.approx(1.0, abs=1e-4)
+    assert max(one.twist.twist.linear.x for one in odom) == pytest.approx(0.5)
+
+
 def test_backwards_is_negative():
     context, _ = diff_drive("<odometrySource>encoder</odometrySource>")
     context.hear("robot/cmd_vel", linear={"x": -0.2}, angular={"z": 0.0})

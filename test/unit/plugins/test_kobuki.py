@@ -72,6 +72,16 @@ def test_motors_that_are_off_stand():
     assert rates(context)[0] > 0.0
 
 
+def test_wheels_of_a_kobuki_that_are_put_somewhere_move_no_odometry():
+    context = started()
+    context.hear("mobile_base/commands/velocity", linear={"x": 0.2}, angular={"z": 0.0})
+    context.advance(0.5)
+    for name in WHEELS:
+        context.joints[name].put(context.joints[name].position - 50.0)
+    context.advance(0.1)
+    assert context.published["odom"][-1].pose.pose.position.x == pytest.approx(0.2 * 0.58)
+
+
 def test_the_odometry_takes_the_way_from_wheels_and_the_heading_from_the_gyroscope():
     context = started(publish_tf="1")
     for step in range(1, 101):

@@ -19,7 +19,7 @@ from ..context import PluginError, Publication
 from ..frames import prefixed, stamped
 from ..parameters import namespace_or
 from ..sensors.rays import fan_of
-from .odometry import Odometer, planar
+from .odometry import Odometer, WheelTurns, planar
 from .wheels import VelocityCommand, WheelStates
 
 _HERTZ = 50.0
@@ -40,6 +40,7 @@ class Kobuki(Plugin):
         context.use_namespace(namespace_or(p, ""))
         self._wheels = [context.joint(_needed(p, f"{side}_wheel_joint_name"))
                         for side in ("left", "right")]
+        self._turns = WheelTurns(self._wheels)
         self._separation = _needed_number(p, "wheel_separation")
         self._radius = _needed_number(p, "wheel_diameter") / 2.0
         self._torque = _needed_number(p, "torque")
@@ -80,12 +81,8 @@ class Kobuki(Plugin):
 
     def _begin_count(self) -> None:
         self._place = (0.0, 0.0, 0.0)
-        self._turned = self._positions()
+        self._turns.forget()
         self._heading = self._yaw()
-
-    def _positions(self) -> Tuple[float, float]:
-        left, right = (wheel.position for wheel in self._wheels)
-        return left, right
 
     def _yaw(self) -> float:
         return rpy_from_quat(self.context.link(self._imu_link).pose.orientation)[2]
@@ -110,8 +107,7 @@ class Kobuki(Plugin):
 
     def _tell_odometry(self, dt: float) -> None:
         """The way is that of the wheels, the heading that of the gyroscope, as on the real base."""
-        before, self._turned = self._turned, self._positions()
-        way = sum(now - then for now, then in zip(self._turned, before)) * self._radius / 2.0
+        way = sum(self._turns.since(dt)) * self._radius / 2.0
         last, self._heading = self._heading, self._yaw()
         turn = math.remainder(self._heading - last, 2.0 * math.pi)
         x, y, yaw = self._place

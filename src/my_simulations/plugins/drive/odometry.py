@@ -2,7 +2,7 @@
 from __future__ import annotations
 
 import math
-from typing import Any, List, Optional, Tuple
+from typing import Any, List, Optional, Sequence, Tuple
 
 from ...geometry import Pose, Twist, quat_from_rpy, rpy_from_quat
 from ..context import Context, Joint
@@ -32,6 +32,34 @@ def diagonal(values: Tuple[float, ...]) -> List[float]:
     return matrix
 
 
+class WheelTurns:
+    """How far wheels turn between two looks, rad, without what they are put to.
+
+    Gazebo's drives integrate the rates of the wheels: /gazebo/set_model_configuration moves them,
+    and not the robot. Positions are without drift, so that rates count only over such a jump.
+    """
+
+    def __init__(self, joints: Sequence[Joint]) -> None:
+        self._joints = joints
+        self.forget()
+
+    def forget(self) -> None:
+        """Count from here."""
+        self._last = [(joint.position, joint.puts) for joint in self._joints]
+
+    def since(self, dt: float) -> List[float]:
+        """What each wheel has turned since the last look, `dt` s ago."""
+        before, self._last = self._last, []
+        turns = []
+        for joint, (position, puts) in zip(self._joints, before):
+            began, now = joint.puts, joint.position
+            # Another thread puts joints: a count that is the same on both sides of the reading.
+            steady = puts == began == joint.puts
+            self._last.append((now, began))
+            turns.append(now - position if steady else joint.velocity * dt)
+        return turns
+
+
 class WheelCounter:
     """Where a robot is by what its wheels have turned; Siegwart, Autonomous Mobile Robots, 5.2.4.
 
@@ -40,7 +68,7 @@ class WheelCounter:
     """
 
     def __init__(self, left: Joint, right: Joint, radius: float, separation: float) -> None:
-        self._joints = (left, right)
+        self._wheels = WheelTurns((left, right))
         self._radius, self._separation = radius, separation
         self.reset()
 
@@ -51,7 +79,7 @@ class WheelCounter:
 
     def forget_way(self) -> None:
         """What the wheels have turned since the last count does not count."""
-        self._last = tuple(joint.position for joint in self._joints)
+        self._wheels.forget()
 
     @property
     def pose(self) -> Pose:
@@ -60,9 +88,7 @@ class WheelCounter:
 
     def count(self, dt: float) -> Tuple[float, float, float]:
         """Add up what has been turned; returns the velocity (forward, 0, yaw) over the last dt."""
-        now = tuple(joint.position for joint in self._joints)
-        left, right = ((a - b) * self._radius for a, b in zip(now, self._last))
-        self._last = now
+        left, right = (turn * self._radius for turn in self._wheels.since(dt))
         way, turn = (left + right) / 2.0, (right - left) / self._separation
         self._x += way * math.cos(self._yaw + turn / 2.0)
         self._y += way * math.sin(self._yaw + turn / 2.0)
