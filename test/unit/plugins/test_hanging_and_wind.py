@@ -8,6 +8,7 @@ import pytest
 from my_simulations.description.model import Inertial, Joint, JointAxis, Link, Model
 from my_simulations.description.sensor import Sensor
 from my_simulations.engine.commands import Contact
+from my_simulations.engine.servo_law import ServoLaw
 from my_simulations.geometry import Pose, Twist, quat_from_rpy
 from my_simulations.plugins.context import PluginError
 from my_simulations.plugins.gripping.harness import Harness
@@ -241,6 +242,29 @@ def test_joints_are_held_as_their_controllers_say():
                                                                                False)
     assert context.joints["wheel"].servo.target == 3.0
     assert "none" in context.said[-1]
+
+
+def test_a_held_joint_that_is_blocked_winds_up_no_more_than_in_gazebo():
+    """The integral term ends at 1 and unwinds at once; the effort ends at 1000."""
+    context = FakeContext(
+        '<plugin><controller type="position"><joint>blocked</joint><target>1</target>'
+        '<pid_gains>0 10 0</pid_gains></controller><controller type="velocity">'
+        "<joint>fast</joint><target>1</target><pid_gains>1e9 0 0</pid_gains></controller></plugin>",
+        joints=["blocked", "fast"])
+    context.description.joints += [joint.spec for joint in context.joints.values()]
+    JointControl(context).load()
+    law = ServoLaw(context.joints["blocked"].servo, 0.001)
+    assert [law.advance(0.0, 0.0, step) for step in range(1000)][-1] == pytest.approx(1.0)
+    assert law.advance(2.0, 0.0, 1000) < 1.0
+    assert ServoLaw(context.joints["fast"].servo, 0.001).advance(0.0, 0.0, 0) == 1000.0
+
+
+def test_a_controller_without_a_target_drives_nothing():
+    context = FakeContext('<plugin><controller type="position"><joint>arm</joint></controller>'
+                          "</plugin>", joints=["arm"])
+    context.description.joints.append(context.joints["arm"].spec)
+    JointControl(context).load()
+    assert context.joints["arm"].servo is None
 
 
 def test_a_controller_of_no_type_is_told():

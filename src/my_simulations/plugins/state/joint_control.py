@@ -1,7 +1,9 @@
 """libJointControlPlugin.so: holds joints at an effort, a position or a rate.
 
 Parameters are those of Gazebo: `<controller type="force|position|velocity">` with a `<target>`,
-`<pid_gains>` and `<joint>`s, whose names are regular expressions.
+`<pid_gains>` and `<joint>`s, whose names are regular expressions. As there, the integral term of a
+loop stays within 1 N m or N and its effort within 1000, and a controller without a target drives
+nothing.
 """
 from __future__ import annotations
 
@@ -13,7 +15,9 @@ from ..base import Plugin
 from ..context import PluginError
 from ..parameters import Parameters
 
-_USUAL = (1.0, 0.1, 0.01)   # gains of Gazebo's joint controller
+# Gazebo's joint controller: gains, limit of the integral term and of the effort, N m or N.
+_USUAL = (1.0, 0.1, 0.01)
+_MOST_INTEGRAL, _MOST_EFFORT = 1.0, 1000.0
 
 
 class JointControl(Plugin):
@@ -27,7 +31,8 @@ class JointControl(Plugin):
         for controller in controllers:
             servo = self._servo(controller)
             for name in self._names(controller):
-                self.context.joint(name).steer(servo)
+                if "target" in controller:
+                    self.context.joint(name).steer(servo)
 
     def reset(self) -> None:
         """Targets go on."""
@@ -40,9 +45,10 @@ class JointControl(Plugin):
         if kind not in ("position", "velocity"):
             raise PluginError(f"there is no controller of type '{kind}'; there are force, position"
                               " and velocity")
-        gains = PidGains(*p.vector("pid_gains", _USUAL), -1e9, 1e9)
+        gains = PidGains(*p.vector("pid_gains", _USUAL), -_MOST_INTEGRAL, _MOST_INTEGRAL,
+                         antiwindup=True)
         return JointServo(0, "effort", target=target, gains=gains, of_rate=kind == "velocity",
-                          by_rates=kind == "position")
+                          by_rates=kind == "position", most_effort=_MOST_EFFORT)
 
     def _names(self, p: Parameters) -> List[str]:
         names = [joint.name for joint in self.context.description.joints if joint.type != "fixed"]
