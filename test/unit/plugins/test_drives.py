@@ -341,9 +341,12 @@ def test_a_tricycle_whose_wheels_have_the_names_of_the_other_side_counts_a_left_
 
 
 def slipping(inside):
-    context = FakeContext(f"<plugin>{inside}</plugin>")
+    context = FakeContext(f"<plugin>{inside}</plugin>", joints=("axle", "other"))
     context.description.links.append(Link("rear", collisions=[Collision("c", Cylinder(0.3, 0.1))]))
     context.description.joints.append(Joint("axle", "revolute", "base", "rear"))
+    context.description.links.append(Link("twin", collisions=[
+        Collision(name, Cylinder(0.3, 0.1)) for name in "ab"]))
+    context.description.joints.append(Joint("other", "revolute", "base", "twin"))
     WheelSlip(context).load()
     return context.slips
 
@@ -355,5 +358,17 @@ def test_a_wheel_slips_by_its_compliances_and_the_radius_of_its_collision():
                     "</wheel>") == {"rear": ("axle", 0.3, 77.0, 1.0, 2.0)}
     assert slipping(f'<wheel link_name="rear">{force}<wheel_radius>0.25</wheel_radius>'
                     "</wheel>") == {"rear": ("axle", 0.25, 77.0, 0.0, 0.0)}
-    with pytest.raises(PluginError, match="wheel_normal_force"):
+    with pytest.raises(PluginError, match="none of its"):
         slipping('<wheel link_name="rear"/>')
+
+
+@pytest.mark.parametrize("bad", [
+    '<wheel link_name="none"><wheel_normal_force>77</wheel_normal_force></wheel>',
+    '<wheel link_name="rear"><wheel_normal_force>0</wheel_normal_force></wheel>',
+    '<wheel link_name="twin"><wheel_normal_force>77</wheel_normal_force></wheel>',
+    "<wheel><wheel_normal_force>77</wheel_normal_force></wheel>"])
+def test_a_wheel_that_cannot_slip_leaves_the_others_slipping(bad):
+    """Gazebo tells of it and goes on; a wheel must have one collision and one joint."""
+    good = '<wheel link_name="rear"><wheel_normal_force>77</wheel_normal_force></wheel>'
+    for both in (bad + good, good + bad):
+        assert slipping(both) == {"rear": ("axle", 0.3, 77.0, 0.0, 0.0)}

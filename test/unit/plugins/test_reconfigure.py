@@ -6,6 +6,7 @@ from robot_control import Arm, Client, trajectory
 from test_cameras import RAW, camera
 
 from my_simulations.description.model import Joint, JointAxis, Link
+from my_simulations.description.shapes import Collision, Sphere
 from my_simulations.plugins.context import PluginError
 from my_simulations.plugins.drive.wheel_slip import RosWheelSlip
 from my_simulations.plugins.reconfigure import Option, Reconfigure
@@ -147,8 +148,8 @@ def test_gains_of_an_unloaded_controller_are_offered_no_more():
 def test_wheels_slip_as_was_set_and_again_on_their_own():
     context = FakeContext('<plugin><wheel link_name="rear"><slip_compliance_lateral>1'
                           "</slip_compliance_lateral><wheel_normal_force>10</wheel_normal_force>"
-                          "<wheel_radius>0.2</wheel_radius></wheel></plugin>")
-    context.description.links.append(Link("rear"))
+                          "<wheel_radius>0.2</wheel_radius></wheel></plugin>", joints=("axle",))
+    context.description.links.append(Link("rear", collisions=[Collision("c", Sphere(0.3))]))
     context.description.joints.append(Joint("axle", "revolute", "base", "rear", axis=JointAxis()))
     plugin = RosWheelSlip(context)
     plugin.load()

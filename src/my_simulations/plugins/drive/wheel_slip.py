@@ -7,9 +7,8 @@ carries, `<wheel_normal_force>`, and `<wheel_radius>`, else that of its collisio
 """
 from __future__ import annotations
 
-from typing import Dict, Mapping, Optional
+from typing import List, Mapping, NamedTuple, Tuple
 
-from ...description.model import Link
 from ...description.shapes import Cylinder, Sphere
 from ..base import Plugin
 from ..context import PluginError
@@ -22,6 +21,16 @@ _LATERAL, _LONGITUDINAL = (
     for way in ("lateral", "longitudinal"))
 
 
+class _Wheel(NamedTuple):
+    """A wheel that slips: m, N, and its own compliances, lateral and longitudinal."""
+
+    link: str
+    joint: str
+    radius: float
+    force: float
+    compliances: Tuple[float, float]
+
+
 class WheelSlip(Plugin):
     """Tells the physics engine once; it works the slip out in every step."""
 
@@ -29,40 +38,55 @@ class WheelSlip(Plugin):
     """Compliances of all wheels instead of their own; negative for none."""
 
     def load(self) -> None:
-        """Read parameters."""
+        """Read parameters; a wheel that cannot slip is told, and left out, as in Gazebo."""
+        elements = self.context.parameters.children("wheel")
+        if not elements:
+            raise PluginError("it has no <wheel>")
+        self._wheels: List[_Wheel] = []
+        for element in elements:
+            try:
+                self._wheels.append(self._read(element))
+            except PluginError as fault:
+                self.context.warn(f"{fault}; this <wheel> does nothing")
+        if not self._wheels:
+            raise PluginError("none of its <wheel>s can slip")
         self.set_wheels()
 
     def set_wheels(self) -> None:
         """Tell the physics engine."""
-        wheels = self.context.parameters.children("wheel")
-        if not wheels:
-            raise PluginError("it has no <wheel>")
-        self._links = {link.name: link for link in self.context.description.links}
-        for wheel in wheels:
-            self._set(wheel)
+        for wheel in self._wheels:
+            lateral, longitudinal = (shared if shared >= 0.0 else own for shared, own in zip(
+                (self.lateral, self.longitudinal), wheel.compliances))
+            self.context.slip(wheel.link, wheel.joint, wheel.radius, wheel.force, lateral,
+                              longitudinal)
 
     def reset(self) -> None:
         """The engine has begun anew without them."""
         self.set_wheels()
 
-    def _set(self, p: Parameters) -> None:
-        name = p.attribute("link_name")
+    def _read(self, p: Parameters) -> _Wheel:
+        name, description = p.attribute("link_name"), self.context.description
+        if not name:
+            raise PluginError("a <wheel> has no link_name")
         self.context.link(name)
-        axes: Dict[str, str] = {joint.child: joint.name
-                                for joint in self.context.description.joints}
-        if name not in axes:
-            raise PluginError(f"wheel '{name}' turns about no joint")
-        radius = p.number("wheel_radius", 0.0) or _radius(self._links.get(name))
-        force = p.number("wheel_normal_force", 0.0)
-        if not radius or radius <= 0.0:
+        shapes = [collision.geometry for link in description.links if link.name == name
+                  for collision in link.collisions]
+        if len(shapes) != 1:
+            raise PluginError(f"wheel '{name}' has {len(shapes)} collisions instead of one")
+        joints = [joint.name for joint in description.joints if joint.child == name]
+        if len(joints) != 1:
+            raise PluginError(f"wheel '{name}' is the child of {len(joints)} joints instead of one")
+        self.context.joint(joints[0])
+        radius, force = p.number("wheel_radius", 0.0), p.number("wheel_normal_force", 0.0)
+        if radius <= 0.0 and isinstance(shapes[0], (Cylinder, Sphere)):
+            radius = shapes[0].radius
+        if radius <= 0.0:
             raise PluginError(f"wheel '{name}' has no <wheel_radius>, nor a round collision")
         if force <= 0.0:
             raise PluginError(f"wheel '{name}' has no <wheel_normal_force> above 0")
-        own = (p.number("slip_compliance_lateral", 0.0),
-               p.number("slip_compliance_longitudinal", 0.0))
-        lateral, longitudinal = (shared if shared >= 0.0 else one for shared, one in zip(
-            (self.lateral, self.longitudinal), own))
-        self.context.slip(name, axes[name], radius, force, lateral, longitudinal)
+        compliances = (p.number("slip_compliance_lateral", 0.0),
+                       p.number("slip_compliance_longitudinal", 0.0))
+        return _Wheel(name, joints[0], radius, force, compliances)
 
 
 class RosWheelSlip(WheelSlip):
@@ -81,11 +105,3 @@ class RosWheelSlip(WheelSlip):
         self.lateral = float(values[_LATERAL.name])
         self.longitudinal = float(values[_LONGITUDINAL.name])
         self.set_wheels()
-
-
-def _radius(link: Optional[Link]) -> Optional[float]:
-    """Of the first round collision."""
-    for collision in link.collisions if link is not None else ():
-        if isinstance(collision.geometry, (Cylinder, Sphere)):
-            return collision.geometry.radius
-    return None
