@@ -127,6 +127,27 @@ def test_a_gripper_that_holds_something_stalls():
     assert results() == [(ABORTED, False, True)]
 
 
+def test_a_gripper_stalls_no_step_before_its_time():
+    """0.3 s are 300000000 ns, whose product with 1e-9 is above 0.3."""
+    arm, send, results = gripper(stall_timeout=0.3)
+    arm.context.joints["one"].stuck = True
+    send(0.2)
+    arm.context.advance(0.3)
+    assert results() == []
+    arm.context.advance(0.01)
+    assert results() == [(ABORTED, False, True)]
+
+
+def test_a_gripper_stalls_also_when_the_clock_is_set_back():
+    arm, send, results = gripper(stall_timeout=0.3)
+    arm.context.advance(60.0)
+    arm.context.joints["one"].stuck = True
+    send(0.2)
+    arm.context.step = 0
+    arm.context.advance(0.35)
+    assert results() == [(ABORTED, False, True)]
+
+
 def test_another_goal_takes_over_from_the_first():
     arm, send, results = gripper()
     send(0.2, name="a")
@@ -181,6 +202,17 @@ def test_accelerations_are_limited_and_old_commands_forgotten():
     arm.context.advance(1.1)
     assert arm.context.joints["one"].velocity == 0.0
     assert max(one.twist.linear.x for one in arm.published("drive/cmd_vel_out")) == 0.4
+
+
+@pytest.mark.parametrize("seconds", [0.29, 0.3])
+def test_a_base_heeds_a_command_to_the_last_step_of_its_time(seconds):
+    """Their nanoseconds times 1e-9 are above them."""
+    arm = base(cmd_vel_timeout=seconds)
+    arm.hear("drive/cmd_vel", linear={"x": 0.4}, angular={"z": 0.0})
+    arm.context.advance(seconds)
+    assert arm.context.joints["one"].servo.target == pytest.approx(4.0)
+    arm.context.advance(0.01)
+    assert arm.context.joints["one"].servo.target == 0.0
 
 
 def test_a_jerk_is_limited():

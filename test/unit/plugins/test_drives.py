@@ -177,6 +177,17 @@ def test_planar_move_passes_the_command_on_and_forgets_an_old_one():
     assert context.level == (0.0, 0.0, 0.0)
 
 
+@pytest.mark.parametrize("seconds", [0.3, 1.001])
+def test_planar_move_heeds_a_command_to_the_last_step_of_its_time(seconds):
+    context = FakeContext(f"<plugin><cmdTimeout>{seconds}</cmdTimeout></plugin>")
+    PlanarMove(context).load()
+    context.hear("cmd_vel", linear={"x": 0.2, "y": 0.1}, angular={"z": 0.5})
+    context.advance(seconds)
+    assert context.level == (0.2, 0.1, 0.5)
+    context.advance(0.001)
+    assert context.level == (0.0, 0.0, 0.0)
+
+
 def test_a_command_is_forgotten_also_when_the_clock_is_set_back():
     context = FakeContext("<plugin><cmdTimeout>0.1</cmdTimeout></plugin>")
     plugin = PlanarMove(context)

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections import deque
-from typing import Any, Deque, Optional, Tuple
+from typing import Any, Deque, Tuple
 
 from ...description.model import Joint as JointSpec
 from ...description.shapes import Cylinder, Sphere
@@ -16,6 +16,7 @@ from ...geometry import Vec3, transform
 from ..context import PluginError
 from ..drive.odometry import diagonal, fill_pose, planar
 from ..frames import stamped
+from ..time_out import TimeOut
 from .controller import Controller
 from .speed_limits import speed_limits
 
@@ -74,7 +75,7 @@ class BaseController(Controller):
         self.load_wheels()
         self._publish_hz = s.number("publish_rate", 50.0)
         self.open_loop = s.flag("open_loop", False)
-        self._timeout = s.number("cmd_vel_timeout", 0.5)
+        self._time_out = TimeOut(self.context, s.number("cmd_vel_timeout", 0.5))
         self.limits = tuple(speed_limits(s, path) for path in ("linear/x", "linear/y", "angular/z"))
         self._hertz = 1.0 / self.period if self.period else max(_UPDATE_HZ, self._publish_hz)
         window = s.number("velocity_rolling_window_size", 10.0) * self._hertz / _ORIGINAL_HZ
@@ -87,13 +88,12 @@ class BaseController(Controller):
         self._limited = self.publish("cmd_vel_out", "geometry_msgs/TwistStamped", 100) \
             if s.flag("publish_cmd", False) else None
         self.command = STANDING
-        self._heard_ns: Optional[int] = None
         self.subscribe("cmd_vel", "geometry_msgs/Twist", self._hear, checks=True)
         self._pose: Planar = STANDING
 
     def start(self) -> None:
         """Stand; count from here."""
-        self._heard_ns, self.command = None, STANDING
+        self.command = STANDING
         self.last = self.before = STANDING
         self._velocities: Deque[Planar] = deque(maxlen=self.window if self.smooths else 1)
         self.begin_count()
@@ -116,7 +116,8 @@ class BaseController(Controller):
         """Follow a command from now on; one that is not finite is none."""
         finite = all(map(math.isfinite, command))
         if finite:
-            self.command, self._heard_ns = command, self.context.now_ns
+            self.command = command
+            self._time_out.begin()
         return finite
 
     def _update(self) -> None:
@@ -127,11 +128,7 @@ class BaseController(Controller):
         if dt <= 0.0:
             return
         self._count(dt)
-        wanted = self.command
-        if self._heard_ns is not None:
-            self._heard_ns = min(self._heard_ns, now)  # the clock may have been set back
-        if self._heard_ns is None or (now - self._heard_ns) * 1e-9 > self._timeout:
-            wanted = STANDING
+        wanted = STANDING if self._time_out.is_over else self.command
         limited = self.limited(wanted, dt)
         self.before, self.last = self.last, limited
         self.drive(limited)

@@ -6,6 +6,7 @@ from typing import Any, Optional
 
 from ...engine.commands import PidGains
 from ..actions import ActionServer, Goal
+from ..time_out import TimeOut
 from .controller import RUNNING, Controller
 from .hardware import EFFORT, POSITION
 
@@ -29,10 +30,9 @@ class Gripper(Controller):
         self._tolerance = abs(s.number("goal_tolerance", 0.01))
         self._default_effort = abs(s.number("max_effort", 0.0))
         self._still = s.number("stall_velocity_threshold", 0.001)
-        self._patience = s.number("stall_timeout", 1.0)
+        self._stall = TimeOut(self.context, s.number("stall_timeout", 1.0))
         self._goal: Optional[Goal] = None
         self._wanted, self._most = 0.0, self._default_effort
-        self._moved_ns = 0
         self._action = ActionServer(self.context, f"{self.name}/gripper_cmd",
                                     "control_msgs/GripperCommand", self._asked, self._cancelled)
         self.keep(self._action)
@@ -55,7 +55,8 @@ class Gripper(Controller):
             return
         self._preempt("another goal came")
         goal.accept()
-        self._goal, self._moved_ns = goal, self.context.now_ns
+        self._goal = goal
+        self._stall.begin()
         self._go(float(goal.message.command.position), float(goal.message.command.max_effort))
 
     def _cancelled(self, goal: Goal) -> None:
@@ -89,8 +90,8 @@ class Gripper(Controller):
             self._goal = None
             goal.succeed(self._result(False, True))
         elif abs(self._joint.velocity) > self._still:
-            self._moved_ns = self.context.now_ns
-        elif (self.context.now_ns - self._moved_ns) * 1e-9 > self._patience:
+            self._stall.begin()
+        elif self._stall.is_over:
             self._goal = None
             goal.abort(self._result(True, False))
 

@@ -7,6 +7,7 @@ from ...geometry import compose, inverse
 from ..context import Context, Joint
 from ..finite_messages import finite_only
 from ..frames import prefixed, stamped
+from ..time_out import TimeOut
 
 
 class VelocityCommand:
@@ -19,25 +20,23 @@ class VelocityCommand:
 
     def __init__(self, context: Context, topic: str, timeout: float = -1.0) -> None:
         """`timeout`: s of sim time after which a command counts no more; negative for never."""
-        self._context, self._timeout = context, timeout
+        self._time_out = TimeOut(context, timeout) if timeout >= 0.0 else None
         self.stop()
         context.subscribe(topic, "geometry_msgs/Twist", finite_only(context, topic, self._hear))
 
     def stop(self) -> None:
         """As if none had come."""
         self.x = self.y = self.yaw = 0.0
-        self._heard_ns = 0
 
     def _hear(self, message: Any) -> None:
         self.x, self.y, self.yaw = message.linear.x, message.linear.y, message.angular.z
-        self._heard_ns = self._context.now_ns
+        if self._time_out is not None:
+            self._time_out.begin()
 
     def look(self) -> None:
         """Forget a command that is too old."""
-        now = self._context.now_ns
-        self._heard_ns = min(self._heard_ns, now)  # the clock may have been set back
-        if self._timeout >= 0.0 and now - self._heard_ns > self._timeout * 1e9:
-            self.x = self.y = self.yaw = 0.0
+        if self._time_out is not None and self._time_out.is_over:
+            self.stop()
 
 
 class WheelFrames:
