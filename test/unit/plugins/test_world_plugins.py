@@ -38,6 +38,22 @@ def test_lift_and_drag_of_a_wing_that_is_not_stalled(alpha):
     assert torque == pytest.approx((0.0, arm[2] * force[0] - arm[0] * force[2], 0.0))
 
 
+@pytest.mark.parametrize("sweep", [-0.6, 0.3, 1.0])
+def test_a_wing_that_is_swept_lifts_and_drags_by_the_square_of_the_cosine(sweep):
+    """Of the angle between the air and the plane of lift and drag, as in Gazebo."""
+    context = FakeContext(WING, links=("wing",))
+    ahead = 20.0 * math.cos(sweep)
+    context.links["wing"].twist = Twist((ahead * math.cos(0.2), 20.0 * math.sin(sweep),
+                                         -ahead * math.sin(0.2)), (0.0, 0.0, 0.0))
+    LiftDrag(context).load()
+    context.advance(0.001)
+    force, _ = context.pushes["wing"]
+    pressure = 0.5 * 1.2 * ahead ** 2 * 0.5 * math.cos(sweep) ** 2
+    lift, drag = 4.75 * 0.2 * pressure, 0.6 * 0.2 * pressure
+    assert force == pytest.approx((lift * math.sin(0.2) - drag * math.cos(0.2), 0.0,
+                                   lift * math.cos(0.2) + drag * math.sin(0.2)))
+
+
 def test_lift_falls_past_the_stall_and_never_turns_its_sign():
     pressure = 0.5 * 1.2 * 20.0 ** 2 * 0.5
     assert wing(20.0, 0.5)[0][2] == pytest.approx((4.75 * 0.34 - 3.85 * 0.16) * pressure)

@@ -57,7 +57,7 @@ class LiftDrag(Plugin):
             upward = _unit(cross(forward, cross(forward, velocity)))
         span = _unit(cross(forward, upward))
         sine = max(-1.0, min(1.0, dot(span, _unit(velocity))))
-        sweep = math.sqrt(1.0 - sine * sine)
+        sweep = 1.0 - sine * sine  # the square of the cosine, whatever its name is in Gazebo
         plane = subtract(velocity, scale(span, dot(velocity, span)))
         lift_way = _unit(cross(span, plane))
         alpha = math.acos(max(-1.0, min(1.0, dot(lift_way, upward))))
