@@ -320,6 +320,22 @@ def test_a_base_moved_by_forces_stops_after_the_time_of_its_library(library, ins
     assert context.pushes["base_footprint"][0] == pytest.approx((0.0, 0.0, 0.0))
 
 
+@pytest.mark.parametrize("library, element", [
+    (RobotnikForceBasedMove, "commandWatchdog"), (RidgebackForceBasedMove, "cmdVelTimeOut")])
+def test_a_watchdog_of_no_time_lets_a_robot_stand(library, element):
+    """In both originals no value switches it off; hector's 0 does."""
+    for seconds in (0.0, -1.0):
+        context = moved_by_forces(library, f"<{element}>{seconds}</{element}>")
+        context.hear("cmd_vel", linear={"x": 0.3, "y": 0.0}, angular={"z": 0.0})
+        context.advance(0.002)
+        assert context.pushes["base_footprint"][0] == pytest.approx((0.0, 0.0, 0.0))
+    context = moved_by_forces(
+        ForceBasedMove, "<commandTimeoutDuration>0</commandTimeoutDuration>")
+    context.hear("cmd_vel", linear={"x": 0.3, "y": 0.0}, angular={"z": 0.0})
+    context.advance(30.0)
+    assert context.pushes["base_footprint"][0] == pytest.approx((3000.0, 0.0, 0.0))
+
+
 def test_a_base_moved_by_forces_goes_sideways_unless_it_must_not():
     for inside, force in (("", 3000.0),
                           ("<allowLateralMotion>false</allowLateralMotion>", 0.0)):

@@ -10,6 +10,7 @@ place), and go on telling their odometry.
 from __future__ import annotations
 
 import math
+from typing import Optional
 
 from ...geometry import conjugate, rotate, rpy_from_quat
 from ..base import Plugin
@@ -24,7 +25,10 @@ class ForceBasedMove(Plugin):
     """Pushes the link `<robotBaseFrame>`, or the model's first one."""
 
     watchdog = ("commandTimeoutDuration", 0.0)
-    """Its element and default: s until a command counts no more, 0 for never."""
+    """Its element and default: s until a command counts no more."""
+
+    never: Optional[float] = 0.0
+    """The time that means never; None where any time ends, one of 0 after a single step."""
 
     def load(self) -> None:
         """Read parameters."""
@@ -42,8 +46,9 @@ class ForceBasedMove(Plugin):
                                   (1e-3, 1e-3, 1e-3, 1e12, 1e12, 0.01))
         self._broadcasts = p.flag("publishOdometryTf", True)
         self._sideways = p.flag("allowLateralMotion", True)
+        seconds = p.number(*self.watchdog)
         self._command = VelocityCommand(context, p.text("commandTopic", "cmd_vel"),
-                                        p.number(*self.watchdog) or -1.0)
+                                        None if seconds == self.never else seconds)
         self._begin()
         context.every(0.0, self.push)
         hertz = p.number("odometryRate", 20.0)
@@ -91,9 +96,11 @@ class RobotnikForceBasedMove(ForceBasedMove):
     """The copy in robotnik_gazebo_plugins."""
 
     watchdog = ("commandWatchdog", 2.0)
+    never = None
 
 
 class RidgebackForceBasedMove(ForceBasedMove):
     """The copy in ridgeback_gazebo_plugins."""
 
     watchdog = ("cmdVelTimeOut", 0.25)
+    never = None

@@ -26,7 +26,8 @@ class PlanarMove(Plugin):
                                   p.text("odometryFrame", "odom"),
                                   p.text("robotBaseFrame", "base_footprint"))
         timeout = p.number("cmdTimeout", -1.0)
-        self._command = VelocityCommand(context, p.text("commandTopic", "cmd_vel"), timeout)
+        self._command = VelocityCommand(context, p.text("commandTopic", "cmd_vel"),
+                                        timeout if timeout >= 0.0 else None)
         self._last: Tuple[int, Pose] = (context.now_ns, context.pose)
         context.every(100.0 if timeout < 0.0 else 0.0, self.move)
         hertz = p.number("odometryRate", 20.0)

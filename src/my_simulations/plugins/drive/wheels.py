@@ -1,7 +1,7 @@
 """What drives with wheels share: commands, wheel frames, joint states of wheels."""
 from __future__ import annotations
 
-from typing import Any, Sequence
+from typing import Any, Optional, Sequence
 
 from ...geometry import compose, inverse
 from ..context import Context, Joint
@@ -18,9 +18,9 @@ class VelocityCommand:
         yaw: rad/s.
     """
 
-    def __init__(self, context: Context, topic: str, timeout: float = -1.0) -> None:
-        """`timeout`: s of sim time after which a command counts no more; negative for never."""
-        self._time_out = TimeOut(context, timeout) if timeout >= 0.0 else None
+    def __init__(self, context: Context, topic: str, timeout: Optional[float] = None) -> None:
+        """`timeout`: s of sim time after which a command counts no more; None for never."""
+        self._time_out = TimeOut(context, timeout) if timeout is not None else None
         self.stop()
         context.subscribe(topic, "geometry_msgs/Twist", finite_only(context, topic, self._hear))
 
