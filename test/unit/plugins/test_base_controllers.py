@@ -60,6 +60,14 @@ def test_a_steered_axle_makes_a_circle_of_its_wheel_base():
     assert (twist.linear.x, twist.angular.z) == pytest.approx((0.5, 0.5 / radius), rel=1e-3)
 
 
+def test_a_radius_multiplier_of_a_steered_axle_corrects_the_odometry_alone():
+    """Unlike that of the two-wheeled controller, as in ros_controllers."""
+    robot = car(wheel_radius_multiplier=1.1)
+    go(robot, 1.0, x=0.5)
+    assert robot.context.joints["rear"].velocity == pytest.approx(5.0)
+    assert robot.published("drive/odom")[-1].twist.twist.linear.x == pytest.approx(0.55)
+
+
 def test_without_feedback_the_odometry_is_that_of_the_commands():
     robot = car(open_loop=True)
     robot.context.joints["rear"].stuck = True

@@ -1,7 +1,8 @@
 """ackermann_steering_controller: a driven rear axle and a steered front axle, as one wheel each.
 
 `angular.z` of a command is the steering angle, rad, as in the original. Where it differs: with
-`open_loop` the base turns as that angle says (there the angle counts as a yaw rate).
+`open_loop` the base turns as that angle says (there the angle counts as a yaw rate). Multipliers
+correct the odometry alone.
 """
 from __future__ import annotations
 
@@ -26,9 +27,11 @@ class AckermannSteeringController(BaseController):
         if s.get("wheel_radius") is None:
             radius = self.radius_of(wheel)
         self._base = base * s.number("wheel_separation_h_multiplier", 1.0)
-        self._radius = radius * s.number("wheel_radius_multiplier", 1.0)
+        self._radius = radius
+        self._counted_radius = radius * s.number("wheel_radius_multiplier", 1.0)
         self._scale = s.number("steer_pos_multiplier", 1.0)
-        self.positive(wheel_separation_h=self._base, wheel_radius=self._radius)
+        self.positive(wheel_separation_h=self._base,
+                      wheel_radius=min(self._radius, self._counted_radius))
 
     def drive(self, velocity: Planar) -> None:
         """The rear wheel rolls, the front one is steered."""
@@ -45,6 +48,6 @@ class AckermannSteeringController(BaseController):
             forward, angle = self.last[0] * dt, self.last[2]
         else:
             before, self._turned = self._turned, self._wheel.position
-            forward, angle = ((self._turned - before) * self._radius,
+            forward, angle = ((self._turned - before) * self._counted_radius,
                               self._steer.position * self._scale)
         return forward, 0.0, forward * math.tan(angle) / self._base
