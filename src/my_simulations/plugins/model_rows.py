@@ -1,7 +1,7 @@
 """Finds the links and joints of a model by the names that a plugin uses."""
 from __future__ import annotations
 
-from typing import Iterable
+from typing import Container, Iterable, Optional
 
 from ..description.model import Joint as JointSpec
 from ..simulator.registry import Entity
@@ -10,6 +10,9 @@ from .context import PluginError
 
 class ModelRows:
     """The rows of one model. Names are looked for in the plugin's scope (`inner::`) first.
+
+    As in Gazebo, a name may begin with that of the model; one that begins with the name of another
+    model is none of this one.
 
     Attributes:
         entity: the model as it is now.
@@ -20,25 +23,34 @@ class ModelRows:
 
     def has_link(self, name: str) -> bool:
         """Whether a link of the model has this name."""
-        names = self.entity.link_names
-        return name in names or self._scope + name in names
+        return self._full(name, self.entity.link_names) is not None
 
     def link(self, name: str) -> int:
         """The row of a link; PluginError with the names that there are."""
         names = self.entity.link_names
-        for full in (self._scope + name, name, name.partition("::")[2]):
-            if full in names:
-                return self.entity.first_link_row + names.index(full)
-        raise PluginError(f"model '{self.entity.model.name}' has no link '{name}'" + _list(names))
+        full = self._full(name, names)
+        if full is None:
+            raise PluginError(f"model '{self.entity.model.name}' has no link '{name}'"
+                              + _list(names))
+        return self.entity.first_link_row + names.index(full)
 
     def joint(self, name: str) -> JointSpec:
         """The description of a joint; PluginError with the names that there are."""
         known = {joint.name: joint for joint in self.entity.model.joints}
-        spec = known.get(self._scope + name) or known.get(name)
-        if spec is None:
+        full = self._full(name, known)
+        if full is None:
             raise PluginError(f"model '{self.entity.model.name}' has no joint '{name}'"
                               + _list(known))
-        return spec
+        return known[full]
+
+    def _full(self, name: str, known: Container[str]) -> Optional[str]:
+        """The name of a link or joint as the model knows it."""
+        if self._scope + name in known:
+            return self._scope + name
+        if name in known:
+            return name
+        model, _, rest = name.partition("::")
+        return rest if model == self.entity.model.name and rest in known else None
 
     def axis(self, joint: str) -> int:
         """The row of a joint by its full name; PluginError for one that does not move."""

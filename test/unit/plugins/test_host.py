@@ -86,6 +86,29 @@ def test_a_robot_of_the_world_drives(case):
     assert one.graph.transforms[-1][:3] == (1_010_000_000, "odom", "base_footprint")
 
 
+P3D = """<plugin name="p3d" filename="libgazebo_ros_p3d.so"><topicName>truth</topicName>
+<bodyName>{}</bodyName></plugin>"""
+
+
+def test_a_link_of_another_model_is_not_taken_for_the_own_one_of_that_name(case):
+    """Gazebo finds links of a model by their plain name, or below the name of that model."""
+    library = "libgazebo_ros_p3d.so"
+    one = case(robot("other", P3D.format("base"), library),
+               robot("robot", P3D.format("other::base"), library))
+    (told,) = one.failed()
+    assert "model 'robot' has no link 'other::base'" in told.message
+
+
+def test_links_and_joints_may_be_named_below_their_model(case):
+    scoped = DRIVE.replace(">left<", ">robot::left<").replace(">right<", ">robot::right<")
+    one = case(robot(xml=scoped), robot("seen", P3D.format("seen::base"), "libgazebo_ros_p3d.so"))
+    one.command(linear={"x": 0.5}, angular={"z": 0.0})
+    one.sim.clock.advance(1010)
+    until(lambda: len(one.graph.on("robot/odom")) == 101)
+    assert one.graph.on("robot/odom")[-1].pose.pose.position.x == pytest.approx(0.5)
+    assert one.failed() == []
+
+
 def test_the_same_run_gives_the_same_messages(case):
     def run():
         one = case(robot())
