@@ -1,6 +1,8 @@
 """Plugins that hold objects, in a world without physics."""
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 
 from my_simulations.description.model import Link, Model
@@ -121,6 +123,60 @@ def test_a_short_loss_of_contact_costs_a_count(gripper):
     assert not gripper.attached
     gripper.advance(0.1)
     assert gripper.attached
+
+
+def test_a_grip_whose_contacts_flicker_holds(gripper):
+    """Fingers in turn, none of them at the moment of a look, as OnContact of the original."""
+    one, other = squeezed()
+    gripper.touching = squeezed()
+    gripper.advance(0.1)
+    for _ in range(3):
+        for touching in ([one], [other], [], []):
+            gripper.touching = touching
+            gripper.advance(0.025)
+    assert gripper.attached
+
+
+def test_what_is_deleted_between_two_looks_is_not_held(gripper):
+    gripper.touching = squeezed()
+    gripper.advance(0.35)
+    gripper.touching = []
+    del gripper.others["cube"]
+    gripper.advance(0.1)
+    assert not gripper.attached
+
+
+def test_forces_are_those_of_the_mean_of_a_look(gripper):
+    """A finger that just touched in the step of the look pressed before."""
+    one, other = squeezed()
+    weak = (*other[:2], replace(other[2], force=0.01))
+    for _ in range(5):
+        gripper.touching = [one, other]
+        gripper.advance(0.095)
+        gripper.touching = [one, weak]
+        gripper.advance(0.005)
+    assert gripper.attached
+
+
+def test_contacts_are_read_at_looks_alone_while_nothing_is_touched(gripper):
+    read = []
+    gripper.contacts = lambda: read.append(gripper.step) or gripper.touching
+    gripper.advance(1.0)
+    assert read == list(range(100, 1001, 100))
+    gripper.touching = squeezed()
+    gripper.advance(0.4)
+    assert gripper.attached
+    del read[:]
+    gripper.advance(1.0)
+    assert read == []
+
+
+def test_collisions_that_a_gripper_cannot_switch_off_are_told():
+    context = FakeContext(ARM.replace("<arm>", "<disable_collisions_on_attach>true"
+                                      "</disable_collisions_on_attach><arm>"),
+                          links=("palm", "left", "right"))
+    GraspFix(context).load()
+    assert "disable_collisions_on_attach" in context.said[-1]
 
 
 def test_an_opened_finger_lets_go_and_a_closing_one_does_not(gripper):

@@ -2,31 +2,39 @@
 
 Parameters and defaults are those of gazebo_grasp_plugin. An object that is pressed from opposite
 sides in more than `grip_count_threshold` looks is fixed to the palm, and let go when a finger has
-gone back from it by more than `release_tolerance`.
+gone back from it by more than `release_tolerance`. A look takes the mean of what fingers did since
+the one before: there of every step, here a hundred times a second, while a finger touches
+something. Where it differs: collisions of what is held stay on
+(`<disable_collisions_on_attach>`).
 """
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
-from typing import Dict, List, NamedTuple, Tuple
+from typing import Dict, List, NamedTuple, Optional, Tuple
 
 from ...geometry import Vec3, add, conjugate, dot, inverse, norm, rotate, scale, subtract, transform
 from ..base import Plugin
-from ..context import PluginError
+from ..context import Ending, PluginError
 from ..parameters import Parameters
 
 _FORGET = 1e-6  # N: a contact that does not press
 _COUNTS = 10    # the usual most of counts
+_SAMPLE_HZ = 100.0  # of contacts between two looks
 _LEAST_RATIO = 0.3  # of two forces that oppose each other, and the smallest, N: gazebo_grasp_plugin
 _LEAST_FORCE = 1e-4
 
 
 class Press(NamedTuple):
-    """What a finger does to an object: force on the object, N, and where, m; world axes."""
+    """What a finger does to an object: force on the object, N, world axes, and where, m."""
 
     finger: str
     force: Vec3
-    point: Vec3
+    point: Vec3  # in the finger's frame
+
+
+Presses = Dict[str, Dict[str, List[Press]]]
+"""By the link of the object and the finger: those of the moments in which it touched."""
 
 
 @dataclass
@@ -34,6 +42,7 @@ class Arm:
     """A gripper.
 
     Attributes:
+        pressed: since the last look.
         counts: in how many looks more an object was pressed than not, by its scoped link name.
         held: the object that is fixed to the palm; "" for none.
         marks: of each finger that held it, where it touched (in the finger and in the palm frame)
@@ -43,6 +52,7 @@ class Arm:
     name: str
     palm: str
     fingers: List[str]
+    pressed: Presses = field(default_factory=dict)
     counts: Dict[str, int] = field(default_factory=dict)
     held: str = ""
     marks: List[Tuple[str, Vec3, Vec3, Vec3]] = field(default_factory=list)
@@ -63,7 +73,13 @@ class GraspFix(Plugin):
         if "max_grip_count" not in p:  # there a threshold of the usual most is never passed
             self._most = max(self._most, 2 * self._threshold)
         self._release = p.number("release_tolerance", 0.005)
-        context.every(p.number("update_rate", 5.0), self.update)
+        if p.flag("disable_collisions_on_attach", False):
+            context.warn("<disable_collisions_on_attach> is not heeded: what is held collides")
+        hertz = p.number("update_rate", 5.0)
+        self._rare = 0.0 < hertz < _SAMPLE_HZ
+        self._samples: Optional[Ending] = None
+        self._step = -1
+        context.every(hertz, self.update)
 
     def _arm(self, p: Parameters) -> Arm:
         name, palm = p.text("arm_name", "default_arm"), p.text("palm_link")
@@ -77,21 +93,45 @@ class GraspFix(Plugin):
     def reset(self) -> None:
         """Nothing is held."""
         for arm in self._arms:
-            arm.counts, arm.held, arm.marks = {}, "", []
+            arm.pressed, arm.counts, arm.held, arm.marks = {}, {}, "", []
 
     def update(self) -> None:
-        """Look at the contacts of the last step."""
-        contacts = self.context.contacts()
+        """Look at the contacts of the last step, and at those that were sampled before."""
+        self._sample()
+        self._sample_on(any(arm.pressed for arm in self._arms))
+        models = self.context.models()
         for arm in self._arms:
-            pressed = self._pressed(arm, contacts)
-            if arm.held:
-                if arm.held.partition("::")[0] not in self.context.models() or self._opened(arm):
-                    self._let_go(arm)
-                continue
-            self._count(arm, pressed)
+            pressed, arm.pressed = arm.pressed, {}
+            if not arm.held:
+                self._count(arm, {name: [_mean(presses) for presses in by_finger.values()]
+                                  for name, by_finger in pressed.items()
+                                  if name.partition("::")[0] in models})
+            elif arm.held.partition("::")[0] not in models or self._opened(arm):
+                self._let_go(arm)
 
-    def _pressed(self, arm: Arm, contacts: list) -> Dict[str, List[Press]]:
-        """What presses movable links of other models, by their names."""
+    def _sample_on(self, touches: bool) -> None:
+        """Sample contacts until the next look, or no more."""
+        if touches and self._rare and self._samples is None:
+            self._samples = self.context.every(_SAMPLE_HZ, self._sample)
+        elif not touches and self._samples is not None:
+            self._samples.end()
+            self._samples = None
+
+    def _sample(self) -> None:
+        """Take the contacts of the last step, once."""
+        if self.context.step == self._step:
+            return
+        self._step = self.context.step
+        free = [arm for arm in self._arms if not arm.held]
+        contacts = self.context.contacts() if free else []
+        for arm in free:
+            for name, by_finger in self._pressed(arm, contacts).items():
+                known = arm.pressed.setdefault(name, {})
+                for finger, press in by_finger.items():
+                    known.setdefault(finger, []).append(press)
+
+    def _pressed(self, arm: Arm, contacts: list) -> Dict[str, Dict[str, Press]]:
+        """What presses movable links of other models, by their names and by those of fingers."""
         prefix, models = f"{self.context.model}::", self.context.models()
         parts = {prefix + name: name for name in arm.fingers}
         found: Dict[str, Dict[str, Press]] = {}
@@ -106,8 +146,10 @@ class GraspFix(Plugin):
                 before = found.setdefault(theirs, {}).get(mine)
                 if before is not None:
                     force = add(before.force, force)
-                found[theirs][mine] = Press(parts[mine], force, contact.position)
-        return {name: list(presses.values()) for name, presses in found.items()}
+                finger = self.context.link(parts[mine]).pose
+                found[theirs][mine] = Press(parts[mine], force,
+                                            transform(inverse(finger), contact.position))
+        return found
 
     def _count(self, arm: Arm, pressed: Dict[str, List[Press]]) -> None:
         gripped = {name for name, presses in pressed.items() if self._opposed(presses)}
@@ -140,8 +182,8 @@ class GraspFix(Plugin):
             if press.finger == arm.palm:
                 continue
             finger = context.link(press.finger).pose
-            arm.marks.append((press.finger, transform(inverse(finger), press.point),
-                              transform(inverse(palm), press.point),
+            arm.marks.append((press.finger, press.point,
+                              transform(inverse(palm), transform(finger, press.point)),
                               rotate(conjugate(palm.orientation),
                                      scale(press.force, 1.0 / norm(press.force)))))
         context.info(f"arm '{arm.name}' holds {name}")
@@ -162,3 +204,11 @@ class GraspFix(Plugin):
 
     def _joint(self, arm: Arm) -> str:
         return f"{self.context.model}::{arm.name}::grasp"
+
+
+def _mean(presses: List[Press]) -> Press:
+    """Of one finger on one object."""
+    share, force, point = 1.0 / len(presses), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
+    for press in presses:
+        force, point = add(force, press.force), add(point, press.point)
+    return Press(presses[0].finger, scale(force, share), scale(point, share))
