@@ -7,7 +7,7 @@ import pytest
 from robot_control import Arm, Message, Span
 
 from my_simulations.description.model import JointAxis
-from my_simulations.plugins.actions import ABORTED, PREEMPTED, SUCCEEDED
+from my_simulations.plugins.actions import ABORTED, PREEMPTED, REJECTED, SUCCEEDED
 
 EFFORT = "hardware_interface/EffortJointInterface"
 VELOCITY = "hardware_interface/VelocityJointInterface"
@@ -125,6 +125,18 @@ def test_a_gripper_that_holds_something_stalls():
     assert results() == []
     arm.context.advance(0.25)
     assert results() == [(ABORTED, False, True)]
+
+
+@pytest.mark.parametrize("position, effort", [
+    (math.nan, 0.0), (math.inf, 0.0), (0.2, math.nan)])
+def test_a_gripper_rejects_what_is_no_number_and_goes_on(position, effort):
+    arm, send, results = gripper()
+    send(0.2)
+    send(position, effort, name="bad")
+    assert results() == [(REJECTED, False, False)]
+    arm.context.advance(0.5)
+    assert results()[1:] == [(SUCCEEDED, True, False)]
+    assert arm.at() == pytest.approx(0.2, abs=0.01)
 
 
 def test_a_gripper_stalls_no_step_before_its_time():

@@ -6,6 +6,7 @@ from typing import Any, Optional
 
 from ...engine.commands import PidGains
 from ..actions import ActionServer, Goal
+from ..finite_messages import is_all_finite
 from ..time_out import TimeOut
 from .controller import RUNNING, Controller
 from .hardware import EFFORT, POSITION
@@ -53,11 +54,15 @@ class Gripper(Controller):
         if self.state != RUNNING:
             goal.reject(self._result(False, False), "the controller is not running")
             return
+        command = goal.message.command
+        if not is_all_finite(command.position) or math.isnan(command.max_effort):
+            goal.reject(self._result(False, False), "the position or the effort is no number")
+            return
         self._preempt("another goal came")
         goal.accept()
         self._goal = goal
         self._stall.begin()
-        self._go(float(goal.message.command.position), float(goal.message.command.max_effort))
+        self._go(float(command.position), float(command.max_effort))
 
     def _cancelled(self, goal: Goal) -> None:
         if self._goal is goal:
