@@ -122,6 +122,16 @@ def test_a_trajectory_with_what_is_no_number_is_refused_and_the_next_is_played(a
     assert positions(arm) == [0.3, 0.4]
 
 
+def test_points_without_times_are_played_one_a_step(arm):
+    """As many as there are; the original looks at one in each update."""
+    play(arm, *(point(0.0, 0.001 * n, 0.0) for n in range(3000)))
+    assert positions(arm)[0] == 0.0
+    arm.advance(1.5)
+    assert positions(arm)[0] == pytest.approx(1.5) and arm.held
+    arm.advance(1.5)
+    assert positions(arm)[0] == pytest.approx(2.999) and not arm.held
+
+
 def test_a_reset_ends_it(arm):
     plugin = JointPoseTrajectory(arm)
     plugin.load()

@@ -86,7 +86,10 @@ class JointPoseTrajectory(Plugin):
         if self._points and without_physics:
             self._held = True
             context.hold(True)
-        self._await()
+        if self._points and self._points[0][0] <= context.now_ns:
+            self._play()
+        else:
+            self._await()
 
     def _known(self, names: Any) -> Tuple[List[Joint], List[int]]:
         """The joints that there are, and their columns; others are told and skipped."""
@@ -100,12 +103,11 @@ class JointPoseTrajectory(Plugin):
         return joints, columns
 
     def _await(self) -> None:
-        if not self._points:
-            self._end()
-        elif self._points[0][0] <= self.context.now_ns:
-            self._play()
-        else:
+        """The next point comes at its time, and in another step: one a step, as the original."""
+        if self._points:
             self._next = self.context.once(self._points[0][0], self._play)
+        else:
+            self._end()
 
     def _play(self) -> None:
         """Put the joints where the first of the points that are left says."""
