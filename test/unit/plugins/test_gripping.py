@@ -194,8 +194,36 @@ def test_an_opened_finger_lets_go_and_a_closing_one_does_not(gripper):
 def test_a_gripper_without_an_arm_is_the_users_fault():
     with pytest.raises(PluginError, match="no <arm>"):
         GraspFix(FakeContext("<plugin/>")).load()
-    with pytest.raises(PluginError, match="no link 'nowhere'"):
-        GraspFix(FakeContext(ARM.replace("palm<", "nowhere<"), links=("palm",))).load()
+    context = FakeContext(ARM.replace("palm<", "nowhere<"), links=("palm",))
+    with pytest.raises(PluginError, match="none of its <arm>s"):
+        GraspFix(context).load()
+    assert "no link 'nowhere'" in context.said[-1]
+
+
+@pytest.mark.parametrize("bad", [
+    "<arm><arm_name>b</arm_name><palm_link>none</palm_link><gripper_link>left</gripper_link></arm>",
+    "<arm><arm_name>b</arm_name><palm_link>palm</palm_link><gripper_link>none</gripper_link></arm>",
+    "<arm><arm_name>b</arm_name></arm>"])
+def test_an_arm_or_a_finger_that_is_not_there_leaves_the_others_holding(bad):
+    """The original tells of it and goes on."""
+    finger = ARM.replace("</arm>", "<gripper_link>gone</gripper_link></arm>")
+    context = FakeContext(finger.replace("<arm>", bad + "<arm>", 1),
+                          links=("palm", "left", "right"))
+    world(context)
+    GraspFix(context).load()
+    assert len(context.said) >= 2
+    context.touching = squeezed()
+    context.advance(0.4)
+    assert list(context.attached) == ["robot::arm::grasp"]
+
+
+def test_a_second_arm_of_a_name_is_left_out():
+    """It would take away what the first one holds."""
+    arm = ARM[ARM.index("<arm>"):ARM.index("</arm>") + 6]
+    context = FakeContext(ARM.replace(arm, arm + arm), links=("palm", "left", "right"))
+    world(context)
+    GraspFix(context).load()
+    assert "there is an arm 'arm' already" in context.said[-1]
 
 
 def test_the_link_attacher_attaches_and_detaches_by_the_same_names():

@@ -64,9 +64,16 @@ class GraspFix(Plugin):
     def load(self) -> None:
         """Read parameters."""
         context, p = self.context, self.context.parameters
-        self._arms = [self._arm(one) for one in p.children("arm")]
-        if not self._arms:
+        if not p.children("arm"):
             raise PluginError("it has no <arm>")
+        self._arms: List[Arm] = []
+        for one in p.children("arm"):
+            try:
+                self._arms.append(self._arm(one))
+            except PluginError as fault:
+                context.warn(f"{fault}; this <arm> does nothing")
+        if not self._arms:
+            raise PluginError("none of its <arm>s can hold anything")
         self._least_angle = math.radians(p.number("forces_angle_tolerance", 120.0))
         self._most = p.integer("max_grip_count", _COUNTS)
         self._threshold = p.integer("grip_count_threshold", self._most // 2)
@@ -83,11 +90,21 @@ class GraspFix(Plugin):
 
     def _arm(self, p: Parameters) -> Arm:
         name, palm = p.text("arm_name", "default_arm"), p.text("palm_link")
-        fingers = [one for one in p.texts("gripper_link") if one]
-        if not palm or not fingers:
+        named = [one for one in p.texts("gripper_link") if one]
+        if not palm or not named:
             raise PluginError(f"arm '{name}' has no <palm_link> or no <gripper_link>")
-        for link in (palm, *fingers):
-            self.context.link(link)
+        if any(arm.name == name for arm in self._arms):
+            raise PluginError(f"there is an arm '{name}' already")
+        self.context.link(palm)
+        fingers: List[str] = []
+        for finger in named:
+            try:
+                self.context.link(finger)
+                fingers.append(finger)
+            except PluginError as fault:
+                self.context.warn(f"arm '{name}': {fault}; this <gripper_link> does nothing")
+        if not fingers:
+            raise PluginError(f"arm '{name}' has no <gripper_link> that there is")
         return Arm(name, palm, fingers)
 
     def reset(self) -> None:
