@@ -136,10 +136,31 @@ def test_a_lift_closes_moves_opens_waits_and_closes():
     assert targets(context) == (0.0, 0.0)
 
 
-def test_what_is_no_floor_is_told():
+def test_a_lift_that_waits_while_the_clock_is_set_back_goes_on():
+    context, plugin = lift()
+    context.advance(60.0)
+    for joint in context.joints.values():
+        joint.stuck = True
+    context.hear("elevator", data="1")
+    for _ in range(2):
+        arrive(context)
+        context.advance(0.02)
+    assert targets(context) == (2.0, 1.0)
+    arrive(context)
+    context.advance(0.02)   # it waits
+    context.step = 0
+    plugin.clock_set()
+    context.advance(0.9)
+    assert targets(context) == (2.0, 1.0)
+    context.advance(0.2)
+    assert targets(context) == (2.0, 0.0)
+
+
+@pytest.mark.parametrize("floor", ["roof", "9" * 400])
+def test_what_is_no_floor_is_told(floor):
     context, _ = lift()
-    context.hear("elevator", data="roof")
-    assert "roof" in context.said[-1]
+    context.hear("elevator", data=floor)
+    assert floor in context.said[-1]
     context.advance(0.05)
     assert targets(context) == (0.0, 0.0)
 
@@ -179,6 +200,16 @@ def test_wind_rises_with_its_lag():
     x, y, _ = plugin.velocity()
     assert math.hypot(x, y) == pytest.approx(5.0 * (1.0 - math.exp(-1.0)), rel=1e-6)
     assert math.atan2(y, x) == pytest.approx(math.atan2(4.0, 3.0))
+
+
+def test_wind_blows_on_when_the_clock_is_set_back():
+    context, plugin = windy("<horizontal><magnitude><time_for_rise>2</time_for_rise></magnitude>"
+                            "<direction><time_for_rise>0</time_for_rise></direction></horizontal>")
+    context.advance(60.0)
+    context.step = 0
+    plugin.clock_set()
+    context.advance(0.01)
+    assert math.hypot(*plugin.velocity()[:2]) == pytest.approx(5.0)
 
 
 def test_wind_swings_and_another_one_can_be_given():

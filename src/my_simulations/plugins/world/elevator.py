@@ -13,6 +13,7 @@ from ...engine.commands import JointServo, PidGains
 from ..base import Plugin
 from ..context import Joint, PluginError
 from ..parameters import namespace_or
+from ..time_out import TimeOut
 
 _HERTZ = 100.0
 _DOOR_GAINS, _LIFT_GAINS = PidGains(2.0, 0.0, 1.0), PidGains(1e5, 0.0, 1e5)
@@ -32,7 +33,7 @@ class Elevator(Plugin):
         context.use_namespace(namespace_or(p, ""))
         self._lift, self._door = self._joint("lift_joint"), self._joint("door_joint")
         self._height = p.number("floor_height", 3.0)
-        self._wait_ns = round(p.number("door_wait_time", 5.0) * 1e9)
+        self._wait = TimeOut(context, p.number("door_wait_time", 5.0))
         context.subscribe(p.text("topic") or "elevator", "std_msgs/String", self._hear)
         self.reset()
         context.every(_HERTZ, self.update)
@@ -52,7 +53,8 @@ class Elevator(Plugin):
     def _hear(self, message: Any) -> None:
         try:
             floor = int(str(message.data).strip())
-        except ValueError:
+            float(floor)
+        except (ValueError, OverflowError):
             self.context.warn(f"'{message.data}' is no floor; a floor is a number")
             return
         if not self._stages:
@@ -86,12 +88,14 @@ class Elevator(Plugin):
         return go_on
 
     def _waiting(self) -> Stage:
-        until: List[int] = []
+        begun = False
 
         def go_on() -> bool:
-            if not until:
-                until.append(self.context.now_ns + self._wait_ns)
-            return self.context.now_ns >= until[0]
+            nonlocal begun
+            if not begun:
+                begun = True
+                self._wait.begin()
+            return self._wait.is_over
 
         return go_on
 

@@ -66,10 +66,12 @@ class Wind(Plugin):
         for lag in (self._magnitude, self._direction, self._vertical):
             lag.noise.reset()
         self._means = [0.0, 0.0, 0.0]
-        self._last_ns = self.context.now_ns
         self._pushed = []
+        self.clock_set()
 
-    clock_set = reset
+    def clock_set(self) -> None:
+        """The wind blows on, as in Gazebo; lags are of the time that comes."""
+        self._last_ns = self.context.now_ns
 
     def _hear(self, message: Any) -> None:
         self._given = (float(message.x), float(message.y), float(message.z))
