@@ -140,6 +140,18 @@ def test_a_command_by_angles_goes_sideways():
         (0.5 * math.cos(0.3), 0.5 * math.sin(0.3), 0.0), abs=1e-6)
 
 
+def test_a_twist_that_is_no_number_changes_nothing_of_a_command_by_angles():
+    robot = four_wheels()
+    for _ in range(5):
+        robot.hear("drive/cmd_four_wheel_steering", speed=0.5, front_steering_angle=0.3,
+                   rear_steering_angle=0.3)
+        robot.hear("drive/cmd_vel", linear={"x": math.nan, "y": 0.0}, angular={"z": 0.0})
+        robot.context.advance(0.1)
+    assert [robot.at(name) for name in STEERS] == pytest.approx([0.3] * 4, abs=1e-6)
+    assert [text for text in robot.context.said if "not finite" in text] == [
+        "controller 'drive' ignores commands that are not finite"]
+
+
 def test_an_axle_without_two_wheels_is_told():
     with pytest.raises(AssertionError, match="a left and a right"):
         four_wheels(front_wheel=["front_left"])

@@ -87,7 +87,7 @@ class BaseController(Controller):
         self._odom = self.publish("odom", "nav_msgs/Odometry", 100)
         self._limited = self.publish("cmd_vel_out", "geometry_msgs/TwistStamped", 100) \
             if s.flag("publish_cmd", False) else None
-        self.command = STANDING
+        self.command, self._told_of_numbers = STANDING, False
         self.subscribe("cmd_vel", "geometry_msgs/Twist", self._hear, checks=True)
         self._pose: Planar = STANDING
 
@@ -108,16 +108,23 @@ class BaseController(Controller):
         self.drive(STANDING)
 
     def _hear(self, message: Any) -> None:
-        self.obey((float(message.linear.x),
-                   float(message.linear.y) if self.goes_sideways else 0.0,
-                   float(message.angular.z)))
+        self.obey_twist(message)
+
+    def obey_twist(self, message: Any) -> bool:
+        """Follow a geometry_msgs/Twist, see `obey`."""
+        return self.obey((float(message.linear.x),
+                          float(message.linear.y) if self.goes_sideways else 0.0,
+                          float(message.angular.z)))
 
     def obey(self, command: Planar) -> bool:
-        """Follow a command from now on; one that is not finite is none."""
+        """Follow a command from now on; one that is not finite is none, and told once."""
         finite = all(map(math.isfinite, command))
         if finite:
             self.command = command
             self._time_out.begin()
+        elif not self._told_of_numbers:
+            self._told_of_numbers = True
+            self.context.warn(f"controller '{self.name}' ignores commands that are not finite")
         return finite
 
     def _update(self) -> None:

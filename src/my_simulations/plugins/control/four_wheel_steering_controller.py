@@ -121,8 +121,8 @@ class FourWheelSteeringController(BaseController):
             self._by_angles = True
 
     def _hear(self, message: Any) -> None:
-        super()._hear(message)
-        self._by_angles = False
+        if self.obey_twist(message):
+            self._by_angles = False
 
     def limited(self, wanted: Planar, dt: float) -> Planar:
         """The speed within its limits; angles within a quarter turn, else the yaw rate."""
