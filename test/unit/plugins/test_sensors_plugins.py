@@ -162,6 +162,14 @@ def test_joint_states_of_a_list_with_blanks():
     assert (state.name, state.position) == (["a", "b"], [0.0, 0.5])
 
 
+def test_a_joint_that_is_not_there_leaves_the_states_of_the_others():
+    context = FakeContext("<plugin><jointName>none, b</jointName></plugin>", joints=("b",))
+    JointStatePublisher(context).load()
+    assert "no joint 'none'" in context.said[-1]
+    context.advance(0.01)
+    assert context.published["robot/joint_states"][-1].name == ["b"]
+
+
 def test_ground_truth_with_an_offset():
     context = FakeContext("<plugin><bodyName>base</bodyName><topicName>truth</topicName>"
                           "<updateRate>50</updateRate><xyzOffset>1 2 3</xyzOffset></plugin>")

@@ -74,6 +74,11 @@ def test_a_control_joint_adds_lift():
     assert context.pushes["wing"][0][2] == pytest.approx(4.0 * 0.1 * 0.5 * 1.2 * 100.0 * 0.5)
 
 
+def test_a_wing_without_its_control_joint_flies():
+    xml = WING.replace("<cp>", "<control_joint_name>none</control_joint_name><cp>")
+    assert wing(20.0, 0.2, xml)[0] == wing(20.0, 0.2)[0]
+
+
 def buoy(inside, *collisions, com=(0.0, 0.0, 0.0)):
     context = FakeContext(f"<plugin>{inside}</plugin>")
     inertial = Inertial(mass=2.0, pose=Pose(com))

@@ -1,7 +1,10 @@
 """libgazebo_ros_joint_state_publisher.so: positions and velocities of joints."""
 from __future__ import annotations
 
+from typing import List
+
 from ..base import Plugin
+from ..context import Joint, PluginError
 from ..frames import stamped
 from ..parameters import namespace_or
 
@@ -16,7 +19,12 @@ class JointStatePublisher(Plugin):
         names = [name.strip() for name in p.text("jointName").split(",") if name.strip()]
         if not names:
             context.warn("it has no <jointName>, and publishes empty joint_states")
-        self._joints = [context.joint(name) for name in names]
+        self._joints: List[Joint] = []
+        for name in names:
+            try:
+                self._joints.append(context.joint(name))
+            except PluginError as fault:
+                context.warn(f"{fault}; its state is not published")
         self._topic = context.publish("joint_states", "sensor_msgs/JointState", 1000)
         context.every(p.number("updateRate", 100.0), self.update)
 

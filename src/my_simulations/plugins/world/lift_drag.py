@@ -8,10 +8,11 @@ part (the original subtracts the spanwise speed along the flow).
 from __future__ import annotations
 
 import math
+from typing import Optional
 
 from ...geometry import Vec3, add, cross, dot, norm, rotate, scale, subtract, transform
 from ..base import Plugin
-from ..context import PluginError
+from ..context import Joint, PluginError
 
 _SLOWEST = 0.01  # m/s
 
@@ -33,10 +34,19 @@ class LiftDrag(Plugin):
         self._forward = _unit(p.vector("forward", (1.0, 0.0, 0.0)))
         self._upward = _unit(p.vector("upward", (0.0, 0.0, 1.0)))
         self._radial = p.flag("radial_symmetry", False)
-        name = p.text("control_joint_name")
-        self._control = context.joint(name) if name else None
+        self._control = self._control_joint(p.text("control_joint_name"))
         self._per_rad = p.number("control_joint_rad_to_cl", 4.0)
         context.every(0.0, self.update)
+
+    def _control_joint(self, name: str) -> Optional[Joint]:
+        """One that is not there is told, and the wing flies without it, as in Gazebo."""
+        if not name:
+            return None
+        try:
+            return self.context.joint(name)
+        except PluginError as fault:
+            self.context.warn(f"{fault}; <control_joint_name> does nothing")
+            return None
 
     def update(self) -> None:
         """Before each step."""
