@@ -88,6 +88,18 @@ def buoy(inside, *collisions, com=(0.0, 0.0, 0.0)):
     return context
 
 
+@pytest.mark.parametrize("block", [
+    '<link name="hull"><volume>0</volume><center_of_volume>0 0 1</center_of_volume></link>',
+    '<link name="hull"><volume>-2</volume></link>', '<link name="none"><volume>1</volume></link>'])
+def test_a_volume_that_cannot_be_is_told_and_that_of_the_collisions_counts(block):
+    """As in Gazebo."""
+    context = buoy(block, Collision("a", geometry=Box((1.0, 0.5, 0.2))))
+    assert "volume" in context.said[-1]
+    force, torque = context.pushes["hull"]
+    assert force[2] == pytest.approx(999.1026 * 0.1 * 9.8)
+    assert torque == pytest.approx((0.0, 0.0, 0.0))
+
+
 def test_a_hull_is_lifted_by_the_weight_of_the_water_in_its_place():
     context = buoy("", Collision("a", geometry=Box((1.0, 0.5, 0.2))),
                    Collision("b", Sphere(0.1), Pose((1.0, 0.0, 0.0))))

@@ -6,13 +6,14 @@ name="..."><center_of_volume/><volume/></link>`; else volume and centre come fro
 from __future__ import annotations
 
 import math
-from typing import List, Optional, Tuple
+from typing import Dict, List, Optional, Tuple
 
 from ...description.model import Link as LinkSpec
 from ...description.shapes import Box, Capsule, Cone, Cylinder, Ellipsoid, Sphere
 from ...geometry import Vec3, add, cross, norm, scale, subtract, transform
 from ..base import Plugin
 from ..context import Link
+from ..parameters import Parameters
 
 _WATER = 999.1026  # kg/m^3, at 15 degrees
 _SAME_PLACE = 1e-9  # m
@@ -25,8 +26,7 @@ class Buoyancy(Plugin):
         """Find volumes and their centres."""
         context, p = self.context, self.context.parameters
         self._density = p.number("fluid_density", _WATER)
-        given = {one.attribute("name"): (one.number("volume", 0.0), one.vector("center_of_volume"))
-                 for one in p.children("link")}
+        given = self._given(p.children("link"))
         self._floats: List[Tuple[Link, float, Vec3]] = []
         for spec in context.description.links:
             found = given.get(spec.name) or self._volume(spec)
@@ -40,6 +40,21 @@ class Buoyancy(Plugin):
     def reset(self) -> None:
         """Forces ended with the reset."""
         self.update()
+
+    def _given(self, blocks: "List[Parameters]") -> Dict[str, Tuple[float, Vec3]]:
+        """Volume and centre by link; what cannot be used is told, and collisions count instead."""
+        found: Dict[str, Tuple[float, Vec3]] = {}
+        names = {link.name for link in self.context.description.links}
+        for block in blocks:
+            name, volume = block.attribute("name"), block.number("volume", 0.0)
+            if name not in names:
+                self.context.warn(f"there is no link '{name}'; its <volume> does nothing")
+            elif volume <= 0.0:
+                self.context.warn(f"link '{name}' has no <volume> above 0; it is that of its"
+                                  " collisions")
+            else:
+                found[name] = (volume, block.vector("center_of_volume"))
+        return found
 
     def _volume(self, spec: LinkSpec) -> Optional[Tuple[float, Vec3]]:
         total, moment = 0.0, (0.0, 0.0, 0.0)
