@@ -232,6 +232,15 @@ class Context(Protocol):
     def hold(self, held: bool) -> None:
         """Keep the model at rest where it is put, whatever acts on it; or no more."""
 
+    def scoped(self, link: str) -> str:
+        """The name that a link of the model has in the world, as contacts and `attach` know it.
+
+        What is below the model's name is the link's name in `description`. Raises PluginError.
+        """
+
+    def joint_spec(self, name: str) -> JointSpec:
+        """The description of a joint, of a fixed one too. Raises PluginError."""
+
     def slip(self, link: str, joint: str, radius: float, normal_force: float, lateral: float,
              longitudinal: float) -> None:
         """Let a wheel slip in proportion to its speed, until a reset (`engine.WheelSlip`).

@@ -5,6 +5,7 @@ from collections import deque
 from dataclasses import replace
 from typing import Any, Callable, Deque, Dict, List, NamedTuple, Optional, Sequence, Tuple
 
+from ..description.model import Joint as JointSpec
 from ..description.model import Mimic, Model
 from ..description.sensor import Sensor
 from ..description.surroundings import SphericalCoordinates
@@ -234,9 +235,17 @@ class SimulatedContext:
     def push(self, link: str, force: Vec3, torque: Vec3) -> None:
         """A wrench from now on."""
         if "::" not in link or self._rows.has_link(link):
-            row = self._rows.link(link)
-            link = f"{self.model}::{self.entity.link_names[row - self.entity.first_link_row]}"
+            link = self.scoped(link)
         self.orders.pushes[link] = (force, torque)
+
+    def scoped(self, link: str) -> str:
+        """The name that a link of the model has in the world."""
+        row = self._rows.link(link)
+        return f"{self.model}::{self.entity.link_names[row - self.entity.first_link_row]}"
+
+    def joint_spec(self, name: str) -> JointSpec:
+        """The description of a joint."""
+        return self._rows.joint(name)
 
     def move(self, pose: Pose, twist: Twist = STILL) -> None:
         """Put the model somewhere."""

@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from typing import Any, Callable, Dict, List, Optional, Sequence, Set, Tuple
 
+from ..description.model import Joint as JointSpec
 from ..description.model import Model
 from ..description.sensor import Sensor
 from ..description.surroundings import SphericalCoordinates
@@ -221,6 +222,18 @@ class FakeContext:
     def hold(self, held: bool) -> None:
         """Noted."""
         self.held = held
+
+    def scoped(self, link: str) -> str:
+        """Below the name of the model."""
+        self.link(link)
+        return f"{self.model}::{link}"
+
+    def joint_spec(self, name: str) -> JointSpec:
+        """Of the description."""
+        for joint in self.description.joints:
+            if joint.name == name:
+                return joint
+        raise PluginError(f"model '{self.model}' has no joint '{name}'")
 
     def slip(self, link: str, joint: str, *values: float) -> None:
         """Noted."""

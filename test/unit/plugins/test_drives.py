@@ -345,6 +345,14 @@ def test_a_base_moved_by_forces_goes_sideways_unless_it_must_not():
         assert context.pushes["base_footprint"][0] == pytest.approx((0.0, force, 0.0))
 
 
+def test_forces_push_the_base_of_a_nested_model_and_not_the_first_link():
+    context = FakeContext("<plugin/>", links=("frame", "base_footprint"))
+    context.description.links += [Link("frame"), Link("inner::base_footprint")]
+    ForceBasedMove(context).load()
+    context.advance(0.001)
+    assert list(context.pushes) == ["base_footprint"]
+
+
 def test_a_base_moved_by_forces_trusts_its_yaw_while_it_does_not_turn():
     context = moved_by_forces(ForceBasedMove)
     context.advance(0.1)

@@ -239,3 +239,13 @@ def test_the_link_attacher_attaches_and_detaches_by_the_same_names():
     assert response.ok and not context.attached
     detach(request, response)
     assert not response.ok and "not attached" in context.said[-1]
+
+
+def test_a_gripper_in_a_nested_model_holds(gripper):
+    """Contacts have the names that links have in the world."""
+    gripper.scoped = lambda link: f"robot::hand::{link}"
+    gripper.touching = [(one.replace("robot::", "robot::hand::"),
+                         other.replace("robot::", "robot::hand::"), contact)
+                        for one, other, contact in squeezed()]
+    gripper.advance(0.4)
+    assert gripper.attached == {"robot::hand::arm::grasp": ("robot::hand::palm", "cube::link")}

@@ -10,6 +10,7 @@ from plugin_graph import Graph
 from my_simulations.description.model import Inertial, Joint, JointAxis, Link, Model
 from my_simulations.description.plugin import PluginSpec
 from my_simulations.description.sensor import Sensor
+from my_simulations.description.shapes import Collision, Sphere
 from my_simulations.description.world import World
 from my_simulations.engine.kinematic_backend import KinematicBackend
 from my_simulations.errors import Severity
@@ -481,3 +482,29 @@ def test_what_is_attached_is_let_go(case, how):
         running.context.inbox.append(lambda: 1 / 0)
         one.host._ring(running)
     until(lambda: not connected)
+
+
+SLIP = """<plugin name="slip" filename="libWheelSlipPlugin.so"><wheel link_name="wheel_l">
+<wheel_normal_force>10</wheel_normal_force><wheel_radius>0.1</wheel_radius></wheel></plugin>"""
+SUCTION = """<plugin name="cup" filename="libgazebo_ros_vacuum_gripper.so">
+<topicName>holds</topicName><bodyName>base</bodyName></plugin>"""
+WRENCH = """<plugin name="ft" filename="libgazebo_ros_ft_sensor.so"><jointName>left</jointName>
+<topicName>wrench</topicName></plugin>"""
+
+
+def test_plugins_of_a_nested_model_find_its_links_and_joints_by_their_plain_names(case):
+    """They slip, hold, and measure, as those of a model that is not nested."""
+    inner = robot("inner")
+    inner.links[1].collisions.append(Collision("c", Sphere(0.1)))
+    inner.plugins = [PluginSpec(library, f"lib{library}.so", xml, "robot.sdf", 3)
+                     for library, xml in (("WheelSlipPlugin", SLIP),
+                                          ("gazebo_ros_vacuum_gripper", SUCTION),
+                                          ("gazebo_ros_ft_sensor", WRENCH))]
+    outer = Model("outer", links=[Link("frame", inertial=Inertial())], models=[inner])
+    one = case(outer, Model("cube", pose=Pose((0.01, 0.0, 0.0)),
+                            links=[Link("link", inertial=Inertial())]))
+    one.graph.heard["on"](Message(), Message())
+    one.sim.clock.advance(50)
+    assert one.issues == []
+    assert len(one.backend().wheel_slips) == 1
+    until(lambda: any(message.data for message in one.graph.on("holds")))

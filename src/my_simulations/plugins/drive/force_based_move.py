@@ -14,6 +14,7 @@ from typing import Optional
 
 from ...geometry import conjugate, rotate, rpy_from_quat
 from ..base import Plugin
+from ..context import PluginError
 from ..parameters import namespace_or
 from .odometry import Odometer, planar
 from .wheels import VelocityCommand
@@ -35,8 +36,10 @@ class ForceBasedMove(Plugin):
         context, p = self.context, self.context.parameters
         context.use_namespace(namespace_or(p, ""))
         base = p.text("robotBaseFrame", "base_footprint")
-        names = [link.name for link in context.description.links]
-        self._base = context.link(base if base in names else names[0])
+        try:
+            self._base = context.link(base)
+        except PluginError:  # the frame of its messages alone
+            self._base = context.link(context.description.links[0].name)
         self._gains = (p.number("x_velocity_p_gain", 10000.0),
                        p.number("y_velocity_p_gain", 10000.0),
                        p.number("yaw_velocity_p_gain", 100.0))

@@ -68,12 +68,12 @@ class WheelSlip(Plugin):
         name, description = p.attribute("link_name"), self.context.description
         if not name:
             raise PluginError("a <wheel> has no link_name")
-        self.context.link(name)
-        shapes = [collision.geometry for link in description.links if link.name == name
+        own = self.context.scoped(name).partition("::")[2]
+        shapes = [collision.geometry for link in description.links if link.name == own
                   for collision in link.collisions]
         if len(shapes) != 1:
             raise PluginError(f"wheel '{name}' has {len(shapes)} collisions instead of one")
-        joints = [joint.name for joint in description.joints if joint.child == name]
+        joints = [joint.name for joint in description.joints if joint.child == own]
         if len(joints) != 1:
             raise PluginError(f"wheel '{name}' is the child of {len(joints)} joints instead of one")
         self.context.joint(joints[0])

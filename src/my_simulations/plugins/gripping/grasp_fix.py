@@ -150,7 +150,7 @@ class GraspFix(Plugin):
     def _pressed(self, arm: Arm, contacts: list) -> Dict[str, Dict[str, Press]]:
         """What presses movable links of other models, by their names and by those of fingers."""
         prefix, models = f"{self.context.model}::", self.context.models()
-        parts = {prefix + name: name for name in arm.fingers}
+        parts = {self.context.scoped(name): name for name in arm.fingers}
         found: Dict[str, Dict[str, Press]] = {}
         for one, other, contact in contacts:
             for mine, theirs, sign in ((one, other, -1.0), (other, one, 1.0)):
@@ -192,7 +192,7 @@ class GraspFix(Plugin):
 
     def _hold(self, arm: Arm, name: str, presses: List[Press]) -> None:
         context, palm = self.context, self.context.link(arm.palm).pose
-        context.attach(self._joint(arm), f"{context.model}::{arm.palm}", name)
+        context.attach(self._joint(arm), context.scoped(arm.palm), name)
         arm.held = name
         arm.marks = []
         for press in presses:
@@ -220,7 +220,7 @@ class GraspFix(Plugin):
         arm.counts, arm.held, arm.marks = {}, "", []
 
     def _joint(self, arm: Arm) -> str:
-        return f"{self.context.model}::{arm.name}::grasp"
+        return f"{self.context.scoped(arm.palm).rpartition('::')[0]}::{arm.name}::grasp"
 
 
 def _mean(presses: List[Press]) -> Press:

@@ -72,6 +72,7 @@ class VacuumGripper(Plugin):
                 if scoped in taken or norm(subtract(
                         here, context.model_link(scoped).pose.position)) >= _REACH:
                     continue
-                joint = f"{context.model}::{self._link.name}::holds::{scoped}"
-                context.attach(joint, f"{context.model}::{self._link.name}", scoped)
+                cup = context.scoped(self._link.name)
+                joint = f"{cup}::holds::{scoped}"
+                context.attach(joint, cup, scoped)
                 self._held.append((joint, scoped))

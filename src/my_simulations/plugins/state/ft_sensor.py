@@ -46,12 +46,12 @@ class FtSensor(Plugin):
             sensor.update_rate if sensor is not None else 0.0), self.update)
 
     def _described(self) -> Joint:
-        joints = {joint.name: joint for joint in self.context.description.joints}
-        if self._name not in joints:
+        try:
+            return self.context.joint_spec(self._name)
+        except PluginError as fault:
             raise PluginError(
-                f"model '{self.context.model}' has no joint '{self._name}'; a fixed joint is there"
-                " with <preserveFixedJoint>true</preserveFixedJoint> in its <gazebo> element")
-        return joints[self._name]
+                f"{fault}; a fixed joint of a URDF is there with <preserveFixedJoint>true"
+                "</preserveFixedJoint> in its <gazebo> element") from fault
 
     def _frame_name(self) -> str:
         joint, block = self._joint, self._block
