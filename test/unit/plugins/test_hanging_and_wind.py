@@ -45,6 +45,16 @@ def test_a_harness_pulls_back_to_where_the_model_hung():
     assert torque == pytest.approx((0.0, -stiff * 0.02, 0.0), rel=1e-3)
 
 
+@pytest.mark.parametrize("limits, most", [
+    ("", 0.0), ("<i_max>3</i_max><i_min>-3</i_min>", 3.0)])
+def test_the_integral_term_of_a_winch_stays_within_its_limits(limits, most):
+    """Without limits they are 0, and so is the term, as in Gazebo."""
+    context = hanging(UP.replace("<pos_pid><p>400</p>", f"<pos_pid><i>1000</i>{limits}"))
+    context.links["link"].pose = Pose((0.0, 0.0, -0.1))
+    context.advance(0.5)
+    assert context.pushes["link"][0][2] == pytest.approx(most)
+
+
 def test_the_winch_pulls_up_to_its_rate_and_holds_where_it_stops():
     context = hanging()
     link = context.links["link"]

@@ -53,12 +53,14 @@ class Pid:
         self.integral, self.before = 0.0, None
 
     def update(self, error: float, dt: float) -> float:
-        """The next output, within its limits where these are not both 0."""
+        """The next output, within its limits where these are not both 0.
+
+        The integral term stays within its own, which leave nothing of it where they are not given.
+        """
         slope = 0.0 if self.before is None else (error - self.before) / dt
         self.before = error
         self.integral += self.i * dt * error
-        if self.i_max > self.i_min:
-            self.integral = max(self.i_min, min(self.i_max, self.integral))
+        self.integral = max(self.i_min, min(self.i_max, self.integral))
         output = -self.p * error - self.integral - self.d * slope
         if self.cmd_max > self.cmd_min:
             output = max(self.cmd_min, min(self.cmd_max, output))
