@@ -29,6 +29,14 @@ def test_turns_follow_each_other_in_the_order_of_their_channels():
     assert np.allclose(keys.turns[2, 0], (0.5, 0.5, 0.5, 0.5))
 
 
+def test_channels_that_nobody_knows_say_nothing():
+    text = BVH.replace("CHANNELS 6 Xposition", "CHANNELS 9 Wposition Wrotation zrotation Xposition")
+    rows = text.splitlines()
+    text = "\n".join(rows[:-4] + [f"7 50 30 {row}" for row in rows[-4:]])
+    [keys], [plain] = read_bvh(text.encode())[1].keys, read_bvh(BVH.encode())[1].keys
+    assert np.allclose(keys.places, plain.places) and np.allclose(keys.turns, plain.turns)
+
+
 @pytest.mark.parametrize("end", ["\r\n", "\r"])
 def test_any_ends_of_lines_and_an_unfinished_last_frame_are_read(end):
     text = BVH.replace("Frames: 4", "Frames: 5") + "0 0 1\n"

@@ -3,12 +3,13 @@
  * no unit, taken for metres, and degrees; no axis is turned (Gazebo behaviour, as for cameras).
  */
 import {
-  AnimationClip, Bone, Group, Quaternion, QuaternionKeyframeTrack, Vector3, VectorKeyframeTrack,
+  AnimationClip, Bone, Group, QuaternionKeyframeTrack, VectorKeyframeTrack,
 } from 'three';
+import {axisAngle, multiply} from '../pose.js';
 
 /** @typedef {{name: string, parent: number, offset: number[], channels: string[]}} Joint */
 
-const AXES = [new Vector3(1, 0, 0), new Vector3(0, 1, 0), new Vector3(0, 0, 1)];
+const AXES = [[1, 0, 0], [0, 1, 0], [0, 0, 1]];
 
 /** @param {string[]} words @returns {number[]} */
 function numbers(words) {
@@ -59,16 +60,24 @@ export function parsed(text) {
   return {joints, step, frames};
 }
 
-/** Where a joint is in a frame. @param {Joint} joint @param {number[]} values  of its channels */
+/**
+ * Where a joint is in a frame. Channels of other names say nothing (Gazebo
+ * behaviour, as for cameras).
+ * @param {Joint} joint
+ * @param {number[]} values  of its channels
+ */
 export function placed({offset, channels}, values) {
   const place = [...offset];
-  const turn = new Quaternion();
+  let turn = [0, 0, 0, 1];
   channels.forEach((channel, index) => {
     const axis = 'XYZ'.indexOf(channel[0]);
-    if (channel.endsWith('position')) place[axis] = values[index];
-    else turn.multiply(new Quaternion().setFromAxisAngle(AXES[axis], values[index] * Math.PI / 180));
+    const kind = axis < 0 ? '' : channel.slice(1);
+    if (kind === 'position') place[axis] = values[index];
+    else if (kind === 'rotation') {
+      turn = multiply(turn, axisAngle(AXES[axis], values[index] * Math.PI / 180));
+    }
   });
-  return {place, turn: turn.toArray()};
+  return {place, turn};
 }
 
 /** A scene of bones with one animation. @param {string} text */
