@@ -111,10 +111,16 @@ SKINS = {
     "branching.dae": rod(moves=animation((0.2, 1.9), (RAISED, QUARTER))).replace(
         "</node></node>", '<node id="hand" sid="hand" type="JOINT"/></node></node>', 1),
     "captured.bvh": BVH,
+    "stepping.dae": rod(moves=animation((0.0, 0.7, 1.6), (STILL, AWAY.replace("50", "20"), AWAY),
+                                        "lower").replace("a-", "b-").replace("'a'", "'b'").replace(
+        "</library_animations>", "") + animation((0.2, 1.6), (RAISED, QUARTER)).replace(
+        "<library_animations>", "")),
     "mover.dae": rod(moves=animation((0.5, 1.7), (RAISED, QUARTER.replace("100", "300")))),
 }
 PATH = [Waypoint(0.0, Pose((1.0, 0.0, 0.0))),
         Waypoint(2.0, Pose((1.0, 4.0, 0.5), quat_from_rpy(0.0, 0.3, 2.0)))]
+TURNS = [Waypoint(0.0, Pose((0.0, 0.0, 0.0))), Waypoint(1.0, Pose((1.0, 0.0, 0.0))),
+         Waypoint(2.5, PATH[1].pose)]
 FIGURES = {
     "still": Actor("still", Pose((0.0, 1.0, 0.0), quat_from_rpy(0.1, 0.2, 0.3)), "rod.dae", 0.5),
     "swinging": Actor("swinging", Pose((3.0, 0.0, 0.0)), "swinging.dae"),
@@ -131,6 +137,13 @@ FIGURES = {
                                   Animation("go", "going.dae")],
                       trajectories=[Trajectory(n, kind, waypoints=PATH[:2]) for n, kind in
                                     enumerate(("fall", "go", "none", "unknown", "fall"))]),
+    "stepping": Actor("stepping", Pose((0.0, 2.0, 0.0)), "rod.dae", 1.5, animations=[
+        Animation("step", "stepping.dae", 0.8, interpolate_x=True)], trajectories=[
+        Trajectory(0, "step", waypoints=PATH), Trajectory(1, "step"),
+        Trajectory(2, "unknown"), Trajectory(3, "step", 0.5, waypoints=TURNS)]),
+    "on its own way": Actor("on its own way", Pose(), "stepping.dae", 0.5, loop=False, animations=[
+        Animation("step", "stepping.dae", interpolate_x=True)], trajectories=[
+        Trajectory(0, "step", waypoints=TURNS), Trajectory(1, "step")]),
     "sitting": Actor("sitting", Pose(), "rod.dae", 0.5,
                      animations=[Animation("sit", "sitting.dae", 0.7)]),
     "branching": Actor("branching", Pose(), "rod.dae",
@@ -174,12 +187,14 @@ def element(actor):
         turn = ("end" if at is PATH[1].pose else "still" if actor.name == "still" else "level")
         return f"<pose>{' '.join(map(str, at.position))} {roll_pitch_yaw[turn]}</pose>"
 
-    points = "".join(f"<waypoint><time>{one.time}</time>{pose(one.pose)}</waypoint>"
-                     for one in PATH)
-    path = "".join(f"<trajectory id='{one.id}' type='{one.type}'>{points}</trajectory>"
+    path = "".join(f"<trajectory id='{one.id}' type='{one.type}' tension='{one.tension}'>"
+                   + "".join(f"<waypoint><time>{at.time}</time>{pose(at.pose)}</waypoint>"
+                             for at in one.waypoints) + "</trajectory>"
                    for one in actor.trajectories)
     animations = "".join(f"<animation name='{one.name}'><filename>{one.filename}</filename>"
-                         f"<scale>{one.scale}</scale></animation>" for one in actor.animations)
+                         f"<scale>{one.scale}</scale>"
+                         f"<interpolate_x>{str(one.interpolate_x).lower()}</interpolate_x>"
+                         "</animation>" for one in actor.animations)
     return (f"<actor name='{actor.name}'>{pose(actor.pose)}<skin><filename>{actor.skin}</filename>"
             f"<scale>{actor.skin_scale}</scale></skin>{animations}<script>"
             f"<loop>{str(actor.loop).lower()}</loop><delay_start>{actor.delay_start}</delay_start>"

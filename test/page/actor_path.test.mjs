@@ -10,26 +10,28 @@ const {cases} = JSON.parse(readFileSync(new URL('../data/actor_paths.json', impo
 const PLACE = [9, 0, 0, 0, 0, 0, 1];
 const actor = (fields = {}) => ({name: 'man', pose: PLACE, skin: '', geometry: {type: 'empty'},
   animations: [], loop: true, delay_start: 0, auto_start: true, trajectories: [], ...fields});
+const NONE = new Map();
 const walk = {id: 0, type: 'walk', tension: 0, waypoints: [{time: 0, pose: PLACE},
   {time: 2, pose: PLACE}]};
 
-for (const {says, actor: fields, at: moments} of cases) {
+for (const {says, actor: fields, durations = {}, at: moments} of cases) {
   test(`an actor: ${says}`, () => {
-    const path = new ActorPath(actor(fields));
+    const path = new ActorPath(actor(fields), new Map(Object.entries(durations)));
     for (const {time, pose, stride} of moments) {
       const found = path.poseAt(time);
       near(found.slice(0, 3), pose.slice(0, 3));
       sameTurn(found.slice(3), pose.slice(3));
-      const {type, time: since} = path.strideAt(time) ?? {};
-      if (stride !== undefined) assert.deepEqual(stride, type === undefined ? null : [type, since]);
+      const {type, time: since, distance, onPath} = path.strideAt(time) ?? {};
+      const does = type === undefined ? null : [type, since, distance, onPath];
+      if (stride !== undefined) assert.deepEqual(does, stride);
     }
   });
 }
 
 test('what time makes no difference to does not move', () => {
-  assert.equal(new ActorPath(actor()).moves, false);
-  assert.equal(new ActorPath(actor({trajectories: [walk]})).moves, true);
-  assert.equal(new ActorPath(actor({trajectories: [walk], auto_start: false})).moves, false);
+  assert.equal(new ActorPath(actor(), NONE).moves, false);
+  assert.equal(new ActorPath(actor({trajectories: [walk]}), NONE).moves, true);
+  assert.equal(new ActorPath(actor({trajectories: [walk], auto_start: false}), NONE).moves, false);
 });
 
 test('sim time goes on at the told rate, and stands when paused or in silence', () => {

@@ -1,21 +1,27 @@
 /**
  * Where an actor is at a time. Its trajectories run one after the other, each from its first
- * waypoint on, in world axes; a spline of the trajectory's `tension` joins their positions (Gazebo
- * behaviour), the shorter way of turning their orientations; Gazebo joins these by a spline, too,
- * whose turns swing by a few degrees about straight parts of a path. Unlike in Gazebo, trajectories
- * without waypoints take no time, and limbs move by time where an animation says `interpolate_x`.
- * `delay_start` is waited for before each cycle (SDF spec 1.7, script/delay_start).
+ * waypoint on, in world axes; a spline of the trajectory's `tension` joins their positions, another
+ * one their orientations (`turn_spline.js`). One without waypoints lasts as long as the animation
+ * that it names. All this is as in Gazebo; but an actor is at its `<pose>` in trajectories without
+ * waypoints, in Gazebo at the world's origin, and the distance along a path begins anew with each
+ * cycle, in Gazebo not in a loop of one trajectory. `delay_start` is waited for before each cycle
+ * (SDF spec 1.7, script/delay_start).
  */
-import {orientation, position, slerp} from './pose.js';
+import {length, orientation, position, subtract} from './pose.js';
+import {controlsOf, onTurn} from './turn_spline.js';
 /** @import {Actor, Trajectory, Waypoint} from './protocol.js' */
 
 /**
- * @typedef {{time: number, pose: number[], slope: number[]}} Key
- *   slope: of the spline, m for a whole segment
+ * @typedef {{time: number, pose: number[], slope: number[], turn: number[], control: number[]}} Key
+ *   time: s since the trajectory began; slope: of the spline, m for a whole segment; turn: the
+ *   orientation; control: of the spline of turns
  */
 
 /** m; ends of a path that are no further apart are one point (ignition::math::Vector3). */
 const CLOSED = 1e-3;
+
+/** Into which a segment is divided to measure it. */
+const CHORDS = 32;
 
 /**
  * Waypoints in the order of their times; of those of one time the last counts.
@@ -56,46 +62,113 @@ function onSpline(from, to, part) {
     part * rest * (rest * from.slope[axis] - part * to.slope[axis]));
 }
 
-/** @typedef {{time: number, type: string}} Begin  of a trajectory, with its animation's name */
-
-/** @typedef {{type: string, time: number}} Stride  type: name of the animation; s since it began */
+/**
+ * m along the path from the first waypoint to the ends of all chords.
+ * @param {Key[]} keys
+ */
+function distancesOf(keys) {
+  const found = [0];
+  let at = position(keys[0].pose);
+  for (let n = 1; n < keys.length; n++) {
+    for (let chord = 1; chord <= CHORDS; chord++) {
+      const there = onSpline(keys[n - 1], keys[n], chord / CHORDS);
+      found.push(found[found.length - 1] + length(subtract(there, at)));
+      at = there;
+    }
+  }
+  return found;
+}
 
 /**
- * @param {Trajectory[]} trajectories
- * @returns {{keys: Key[], begins: Begin[], length: number}} times in s since the script began
+ * What the limbs do.
+ * @typedef {{type: string, time: number, distance: number|null, onPath: boolean}} Stride
+ *   type: name of the animation; time: s since it began; distance: m along the path since then,
+ *   where the animation advances by it; onPath: whether a path says how far the actor has come
  */
-function script(trajectories) {
-  /** @type {Key[]} */
-  const keys = [];
-  /** @type {Begin[]} */
-  const begins = [];
-  let length = 0;
-  for (const {type, waypoints, tension} of trajectories) {
-    if (waypoints.length) begins.push({time: length, type});
+
+/** A trajectory within the script, from `begin` on for `length`, s. */
+class Leg {
+  #type;
+  /** @type {number[]} */
+  #distances = [];
+
+  /**
+   * @param {Trajectory} trajectory
+   * @param {number} begin
+   * @param {number} duration  of its animation, s
+   * @param {boolean} measured
+   */
+  constructor({type, waypoints, tension}, begin, duration, measured) {
     const ordered = inOrder(waypoints);
     const along = slopes(ordered.map(({pose}) => position(pose)), tension);
-    ordered.forEach(({time, pose}, index) =>
-      keys.push({time: length + (index ? time : 0), pose, slope: along[index]}));
-    length += Math.max(ordered.at(-1)?.time ?? 0, 0);
+    const turns = ordered.map(({pose}) => orientation(pose));
+    const controls = controlsOf(turns);
+    this.#type = type;
+    this.begin = begin;
+    /** @type {Key[]} */
+    this.keys = ordered.map(({time, pose}, n) => ({time: n ? time : 0, pose, slope: along[n],
+      turn: turns[n], control: controls[n]}));
+    this.length = ordered.length ? Math.max(ordered[ordered.length - 1].time, 0) : duration;
+    if (measured && this.keys.length) this.#distances = distancesOf(this.keys);
   }
-  return {keys, begins, length};
+
+  /**
+   * The segment at a time since `begin`, and the part of it that is behind.
+   * @param {number} time
+   */
+  #place(time) {
+    const next = this.keys.findIndex((key) => key.time > time);
+    if (next <= 0) return {n: next < 0 ? this.keys.length - 1 : 0, part: 0};
+    const [from, to] = [this.keys[next - 1].time, this.keys[next].time];
+    return {n: next - 1, part: (time - from) / (to - from)};
+  }
+
+  /** @param {number} time  since `begin` @returns {number[]} pose7 in the world */
+  poseAt(time) {
+    const {n, part} = this.#place(time);
+    const [from, to] = [this.keys[n], this.keys[n + 1]];
+    return part ? [...onSpline(from, to, part), ...onTurn(from, to, part)] : [...from.pose];
+  }
+
+  /** @param {number} time  since `begin` @returns {Stride} */
+  strideAt(time) {
+    const onPath = this.keys.length > 0;
+    const stride = {type: this.#type, time: onPath ? time : Math.min(time, this.length), onPath};
+    if (!this.#distances.length) return {...stride, distance: null};
+    const {n, part} = this.#place(time);
+    const chord = Math.floor(part * CHORDS);
+    const last = this.#distances.length - 1;
+    const [from, to] = [chord, chord + 1]
+      .map((one) => this.#distances[Math.min(n * CHORDS + one, last)]);
+    return {...stride, distance: from + (to - from) * (part * CHORDS - chord)};
+  }
 }
 
 export class ActorPath {
   #actor;
-  #keys;
-  #begins;
-  #length;
+  /** @type {Leg[]} */
+  #legs = [];
+  #length = 0;
 
-  /** @param {Actor} actor */
-  constructor(actor) {
+  /**
+   * @param {Actor} actor
+   * @param {Map<string, number>} durations  of its animations by name, s
+   */
+  constructor(actor, durations) {
     this.#actor = actor;
-    ({keys: this.#keys, begins: this.#begins, length: this.#length} = script(actor.trajectories));
+    const byDistance = new Set(actor.animations.filter((one) => one.interpolate_x)
+      .map(({name}) => name));
+    for (const one of actor.trajectories) {
+      const leg = new Leg(one, this.#length, durations.get(one.type) ?? 0, byDistance.has(one.type));
+      if (!leg.keys.length && !(leg.length > 0)) continue;
+      this.#legs.push(leg);
+      this.#length += leg.length;
+    }
   }
 
   /** Whether time makes any difference to where it is. */
   get moves() {
-    return this.#actor.auto_start && this.#keys.length > 0;
+    return this.#actor.auto_start && this.#legs.some(({keys}) => keys.length > 0);
   }
 
   /**
@@ -113,6 +186,11 @@ export class ActorPath {
     return Math.min(since % cycle, this.#length);
   }
 
+  /** @param {number} at  script time, s */
+  #legAt(at) {
+    return this.#legs.filter(({begin}) => begin <= at).at(-1);
+  }
+
   /**
    * What the limbs do: the animation that the trajectory of the time names, from the trajectory's
    * own begin (Gazebo behaviour); null before the script begins.
@@ -122,21 +200,15 @@ export class ActorPath {
   strideAt(time) {
     const at = this.scriptTime(time);
     if (at === null) return null;
-    const running = this.#begins.filter((begin) => begin.time <= at).at(-1);
-    return {type: running?.type ?? '', time: at - (running?.time ?? 0)};
+    const leg = this.#legAt(at);
+    return leg?.strideAt(at - leg.begin) ?? {type: '', time: at, distance: null, onPath: false};
   }
 
   /** @param {number} time  sim time, s @returns {number[]} pose7 in the world */
   poseAt(time) {
     const at = this.scriptTime(time);
-    if (at === null || !this.#keys.length) return [...this.#actor.pose];
-    const keys = this.#keys;
-    const next = keys.findIndex((key) => key.time > at);
-    if (next === 0) return [...keys[0].pose];
-    if (next < 0) return [...keys[keys.length - 1].pose];
-    const [from, to] = [keys[next - 1], keys[next]];
-    const part = (at - from.time) / (to.time - from.time);
-    return [...onSpline(from, to, part),
-      ...slerp(orientation(from.pose), orientation(to.pose), part)];
+    const leg = at === null ? undefined : this.#legAt(at);
+    if (at === null || !leg?.keys.length) return [...this.#actor.pose];
+    return leg.poseAt(at - leg.begin);
   }
 }

@@ -28,10 +28,10 @@ def movement(tmp_path):
     return of
 
 
-def corners(skeleton, at):
+def corners(skeleton, at, on_path=False):
     """(24, 3) m: the places of the skin's vertices, in their order in the file."""
     part = skeleton._figure.parts[0].part
-    [(vertices, _)] = skeleton.surfaces(at)
+    [(vertices, _)] = skeleton.surfaces(at, on_path)
     rest = part.vertices
     _, first = np.unique(rest, axis=0, return_index=True)
     order = {tuple(rest[n]): vertices[n] for n in first}
@@ -195,10 +195,32 @@ def test_a_file_without_movement_for_these_bones_moves_nothing(read, movement, m
 def test_on_a_path_the_root_does_not_go_along_x(read):
     away, further = (STILL.replace("1 0 0 0", f"1 0 0 {x}", 1) for x in (30, 90))
     text = rod(moves=animation((0.0, 2.0), (away, further), "lower"), root=away)
-    free, led = Skeleton(read(text), 1.0), Skeleton(read(text), 1.0, on_path=True)
-    assert corners(free, 1.0)[0] == pytest.approx((0.5, -0.1, 0.0))
-    assert corners(led, 1.0)[0] == pytest.approx((-0.1, -0.1, 0.0))
-    assert np.allclose(corners(led, None), corners(free, None))
+    skeleton = Skeleton(read(text), 1.0)
+    assert corners(skeleton, 1.0)[0] == pytest.approx((0.5, -0.1, 0.0))
+    assert corners(skeleton, 1.0, on_path=True)[0] == pytest.approx((-0.1, -0.1, 0.0))
+    assert np.allclose(corners(skeleton, None, on_path=True), corners(skeleton, None))
+
+
+def walking(*places):
+    """Keys 0.5 s apart with the root there along x, cm."""
+    return animation([0.5 * n for n in range(len(places))],
+                     [STILL.replace("1 0 0 0", f"1 0 0 {x}", 1) for x in places], "lower")
+
+
+def test_a_movement_is_as_far_as_its_root_and_begins_anew_at_its_end(read, movement):
+    # Gazebo's rule: less than the first place is the first, more than the last begins from 0.
+    own = Skeleton(read(rod(moves=walking(10, 30, 70))), 2.0)
+    far = {0.0: 0.0, 0.2: 0.0, 0.4: 0.25, 0.6: 0.5, 1.0: 0.75, 1.4: 1.0, 1.6: 0.0, 2.0: 0.5}
+    assert {one: own.time_at(one) for one in far} == pytest.approx(far)
+    borrowed = Skeleton(read(rod()), 3.0, Borrowed(movement(rod(moves=walking(10, 30, 70))), 2.0))
+    assert {one: borrowed.time_at(one) for one in far} == pytest.approx(far)
+
+
+@pytest.mark.parametrize("places", [(0, 50, 0), (0, -50), (0, 0)])
+def test_a_movement_that_does_not_bring_its_root_on_has_no_time_for_a_distance(read, places):
+    assert Skeleton(read(rod(moves=walking(*places))), 1.0).time_at(0.1) is None
+    assert Skeleton(read(rod(moves=animation((0.0, 2.0), (RAISED, QUARTER)))), 1.0
+                    ).time_at(0.1) is None
 
 
 def test_what_hangs_on_a_node_goes_with_it(read):

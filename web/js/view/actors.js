@@ -91,8 +91,9 @@ const scaleOf = ({geometry}) => (geometry.type === 'mesh' ? geometry.scale[0] : 
 class Gaits {
   #mixer;
   #root;
+  /** Where the movement has the root along x. */
   #rootX;
-  #onTheSpot;
+  #unit;
   /** @type {Map<string, AnimationAction|null>} */
   #actions;
   /** @type {AnimationAction|null} */
@@ -101,29 +102,59 @@ class Gaits {
   /**
    * @param {Object3D} figure
    * @param {Map<string, AnimationClip|null>} clips  by name; of an unknown one the first
-   * @param {boolean} onTheSpot
+   * @param {number} unit  m for a length in the figure
    */
-  constructor(figure, clips, onTheSpot) {
+  constructor(figure, clips, unit) {
     this.#mixer = new AnimationMixer(figure);
     this.#actions = new Map([...clips].map(([name, clip]) =>
       [name, clip && this.#mixer.clipAction(clip)]));
     this.#root = rootBone(figure);
     this.#rootX = this.#root?.position.x ?? 0;
-    this.#onTheSpot = onTheSpot;
+    this.#unit = unit;
   }
 
   /** @param {Stride} stride */
-  show({type, time}) {
+  show({type, time, distance, onPath}) {
     const [first = null] = this.#actions.values();
     const action = this.#actions.has(type) ? this.#actions.get(type) ?? null : first;
+    // The mixer writes only what has changed since it wrote last.
+    if (this.#root) this.#root.position.x = this.#rootX;
     if (action !== this.#current) {
       this.#current?.stop();
       action?.play();
       this.#current = action;
     }
-    this.#mixer.setTime(time);
+    if (action) {
+      const clip = action.getClip();
+      const byPath = distance === null ? null : this.#timeAt(clip, distance);
+      action.time = byPath ?? (time <= clip.duration ? time : time % clip.duration || 0);
+      this.#mixer.update(0);
+    }
+    if (!this.#root) return;
+    this.#rootX = this.#root.position.x;
     // Where there is a path, it says how far the figure has come (Gazebo behaviour).
-    if (this.#onTheSpot && this.#root) this.#root.position.x = action ? 0 : this.#rootX;
+    if (onPath && action) this.#root.position.x = 0;
+  }
+
+  /**
+   * When in a movement, s, the root has gone that far along x, m; it begins anew at the end (Gazebo
+   * behaviour). Null where the movement does not bring it on.
+   * @param {AnimationClip} clip
+   * @param {number} distance
+   */
+  #timeAt(clip, distance) {
+    const track = clip.tracks.find(({name}) => name === `${this.#root?.uuid}.position`);
+    if (!track) return null;
+    const {times, values} = track;
+    const places = [...times].map((_, n) => values[3 * n] * this.#unit);
+    const last = places[places.length - 1];
+    if (!(last > 0)) return null;
+    const far = Math.max(distance, places[0]);
+    const gone = far <= last ? far : far % last || last;
+    const after = places.findIndex((place) => place >= gone);
+    const before = Math.max(after - 1, 0);
+    const part = after > before ? (gone - places[before]) / (places[after] - places[before]) : 0;
+    return times[before] + (times[after] - times[before]) * part;
   }
 }
 
@@ -140,7 +171,7 @@ export class Figure {
   /** @param {Actor} actor */
   constructor(actor) {
     this.#actor = actor;
-    this.path = new ActorPath(actor);
+    this.path = new ActorPath(actor, new Map());
     this.group.name = actor.name;
     if (actor.geometry.type === 'mesh') this.group.scale.fromArray(actor.geometry.scale);
   }
@@ -168,8 +199,10 @@ export class Figure {
    */
   dress(skin, movers) {
     const clips = this.#clips(skin, movers);
+    this.path = new ActorPath(this.#actor,
+      new Map([...clips].map(([name, clip]) => [name, clip?.duration ?? 0])));
     if (this.#actor.auto_start && [...clips.values()].some(Boolean)) {
-      this.#gaits = new Gaits(skin, clips, this.path.moves);
+      this.#gaits = new Gaits(skin, clips, skin.scale.x * scaleOf(this.#actor));
     }
     this.group.add(skin);
     this.#shown = null;
@@ -200,7 +233,7 @@ export class Figure {
   show(time) {
     const pose = this.path.poseAt(time);
     const stride = this.#gaits ? this.path.strideAt(time) : null;
-    const now = [...pose, stride?.type, stride?.time];
+    const now = [...pose, stride?.type, stride?.time, stride?.onPath];
     if (this.#shown?.every((value, index) => value === now[index])) return false;
     this.#shown = now;
     place(this.group, pose);

@@ -94,7 +94,7 @@ ROAD = Table("road", Road, {
 
 ANIMATION = Table("animation", Animation, {
     "filename": Value("filename", TEXT), "scale": Value("scale", FLOAT),
-    "interpolate_x": Value("interpolate_x", BOOL, use=KEPT),
+    "interpolate_x": Value("interpolate_x", BOOL),
 }, attributes={"name": Value("name", TEXT)}, level=WARNING, use=SHOWN)
 
 WAYPOINT = Table("waypoint", Waypoint, {

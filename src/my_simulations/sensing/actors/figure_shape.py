@@ -17,8 +17,8 @@ from ..surfaces import Piece, own_surface, piece_of
 from .path import ActorPath
 from .skeleton import Borrowed, Skeleton
 
-Form = Tuple[int, float]
-"""Number of an animation of the actor, and s in it."""
+Form = Tuple[int, float, bool]
+"""Number of an animation of the actor, s in it, and whether a path brings the actor on."""
 
 
 class FigureShape:
@@ -31,25 +31,29 @@ class FigureShape:
     """
 
     def __init__(self, figure: Figure, trouble: Callable[[str], None], viewers: str) -> None:
-        self._path = ActorPath(figure.actor)
         self._skeletons: List[Skeleton] = []   # one for each animation
         self._numbers = {one.name: n for n, one in enumerate(figure.actor.animations)}
-        self.pieces: List[Piece] = []
-        if not figure.skin.uri:
-            return
+        self.pieces = self._pieces(figure, trouble, viewers) if figure.skin.uri else []
+        lengths = {name: self._skeletons[n].duration for name, n in self._numbers.items()
+                   if self._skeletons}
+        self._path = ActorPath(figure.actor, {name: length or 0.0
+                                              for name, length in lengths.items()})
+
+    def _pieces(self, figure: Figure, trouble: Callable[[str], None],
+                viewers: str) -> List[Piece]:
         try:
             load_mesh(figure.skin)   # within limits, and it tells faults of the file
         except InputError as fault:
             trouble(f"{viewers} do not see the actor {figure.actor.name!r}: {fault}")
-            return
+            return []
         parts: List[PaintedPart] = []
         try:
             parts = self._hung(figure)
         except MeshError as fault:
             trouble(f"{viewers} see the actor {figure.actor.name!r} in one shape: {fault}")
-        self.pieces = [piece_of(part.vertices, part.normals, part.uv, part.triangles,
-                                own_surface(part, 1.0))
-                       for part in parts or painted_parts(figure.skin)]
+        return [piece_of(part.vertices, part.normals, part.uv, part.triangles,
+                         own_surface(part, 1.0))
+                for part in parts or painted_parts(figure.skin)]
 
     def _hung(self, figure: Figure) -> List[PaintedPart]:
         """The parts that bones carry; none of a file without."""
@@ -58,8 +62,7 @@ class FigureShape:
             return []
         scales = [one.scale for one in figure.actor.animations] or [1.0]
         skeletons = [Skeleton(found, figure.skin.scale[0],
-                              Borrowed(read_movement(path), scale) if path else None,
-                              on_path=self._path.moves)
+                              Borrowed(read_movement(path), scale) if path else None)
                      for path, scale in zip(figure.animations or ("",), scales)]
         surfaces = skeletons[0].surfaces(None)
         if not all(np.isfinite(vertices).all() for vertices, _ in surfaces):
@@ -78,16 +81,21 @@ class FigureShape:
         if stride is None or not self._skeletons:
             return None
         number = self._numbers.get(stride.type, 0)
-        length = self._skeletons[number].duration
+        skeleton = self._skeletons[number]
+        length = skeleton.duration
         if length is None:
             return None
-        return number, stride.time % length if length > 0.0 else 0.0
+        at = None if stride.distance is None else skeleton.time_at(stride.distance)
+        if at is None:
+            at = stride.time if stride.time <= length else stride.time % length if length else 0.0
+        return number, at, stride.on_path
 
     def rows_at(self, form: Optional[Form]) -> List[np.ndarray]:
         """Rows of `Piece`, one table of each piece."""
         rows = [piece.rows.copy() for piece in self.pieces]
         if self._skeletons:
-            number, at = form or (0, None)
-            for table, (vertices, normals) in zip(rows, self._skeletons[number].surfaces(at)):
+            number, at, on_path = form or (0, None, False)
+            surfaces = self._skeletons[number].surfaces(at, on_path)
+            for table, (vertices, normals) in zip(rows, surfaces):
                 table[:, :3], table[:, 3:6] = vertices, normals
         return rows

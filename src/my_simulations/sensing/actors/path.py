@@ -1,65 +1,122 @@
 """Where an actor is at a time: the rules of the editor's page (web/js/actor_path.js).
 
 Trajectories run one after the other, each from its first waypoint on, in world axes; a spline of
-the trajectory's `tension` joins their positions (Gazebo behaviour), the shorter way of turning
-their orientations; Gazebo joins these by a spline, too, whose turns swing by a few degrees about
-straight parts of a path. Unlike in Gazebo, trajectories without waypoints take no time, and limbs
-move by time where an animation says `interpolate_x`. `delay_start` is waited for before each cycle
-(SDF spec 1.7, script/delay_start).
+the trajectory's `tension` joins their positions, another one their orientations (`turn_spline`).
+One without waypoints lasts as long as the animation that it names. All this is as in Gazebo; but
+an actor is at its `<pose>` in trajectories without waypoints, in Gazebo at the world's origin, and
+the distance along a path begins anew with each cycle, in Gazebo not in a loop of one trajectory.
+`delay_start` is waited for before each cycle (SDF spec 1.7, script/delay_start).
 """
 from __future__ import annotations
 
-from typing import List, NamedTuple, Optional, Tuple
+from typing import List, Mapping, NamedTuple, Optional, Tuple
 
-from ...description.actor import Actor, Waypoint
-from ...geometry import Pose, Vec3, add, scale, slerp, subtract
+from ...description.actor import Actor, Trajectory, Waypoint
+from ...geometry import Pose, Quat, Vec3, add, norm, scale, subtract
+from .turn_spline import controls_of, on_turn
 
 _CLOSED = 1e-3
 """m; ends of a path that are no further apart are one point (ignition::math::Vector3)."""
+_CHORDS = 32
+"""Into which a segment is divided to measure it."""
 
 
 class Key(NamedTuple):
-    """A waypoint of the script.
+    """A waypoint of a trajectory.
 
     Attributes:
-        time: since the script began, s.
+        time: since the trajectory began, s.
         pose: in the world.
         slope: of the spline, m for a whole segment.
+        control: of the spline of turns.
     """
 
     time: float
     pose: Pose
     slope: Vec3
+    control: Quat
 
 
 class Stride(NamedTuple):
-    """What the limbs do: the name of an animation, and s since it began."""
+    """What the limbs do.
+
+    Attributes:
+        type: name of an animation.
+        time: since it began, s.
+        distance: m along the path since then, where the animation advances by it.
+        on_path: whether a path says how far the actor has come.
+    """
 
     type: str
     time: float
+    distance: Optional[float] = None
+    on_path: bool = False
+
+
+class _Leg:
+    """A trajectory within the script, from `begin` on for `length`, s."""
+
+    def __init__(self, trajectory: Trajectory, begin: float, duration: float,
+                 measured: bool) -> None:
+        ordered = _in_order(trajectory.waypoints)
+        slopes = _slopes([pose.position for _, pose in ordered], trajectory.tension)
+        controls = controls_of([pose.orientation for _, pose in ordered])
+        self.type, self.begin = trajectory.type, begin
+        self.keys = [Key(time if n else 0.0, pose, slopes[n], controls[n])
+                     for n, (time, pose) in enumerate(ordered)]
+        self.length = max(ordered[-1][0], 0.0) if ordered else duration
+        self._distances = _distances(self.keys) if measured and self.keys else []
+
+    def place(self, time: float) -> Tuple[int, float]:
+        """The segment at a time since `begin`, and the part of it that is behind."""
+        last = len(self.keys) - 1
+        after = next((n for n, key in enumerate(self.keys) if key.time > time), last + 1)
+        if after in (0, last + 1):
+            return max(after - 1, 0), 0.0
+        start, goal = self.keys[after - 1].time, self.keys[after].time
+        return after - 1, (time - start) / (goal - start)
+
+    def pose(self, time: float) -> Pose:
+        """In the world, at a time since `begin`."""
+        n, part = self.place(time)
+        start = self.keys[n]
+        if not part:
+            return start.pose
+        goal = self.keys[n + 1]
+        return Pose(_on_spline(start, goal, part), on_turn(
+            start.pose.orientation, start.control, goal.control, goal.pose.orientation, part))
+
+    def stride(self, time: float) -> Stride:
+        """At a time since `begin`."""
+        if not self.keys:
+            return Stride(self.type, min(time, self.length))
+        if not self._distances:
+            return Stride(self.type, time, None, True)
+        n, part = self.place(time)
+        chord = int(part * _CHORDS)
+        start, goal = (self._distances[min(n * _CHORDS + one, len(self._distances) - 1)]
+                       for one in (chord, chord + 1))
+        return Stride(self.type, time, start + (goal - start) * (part * _CHORDS - chord), True)
 
 
 class ActorPath:
-    """The path of an actor."""
+    """The path of an actor.
 
-    def __init__(self, actor: Actor) -> None:
+    Args:
+        actor: the actor.
+        durations: of its animations by name, s.
+    """
+
+    def __init__(self, actor: Actor, durations: Mapping[str, float]) -> None:
         self._actor = actor
-        self._keys: List[Key] = []
-        self._begins: List[Tuple[float, str]] = []   # of trajectories, with their animations
+        self._legs: List[_Leg] = []
         self._length = 0.0
-        for trajectory in actor.trajectories:
-            if trajectory.waypoints:
-                self._begins.append((self._length, trajectory.type))
-            ordered = _in_order(trajectory.waypoints)
-            slopes = _slopes([pose.position for _, pose in ordered], trajectory.tension)
-            self._keys += [Key(self._length + (time if n else 0.0), pose, slopes[n])
-                           for n, (time, pose) in enumerate(ordered)]
-            self._length += max(ordered[-1][0] if ordered else 0.0, 0.0)
-
-    @property
-    def moves(self) -> bool:
-        """Whether time makes any difference to where it is."""
-        return self._actor.auto_start and bool(self._keys)
+        by_distance = {one.name for one in actor.animations if one.interpolate_x}
+        for one in actor.trajectories:
+            leg = _Leg(one, self._length, durations.get(one.type, 0.0), one.type in by_distance)
+            if leg.keys or leg.length > 0.0:
+                self._legs.append(leg)
+                self._length += leg.length
 
     def script_time(self, time: float) -> Optional[float]:
         """How long the script has been running, s; None before it begins for the first time.
@@ -76,6 +133,9 @@ class ActorPath:
             return min(since, self._length)
         return min(since % (self._length + delay), self._length)
 
+    def _leg_at(self, at: float) -> Optional[_Leg]:
+        return next((leg for leg in reversed(self._legs) if leg.begin <= at), None)
+
     def stride_at(self, time: float) -> Optional[Stride]:
         """The animation that the trajectory of a sim time (s) names, from the trajectory's begin.
 
@@ -84,21 +144,16 @@ class ActorPath:
         at = self.script_time(time)
         if at is None:
             return None
-        begin, name = ([(0.0, "")] + [one for one in self._begins if one[0] <= at])[-1]
-        return Stride(name, at - begin)
+        leg = self._leg_at(at)
+        return Stride("", at) if leg is None else leg.stride(at - leg.begin)
 
     def pose_at(self, time: float) -> Pose:
         """In the world, at a sim time in s."""
         at = self.script_time(time)
-        if at is None or not self._keys:
+        leg = None if at is None else self._leg_at(at)
+        if at is None or leg is None or not leg.keys:
             return self._actor.pose
-        after = next((n for n, key in enumerate(self._keys) if key.time > at), len(self._keys))
-        if after in (0, len(self._keys)):
-            return self._keys[max(after - 1, 0)].pose
-        start, goal = self._keys[after - 1], self._keys[after]
-        part = (at - start.time) / (goal.time - start.time)
-        return Pose(_on_spline(start, goal, part),
-                    slerp(start.pose.orientation, goal.pose.orientation, part))
+        return leg.pose(at - leg.begin)
 
 
 def _slopes(points: List[Vec3], tension: float) -> List[Vec3]:
@@ -122,6 +177,17 @@ def _on_spline(start: Key, goal: Key, part: float) -> Vec3:
     bend = subtract(scale(start.slope, rest), scale(goal.slope, part))
     straight = add(start.pose.position, scale(way, part * part * (3.0 - 2.0 * part)))
     return add(straight, scale(bend, part * rest))
+
+
+def _distances(keys: List[Key]) -> List[float]:
+    """m along the path from the first waypoint to the ends of all chords."""
+    found, at = [0.0], keys[0].pose.position
+    for start, goal in zip(keys, keys[1:]):
+        for n in range(1, _CHORDS + 1):
+            there = _on_spline(start, goal, n / _CHORDS)
+            found.append(found[-1] + norm(subtract(there, at)))
+            at = there
+    return found
 
 
 def _in_order(waypoints: List[Waypoint]) -> List[Tuple[float, Pose]]:

@@ -13,6 +13,8 @@ Surface = Tuple[np.ndarray, np.ndarray]
 """Vertices (n, 3), m, and normals (n, 3)."""
 _Columns = Tuple[Any, np.ndarray]
 """Of the nodes of some keys: which move the figure, and the figure's nodes that they move."""
+_Way = Tuple[np.ndarray, np.ndarray]
+"""Of the root: times of keys, s, and how far along x it is then, m."""
 
 
 @dataclass(frozen=True)
@@ -33,15 +35,13 @@ class Skeleton:
         figure: of the file.
         scale: of the actor's skin.
         borrowed: how it moves by another file; None for the figure's own movement.
-        on_path: whether a path says how far the figure has come; then its root does not go along x
-            (Gazebo behaviour).
     """
 
-    def __init__(self, figure: FigureFile, scale: float, borrowed: "Optional[Borrowed]" = None,
-                 on_path: bool = False) -> None:
+    def __init__(self, figure: FigureFile, scale: float,
+                 borrowed: "Optional[Borrowed]" = None) -> None:
         self._figure, self._factor = figure, scale * figure.unit
         self._rest = decomposed(figure.tree.rest)
-        self._root = figure.tree.root_joint if on_path else None
+        self._root = figure.tree.root_joint
         self._clip: Optional[Clip] = None
         self._columns: List[_Columns] = []
         self._ratio, self._own = 1.0, borrowed is None
@@ -50,6 +50,7 @@ class Skeleton:
             self._columns = [(slice(None), keys.nodes) for keys in figure.clip.keys]
         elif borrowed is not None and borrowed.movement is not None:
             self._borrow(borrowed.movement, borrowed.scale)
+        self._way = self._root_keys()
 
     def _borrow(self, movement: Movement, scale: float) -> None:
         ours = self._figure.tree.paired(movement.tree)
@@ -61,17 +62,47 @@ class Skeleton:
             self._clip = movement.clip
         self._ratio = movement.unit * scale / (self._factor or 1.0)
 
+    def _root_keys(self) -> Optional[_Way]:
+        for keys, (columns, nodes) in zip(self._clip.keys if self._clip else (), self._columns):
+            [found] = np.nonzero(nodes == self._root)
+            if len(found):
+                return keys.times, (keys.places[:, columns][:, found[0], 0]
+                                    * self._ratio * self._factor)
+        return None
+
+    def time_at(self, distance: float) -> Optional[float]:
+        """When, s, its root has gone that far along x, m; at its end it begins anew.
+
+        Gazebo's rule. None where the movement does not bring it on.
+        """
+        if self._way is None or self._way[1][-1] <= 0.0:
+            return None
+        times, places = self._way
+        last = float(places[-1])
+        gone = max(distance, float(places[0]))
+        gone = gone if gone <= last else gone % last or last
+        after = int(np.argmax(places >= gone))
+        if not after:
+            return float(times[0])
+        start, goal = float(places[after - 1]), float(places[after])
+        return float(times[after - 1]
+                     + (times[after] - times[after - 1]) * (gone - start) / (goal - start))
+
     @property
     def duration(self) -> Optional[float]:
         """Of its movement, s; None where it has none."""
         return None if self._clip is None else self._clip.duration
 
-    def surfaces(self, at: Optional[float]) -> List[Surface]:
-        """One for each part of the figure, `at` s in its movement, or as the file has it."""
-        world = self._world(at)
+    def surfaces(self, at: Optional[float], on_path: bool = False) -> List[Surface]:
+        """One for each part of the figure, `at` s in its movement, or as the file has it.
+
+        `on_path`: whether a path says how far the figure has come; then its root does not go along
+        x (Gazebo behaviour).
+        """
+        world = self._world(at, on_path)
         return [_skinned(part, world, self._factor) for part in self._figure.parts]
 
-    def _world(self, at: Optional[float]) -> np.ndarray:
+    def _world(self, at: Optional[float], on_path: bool) -> np.ndarray:
         """(n, 4, 4) figure from node, in the file's unit."""
         places, turns, scales = (one.copy() for one in self._rest)
         if at is not None and self._clip is not None:
@@ -81,7 +112,7 @@ class Skeleton:
                 turns[nodes] = moved[1][columns]
                 if self._own:
                     scales[nodes] = moved[2][columns]
-            if self._root is not None:
+            if on_path and self._root is not None:
                 places[self._root, 0] = 0.0
         world = composed(places, turns, scales)
         for n, parent in enumerate(self._figure.tree.parents):

@@ -1,0 +1,76 @@
+/**
+ * Turning from waypoint to waypoint. A spline of Shoemake's (1985) joins orientations, which does
+ * not heed how long segments take (ignition::math::RotationSpline): turns swing by some degrees
+ * about straight parts of a path, and widely where the yaw passes from pi to -pi, whose quaternions
+ * are far from each other. Cameras keep the same rules (turn_spline.py).
+ */
+import {conjugate, multiply, slerp} from './pose.js';
+/** @import {Quat} from './pose.js' */
+
+/** Ends of which no member differs by more are one orientation (ignition::math::Quaternion). */
+const CLOSED = 1e-3;
+
+/** Below this the sine of an angle stands for the angle. */
+const SMALL = 1e-3;
+
+/** The axis, as long as half the angle; 0 to pi, as the quaternion says. @param {Quat} turn */
+function log(turn) {
+  const half = Math.acos(Math.max(-1, Math.min(turn[3], 1)));
+  const sine = Math.sin(half);
+  const factor = Math.abs(sine) >= SMALL ? half / sine : 1;
+  return turn.slice(0, 3).map((value) => value * factor);
+}
+
+/** @param {number[]} axis @returns {Quat} */
+function exp([x, y, z]) {
+  const half = Math.hypot(x, y, z);
+  const sine = Math.sin(half);
+  const factor = Math.abs(sine) >= SMALL ? sine / half : 1;
+  return [x * factor, y * factor, z * factor, Math.cos(half)];
+}
+
+/**
+ * From `a` to `b`, not to -`b`, which is the same orientation.
+ * @param {Quat} a
+ * @param {Quat} b
+ * @param {number} part
+ * @returns {Quat}
+ */
+function alongArc(a, b, part) {
+  const cosine = a.reduce((sum, value, index) => sum + value * b[index], 0);
+  const angle = Math.acos(Math.max(-1, Math.min(cosine, 1)));
+  const [from, to] = Math.abs(cosine) < 1 - SMALL
+    ? [Math.sin((1 - part) * angle) / Math.sin(angle), Math.sin(part * angle) / Math.sin(angle)]
+    : [1 - part, part];
+  const mixed = a.map((value, index) => from * value + to * b[index]);
+  const size = Math.hypot(...mixed);
+  const [x, y, z, w] = mixed.map((value) => value / size);
+  return size < 1e-12 ? [0, 0, 0, 1] : [x, y, z, w];
+}
+
+/**
+ * The inner control point at each orientation.
+ * @param {Quat[]} turns
+ * @returns {Quat[]}
+ */
+export function controlsOf(turns) {
+  if (turns.length < 2) return turns;
+  const last = turns.length - 1;
+  const closed = turns[0].every((value, n) => Math.abs(value - turns[last][n]) <= CLOSED);
+  return turns.map((turn, n) => {
+    const before = turns[n > 0 ? n - 1 : closed ? last - 1 : 0];
+    const after = turns[n < last ? n + 1 : closed ? 1 : last];
+    const back = conjugate(turn);
+    const [ahead, behind] = [after, before].map((other) => log(multiply(back, other)));
+    return multiply(turn, exp(ahead.map((value, axis) => -0.25 * (value + behind[axis]))));
+  });
+}
+
+/**
+ * The orientation at a part, 0 to 1, of a segment.
+ * @param {{turn: Quat, control: Quat}} from
+ * @param {{turn: Quat, control: Quat}} to
+ * @param {number} part
+ */
+export const onTurn = (from, to, part) => alongArc(slerp(from.turn, to.turn, part),
+  alongArc(from.control, to.control, part), 2 * part * (1 - part));
