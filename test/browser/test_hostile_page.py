@@ -26,6 +26,7 @@ ROUTES = {
     "GET /v/{stamp}/three/{inside}": "v/0123456789abcdef/three/build/three.module.js",
     "GET /resource/{root}/{inside}": "resource/0123456789/a.png",
     "GET /solid/{id}.stl": "solid/x.stl",
+    "GET /solid/{id}.ply": "solid/x.ply",
     "GET /thumb/{id}.png": "thumb/0123456789abcdef.png",
     "PUT /thumb/{id}.png": "thumb/0123456789abcdef.png",
     "PUT /upload/{name}": "upload/evil.stl",

@@ -194,6 +194,20 @@ def test_a_gltf_mesh_has_its_colors(node, editor, looks, request):
         assert all(red > 90 and green < 60 for red, green, _ in middle(image))
 
 
+@pytest.mark.parametrize("kind", ["vertices", "faces"])
+def test_a_ply_mesh_has_its_colors(node, editor, kind):
+    square = trimesh.Trimesh([[-1, 0, -1], [1, 0, -1], [1, 0, 1], [-1, 0, 1]],
+                             [[0, 1, 2], [0, 2, 3]], process=False)
+    given = {"vertices": "vertex_colors", "faces": "face_colors"}[kind]
+    setattr(square.visual, given, [200, 40, 20, 255])
+    name = f"ply_{kind}"
+    write_model(node, name, f"<mesh><uri>model://{name}/mesh.ply</uri></mesh>",
+                {"mesh.ply": square.export(file_type="ply")})
+    shown, seen = middle(picture(editor, name)), middle(seen_by_camera(node, name, "mesh.ply"))
+    for pixels in (shown, seen):
+        assert all(red > 90 and green < 60 and blue < 45 for red, green, blue in pixels)
+
+
 def test_the_picture_of_a_terrain_shows_all_of_it(node, editor):
     slope = Image.linear_gradient("L").resize((129, 129))
     write_model(node, "terrain", "<heightmap><uri>model://terrain/slope.png</uri>"

@@ -17,7 +17,8 @@ from my_simulations.editor.transport import address_file, connection_limits
 case = pytest.fixture(cases)
 
 ROUTES = ["", "protocol.json", "js/main.js", "css/main.css", "three/build/three.module.js",
-          "resource/x/y.png", "solid/x.stl", "thumb/x.png", "export/x.world", "ws", "nix"]
+          "resource/x/y.png", "solid/x.stl", "solid/x.ply", "thumb/x.png", "export/x.world", "ws",
+          "nix"]
 
 
 def request(url, method="GET", **more):

@@ -8,6 +8,7 @@ import shutil
 import stat
 
 import aiohttp
+import numpy as np
 import pytest
 from editor_case import Browser, box, cases
 
@@ -176,7 +177,7 @@ SANDBOX = "sandbox; default-src 'none'"
 
 @pytest.mark.parametrize("path", [
     "protocol.json", "js/main.js", "css/nix.css", "nix", "resource/x/y.png", "solid/x.stl",
-    "thumb/x.png", "export/x.world"])
+    "solid/x.ply", "thumb/x.png", "export/x.world"])
 def test_whatever_is_not_the_page_may_do_nothing_by_itself(case, path):
     for headers in ({}, {"Origin": "http://evil.example"}):
         _, found, _ = request(case().url + path, headers=headers)
@@ -259,21 +260,83 @@ def test_meshes_and_textures_come_from_below_known_folders_only(case, tmp_path):
         assert request(f"{base}{folder}/{inside}")[0] == 404
 
 
-def test_odd_mesh_files_come_as_stl(case, tmp_path):
-    (tmp_path / "m").mkdir()
-    path = tmp_path / "m" / "t.ply"
-    path.write_text("ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
-                    "property float z\nelement face 1\nproperty list uchar int vertex_indices\n"
-                    "end_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n")
-    made = case(mesh_model(path), resolver=Resolver([str(tmp_path)]))
+def served_mesh(case, path):
+    """Format and bytes of a mesh file as a page gets it."""
+    made = case(mesh_model(path), resolver=Resolver([str(path.parent.parent)]))
 
     async def look(browser):
         return browser.model("m")["links"][0]["visuals"][0]["geometry"]
 
     geometry = made.browse(look)
-    assert geometry["format"] == "stl"
     status, _, body = request(made.url.rstrip("/") + geometry["url"])
-    assert status == 200 and len(body) == 84 + 50
+    assert status == 200
+    return geometry["format"], body
+
+
+def test_odd_mesh_files_come_as_stl(case, tmp_path):
+    (tmp_path / "m").mkdir()
+    path = tmp_path / "m" / "t.off"
+    path.write_text("OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n")
+    form, body = served_mesh(case, path)
+    assert form == "stl" and len(body) == 84 + 50
+
+
+PLY = """ply
+format ascii 1.0
+element vertex 5
+property float x
+property float y
+property float z{vertex}
+element face 3
+property list uchar int vertex_indices{face}
+end_header
+0 0 0{0}
+2 0 0{1}
+3 1 0{2}
+2 2 0{2}
+0 2 0{0}
+3 0 1 2{3}
+3 0 2 3{4}
+3 0 3 4{4}
+"""
+COLORS = "".join(f"\nproperty uchar {name}" for name in ("red", "green", "blue"))
+RED, GREEN, BLUE = " 255 0 0", " 0 128 0", " 0 0 40"
+
+
+def corners_of(body):
+    """(m, 3, k) of a served PLY file, and whether its corners have colours."""
+    head, _, rest = body.partition(b"end_header\n")
+    colored = b"float red" in head
+    count = int(re.search(rb"element vertex (\d+)", head).group(1))
+    rows = np.frombuffer(rest, "<f4", count * (6 if colored else 3))
+    return rows.reshape(count // 3, 3, -1), colored
+
+
+@pytest.mark.parametrize(("text", "expected"), [
+    (PLY.format(RED, GREEN, BLUE, "", "", vertex=COLORS, face=""),
+     {(0, 0): RED, (2, 0): GREEN, (3, 1): BLUE, (2, 2): BLUE, (0, 2): RED}),
+    (PLY.format("", "", "", GREEN, BLUE, vertex="", face=COLORS),
+     {(2, 0): GREEN, (2, 2): BLUE, (0, 2): BLUE})], ids=["vertices", "faces"])
+def test_ply_files_come_with_the_colors_of_their_corners(case, tmp_path, text, expected):
+    (tmp_path / "m").mkdir()
+    path = tmp_path / "m" / "t.ply"
+    path.write_text(text)
+    form, body = served_mesh(case, path)
+    triangles, colored = corners_of(body)
+    assert form == "ply" and colored and len(triangles) == 3
+    for row in triangles.reshape(-1, 6):
+        told = expected.get((row[0], row[1]))
+        if told:
+            assert row[3:] * 255.0 == pytest.approx([int(one) for one in told.split()])
+
+
+def test_a_ply_file_without_colors_comes_without(case, tmp_path):
+    (tmp_path / "m").mkdir()
+    path = tmp_path / "m" / "t.ply"
+    path.write_text(PLY.format("", "", "", "", "", vertex="", face=""))
+    form, body = served_mesh(case, path)
+    triangles, colored = corners_of(body)
+    assert form == "ply" and not colored and len(triangles) == 3
 
 
 def test_thumbnails_are_kept(case):

@@ -22,6 +22,8 @@ import {
 
 const plainMaterial = new MeshPhongMaterial({color: 0xc8c8c8, specular: 0x0d0d0d,
   side: DoubleSide});
+const paintedMaterial = new MeshPhongMaterial({vertexColors: true, specular: 0x0d0d0d,
+  side: DoubleSide});
 
 /** @param {string} url */
 async function bytes(url) {
@@ -77,6 +79,14 @@ async function readStl(url) {
   const [{STLLoader}, content] = await Promise.all([
     import('three/addons/loaders/STLLoader.js'), bytes(url)]);
   return new Mesh(new STLLoader().parse(content), plainMaterial);
+}
+
+/** The simulator's form of PLY files. @param {string} url */
+async function readPly(url) {
+  const [{PLYLoader}, content] = await Promise.all([
+    import('three/addons/loaders/PLYLoader.js'), bytes(url)]);
+  const geometry = new PLYLoader().parse(content);
+  return new Mesh(geometry, geometry.hasAttribute('color') ? paintedMaterial : plainMaterial);
 }
 
 /** @param {string} url */
@@ -140,7 +150,7 @@ async function readBvh(url) {
 
 /** @type {Record<string, (url: string, manager: LoadingManager) => Promise<Object3D>>} */
 const READERS = {dae: readCollada, stl: readStl, obj: readObj, glb: readGltf, gltf: readGltf,
-  terrain: readTerrain, bvh: readBvh};
+  terrain: readTerrain, bvh: readBvh, ply: readPly};
 
 /** @param {MeshSource} meshSource */
 function formatOf({format, url}) {

@@ -1,11 +1,14 @@
-"""Triangles for what the page cannot read or make itself: terrains, map images, odd mesh files."""
+"""Triangles for what the page cannot read or make itself: terrains, map images, odd mesh files.
+
+STL, and for PLY files a PLY file, which has the colours of all corners, whatever form those had.
+"""
 from __future__ import annotations
 
 import hashlib
 import threading
 from collections import OrderedDict
 from dataclasses import replace
-from typing import Dict
+from typing import Any, Dict, Optional
 
 from ...description.shapes import Mesh, Solid, mesh_key
 from ...errors import InputError
@@ -15,7 +18,7 @@ _KEPT = 16
 
 
 class Solids:
-    """Binary STL by id, made when asked for."""
+    """Binary files by id, made when asked for."""
 
     def __init__(self) -> None:
         self._lock = threading.Lock()
@@ -29,9 +32,15 @@ class Solids:
         known = hashlib.sha256(mesh_key(solid).encode()).hexdigest()[:16]
         with self._lock:
             self._known[known] = solid
-        return f"/solid/{known}.stl"
+        return f"/solid/{known}.{self.form(solid)}"
 
-    def stl(self, known: str) -> bytes:
+    @staticmethod
+    def form(solid: Solid) -> str:
+        """Of the file in which the page gets it."""
+        is_ply = isinstance(solid, Mesh) and solid.path.lower().endswith(".ply")
+        return "ply" if is_ply else "stl"
+
+    def file(self, known: str) -> bytes:
         """The file; b"" for an unknown id. Raises InputError for a solid that cannot be made."""
         with self._lock:
             solid = self._known.get(known)
@@ -39,7 +48,7 @@ class Solids:
         if solid is None:
             return b""
         if made is None:
-            made = _binary_stl(solid)
+            made = _binary_file(solid)
             with self._lock:
                 self._made[known] = made
                 while len(self._made) > _KEPT:
@@ -47,13 +56,15 @@ class Solids:
         return made
 
 
-def _binary_stl(solid: Solid) -> bytes:
+def _binary_file(solid: Solid) -> bytes:
     import numpy as np
 
     data = load_solid(solid)
     corners = np.asarray(data.vertices)[np.asarray(data.triangles)]
     if not len(corners):
         raise InputError([])
+    if isinstance(solid, Mesh) and Solids.form(solid) == "ply":
+        return _binary_ply(solid, corners)
     normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     lengths = np.linalg.norm(normals, axis=1, keepdims=True)
     table = np.zeros(len(corners), dtype=[("normal", "<f4", 3), ("corners", "<f4", (3, 3)),
@@ -61,3 +72,26 @@ def _binary_stl(solid: Solid) -> bytes:
     table["normal"] = normals / np.where(lengths > 0, lengths, 1.0)
     table["corners"] = corners
     return b"\0" * 80 + len(corners).to_bytes(4, "little") + table.tobytes()
+
+
+def _binary_ply(mesh: Mesh, corners: Any) -> bytes:
+    """Triangles that share no corners, with colours if the file has them, sRGB from 0 to 1."""
+    import numpy as np
+
+    from ...formats.mesh.painted import colored_corners
+
+    colors: Optional[Any] = None
+    try:
+        found = colored_corners(mesh)
+    except Exception:  # of any library that reads them
+        found = None   # colours are optional; the shape was read
+    if found is not None and len(found[0]) == len(corners):
+        corners, colors = found[0], found[1] / 255.0
+    names = ["x", "y", "z"] + (["red", "green", "blue"] if colors is not None else [])
+    rows = corners if colors is None else np.concatenate([corners, colors], axis=2)
+    faces = np.zeros(len(corners), dtype=[("count", "u1"), ("corners", "<i4", 3)])
+    faces["count"], faces["corners"] = 3, np.arange(3 * len(corners)).reshape(-1, 3)
+    head = ["ply", "format binary_little_endian 1.0", f"element vertex {3 * len(corners)}",
+            *(f"property float {name}" for name in names), f"element face {len(corners)}",
+            "property list uchar int vertex_indices", "end_header", ""]
+    return "\n".join(head).encode() + rows.astype("<f4").tobytes() + faces.tobytes()

@@ -152,7 +152,8 @@ class Documents:
                     "fallback": self.solids.url(mesh)}
         if url is not None and extension in MOVEMENTS:
             return {"url": url, "format": MOVEMENTS[extension], "fallback": None}
-        return {"url": self.solids.url(mesh), "format": "stl", "submesh": "", "center": False}
+        return {"url": self.solids.url(mesh), "format": self.solids.form(mesh), "submesh": "",
+                "center": False}
 
 
 def _joint(joint: Joint) -> Dict[str, Any]:

@@ -49,7 +49,7 @@ class Pages(PageFiles):
         return [
             *super().routes(),
             web.get("/resource/{root}/{inside:.+}", self._resource),
-            web.get("/solid/{id}.stl", self._solid),
+            web.get("/solid/{id}.stl", self._solid), web.get("/solid/{id}.ply", self._solid),
             web.get("/thumb/{id}.png", self._thumb), web.put("/thumb/{id}.png", self._put_thumb),
             web.put("/upload/{name}", self._put_upload), web.get("/export/{name}", self._download),
         ]
@@ -64,13 +64,14 @@ class Pages(PageFiles):
 
         loop = asyncio.get_running_loop()
         try:
-            data = await loop.run_in_executor(None, self._documents.solids.stl,
+            data = await loop.run_in_executor(None, self._documents.solids.file,
                                               request.match_info["id"])
         except InputError as fault:
             raise web.HTTPNotFound(text=f"{fault}\n") from None
         if not data:
             raise web.HTTPNotFound
-        return web.Response(body=data, content_type="model/stl")
+        form = request.path.rsplit(".", 1)[-1]
+        return web.Response(body=data, content_type=f"model/{form}")
 
     async def _thumb(self, request: web.Request) -> web.StreamResponse:
         known = request.match_info["id"]

@@ -20,18 +20,19 @@ def colored(shape: Any, faces: Array, uv: Optional[Array], paint: Paint,
 
     `faces`: of it, in the order in which they are drawn; colours beside a picture are not heeded.
     """
-    colors = None if paint.picture is not None else _colors(shape, faces)
+    colors = None if paint.picture is not None else colors_of(shape, faces)
     if colors is None:
         return uv, paint
     made, picture = _picture(colors)
     return made, paint._replace(color=paint.color or (1.0, 1.0, 1.0, 1.0), picture=picture)
 
 
-def _colors(shape: Any, faces: Array) -> Optional[Array]:
+def colors_of(shape: Any, faces: Array) -> Optional[Array]:
     """uint8 (m, 3, 3), sRGB, of each corner; None where the file has none."""
     visual = shape.visual
     if visual.kind == "face":
-        return np.asarray(visual.face_colors)[:, None, :3].repeat(3, axis=1)
+        found = np.asarray(visual.face_colors)[:, None, :3].repeat(3, axis=1)
+        return found if len(found) == len(faces) else None   # trimesh divides squares, not colours
     if visual.kind == "vertex":
         return np.asarray(visual.vertex_colors)[faces][..., :3]
     attributes = getattr(visual, "vertex_attributes", None)   # of glTF, beside a material

@@ -4,13 +4,13 @@ from __future__ import annotations
 import io
 import os
 from dataclasses import dataclass, replace
-from typing import Any, List, Optional, Tuple
+from typing import Any, Iterator, List, Optional, Tuple
 
 import numpy as np
 
 from ...description.shapes import Mesh, MeshData
 from .collada import instances, unit_of
-from .corner_colors import colored
+from .corner_colors import colored, colors_of
 from .loading import load_mesh
 from .paint import Array, Paint, effect_of, paint_of
 
@@ -191,21 +191,51 @@ def corners_of(primitive: Any, mirrored: bool = False,
     return index, triangles.vertex[index], normals, uv, triangles.material
 
 
+def colored_corners(mesh: Mesh) -> "Optional[Tuple[Array, Array]]":
+    """All corners of a file's triangles, in its own frame, with the colours that it gives them.
+
+    Returns:
+        Places (m, 3, 3), m, and uint8 (m, 3, 3), sRGB; None where some have no colour.
+
+    Raises:
+        Exception: of the library that reads it.
+    """
+    places: List[Array] = []
+    colors: List[Array] = []
+    for shape, faces, vertices, _ in _shapes(mesh, os.path.splitext(mesh.path)[1].lower()):
+        told = colors_of(shape, faces)
+        if told is None:
+            return None
+        places.append(vertices[faces])
+        colors.append(told)
+    return (np.concatenate(places), np.concatenate(colors)) if places else None
+
+
 def _trimesh(mesh: Mesh, extension: str) -> List[PaintedPart]:
+    if mesh.submesh:
+        return []  # only `load_mesh` knows the selected submesh
+    parts = []
+    for shape, faces, vertices, normals in _shapes(mesh, extension):
+        uv = getattr(shape.visual, "uv", None)
+        uv = None if uv is None else np.asarray(uv)[faces].reshape(-1, 2)
+        uv, paint = colored(shape, faces, uv, paint_of(getattr(shape.visual, "material", None)))
+        parts.append(_indexed(vertices[faces].reshape(-1, 3), normals, uv, paint))
+    return parts
+
+
+def _shapes(mesh: Mesh, extension: str) -> "Iterator[Tuple[Any, Array, Array, Optional[Array]]]":
+    """Each mesh of trimesh in a file: with its faces, places of vertices and normals of corners."""
     import trimesh
     from trimesh.resolvers import FilePathResolver
 
     from .trimesh_formats import positive_obj
 
-    if mesh.submesh:
-        return []  # only `load_mesh` knows the selected submesh
     source: Any = mesh.path
     if extension == ".obj":
         with open(mesh.path, "rb") as stream:
             source = io.BytesIO(positive_obj(stream.read()))
     scene = trimesh.load_scene(source, file_type=extension[1:], process=False,
                                resolver=FilePathResolver(mesh.path))
-    parts = []
     for node in scene.graph.nodes_geometry:
         matrix, name = scene.graph[node]
         shape = scene.geometry[name]
@@ -217,11 +247,7 @@ def _trimesh(mesh: Mesh, extension: str) -> List[PaintedPart]:
         if "vertex_normals" in shape._cache:
             turned = _cofactors(matrix[:3, :3])
             normals = (np.asarray(shape.vertex_normals) @ turned.T)[faces].reshape(-1, 3)
-        uv = getattr(shape.visual, "uv", None)
-        uv = None if uv is None else np.asarray(uv)[faces].reshape(-1, 2)
-        uv, paint = colored(shape, faces, uv, paint_of(getattr(shape.visual, "material", None)))
-        parts.append(_indexed(vertices[faces].reshape(-1, 3), normals, uv, paint))
-    return parts
+        yield shape, faces, vertices, normals
 
 
 def _cofactors(matrix: Any) -> Any:
