@@ -179,6 +179,15 @@ def test_what_glows_has_the_colors_of_its_picture(node, editor):
         assert all(red > 150 and green < 60 for red, green, _ in middle(image))
 
 
+def test_a_picture_for_the_glow_is_that_of_the_material(node, editor):
+    # Gazebo's rule: a material has one picture, that of another colour without one of the diffuse.
+    pictured = SAMPLED + lambert(color(1, 1, 1), "<emission><texture texture='r' texcoord='UV'/>"
+                                                 "</emission>")
+    write_mesh(node, "pictured", [pictured], [FRONT])
+    for image in (picture(editor, "pictured"), seen_by_camera(node, "pictured")):
+        assert all(red > 90 and green < 60 for red, green, _ in middle(image))
+
+
 @pytest.mark.parametrize("looks", [
     {"baseColorTexture": Image.new("RGB", (4, 4), (200, 0, 0)), "metallicFactor": 1.0},
     {"baseColorFactor": [200, 0, 0, 255]}], ids=["picture", "color"])

@@ -27,3 +27,16 @@ test('animations of COLLADA are played whole, whatever clips the file names', ()
   assert.equal(asGazeboReads(`${keys}<library_animation_clips><animation_clip id="k" start="1" end="2">
     <instance_animation url="#a"/></animation_clip></library_animation_clips>`), keys);
 });
+
+test('a COLLADA material has one picture: of its diffuse colour, else of another', () => {
+  const [red, one, two] = ['<color>1 0 0 1</color>', '<texture texture="one" texcoord="UV"/>',
+    '<texture texture="two" texcoord="UV"><extra/></texture>'];
+  const unchanged = [`<phong><emission>${one}</emission><diffuse>${two}</diffuse></phong>`,
+    `<lambert><specular>${one}</specular><diffuse>${red}</diffuse></lambert>`,
+    `<constant><emission>${one}</emission></constant>`];
+  for (const text of unchanged) assert.equal(asGazeboReads(text), text);
+  assert.equal(asGazeboReads(`<lambert><emission>${two}</emission><diffuse>${red}</diffuse></lambert>`),
+    `<lambert><diffuse>${red}${two}</diffuse><emission></emission></lambert>`);
+  assert.equal(asGazeboReads(`<blinn><emission>${two}</emission><specular>${one}</specular></blinn>`),
+    `<blinn><diffuse>${one}</diffuse><emission>${two}</emission><specular></specular></blinn>`);
+});

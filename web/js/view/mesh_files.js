@@ -40,16 +40,36 @@ const SHADING = /<(lambert|phong|blinn|constant)>.*?<\/\1>/gs;
 const CLIPS = /<library_animation_clips\b.*?<\/library_animation_clips>/gs;
 const HOW_CLEAR = /<(transparent|transparency)>.*?<\/\1>/gs;
 
+const PICTURE = /<texture\b[^>]*(?:\/>|>.*?<\/texture>)/s;
+
+/** @param {string} shading @param {string} kind */
+const element = (shading, kind) => new RegExp(`<${kind}>.*?</${kind}>`, 's').exec(shading)?.[0];
+
+/**
+ * A material has one picture: that of its diffuse colour, else one that it has for another.
+ * @param {string} shading
+ */
+function withItsPicture(shading) {
+  const kinds = shading.startsWith('<constant') ? []
+    : shading.startsWith('<lambert') ? ['emission', 'ambient'] : ['specular', 'emission', 'ambient'];
+  const diffuse = element(shading, 'diffuse');
+  if (PICTURE.test(diffuse ?? '')) return shading;
+  const [picture] = kinds.flatMap((kind) => PICTURE.exec(element(shading, kind) ?? '') ?? []);
+  if (!picture) return shading;
+  const colored = `${diffuse?.replace('</diffuse>', '') ?? '<diffuse>'}${picture}</diffuse>`;
+  return shading.replace(picture, '').replace(diffuse ?? /$/, '').replace('>', () => `>${colored}`);
+}
+
 /**
  * COLLADA as Gazebo reads it, for three: coordinates are Z up whatever the file says (public issue
- * 1305); a material is clear only where the file says how that is meant (`opaque`); animations are
- * played whole, whatever clips it names.
+ * 1305); a material is clear only where the file says how that is meant (`opaque`), and has one
+ * picture; animations are played whole, whatever clips it names.
  * @param {string} content
  */
 export function asGazeboReads(content) {
   const upright = content.replace(UP_AXIS, '<up_axis>Y_UP</up_axis>').replace(CLIPS, '');
-  return upright.replace(SHADING, (shading) =>
-    (/<transparent\s[^>]*opaque\s*=/.test(shading) ? shading : shading.replace(HOW_CLEAR, '')));
+  return upright.replace(SHADING, (shading) => withItsPicture(
+    /<transparent\s[^>]*opaque\s*=/.test(shading) ? shading : shading.replace(HOW_CLEAR, '')));
 }
 
 /** An address as a person reads it; files may name pictures with a bare %. @param {string} url */

@@ -40,14 +40,27 @@ def effect_of(material: Any, folder: str) -> Paint:
     """What a material of pycollada looks like; `folder`: where its pictures are looked for."""
     effect = getattr(material, "effect", None)
     diffuse, emission = getattr(effect, "diffuse", None), _glow(getattr(effect, "emission", None))
-    if diffuse is None:
+    picture = None if effect is None else _picture(effect)
+    if diffuse is None and picture is None:
         return Paint(emission=emission)
-    opacity = _opacity(effect)
-    if isinstance(diffuse, tuple):
-        return Paint((diffuse[0], diffuse[1], diffuse[2], opacity), None, emission)
-    path = unquote(diffuse.sampler.surface.image.path or "")
+    rgb = (diffuse[0], diffuse[1], diffuse[2]) if isinstance(diffuse, tuple) else _WHITE
+    color = (*rgb, _opacity(effect))
+    if picture is None:
+        return Paint(color, None, emission)
+    path = unquote(picture.sampler.surface.image.path or "")
     path = path[len("file://"):] if path.startswith("file://") else path
-    return Paint((*_WHITE, opacity), os.path.join(folder, path), emission)
+    return Paint(color, os.path.join(folder, path), emission)
+
+
+def _picture(effect: Any) -> Any:
+    """The texture of an effect: that of its diffuse colour, else one that it has for another.
+
+    Gazebo's rule: a material has one picture.
+    """
+    kinds = ["diffuse", *(["specular"] if effect.shadingtype in ("phong", "blinn") else []),
+             *(["emission", "ambient"] if effect.shadingtype != "constant" else [])]
+    found = (getattr(effect, kind) for kind in kinds)
+    return next((one for one in found if hasattr(one, "sampler")), None)
 
 
 def _opacity(effect: Any) -> float:
