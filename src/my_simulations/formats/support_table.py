@@ -5,7 +5,7 @@ from typing import Iterator, List, Mapping, NamedTuple, Optional, Tuple
 
 from .sdf import model_tables, sensor_tables, world_tables
 from .urdf import transmission, urdf_tables
-from .xml.binding import Entry, Group, Kept, Nested, Part, Table, Use, Value
+from .xml.tables import Entry, Group, Kept, Nested, Part, Table, Use, Value
 
 
 class Supported(NamedTuple):

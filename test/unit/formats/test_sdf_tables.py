@@ -5,7 +5,7 @@ import pytest
 
 from my_simulations.formats.sdf import model_tables
 from my_simulations.formats.urdf import urdf_tables
-from my_simulations.formats.xml.binding import Table
+from my_simulations.formats.xml.tables import Table
 
 
 def tables_of(module):
@@ -29,7 +29,7 @@ def test_every_default_of_a_table_survives_writing_and_reading(table):
 
 def test_a_misnamed_field_would_be_noticed():
     from my_simulations.description.shapes import Box
-    from my_simulations.formats.xml.binding import Value
+    from my_simulations.formats.xml.tables import Value
     from my_simulations.formats.xml.values import FLOAT
 
     with pytest.raises(AttributeError):

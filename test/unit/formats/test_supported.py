@@ -1,7 +1,7 @@
 """The table of what is read, made from the readers' own tables."""
 from my_simulations.formats.sdf.model_tables import GEOMETRIES, LINK, WORLD
 from my_simulations.formats.support_table import markdown, supported
-from my_simulations.formats.xml.binding import Use
+from my_simulations.formats.xml.tables import Use
 
 
 def uses(table):

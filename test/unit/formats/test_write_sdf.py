@@ -24,7 +24,7 @@ from my_simulations.formats.sdf.writer import (
 )
 from my_simulations.formats.sdf.writer.entities import _Writer, write_entity, write_world
 from my_simulations.formats.sdf.writer.geometry_element import tables_by_shape
-from my_simulations.formats.xml.binding import Kept, Part, Table
+from my_simulations.formats.xml.tables import Kept, Part, Table
 from my_simulations.formats.xml.values import BOOL, FLOAT, FRICTION, INT, LIMIT, POSE, TEXT, VECTOR3
 from my_simulations.geometry import Pose, quat_from_rpy, rpy_from_quat
 from my_simulations.resources.resolver import Resolver

@@ -8,8 +8,9 @@ from typing import Any, Callable, List, Optional, Tuple
 from ...description.model import INFINITE, Joint, JointAxis, Mimic
 from ...description.validate import JOINT_TYPES
 from ...geometry import Pose, Quat, Vec3, conjugate, norm, rotate, scale
-from ..xml.binding import REFUSED, Found, Table, Value, closest, fill, read_text
+from ..xml.binding import REFUSED, Found, closest, fill, read_text
 from ..xml.source import FaultLevel, Source
+from ..xml.tables import Table, Value
 from ..xml.values import FLOAT, TEXT, VECTOR3
 from .frame_graph import FrameError
 from .model_tables import AXIS, AXIS2, JOINT

@@ -26,8 +26,8 @@ from ...description.shapes import (
     Visual,
 )
 from ...description.world import Physics, World
-from ..xml.binding import Entry, Group, Kept, Nested, Part, Table, Use, Value
 from ..xml.source import FaultLevel
+from ..xml.tables import Entry, Group, Kept, Nested, Part, Table, Use, Value
 from ..xml.values import (
     BOOL,
     COLOR,

@@ -18,8 +18,8 @@ from ...description.sensor import (
     Sonar,
     Transceiver,
 )
-from ..xml.binding import Entry, Group, Kept, Part, Table, Use, Value
 from ..xml.source import FaultLevel
+from ..xml.tables import Entry, Group, Kept, Part, Table, Use, Value
 from ..xml.values import BOOL, FLOAT, INT, LIMIT, POSE, TEXT, VECTOR2, VECTOR3
 
 _WARNING, _KEPT = FaultLevel.WARNING, Use.KEPT

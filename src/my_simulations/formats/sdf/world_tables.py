@@ -18,8 +18,8 @@ from ...description.surroundings import (
     Wind,
 )
 from ...geometry import IDENTITY, Pose, Twist, Vec3
-from ..xml.binding import Entry, Group, Kept, Nested, Part, Table, Use, Value
 from ..xml.source import FaultLevel
+from ..xml.tables import Entry, Group, Kept, Nested, Part, Table, Use, Value
 from ..xml.values import BOOL, COLOR, FLOAT, INT, POSE, SCALE, SECONDS, TEXT, VECTOR3, numbers
 
 WARNING, SHOWN, KEPT = FaultLevel.WARNING, Use.SHOWN, Use.KEPT

@@ -11,8 +11,9 @@ from ..sdf.collision_visual import fill_material
 from ..sdf.model_tables import COLLISION as SDF_COLLISION
 from ..sdf.model_tables import VISUAL as SDF_VISUAL
 from ..sdf.plugin import read_plugin
-from ..xml.binding import Value, closest, fill, set_value, to_xml
+from ..xml.binding import closest, fill, set_value, to_xml
 from ..xml.source import FaultLevel, Source
+from ..xml.tables import Value
 from ..xml.values import BOOL, FLOAT, POSE
 from .kinematic_tree import Body, Connection
 from .urdf_tables import (

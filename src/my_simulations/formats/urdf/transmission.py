@@ -7,9 +7,10 @@ from ...description.model import Model
 from ...description.transmission import Actuator, Transmission, TransmissionJoint
 from ...resources.resolver import Resolver
 from ..include_overrides import IncludeOverrides
-from ..xml.binding import Kept, Part, Table, Use, Value, fill
+from ..xml.binding import fill
 from ..xml.parsing import parse
 from ..xml.source import FaultLevel, IssueCollector, Source
+from ..xml.tables import Kept, Part, Table, Use, Value
 from ..xml.values import FLOAT, TEXT
 
 _TYPE = Value("interfaces", TEXT, repeated=True)

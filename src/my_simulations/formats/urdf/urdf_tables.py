@@ -10,8 +10,8 @@ from typing import Dict, Mapping, Optional, Tuple
 from ...description.model import Inertial, JointAxis, Link, Mimic, Model
 from ...description.shapes import Box, Capsule, Collision, Color, Cylinder, Mesh, Sphere, Visual
 from ...geometry import IDENTITY_QUAT, ZERO3, Quat, Vec3
-from ..xml.binding import Entry, Group, Kept, Part, Table, Use, Value
 from ..xml.source import FaultLevel
+from ..xml.tables import Entry, Group, Kept, Part, Table, Use, Value
 from ..xml.values import (
     BOOL,
     COLOR,

@@ -5,7 +5,7 @@ from typing import Any, Callable, Iterable, Mapping, Optional, Sequence, Set, Tu
 
 from lxml import etree
 
-from ...xml.binding import Entry, Group, Kept, Nested, Part, Table, Value, usual_value
+from ...xml.tables import Entry, Group, Kept, Nested, Part, Table, Value, usual_value
 from .xml_text import append_fragment, write_value
 
 WriteParts = Mapping[str, Callable[[Any], object]]

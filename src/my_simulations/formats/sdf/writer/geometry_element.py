@@ -6,7 +6,7 @@ from typing import Any, Dict
 from lxml import etree
 
 from ....description.shapes import Geometry, Polyline
-from ...xml.binding import Table
+from ...xml.tables import Table
 from ...xml.values import FLOAT, TEXT, VECTOR2
 from ..model_tables import GEOMETRIES
 from .fields import fill_element

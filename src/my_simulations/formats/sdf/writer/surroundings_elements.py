@@ -12,7 +12,7 @@ from lxml import etree
 from ....description.actor import Actor
 from ....description.model import PluginSpec
 from ....description.surroundings import Gui, GuiCamera, Road
-from ...xml.binding import Table
+from ...xml.tables import Table
 from ..world_tables import ACTOR, GUI, GUI_CAMERA, ROAD
 from .fields import fill_element
 from .material_element import write_material

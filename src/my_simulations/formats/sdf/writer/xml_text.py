@@ -9,7 +9,7 @@ from typing import Any, Callable, Dict, List, Mapping, Optional
 from lxml import etree
 
 from ....geometry import Pose, Quat, Vec3, quat_from_rpy, rpy_from_quat
-from ...xml.binding import Entry, Group, Kept, Part, Table
+from ...xml.tables import Entry, Group, Kept, Part, Table
 from ...xml.values import Kind, PoseKind
 
 _PREFIX = re.compile(r"[<\s/]([A-Za-z_][\w.-]*):[A-Za-z_][\w.-]*[\s=/>]")
