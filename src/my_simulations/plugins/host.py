@@ -14,7 +14,7 @@ from typing import Any, Callable, Deque, Dict, Iterable, List, Optional, Tuple
 
 from ..errors import CommandError, Issue, Severity, warning
 from ..simulator.appointments import Consumer, Moment
-from ..simulator.registry import Entity
+from ..simulator.entity import Entity
 from ..simulator.scene_sensing import SceneSensing
 from ..simulator.simulator import Simulator
 from .call_watch import PATIENCE, CallOverdue, CallWatch, Patience

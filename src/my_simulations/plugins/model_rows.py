@@ -4,7 +4,7 @@ from __future__ import annotations
 from typing import Container, Iterable, Optional
 
 from ..description.model import Joint as JointSpec
-from ..simulator.registry import Entity
+from ..simulator.entity import Entity
 from .context import PluginError
 
 

@@ -7,7 +7,7 @@ from typing import Callable, Deque, Dict, Iterator, List, Optional, Tuple
 
 from ..description.model import WORLD, Model
 from ..geometry import IDENTITY
-from ..simulator.registry import Entity
+from ..simulator.entity import Entity
 from ..simulator.simulator import Simulator
 from .base import Plugin
 from .found_plugins import Found, plugins_of

@@ -14,7 +14,7 @@ from ..engine.commands import JointWrench, PlanarVelocity, WheelSlip
 from ..errors import CommandError, InputError, Issue, Severity
 from ..geometry import IDENTITY, STILL, Pose, Twist, Vec3, compose
 from ..sensing.api import Mount, Pictures, RayFan, RayReturns
-from ..simulator.registry import Entity
+from ..simulator.entity import Entity
 from ..simulator.scene_sensing import SceneSensing
 from ..simulator.simulator import Simulator
 from .context import PluginError, View

@@ -9,7 +9,7 @@ import numpy as np
 from ..engine.commands import Contact
 from ..engine.ring import LINK_WIDTH, Snapshot
 from ..geometry import IDENTITY, Pose, Twist
-from ..simulator.registry import Entity
+from ..simulator.entity import Entity
 from ..simulator.world_state import WorldState
 
 POSE_WIDTH, TWIST_WIDTH = 7, 6

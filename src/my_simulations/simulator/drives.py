@@ -20,7 +20,7 @@ from ..engine.commands import (
 )
 from ..errors import CommandError
 from ..geometry import is_finite
-from .registry import Entity
+from .entity import Entity
 from .session import Session
 
 

@@ -7,7 +7,7 @@ from ..description.model import WORLD, Model
 from ..description.saved_state import InitialState
 from ..engine.commands import Command, SetJoints, SetLinkState, SetModelState
 from ..geometry import compose
-from .registry import Entity
+from .entity import Entity
 
 
 def initial_commands(entity: Entity, start: Optional[InitialState]) -> List[Command]:

@@ -10,8 +10,9 @@ from ..engine.body_plan import TIE_TYPES
 from ..engine.commands import ConnectModels
 from ..errors import Issue, warning
 from ..geometry import IDENTITY, Pose, compose, inverse
+from .entity import Entity
 from .order_slot import OrderSlot
-from .registry import Entity, Registry, UnknownEntityError
+from .registry import Registry, UnknownEntityError
 
 _WORLD_ROW = -1
 

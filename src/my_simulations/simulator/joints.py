@@ -8,8 +8,8 @@ from typing import Dict, List, Optional, Sequence, Set, Tuple
 from ..description.model import Joint
 from ..engine.commands import Command, JointWrench, ReadJointWrenches, SetAxes, SetJoints
 from ..engine.ring_rows import axis_rows
+from .entity import Entity
 from .models import Models
-from .registry import Entity
 from .session import Session
 
 

@@ -24,10 +24,11 @@ from ..formats.mesh.loading import without_missing_meshes
 from ..geometry import Pose, compose, inverse, normalised
 from .convex_meshes import ConvexParts
 from .drives import Drives
+from .entity import Entity
 from .initial_state import initial_commands
 from .inter_model_joints import DeletedModel, InterModelJoints
 from .order_slot import OrderSlot
-from .registry import Entity, NameTakenError
+from .registry import NameTakenError
 from .session import Session, check_name
 from .wrenches import Wrenches
 

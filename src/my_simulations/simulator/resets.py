@@ -16,9 +16,9 @@ from ..engine.commands import (
 from ..geometry import STILL
 from .clock import SimClock
 from .drives import Drives
+from .entity import Entity
 from .initial_state import initial_commands
 from .models import Models
-from .registry import Entity
 from .session import Session
 from .wrenches import Wrenches
 

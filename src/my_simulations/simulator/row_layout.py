@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from typing import List, Optional, Tuple
 
 from ..geometry import IDENTITY, Pose
-from .registry import Entity
+from .entity import Entity
 
 FrameLocation = Tuple[int, Optional[Pose]]
 """Row of a link and pose of the frame in it, None for identity; row -1: a fixed world pose."""

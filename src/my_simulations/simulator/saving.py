@@ -24,7 +24,7 @@ from ..geometry import STILL, Pose, compose, inverse
 from ..resources.package_files import package_directories
 from ..resources.resolver import Resolver, ResourceNotFoundError
 from ..resources.world_lookup import ENDINGS, folder_of_users, ships, users_folder
-from .registry import Entity
+from .entity import Entity
 from .safe_file import write_whole
 from .simulator import Simulator
 

@@ -21,7 +21,7 @@ from ..sensing.api import (
     SensingError,
     SetLights,
 )
-from .registry import Entity
+from .entity import Entity
 from .simulator import Simulator
 
 if TYPE_CHECKING:

@@ -16,7 +16,8 @@ from ..engine.ring_rows import axis_rows
 from ..errors import CommandError, Issue, warning
 from ..geometry import Pose
 from ..xml_characters import check_characters
-from .registry import Entity, NameTakenError, Registry
+from .entity import Entity
+from .registry import NameTakenError, Registry
 from .row_allocator import RowAllocator
 from .supervisor import Supervisor
 

@@ -10,7 +10,7 @@ from ..engine.ring import LINK_WIDTH, Snapshot
 from ..errors import Issue
 from ..formats.loading_advice import advice_issues
 from ..geometry import IDENTITY, Pose, Twist
-from .registry import Entity
+from .entity import Entity
 from .simulator import Simulator
 
 NEIGHBOURS = 64

@@ -19,8 +19,8 @@ from ..engine.commands import (
 from ..engine.ring import LINK_WIDTH, Snapshot
 from ..geometry import IDENTITY, Pose, Twist, compose
 from .clock import SimClock
+from .entity import Entity
 from .reference_frames import in_frame, relative, usable
-from .registry import Entity
 from .session import Session
 from .world_state import WorldState
 from .wrenches import Wrenches

@@ -7,7 +7,7 @@ from typing import Dict, List, Sequence, Tuple
 from ..engine.commands import Command, ModelState, SetJoints, SetLinkState, SetModelState
 from ..engine.ring import Clock, Snapshot
 from ..geometry import Pose, Twist
-from .registry import Entity
+from .entity import Entity
 
 
 @dataclass(frozen=True)

@@ -18,7 +18,7 @@ from ..engine.commands import (
 from ..engine.ring import Clock
 from ..errors import CommandError
 from ..geometry import ZERO3, Vec3, compose, inverse, is_finite, rotate, subtract, transform
-from .registry import Entity
+from .entity import Entity
 from .session import Session
 
 NANOSECOND_PS = 1000

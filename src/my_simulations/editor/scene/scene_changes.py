@@ -6,7 +6,7 @@ from typing import Any, Dict, List, Optional
 
 from ...description.light import Light
 from ...engine.ring import Snapshot
-from ...simulator.registry import Entity
+from ...simulator.entity import Entity
 from ...simulator.simulator import Simulator
 from .scene_json import Documents
 

@@ -28,7 +28,7 @@ from ...description.world import World
 from ...engine.ring import Snapshot
 from ...geometry import Pose, Vec3
 from ...resources.resolver import Resolver, ResourceNotFoundError
-from ...simulator.registry import Entity
+from ...simulator.entity import Entity
 from .generated_meshes import Solids
 from .materials import Materials
 from .plain_json import plain, plain_fields

@@ -8,8 +8,8 @@ from ...engine.commands import JointPid
 from ...engine.ring import Snapshot
 from ...errors import CommandError, SimulationError
 from ...geometry import Pose, Twist, rpy_from_quat
+from ...simulator.entity import Entity
 from ...simulator.joint_gains import default_gains
-from ...simulator.registry import Entity
 from ...simulator.simulator import Simulator
 from ...simulator.wrenches import Effort
 from .clock_statistics import RealTime
