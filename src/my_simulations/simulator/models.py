@@ -2,10 +2,10 @@
 from __future__ import annotations
 
 from dataclasses import replace as replaced
-from typing import Dict, List, Optional, Sequence, Tuple
+from typing import Dict, List, Optional, Sequence
 
 from ..description.flatten import flattened
-from ..description.model import WORLD, Inertial, Joint, Link, Model
+from ..description.model import WORLD, Inertial, Joint, Model
 from ..description.shapes import MeshTable
 from ..description.world import World
 from ..engine.commands import (
@@ -27,13 +27,14 @@ from .drives import Drives
 from .entity import Entity
 from .initial_state import initial_commands
 from .inter_model_joints import DeletedModel, InterModelJoints
+from .known_models import KnownModels
 from .order_slot import OrderSlot
 from .registry import NameTakenError
 from .session import Session, check_name
 from .wrenches import Wrenches
 
 
-class Models:
+class Models(KnownModels):
     """Owns the entities, the joints between models, and which models are pinned.
 
     Changes take the session's structure lock, and the registry lock for the moment in which names
@@ -42,7 +43,7 @@ class Models:
 
     def __init__(self, session: Session, wrenches: Wrenches, drives: Drives,
                  convex_meshes: ConvexParts) -> None:
-        self._session = session
+        super().__init__(session)
         self._wrenches = wrenches
         self._drives = drives
         self._convex_meshes = convex_meshes
@@ -55,63 +56,6 @@ class Models:
 
     # -- reading -----------------------------------------------------------------------------------
 
-    def names(self) -> List[str]:
-        """Names of the top-level models, in load order."""
-        with self._session.registry_lock:
-            return self._session.registry.names()
-
-    def has(self, name: str) -> bool:
-        """Whether a model of that name exists."""
-        with self._session.registry_lock:
-            return name in self._session.registry
-
-    @property
-    def count(self) -> int:
-        """How many top-level models there are."""
-        with self._session.registry_lock:
-            return len(self._session.registry)
-
-    def with_plugins(self) -> Tuple[int, List[Entity]]:
-        """The revision and the models that have a plugin; no other is looked at."""
-        with self._session.registry_lock:
-            return self._session.registry.revision, self._session.registry.with_plugins()
-
-    def entity(self, name: str) -> Entity:
-        """A model with its rows and names. Raises UnknownEntityError."""
-        with self._session.registry_lock:
-            return self._session.registry.model(name)
-
-    def get(self, name: str) -> Model:
-        """The flattened description of a model. Raises UnknownEntityError."""
-        with self._session.registry_lock:
-            return self._session.registry.model(name).model
-
-    def link(self, name: str) -> Link:
-        """The description of a link, by plain or scoped name. Raises UnknownEntityError."""
-        with self._session.registry_lock:
-            entity, index = self._session.registry.link(name)
-            return entity.model.links[index]
-
-    def link_place(self, scoped: str) -> Optional[Tuple[int, Inertial]]:
-        """Row and inertial of a link by its scoped name; None where there is none."""
-        with self._session.registry_lock:
-            row = self._session.registry.link_row_or_none(scoped)
-            if row is None:
-                return None
-            entity, index = self._session.registry.link(scoped)
-            return row, entity.model.links[index].inertial
-
-    @property
-    def revision(self) -> int:
-        """Increases with every change of names, descriptions, lights or scene settings."""
-        with self._session.registry_lock:
-            return self._session.registry.revision
-
-    def inventory(self) -> Tuple[int, List[Entity]]:
-        """The revision and all entities in load order; an edited entity is a new object."""
-        with self._session.registry_lock:
-            return self._session.registry.revision, self._session.registry.entities()
-
     @property
     def inter_model_joints(self) -> List[Joint]:
         """The joints between models in effect; their ends are scoped link names or `world`.
@@ -119,16 +63,6 @@ class Models:
         Without those of `attach`, which belong to the caller that made them.
         """
         return [joint for joint in self._between.joints if joint.name not in self._attached]
-
-    def launched(self) -> List[str]:
-        """The models that the launch file of this simulator spawned (see `Entity`)."""
-        return [entity.model.name for entity in self._session.entities() if entity.launched]
-
-    def set_launched(self, names: Sequence[str]) -> None:
-        """Set which models the launch file spawned; clears the flag of all others."""
-        with self._session.registry_lock:
-            for entity in self._session.registry.entities():
-                entity.launched = entity.model.name in names
 
     @property
     def losses(self) -> List[str]:
@@ -308,6 +242,12 @@ class Models:
             links[index] = replaced(old, inertial=inertial,
                                     gravity=old.gravity if gravity is None else gravity)
             self.edit(entity.model.name, replaced(entity.model, links=links))
+
+    def set_launched(self, names: Sequence[str]) -> None:
+        """Set which models the launch file spawned; clears the flag of all others."""
+        with self._session.registry_lock:
+            for entity in self._session.registry.entities():
+                entity.launched = entity.model.name in names
 
     def pin(self, names: List[str]) -> None:
         """Pin these models, which then stay at rest where they are set, and release all others.
