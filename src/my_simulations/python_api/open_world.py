@@ -10,16 +10,16 @@ from typing import Callable, List, Optional, Sequence, Type
 from ..description.model import Model
 from ..engine.api import Engine
 from ..engine.process_engine import ProcessEngine
-from ..errors import CommandError, EngineLostError, InputError, Issue, errors_of
+from ..errors import CommandError, EngineLostError, Issue
 from ..formats.reading import LoadedWorld, Text
-from ..geometry import ZERO3, Pose, Twist, compose
+from ..geometry import ZERO3, Twist
 from ..resources.resolver import Resolver
 from ..sensing.api import CameraSpec
 from ..simulator.saving import save_world
 from ..simulator.scene_sensing import SceneSensing
 from ..simulator.simulator import Simulator
+from .furnishing import Furnisher
 from .kept_files import KeptFiles
-from .object_placement import Alter
 from .plain_values import nanoseconds_of, pose_of, twist_of, vector_of, whole_number
 from .readings import (
     ContactReading,
@@ -92,8 +92,9 @@ class OpenWorld:
         self._furnished = 0  # the revision of the models when the world was opened
         self._choice = choice
         self._files = files or KeptFiles(resolver or Resolver.from_environment())
+        self._furnisher = Furnisher(self._files, self._log)
         self._new_engine = engine
-        self._start(self._load())
+        self._start(self._furnisher.load(choice))
 
     def __enter__(self) -> OpenWorld:
         return self
@@ -167,7 +168,7 @@ class OpenWorld:
         self.issues.clear()
         before, self._choice = self._choice, choice
         try:
-            loaded = self._load()
+            loaded = self._furnisher.load(choice)
         except BaseException:
             self._choice = before
             raise
@@ -255,8 +256,8 @@ class OpenWorld:
         Raises:
             InputError: the document has no usable model.
         """
-        self._whole()
-        return self._spawn(document, name, pose_of(pose), lambda model: model)
+        return self._furnisher.spawn(self._whole(), document, name, pose_of(pose),
+                                     lambda model: model)
 
     def remove(self, name: str) -> None:
         """Take a model out of the world."""
@@ -369,35 +370,9 @@ class OpenWorld:
             self.simulator.close()
             raise
 
-    def _load(self) -> LoadedWorld:
-        choice = self._choice
-        loaded = self._files.world(choice, self._log)
-        return replace(loaded, world=choice.alter(loaded.world))
-
     def _furnish(self) -> None:
-        choice = self._choice
-        placed, issues = self._files.objects(choice.objects, choice.object_list, choice.world)
-        for found in placed:
-            model = choice.alter_model(found.model)
-            self.simulator.models.spawn(model, model.pose, meshes=found.meshes)
-        self._judge(issues)
-        for name, file, pose in choice.models:
-            self._spawn(file, name, pose, choice.alter_model)
+        self._furnisher.furnish(self.simulator, self._choice)
         self._furnished = self.simulator.models.revision
-
-    def _spawn(self, document: Text, name: Optional[str], pose: Pose, alter: Alter) -> str:
-        found, meshes, issues = self._files.model(document)
-        model = alter(replace(found, name=found.name if name is None else name,
-                              pose=compose(pose, found.pose)))
-        self._judge(issues)
-        self.simulator.models.spawn(model, model.pose, meshes=meshes)
-        return model.name
-
-    def _judge(self, issues: Sequence[Issue]) -> None:
-        for issue in issues:
-            self._log(issue)
-        if errors_of(issues):
-            raise InputError(issues)
 
     def _log(self, issue: Issue) -> None:
         self.issues.append(issue)
