@@ -2,7 +2,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Any, Callable, Dict, Iterable, List, Optional, Set, Tuple, Type
+from typing import Any, Callable, Dict, Iterable, List, Optional, Tuple, Type
 
 import pybullet
 
@@ -54,6 +54,7 @@ from .joint_motors import JointMotors
 from .joint_wrenches import JointWrenches
 from .landing_contacts import LandingContacts
 from .level_seams import LevelSeams
+from .notices import Notices
 from .pair_friction import FrictionBalance
 from .pair_restitution import PairRestitution
 from .pinned_bodies import PinnedBodies
@@ -83,6 +84,7 @@ class BulletBackend:
         self._bodies: Dict[int, Body] = {}
         self._rows: Dict[int, Tuple[Body, Part]] = {}
         self._axes: Dict[int, Tuple[Body, bodies.Axis]] = {}
+        self._notices = Notices(self._models, self._bodies)
         self._readout = StateReadout(self._on_diverged, self._on_raced)
         self._residual = ResidualFriction()
         self._rolling = RollingContacts(lambda links, step: self._landing.see_rolling(links, step),
@@ -94,8 +96,8 @@ class BulletBackend:
         driver = WakeUp(self._bodies, self._driven)
         self._forces = Forces(driver.around, lambda rows: self._motors.yield_to(rows),
                               lambda body, axis: self._motors.restore(body, axis))
-        self._friction = FrictionBalance(self._on_misfit)
-        self._bounces = PairRestitution(self._on_odd_bounce)
+        self._friction = FrictionBalance(self._notices.misfit)
+        self._bounces = PairRestitution(self._notices.odd_bounce)
         self._spin = GyroscopicRigid(lambda: self._forces.wrenched_links)
         self._holds = PinnedBodies(self._waker.around)
         self._book = ConstraintBook()
@@ -124,8 +126,6 @@ class BulletBackend:
         self._hearers = tuple(part.touched for part in (
             self._loop, self._friction, self._settling, self._residual, self._rolling,
             self._sliding, self._stop, self._landing, self._seams))
-        self._events: List[Event] = []
-        self._lost: Set[int] = set()   # models that were thrown away by what acts on them
         self._starts = InitialStateCache(self._readout)
         self._put_off: Optional[List[Start]] = None
         self._is_fresh = True   # nothing has moved since the world began
@@ -206,8 +206,7 @@ class BulletBackend:
 
     def events(self) -> List[Event]:
         """What has happened since the last call."""
-        found, self._events = self._events, []
-        return found
+        return self._notices.taken()
 
     def close(self) -> None:
         """Disconnect and remove scratch files."""
@@ -275,7 +274,7 @@ class BulletBackend:
         Whoever asked need not wait for that, and several resets in a row build it once. What the
         tables show is also what another engine would begin with, should this one end on the way.
         """
-        self._lost.clear()
+        self._notices.forget_all()
         starts = [(self._entry(number), pose) for number, pose in command.models]
         if len(starts) == len(self._models) and self._starts.show(starts):
             self._put_off = starts
@@ -334,7 +333,7 @@ class BulletBackend:
         entry = self._entry(command.model_id)
         self._waker.around(entry.bodies)
         del self._models[command.model_id]
-        self._lost.discard(command.model_id)
+        self._notices.forget(command.model_id)
         entry.constraints.remove()
         self._readout.forget_joints(entry.builder.joint_rows)
         for body in entry.bodies:
@@ -360,7 +359,7 @@ class BulletBackend:
         self._put_off = None
         self._is_fresh = True
         self._models.clear()
-        self._lost.clear()
+        self._notices.forget_all()
         for keeper in self._keepers:
             keeper.clear()
         self._book.clear()
@@ -430,7 +429,7 @@ class BulletBackend:
 
     def _touched(self, body: Body) -> None:
         """A command reached a body: it may be elsewhere."""
-        self._lost.discard(body.model_id)
+        self._notices.forget(body.model_id)
         self._readout.touch(body)
         self._tell(body)
 
@@ -447,33 +446,10 @@ class BulletBackend:
         self._forces.rest(body, held)
         self._loop.touched(body)
 
-    def _on_misfit(self, uid: int, share: float) -> None:
-        body = self._bodies[uid]
-        self._events.append(Event(
-            "log", f"model '{self._models[body.model_id].model.name}' touches others in a ring, "
-            f"for which no friction fits all pairs: it is {100 * share:.0f} % off", body.model_id))
-
-    def _on_odd_bounce(self, uid: int, share: float) -> None:
-        body = self._bodies[uid]
-        self._events.append(Event(
-            "log", f"model '{self._models[body.model_id].model.name}' may bounce off another moving"
-            f" model {100 * share:.0f} % off the smaller restitution: no values fit all pairs",
-            body.model_id))
-
     def _on_diverged(self, body: Body) -> None:
         self._loop.changed()
         self._mover.put_back(body)
-        self._tell_lost(body, "the state of model '{}' became infinite; it was put back where it "
-                              "was, at rest")
+        self._notices.diverged(body)
 
     def _on_raced(self, body: Body) -> None:
-        self._tell_lost(body, f"a joint of model '{{}}' turns or moves with {bodies.FASTEST_RATE:g}"
-                              " rad/s or m/s, the fastest that is computed: what drives it is too "
-                              f"strong for steps of {self._settings.step_size:g} s")
-
-    def _tell_lost(self, body: Body, text: str) -> None:
-        """Say it once, as it may come in each step, until the model is put elsewhere."""
-        if body.model_id not in self._lost:
-            self._lost.add(body.model_id)
-            name = self._models[body.model_id].model.name
-            self._events.append(Event("diverged", text.format(name), body.model_id))
+        self._notices.raced(body, self._settings.step_size)
