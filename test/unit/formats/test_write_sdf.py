@@ -166,6 +166,21 @@ def test_what_was_saved_and_loaded_is_saved_as_the_same_text(rpy):
     assert write_entity(model) == write_entity(again(model))
 
 
+@pytest.mark.parametrize("rpy", ["0 0 3.3", "0 0 -3.3", "0.1 -0.2 4", "0 0 3", "0 0 6.2"])
+def test_a_waypoint_keeps_the_sense_in_which_its_path_turns_to_it(rpy):
+    # 3.3 rad and -2.98 rad are one orientation, but not to the spline through the waypoints.
+    def saved(turn):
+        text = ("<sdf version='1.6'><world name='w'><actor name='a'><script><trajectory id='0' "
+                f"type='walk'><waypoint><time>1</time><pose>1 2 0 {turn}</pose></waypoint>"
+                "</trajectory></script></actor></world></sdf>")
+        written = etree.fromstring(write_world(parse_world(text, Resolver())[0]))
+        return written.findtext(".//waypoint/pose")
+    first = saved(rpy)
+    assert [float(one) for one in first.split()[3:]] == pytest.approx(
+        [float(one) for one in rpy.split()], abs=1e-12)
+    assert saved(" ".join(first.split()[3:])) == first
+
+
 def test_axes_are_saved_as_the_same_text_again():
     axis = (2.52817657e-06, -9.1567471e-07, 0.9999999999963835)
     arm = Model("m", links=[Link("a"), Link("b")],

@@ -20,7 +20,19 @@ from ...description.surroundings import (
 from ...geometry import IDENTITY, Pose, Twist, Vec3
 from ..xml.source import FaultLevel
 from ..xml.tables import Entry, Group, Kept, Nested, Part, Table, Use, Value
-from ..xml.values import BOOL, COLOR, FLOAT, INT, POSE, SCALE, SECONDS, TEXT, VECTOR3, numbers
+from ..xml.values import (
+    BOOL,
+    COLOR,
+    FLOAT,
+    INT,
+    PATH_POSE,
+    POSE,
+    SCALE,
+    SECONDS,
+    TEXT,
+    VECTOR3,
+    numbers,
+)
 
 WARNING, SHOWN, KEPT = FaultLevel.WARNING, Use.SHOWN, Use.KEPT
 
@@ -98,7 +110,7 @@ ANIMATION = Table("animation", Animation, {
 }, attributes={"name": Value("name", TEXT)}, level=WARNING, use=SHOWN)
 
 WAYPOINT = Table("waypoint", Waypoint, {
-    "time": Value("time", FLOAT), "pose": Value("pose", POSE),
+    "time": Value("time", FLOAT), "pose": Value("pose", PATH_POSE),
 }, level=WARNING, use=SHOWN)
 
 TRAJECTORY = Table("trajectory", Trajectory, {

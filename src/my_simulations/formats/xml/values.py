@@ -300,6 +300,22 @@ class PoseKind:
         return pose_from_xyzrpy(*position, *angles)
 
 
+class PathPose(PoseKind):
+    """As `PoseKind`, of a path: its spline of turns tells q from -q (3.3 rad from -2.98)."""
+
+    def format(self, value: Pose) -> str:
+        angles = whole_turn(rpy_from_quat(value.orientation), value.orientation)
+        return _formatted(*value.position, *angles)
+
+
+def whole_turn(angles: Vec3, orientation: Quat) -> Vec3:
+    """Roll, pitch and yaw of an orientation, with a yaw beyond pi if else it would be -q."""
+    roll, pitch, yaw = angles
+    if sum(a * b for a, b in zip(quat_from_rpy(roll, pitch, yaw), orientation)) >= 0.0:
+        return angles
+    return roll, pitch, round(yaw - math.copysign(2.0 * math.pi, yaw), 13)
+
+
 class Seconds:
     """`sec nsec`, or plain seconds."""
 
@@ -321,4 +337,4 @@ class Seconds:
 BOOL, NEGATED, FLOAT, LIMIT, INT, TEXT = Bool(), Negated(), Float(), Limit(), Int(), Text()
 VECTOR2, VECTOR3, SCALE, COLOR = Vector2(), Vector3(), UniformScale(), Color()
 PLANE_SIZE, FRICTION = PlaneSize(), Friction()
-RPY, POSE, SECONDS = Rpy(), PoseKind(), Seconds()
+RPY, POSE, PATH_POSE, SECONDS = Rpy(), PoseKind(), PathPose(), Seconds()

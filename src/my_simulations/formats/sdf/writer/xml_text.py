@@ -10,7 +10,7 @@ from lxml import etree
 
 from ....geometry import Pose, Quat, Vec3, quat_from_rpy, rpy_from_quat
 from ...xml.tables import Entry, Group, Kept, Part, Table
-from ...xml.values import Kind, PoseKind
+from ...xml.values import Kind, PathPose, PoseKind, whole_turn
 
 _PREFIX = re.compile(r"[<\s/]([A-Za-z_][\w.-]*):[A-Za-z_][\w.-]*[\s=/>]")
 _DECLARED = re.compile(r"\bxmlns:([A-Za-z_][\w.-]*)\s*=")
@@ -23,18 +23,22 @@ def write_value(parent: Any, tag: str, kind: Kind, value: Any = None,
     if text is None:
         text = kind.format(value)
     if isinstance(kind, PoseKind):
-        text = stable_pose_text(kind.parse(text))
+        text = stable_pose_text(kind.parse(text), isinstance(kind, PathPose))
     etree.SubElement(parent, tag).text = text
 
 
-def stable_pose_text(pose: Pose) -> str:
+def stable_pose_text(pose: Pose, of_path: bool = False) -> str:
     """The text of a pose that does not change when it is read and written again.
 
     The conversion of angles to a quaternion and back changes their last digits, so angles are
-    rounded to 1e-14 rad: 0.4 stays 0.4, and saving a loaded world gives the same text.
+    rounded to 1e-14 rad: 0.4 stays 0.4, and saving a loaded world gives the same text. `of_path`:
+    see `PathPose`.
     """
     x, y, z, w = (value + 0.0 for value in pose.orientation)  # -0.0 becomes 0.0
-    return " ".join(_plain(value) for value in (*pose.position, *_stable_rpy((x, y, z, w))))
+    angles = _stable_rpy((x, y, z, w))
+    if of_path:
+        angles = whole_turn(angles, pose.orientation)
+    return " ".join(_plain(value) for value in (*pose.position, *angles))
 
 
 @functools.lru_cache(maxsize=1024)
