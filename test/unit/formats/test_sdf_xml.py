@@ -116,6 +116,22 @@ def test_bytes_that_are_not_of_their_encoding_are_read_as_latin_1_with_a_warning
     assert model.name == "möbel" and warnings(issues) == ["xml-encoding"]
 
 
+@pytest.mark.parametrize("encoding, line", [("undefined", 1), ("no-such", 1), ("hex", 1),
+                                            ("us-ascii", 2), ("utf-8", 2), ("utf-16", 2)])
+def test_a_wrong_declared_encoding_is_told_with_its_line(encoding, line):
+    text = f'<?xml version="1.0" encoding="{encoding}"?>\n' + sdf(MODEL.replace('"m"', '"möbel"'))
+    model, issues = read(text.encode("latin-1"))
+    assert model.name == "möbel"
+    assert [(issue.code, issue.line) for issue in issues] == [("xml-encoding", line)]
+
+
+@pytest.mark.parametrize("blanks", ["", " "])
+def test_utf_8_that_declares_utf_16_is_read_as_it_is(blanks):
+    text = '<?xml version="1.0" encoding="utf-16"?>' + sdf(MODEL.replace('"m"', '"möbel"'))
+    model, issues = read((text + blanks).encode())
+    assert model.name == "möbel" and issues == []
+
+
 HOSTILE = {
     "deep": "<a>" * 200000,
     "deep and closed": sdf("<model name='m'>" * 50000 + "</model>" * 50000),

@@ -181,12 +181,16 @@ def _decoded(data: bytes, was_text: bool, file: str, log: IssueCollector) -> str
     if not encoding:
         declared = _ENCODING.search(data[:2000])
         encoding = declared.group(1).decode("ascii") if declared else "utf-8"
+        if encoding.lower().startswith(("utf-16", "utf-32")):  # the declaration itself is not
+            encoding = "utf-8"
     try:
         return data.decode(encoding).lstrip("\ufeff")
-    except (UnicodeDecodeError, LookupError):
+    except (UnicodeError, LookupError) as fault:
         from ...errors import warning
 
-        log.add(warning("xml-encoding", f"the text is not {encoding}; read as Latin-1", file=file))
+        at = fault.start if isinstance(fault, UnicodeDecodeError) else 0
+        log.add(warning("xml-encoding", f"the text is not {encoding}; read as Latin-1", file=file,
+                        line=data.count(b"\n", 0, at) + 1))
         return data.decode("latin-1")
 
 
