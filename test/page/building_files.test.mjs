@@ -11,6 +11,7 @@ globalThis.localStorage = {
   getItem: (key) => storage.get(key) ?? null, setItem: (key, value) => storage.set(key, value)};
 globalThis.window = {
   addEventListener: (_, listener) => { leavePage = listener; }, removeEventListener() {}};
+const forgetDrafts = () => storage.clear();
 const {Files} = await import('../../web/js/building/building_files.js');
 const {Session} = await import('../../web/js/building/drawing_session.js');
 const {forgetDraft, keepDraft, leftDraft} = await import('../../web/js/building/unsaved_plan.js');
@@ -116,7 +117,7 @@ test('a restored draft is saved to its own folder, with author and pictures', as
   assert.deepEqual(asked.at(-1).options, {...ABOUT, folder: '/ws/models', overwrite: true});
   assert.equal(wallsOf(asked.at(-1).plan), 1);
   assert.deepEqual(asked.at(-1).plan.levels[0].image, SCAN);
-  forgetDraft();
+  forgetDrafts();
 });
 
 test('a picture that was not saved is told missing when the draft is restored', async () => {
@@ -128,7 +129,7 @@ test('a picture that was not saved is told missing when the draft is restored', 
   await files.restore(leftDraft());
   assert.equal(session.level.image, null);
   assert.match(session.hint, /floor plan of Level 1 again/);
-  forgetDraft();
+  forgetDrafts();
 });
 
 test('a draft whose building cannot be opened asks where it is saved', async () => {
@@ -143,7 +144,7 @@ test('a draft whose building cannot be opened asks where it is saved', async () 
   assert.equal(wallsOf(session.history.plan), 1);
   assert.equal(session.file, null);
   assert.match(session.hint, /House cannot be opened: it was removed/);
-  forgetDraft();
+  forgetDrafts();
 });
 
 test('a session that draws nothing forgets no draft of an earlier one', () => {
@@ -158,7 +159,7 @@ test('a session that draws nothing forgets no draft of an earlier one', () => {
   leavePage();
   stop();
   assert.equal(wallsOf(leftDraft().plan), 1);
-  forgetDraft();
+  forgetDrafts();
 });
 
 test('a draft is forgotten when its plan is saved', async () => {
@@ -171,4 +172,65 @@ test('a draft is forgotten when its plan is saved', async () => {
   await files.save();
   leavePage();
   assert.equal(leftDraft(), null);
+});
+
+/** A session of another tab with so many walls, which was left. */
+function leftTab(walls) {
+  const session = new Session();
+  const stop = keepDraft(session);
+  for (let y = 1; y <= walls; y += 1) addWall(session, y);
+  const leave = leavePage;
+  leave();
+  return {session, stop, leave};
+}
+
+test('two tabs that draw keep a draft each', () => {
+  const first = leftTab(1);
+  const second = leftTab(2);
+  assert.equal(wallsOf(leftDraft().plan), 2);
+  second.stop();
+  assert.equal(wallsOf(leftDraft().plan), 1);
+  addWall(first.session, 9);
+  first.leave();
+  assert.equal(wallsOf(leftDraft().plan), 2);
+  first.stop();
+  assert.equal(leftDraft(), null);
+});
+
+test('a draft that is discarded leaves that of another tab', () => {
+  leftTab(1);
+  leftTab(2);
+  forgetDraft(leftDraft().by);
+  assert.equal(wallsOf(leftDraft().plan), 1);
+  forgetDrafts();
+});
+
+test('a restored draft is kept as that of the session which goes on with it', async () => {
+  leftTab(1);
+  const draft = leftDraft();
+  const {files, session} = filesWith();
+  await files.restore(draft);
+  const stop = keepDraft(session, draft);
+  assert.equal(wallsOf(leftDraft().plan), 1);
+  stop();
+  assert.equal(leftDraft(), null);
+});
+
+test('of the drafts that nobody restores the newest are kept', () => {
+  for (let number = 0; number < 30; number += 1) leftTab(1);
+  leftTab(2);
+  const kept = JSON.parse([...storage.values()][0]);
+  assert.equal(kept.length, 10);
+  assert.equal(wallsOf(kept.at(-1).plan), 2);
+  forgetDrafts();
+});
+
+test('the draft of a page that knew of one only is found', () => {
+  leftTab(1);
+  const [{by, ...draft}] = JSON.parse([...storage.values()][0]);
+  storage.set('world-editor.building-draft', JSON.stringify(draft));
+  assert.equal(wallsOf(leftDraft().plan), 1);
+  forgetDraft(leftDraft().by);
+  assert.equal(leftDraft(), null);
+  assert.ok(by);
 });

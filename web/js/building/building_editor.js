@@ -120,8 +120,11 @@ export async function mount(element, {store, request, actions}) {
   canvas.element.focus();
   let left = false;
   // Kept from the answer on: until then the earlier draft is the only one there is.
-  const offered = draft ? open(() => offer(files, draft)) : Promise.resolve();
-  offered.then(() => { if (!left) ends.push(keepDraft(session)); });
+  let restored = false;
+  const offered = draft
+    ? open(async () => { restored = await offer(files, draft); return restored; })
+    : Promise.resolve();
+  offered.then(() => { if (!left) ends.push(keepDraft(session, restored ? draft : null)); });
 
   /** @type {Promise<boolean>|null} */
   let closing = null;
@@ -184,10 +187,10 @@ const bound = (files) => ({
  * @returns {Promise<boolean>} whether it was restored
  */
 async function offer(files, draft) {
-  const answer = await ask('Restore unsaved building?', `The building ${draft.plan.name} has unsaved changes from an earlier session.`,
+  const answer = await ask('Restore unsaved building?', `The building ${draft.plan.name} has unsaved changes from an earlier session or another tab.`,
     [{title: 'Discard', value: 'drop', danger: true},
       {title: 'Restore', value: 'restore', primary: true, run: () => files.restore(draft)}]);
-  if (answer === 'drop') forgetDraft();
+  if (answer === 'drop') forgetDraft(draft.by);
   return answer === 'restore';
 }
 

@@ -6,6 +6,8 @@ import {isEmpty, withoutImages} from './plan.js';
 
 const KEY = 'building-draft';
 const PAUSE = 500;
+/** How many plans are kept; the oldest gives way. */
+const MOST = 10;
 
 /**
  * The floor-plan picture of a level, which is too large to be kept: its scale, and the level of the
@@ -15,42 +17,53 @@ const PAUSE = 500;
 
 /**
  * @typedef {object} Draft
+ * @property {string} [by]  whose it is: each tab of the browser may draw a building of its own
  * @property {Plan} plan  without pictures
  * @property {Session['file']} file
  * @property {KeptPicture[]} [pictures]
  */
 
-/** What was left unsaved. @returns {Draft|null} */
-export function leftDraft() {
-  const draft = remembered.get(KEY, /** @type {Draft|null} */ (null));
-  const has = draft?.plan?.format === 1 && (!isEmpty(draft.plan) || draft.pictures?.length);
-  return has ? draft : null;
+/** What sessions have left, the newest last. @returns {Draft[]} */
+function drafts() {
+  const kept = remembered.get(KEY, /** @type {Draft[]|Draft|null} */ (null));
+  return Array.isArray(kept) ? kept : [kept].filter((draft) => draft !== null);
 }
 
-export const forgetDraft = () => remembered.set(KEY, null);
+/** What was left unsaved last. @returns {Draft|null} */
+export function leftDraft() {
+  return drafts().reverse().find((draft) => draft?.plan?.format === 1
+    && (!isEmpty(draft.plan) || draft.pictures?.length)) ?? null;
+}
+
+/** @param {string|undefined} by  whose it is */
+export const forgetDraft = (by) => remembered.set(KEY, drafts().filter((draft) => draft?.by !== by));
 
 /**
- * Keeps the plan of a session while it has unsaved changes. A draft of an earlier session stays
- * until this one has something to keep.
+ * Keeps the plan of a session while it has unsaved changes, beside those of other sessions.
  * @param {Session} session
+ * @param {Draft|null} [restored]  what the session has begun with, kept as its own from here on
  * @returns {() => void} stops, and forgets what this session kept
  */
-export function keepDraft(session) {
+export function keepDraft(session, restored = null) {
+  const by = `${Date.now()}-${Math.random()}`;
   /** @type {ReturnType<typeof setTimeout>|0} */
   let timer = 0;
-  // What was restored is unsaved, and kept as this session's from here on.
-  let own = session.dirty;
+  const write = () => {
+    const others = drafts().filter((draft) => draft?.by !== by);
+    if (session.dirty) others.push({...draftOf(session), by});
+    remembered.set(KEY, others.slice(-MOST));
+  };
   let kept = session.history.plan;
-  let dirty = session.dirty;
+  let {dirty} = session;
+  if (dirty) write();
+  if (restored) forgetDraft(restored.by);
   const keep = () => {
     timer = 0;
     const {plan} = session.history;
     if (plan === kept && session.dirty === dirty) return;
     kept = plan;
     dirty = session.dirty;
-    own ||= dirty;
-    if (dirty) remembered.set(KEY, draftOf(session));
-    else if (own) forgetDraft();
+    write();
   };
   const changed = () => { timer ||= setTimeout(keep, PAUSE); };
   const unlisten = session.listen('change', changed);
@@ -59,7 +72,7 @@ export function keepDraft(session) {
     clearTimeout(timer);
     window.removeEventListener('pagehide', keep);
     unlisten();
-    if (own) forgetDraft();
+    forgetDraft(by);
   };
 }
 
