@@ -17,6 +17,7 @@ from ..errors import InputError, Issue, Severity, error, errors_of, strictly
 from ..formats.reading import read_any
 from ..formats.xml.parsing import content
 from ..objects.object_documents import run_xacro
+from ..program_end import program
 from ..resources.database.download_notes import DownloadNotes
 from ..resources.model_config import description_in
 from ..resources.resolver import Resolver
@@ -49,6 +50,7 @@ def parser() -> argparse.ArgumentParser:
     return made
 
 
+@program
 def main(argv: Optional[Sequence[str]] = None) -> int:
     """Run the check.
 

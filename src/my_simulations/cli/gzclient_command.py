@@ -6,6 +6,7 @@ import sys
 import threading
 from typing import Any, List, Optional
 
+from ..program_end import program
 from ..ros.lifecycle import master_api
 from .web_browser import show
 
@@ -24,6 +25,7 @@ Open the world editor of the running node `gazebo` in a browser, or print its UR
 display. Exits when the node exits."""
 
 
+@program
 def main(argv: Optional[List[str]] = None) -> int:
     """Open the editor of the node `gazebo`, and wait until that node or this program ends.
 

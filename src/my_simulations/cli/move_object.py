@@ -11,6 +11,7 @@ from ..errors import InputError, SimulationError
 from ..geometry import Pose, quat_from_rpy
 from ..objects.motion_path import Circle, Polygon, parse_numbers, parse_points
 from ..objects.selection import unknown_name
+from ..program_end import program
 from ..ros.arguments import Parser
 from . import object_client as client
 
@@ -59,6 +60,7 @@ def parser() -> argparse.ArgumentParser:
     return made
 
 
+@program
 def main(argv: Optional[Sequence[str]] = None) -> int:
     """Run the tool.
 

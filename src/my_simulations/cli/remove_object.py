@@ -8,6 +8,7 @@ from typing import Dict, List, Mapping, Optional, Sequence, Tuple
 from ..errors import Issue
 from ..objects.object_list import ObjectList
 from ..objects.selection import ALL, select, unknown_name
+from ..program_end import program
 from ..ros.arguments import Parser
 from . import object_client as client
 from .progress import MANY, Progress
@@ -28,6 +29,7 @@ def parser() -> argparse.ArgumentParser:
     return made
 
 
+@program
 def main(argv: Optional[Sequence[str]] = None) -> int:
     """Run the tool.
 

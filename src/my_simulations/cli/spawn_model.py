@@ -11,6 +11,7 @@ import time
 from typing import Any, Dict, List, Optional
 
 from ..errors import InputError, SimulationError
+from ..program_end import program
 from ..ros.arguments import Parser, number
 from ..ros.call_deadline import CallTimeoutError, within
 from ..ros.lifecycle.launch_info import Launch
@@ -89,6 +90,7 @@ def joint_positions(options: argparse.Namespace) -> Dict[str, float]:
     return positions
 
 
+@program
 def main(argv: Optional[List[str]] = None) -> int:
     """Run the program.
 

@@ -9,6 +9,7 @@ from ..errors import InputError
 from ..objects.object_documents import Document, Documents, package_finder
 from ..objects.object_list import PlacedObject
 from ..objects.selection import select
+from ..program_end import program
 from ..ros.arguments import Parser
 from ..ros.lifecycle.launch_info import Launch
 from . import object_client as client
@@ -32,6 +33,7 @@ def parser() -> argparse.ArgumentParser:
     return made
 
 
+@program
 def main(argv: Optional[Sequence[str]] = None) -> int:
     """Run the tool.
 

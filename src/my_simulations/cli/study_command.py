@@ -4,10 +4,12 @@ from __future__ import annotations
 import sys
 from typing import Optional, Sequence
 
+from ..program_end import program
 from ..studies.command import Record
 from ..studies.command import main as study
 
 
+@program
 def main(argv: Optional[Sequence[str]] = None) -> int:
     """Run the command; see `studies.command.main`."""
     return study(argv, records={"bag": _bag, "log": _log})

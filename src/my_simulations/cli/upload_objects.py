@@ -12,6 +12,7 @@ from ..objects.object_documents import package_finder, package_names
 from ..objects.object_list import parse_objects
 from ..objects.selection import closest, parse_groups
 from ..objects.yaml_source import read_yaml
+from ..program_end import program
 from ..ros.arguments import Parser
 from . import object_client as client
 
@@ -33,6 +34,7 @@ def parser() -> argparse.ArgumentParser:
     return made
 
 
+@program
 def main(argv: Optional[Sequence[str]] = None) -> int:
     """Run the tool.
 
