@@ -16,6 +16,7 @@ import pytest
 from gymnasium.utils.env_checker import check_env
 
 import my_simulations.gym
+from my_simulations.errors import CommandError
 from my_simulations.gym import push_box, stack_boxes
 
 REPOSITORY = Path(__file__).resolve().parents[2]
@@ -190,3 +191,20 @@ def test_another_number_of_seeds_than_of_environments_is_refused(seeds):
         together.reset(seed=seeds)
     assert [env.resets for env in together.envs] == [0, 0]
     together.close()
+
+
+def test_environments_are_closed_when_one_of_several_cannot_be_made():
+    class Closing(gymnasium.Env):
+        closed = False
+
+        def close(self):
+            self.closed = True
+
+    first = Closing()
+    with pytest.raises(CommandError, match="no such world"):
+        my_simulations.gym.WorldVectorEnv([lambda: first, _failing])
+    assert first.closed
+
+
+def _failing():
+    raise CommandError("no such world")

@@ -21,7 +21,14 @@ class WorldVectorEnv(VectorEnv[Any, Any, Any]):
     """
 
     def __init__(self, makers: Sequence[Callable[[], "gymnasium.Env[Any, Any]"]]) -> None:
-        self.envs = [make() for make in makers]
+        self.envs: List["gymnasium.Env[Any, Any]"] = []
+        try:
+            for make in makers:
+                self.envs.append(make())
+        except BaseException:
+            for env in self.envs:  # a maker may have reset it, which starts an engine
+                env.close()
+            raise
         first = self.envs[0]
         self.num_envs = len(self.envs)
         self.metadata = {**first.metadata, "autoreset_mode": AutoresetMode.NEXT_STEP}
