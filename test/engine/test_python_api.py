@@ -15,7 +15,7 @@ import pytest
 import my_simulations
 from my_simulations.engine.commands import Advance
 from my_simulations.errors import CommandError, EngineLostError, InputError
-from my_simulations.python_api.plain_values import pose_of
+from my_simulations.python_api.plain_values import pose_of, twist_of, vector_of
 from my_simulations.python_api.world_choice import WorldChoice
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -184,6 +184,21 @@ def test_a_model_and_a_link_are_moved(world):
 def test_a_pose_of_another_length_is_refused(pose, count):
     with pytest.raises(CommandError, match=f"not {count}"):
         pose_of(pose)
+
+
+@pytest.mark.parametrize("values", ["123", "abc", None, 3, [[1, 2, 3]], [None] * 3])
+def test_values_that_are_no_numbers_are_refused(values):
+    for read in (pose_of, twist_of, lambda given: vector_of(given, "a force")):
+        with pytest.raises(CommandError, match="is a sequence of numbers, not"):
+            read(values)
+
+
+def test_files_may_be_named_by_paths(tmp_path):
+    lab = ROOT / "world" / "lab_course.world"
+    (tmp_path / "ball.sdf").write_text(BALL)
+    with my_simulations.open_world(lab, object_list=Path(LIST)) as opened:
+        assert opened.spawn(tmp_path / "ball.sdf") == "ball"
+        assert Path(opened.save_world(tmp_path / "saved.world")).is_file()
 
 
 def test_faults_are_told_and_nothing_is_lost(world, tmp_path):

@@ -5,7 +5,7 @@ import math
 import os
 from dataclasses import replace
 from types import TracebackType
-from typing import Callable, List, Optional, Sequence, Type
+from typing import Callable, List, Optional, Sequence, Type, Union
 
 from ..description.model import Model
 from ..engine.api import Engine
@@ -35,14 +35,14 @@ from .world_choice import WorldChoice
 from .world_pictures import Photographer, Picture, camera_pose
 
 Log = Callable[[Issue], None]
-
+FilePath = Union[str, "os.PathLike[str]"]
 
 _MOST_STEPS = 1_000_000
 _LOST = ("engine-died", "engine-lost", "engine-stalled")
 
 
-def open_world(world: str = "worlds/empty.world", *, seed: int = 0, profile: str = "",
-               objects: Sequence[str] = (), object_list: str = "",
+def open_world(world: FilePath = "worlds/empty.world", *, seed: int = 0, profile: str = "",
+               objects: Sequence[str] = (), object_list: FilePath = "",
                resolver: Optional[Resolver] = None, log: Optional[Log] = None,
                engine: Callable[[], Engine] = ProcessEngine) -> OpenWorld:
     """Open a world; it stands at its start until `OpenWorld.step` is called.
@@ -62,8 +62,8 @@ def open_world(world: str = "worlds/empty.world", *, seed: int = 0, profile: str
         InputError: the world, or one of the objects, cannot be used.
         CommandError: the engine cannot be started.
     """
-    return OpenWorld(WorldChoice(world, seed, profile, tuple(objects), object_list),
-                     resolver=resolver, log=log, engine=engine)
+    choice = WorldChoice(os.fspath(world), seed, profile, tuple(objects), os.fspath(object_list))
+    return OpenWorld(choice, resolver=resolver, log=log, engine=engine)
 
 
 class OpenWorld:
@@ -244,7 +244,7 @@ class OpenWorld:
 
     # -- changing ----------------------------------------------------------------------------------
 
-    def spawn(self, document: Text, name: Optional[str] = None,
+    def spawn(self, document: Union[Text, FilePath], name: Optional[str] = None,
               pose: Sequence[float] = ZERO3) -> str:
         """Put a model into the world; returns its name.
 
@@ -256,8 +256,8 @@ class OpenWorld:
         Raises:
             InputError: the document has no usable model.
         """
-        return self._furnisher.spawn(self._whole(), document, name, pose_of(pose),
-                                     lambda model: model)
+        text = os.fspath(document)  # which leaves texts as they are
+        return self._furnisher.spawn(self._whole(), text, name, pose_of(pose), lambda model: model)
 
     def remove(self, name: str) -> None:
         """Take a model out of the world."""
@@ -344,7 +344,7 @@ class OpenWorld:
         """Put time and all models that still exist back to where they were."""
         self._whole().states.restore(saved.state)
 
-    def save_world(self, path: str, *, overwrite: bool = False, state: bool = False) -> str:
+    def save_world(self, path: FilePath, *, overwrite: bool = False, state: bool = False) -> str:
         """Write the world to a .world file; returns its absolute path.
 
         Args:

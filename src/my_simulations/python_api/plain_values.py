@@ -2,7 +2,7 @@
 from __future__ import annotations
 
 import math
-from typing import Optional, Sequence
+from typing import List, Optional, Sequence
 
 from ..errors import CommandError
 from ..geometry import Pose, Twist, Vec3, normalised, pose_from_xyzrpy
@@ -15,9 +15,9 @@ def pose_of(values: Sequence[float]) -> Pose:
     """A pose from 3 (position), 6 (x y z roll pitch yaw, as in SDF) or 7 numbers (see `Readings`).
 
     Raises:
-        CommandError: another number of values.
+        CommandError: another number of values, or no numbers.
     """
-    numbers = [float(value) for value in values]
+    numbers = _numbers(values, "a pose")
     if len(numbers) == 3:
         return Pose((numbers[0], numbers[1], numbers[2]))
     if len(numbers) == 6:
@@ -31,7 +31,7 @@ def pose_of(values: Sequence[float]) -> Pose:
 
 def vector_of(values: Sequence[float], what: str) -> Vec3:
     """Three numbers; `what` names them. Raises CommandError."""
-    numbers = [float(value) for value in values]
+    numbers = _numbers(values, what)
     if len(numbers) != 3:
         raise CommandError(f"{what} has 3 numbers, not {len(numbers)}")
     return numbers[0], numbers[1], numbers[2]
@@ -39,9 +39,19 @@ def vector_of(values: Sequence[float], what: str) -> Vec3:
 
 def twist_of(values: Sequence[float]) -> Twist:
     """A twist from vx vy vz (m/s) wx wy wz (rad/s). Raises CommandError."""
-    if len(values) != 6:
-        raise CommandError(f"a twist has 6 numbers, not {len(values)}")
-    return Twist(vector_of(values[:3], "linear"), vector_of(values[3:], "angular"))
+    numbers = _numbers(values, "a twist")
+    if len(numbers) != 6:
+        raise CommandError(f"a twist has 6 numbers, not {len(numbers)}")
+    return Twist(vector_of(numbers[:3], "linear"), vector_of(numbers[3:], "angular"))
+
+
+def _numbers(values: Sequence[float], what: str) -> List[float]:
+    try:
+        if not isinstance(values, str):  # whose digits would count
+            return [float(value) for value in values]
+    except (TypeError, ValueError):
+        pass
+    raise CommandError(f"{what} is a sequence of numbers, not {values!r}")
 
 
 def nanoseconds_of(duration: Optional[float]) -> int:
