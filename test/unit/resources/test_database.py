@@ -234,6 +234,21 @@ def test_a_server_that_is_not_there_is_reported(tmp_path):
         ModelDatabase(silent_uri(), str(tmp_path / "models")).provide("lamp")
 
 
+@pytest.mark.parametrize("uri", ["http://[bad/", "http://a..b/", "http://127.0.0.1:1/é/"])
+def test_an_address_that_is_none_is_reported(uri, tmp_path):
+    with pytest.raises(ModelNotProvidedError, match="cannot download http"):
+        ModelDatabase(uri, str(tmp_path / "models")).provide("lamp")
+
+
+@pytest.mark.parametrize("length", ["\xb2", "9" * 5000])
+def test_a_length_that_is_none_is_reported(length, server, database, tmp_path):
+    server.add("lamp")
+    server.headers["lamp/model.tar.gz"] = {"Content-Length": length}
+    with pytest.raises(ModelNotProvidedError):
+        database().provide("lamp")
+    assert nothing_left(tmp_path)
+
+
 def test_a_passing_fault_is_tried_again(server, database):
     server.add("lamp")
     server.fail["lamp/model.tar.gz"] = 3

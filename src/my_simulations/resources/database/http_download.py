@@ -71,6 +71,8 @@ def fetch(url: str, into: IO[bytes], largest: int, until: float,
             if not left or isinstance(getattr(fault, "reason", None), ConnectionRefusedError):
                 reason = getattr(fault, "reason", None) or fault
                 raise HttpError(f"cannot download {url}: {reason}") from None
+        except ValueError as fault:  # of an address or a header that cannot be read
+            raise HttpError(f"cannot download {url}: {fault}") from None
     raise AssertionError("the last try returns or raises")
 
 
