@@ -4,7 +4,9 @@ from __future__ import annotations
 import io
 import os
 import stat
+import threading
 import zipfile
+from concurrent.futures import ThreadPoolExecutor
 
 import pytest
 from reading import sdf
@@ -137,6 +139,28 @@ def test_what_no_cache_holds_is_downloaded_once(models, server, cache):
     # As Gazebo's own tools leave it, who may share this cache.
     assert f"{server.uri}/1.0/Acme/models/Desk%20Lamp/3/files/meshes/a.stl" in (
         expected / "model.sdf").read_text()
+
+
+def test_two_threads_download_one_model_at_the_same_time(models, server, cache):
+    offer(server)
+    both, one_is_done, answer = threading.Barrier(2), threading.Event(), server.answer
+
+    def one_after_the_other(handler):
+        if both.wait(30) == 1:
+            one_is_done.wait(30)
+        answer(handler)
+
+    server.answer = one_after_the_other
+    with ThreadPoolExecutor(2) as threads:
+        asked = [threads.submit(models.path, lamp(server, inside="meshes/a.stl"))
+                 for _ in range(2)]
+        for one in asked:
+            one.add_done_callback(lambda _: one_is_done.set())
+        found = [one.result() for one in asked]
+    (path,) = set(found)
+    with open(path) as stream:
+        assert stream.read() == MESH
+    assert [name for _, _, names in os.walk(cache) for name in names if name.endswith("zip")] == []
 
 
 def test_a_version_that_is_named_is_the_one_that_is_asked_for(models, server, cache):

@@ -174,28 +174,27 @@ class _Downloads:
         self._time.once(uri.archive, uri.server, lambda: self._fetched(uri))
 
     def _fetched(self, uri: FuelUri) -> None:
+        import tempfile
+
         from .archive import install, unpack
         from .http_download import fetch
 
         limits, until = self._time.limits, self._time.until()
         above = os.path.join(self._cache, uri.host, uri.owner.lower(), "models", uri.name.lower())
         os.makedirs(above, exist_ok=True)
-        archive = os.path.join(above, f".{os.getpid()}.zip")
-        try:
-            with open(archive, "w+b") as stream:
-                headers = fetch(uri.archive, stream, limits.archive_bytes, until,
-                                self._time.report(uri.name))
+        # Named by chance: threads may download one model at the same time.
+        with tempfile.NamedTemporaryFile(dir=above, prefix=".", suffix=".zip") as stream:
+            headers = fetch(uri.archive, stream, limits.archive_bytes, until,
+                            self._time.report(uri.name))
+            stream.flush()
             exact = replace(uri, version=uri.version or _told_version(headers))
 
             def make(work: str) -> str:
                 return _with_own_addresses(
-                    unpack("zip", archive, os.path.join(work, "unpacked"), "", limits, until),
+                    unpack("zip", stream.name, os.path.join(work, "unpacked"), "", limits, until),
                     exact)
 
             install(os.path.join(above, str(exact.version)), make)
-        finally:
-            if os.path.exists(archive):
-                os.unlink(archive)
 
 
 def _told_version(headers: "Message[str, str]") -> int:
