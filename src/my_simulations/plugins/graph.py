@@ -38,6 +38,10 @@ class MissingTypeError(SimulationError):
     """A message or service type whose package is not installed."""
 
 
+class ServiceTakenError(SimulationError):
+    """A service that this node offers already."""
+
+
 class Topic(Protocol):
     """A topic that is offered."""
 
@@ -77,7 +81,7 @@ class Graph(Protocol):
     def serve(self, name: str, kind: str, call: Callable[[Any, Any], None]) -> Closing:
         """Offer a service; `call` (request, response) comes from another thread.
 
-        Raises MissingTypeError.
+        Raises MissingTypeError, and ServiceTakenError.
         """
 
     def parameter(self, namespace: str, name: str, default: Any) -> Any:

@@ -382,7 +382,7 @@ class SimulatedContext:
 
     def serve(self, name: str, kind: str, call: Callable[[Any, Any], None]) -> OpenEnd:
         """Offer a service."""
-        return self.graph.serve(name, kind, call)
+        return self.graph.serve(name, kind, call, self.warn)
 
     def parameter(self, name: str, default: Any) -> Any:
         """A parameter of the namespace."""

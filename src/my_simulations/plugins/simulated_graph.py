@@ -7,7 +7,7 @@ from typing import Any, Callable, Deque, Dict, List, Optional, Tuple
 
 from ..geometry import Pose
 from .context import PluginError, RequestError
-from .graph import Closing, Graph, MissingTypeError, Topic, TransformOf
+from .graph import Closing, Graph, MissingTypeError, ServiceTakenError, Topic, TransformOf
 from .message_maker import Later
 
 _LOOK_S = 0.2   # between two looks whether a plugin that is asked still lives
@@ -164,8 +164,9 @@ class PluginGraph:
         return OpenEnd(self, self._open(
             lambda full: self._graph.subscribe(full, kind, arrived, queue), name, kind, True))
 
-    def serve(self, name: str, kind: str, call: Callable[[Any, Any], None]) -> OpenEnd:
-        """Offer a service."""
+    def serve(self, name: str, kind: str, call: Callable[[Any, Any], None],
+              warn: Callable[[str], None]) -> OpenEnd:
+        """Offer a service; one that another plugin offers stays with that one, with a warning."""
         def asked(request: Any, response: Any) -> None:
             done = threading.Event()
 
@@ -191,8 +192,12 @@ class PluginGraph:
             if faults:
                 raise faults[0]
 
-        return OpenEnd(self, self._open(
-            lambda full: self._graph.serve(full, kind, asked), name, kind))
+        try:
+            end = self._open(lambda full: self._graph.serve(full, kind, asked), name, kind)
+        except ServiceTakenError as taken:  # roscpp says so, and Gazebo's plugins go on
+            warn(str(taken))
+            end = _Nowhere()
+        return OpenEnd(self, end)
 
     def parameter(self, name: str, default: Any) -> Any:
         """A parameter of the namespace."""

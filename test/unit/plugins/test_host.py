@@ -322,6 +322,33 @@ class Refusing(Plugin):
         raise RequestError("there is no such value")
 
 
+class Offering(Plugin):
+    """Offers a service under a name that is the same for all."""
+
+    updates = []
+
+    def load(self):
+        self.context.serve("/default_imu", "std_srvs/Empty", lambda request, response: None)
+        self.context.every(100.0, self.update)
+
+    def update(self):
+        self.updates.append(self.context.now_ns)
+
+
+def test_a_plugin_goes_on_without_a_service_that_another_one_offers(case):
+    first, second = robot("first", library="liboffer.so"), robot("second", library="liboffer.so")
+    one = case(first, second, extra={"liboffer.so": f"{__name__}:Offering"})
+    Offering.updates.clear()
+    one.sim.clock.advance(20)
+    until(lambda: Offering.updates == [10_000_000, 10_000_000, 20_000_000, 20_000_000])
+    (told,) = [issue for issue in one.issues if "/default_imu is offered already" in issue.message]
+    assert (told.severity, told.line) == (Severity.WARNING, 12) and "'second'" in told.message
+    assert not one.failed()
+    one.sim.models.delete("second")
+    one.host.settle()
+    assert "/default_imu" in one.graph.heard
+
+
 def test_a_request_that_makes_no_sense_is_refused_and_the_plugin_goes_on(case, monkeypatch):
     monkeypatch.setattr(Refusing, "calls", [])
     one = case(robot("choosy", "<plugin/>", "librefuse.so"),

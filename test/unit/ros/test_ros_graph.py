@@ -9,6 +9,7 @@ from rospy.impl.tcpros_service import ServiceImpl
 from std_srvs.srv import Empty, EmptyRequest
 
 from my_simulations.plugins.context import PluginError
+from my_simulations.plugins.graph import ServiceTakenError
 from my_simulations.ros.plugins import ros_graph
 from my_simulations.ros.plugins.ros_graph import RosGraph
 
@@ -76,3 +77,12 @@ def test_an_answer_of_a_plugin_leaves(served):
     seen = []
     service, sent = served(lambda request, response: seen.append(type(response)))
     assert seen == [Empty._response_class] and service.faults == [] and sent == b"\1"
+
+
+def test_a_service_that_the_node_offers_already_is_told_by_its_name(monkeypatch):
+    def taken(*_):
+        raise ros_graph.rospy.ServiceException("service [/it] already registered")
+
+    monkeypatch.setattr(ros_graph.rospy, "Service", taken)
+    with pytest.raises(ServiceTakenError, match="/it is offered already"):
+        RosGraph().serve("it", "std_srvs/Empty", lambda request, response: None)

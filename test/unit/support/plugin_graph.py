@@ -1,6 +1,7 @@
 """A ROS graph for plugins that keeps what is published; a test sends what is heard."""
 from __future__ import annotations
 
+from my_simulations.plugins.graph import ServiceTakenError
 from my_simulations.plugins.testing import Message
 
 
@@ -46,6 +47,8 @@ class Graph:
         return Closing()
 
     def serve(self, name, kind, call):
+        if name in self.heard:
+            raise ServiceTakenError(f"the service {name} is offered already, by another plugin")
         return self.subscribe(name, kind, call, 1)
 
     def parameter(self, namespace, name, default):

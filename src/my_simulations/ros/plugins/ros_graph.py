@@ -9,7 +9,7 @@ import genpy
 import rospy
 
 from ...errors import SimulationError
-from ...plugins.graph import Closing, MissingTypeError, Topic, TransformOf
+from ...plugins.graph import Closing, MissingTypeError, ServiceTakenError, Topic, TransformOf
 from ..direct_connection import direct
 from .packed_transforms import PackedTransforms
 
@@ -93,7 +93,11 @@ class RosGraph:
                 raise rospy.ServiceException(str(fault)) from fault
             return response
 
-        return _Closing(rospy.Service(name, service, answer).shutdown)
+        try:
+            return _Closing(rospy.Service(name, service, answer).shutdown)
+        except rospy.ServiceException:
+            raise ServiceTakenError(f"the service {rospy.resolve_name(name)} is offered already, by"
+                                    " another plugin") from None
 
     def parameter(self, namespace: str, name: str, default: Any) -> Any:
         """A parameter of a namespace."""
