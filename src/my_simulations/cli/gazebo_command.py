@@ -6,7 +6,7 @@ import threading
 from typing import List, Optional
 
 from . import gzserver_command
-from .signals import end_quietly
+from .signals import end_quietly, ignore
 
 
 def main(argv: Optional[List[str]] = None) -> int:
@@ -22,7 +22,9 @@ def main(argv: Optional[List[str]] = None) -> int:
     if master_api.fault_of(master_api.uri(words), "/gazebo"):
         from . import standalone
 
-        return standalone.main(words, "gazebo")
+        status = standalone.main(words, "gazebo")
+        ignore()
+        return status
     threading.Thread(target=_show, args=(words,), daemon=True).start()
     return gzserver_command.main(words, program="gazebo", gui=True)
 

@@ -5,7 +5,7 @@ import io
 import sys
 from typing import Any, List, Optional
 
-from .signals import end_quietly
+from .signals import end_quietly, ignore
 
 
 def main(argv: Optional[List[str]] = None, program: str = "gzserver", gui: bool = False) -> int:
@@ -43,8 +43,10 @@ def main(argv: Optional[List[str]] = None, program: str = "gzserver", gui: bool 
         print(f"{program}: {line}", file=sys.stderr, flush=True)
 
     front_ends = FrontEnds()
-    return Server(options, words, say, engines, profile, _make_node, front_ends.edit, gui,
-                  front_ends.record, front_ends.await_world).run()
+    status = Server(options, words, say, engines, profile, _make_node, front_ends.edit, gui,
+                    front_ends.record, front_ends.await_world).run()
+    ignore()
+    return status
 
 
 def _make_node(*arguments: Any) -> Any:

@@ -1,4 +1,4 @@
-"""Signal handling during the start of a program."""
+"""Signal handling at the start and the end of a program."""
 from __future__ import annotations
 
 import os
@@ -13,3 +13,13 @@ def end_quietly() -> None:
     """
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, lambda _number, _frame: os._exit(0))
+
+
+def ignore() -> None:
+    """Ignore SIGINT, SIGTERM and SIGHUP: the program has done its work and is about to end.
+
+    Python restores the default of signals that it handles before it exits: another Ctrl-C would
+    change the exit status. It leaves those that are ignored.
+    """
+    for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+        signal.signal(number, signal.SIG_IGN)
