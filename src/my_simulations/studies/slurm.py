@@ -40,7 +40,8 @@ def job_script(name: str, study_file: str, folder: str, shards: int, slots: int,
             raise CommandError(f"'{option}' is no option of sbatch; write it as time=01:00:00")
         if option.partition("=")[0] in _OURS:
             raise CommandError(f"'{option}' is set by --shards, --slots and --out")
-    logs = os.path.join(folder, "slurm", "%A_%a.txt")
+    # %A and %a are job and task; a % of the folder is written %% (sbatch(1), FILENAME PATTERN).
+    logs = os.path.join(folder.replace("%", "%%"), "slurm", "%A_%a.txt")
     lines: List[str] = [
         "#!/bin/bash",
         "# Runs a study in shards. Submit it again to run what is missing.",

@@ -37,6 +37,12 @@ def test_a_script_quotes_paths_and_runs_one_shard_a_task():
     assert script.endswith('--shard "$SLURM_ARRAY_TASK_ID/7"\n')
 
 
+def test_a_percent_sign_of_the_folder_is_no_pattern_of_the_log():
+    script = job_script("s", "/s.yaml", "/home/me/50%A", 1, 1)
+    assert '#SBATCH --output="/home/me/50%%A/slurm/%A_%a.txt"\n' in script
+    assert "--out /home/me/50%A " in script
+
+
 @pytest.mark.parametrize("option", ["--time=1", "time=1\nrm -rf", "array=3", "Time=1", "output=x"])
 def test_options_that_would_break_the_script_are_refused(option):
     with pytest.raises(CommandError):
