@@ -106,6 +106,36 @@ def test_an_imu_sensor_has_the_noise_of_its_block():
     assert (sample.angular_velocity.x, sample.angular_velocity.y) == pytest.approx((0.25, 0.0))
 
 
+@pytest.mark.parametrize(("rate", "seconds"), [(100.0, 0.01), (0.0, 0.001)])
+def test_the_acceleration_of_an_imu_sensor_is_over_the_period_of_its_sensor(rate, seconds):
+    context = FakeContext("<plugin><frameName>imu</frameName><updateRateHZ>10</updateRateHZ>"
+                          "</plugin>", sensor=Sensor("i", "imu", update_rate=rate),
+                          sensor_link="base")
+    plugin = SensorImu(context)
+    plugin.load()
+    for _ in range(2):
+        context.advance(0.1 - seconds)
+        speed = context.link("base").twist.linear[0]
+        context.link("base").twist = Twist((speed + 0.05, 0.0, 0.0))
+        context.advance(seconds)
+        assert context.published["robot/imu_data"][-1].linear_acceleration.x == pytest.approx(
+            0.05 / seconds)
+        plugin.reset()
+
+
+def test_an_imu_sensor_that_nobody_listens_to_looks_at_nothing():
+    context = FakeContext("<plugin><frameName>imu</frameName><updateRateHZ>10</updateRateHZ>"
+                          "</plugin>", sensor=Sensor("i", "imu", update_rate=100.0),
+                          sensor_link="base")
+    context.unwanted = {"robot/imu_data"}
+    plugin = SensorImu(context)
+    plugin.load()
+    looks = []
+    plugin.begin_motion = lambda: looks.append(context.now_ns)
+    context.advance(1.0)
+    assert looks == []
+
+
 @pytest.mark.parametrize(("inside", "namespace"), [
     ("", "/robot"), ("<robotNamespace></robotNamespace>", "/"),
     ("<robotNamespace>left</robotNamespace>", "left")])

@@ -6,6 +6,7 @@ turns its vectors the wrong way and leaves gravity out.
 """
 from __future__ import annotations
 
+import math
 from typing import Any, Optional
 
 from ...description.sensor import Imu as ImuBlock
@@ -13,7 +14,7 @@ from ...geometry import IDENTITY, IDENTITY_QUAT, Pose, Quat, Vec3, compose, mult
 from ...sensing.models.imu import ImuSample, measure
 from ...sensing.models.motion import acceleration_between, velocity_at
 from ..base import Plugin
-from ..context import Link, PluginError
+from ..context import Ending, Link, PluginError
 from ..frames import stamped
 from ..noise import WhiteNoise
 from ..parameters import lowest_rate, namespace_or
@@ -109,7 +110,12 @@ class ModelImu(Imu):
 
 
 class SensorImu(Imu):
-    """Of a `<sensor type="imu">`, with the noise of its block."""
+    """Of a `<sensor type="imu">`, with the noise of its block.
+
+    As in Gazebo accelerations are over one period of the sensor, however seldom the plugin asks.
+    """
+
+    _look: Optional[Ending] = None
 
     def load(self) -> None:
         """Read parameters."""
@@ -130,14 +136,37 @@ class SensorImu(Imu):
                       for kind in ("angular_velocity", "linear_acceleration") for axis in "xyz"
                       ] if self._block is not None else []
         self._begin(p.text("topicName", "imu_data"), frame, context.sensor.name)
-        context.every(lowest_rate(p.number("updateRateHZ", 1.0), context.sensor.update_rate),
-                      self.update)
+        self._hertz = lowest_rate(p.number("updateRateHZ", 1.0), context.sensor.update_rate)
+        context.every(self._hertz, self.update)
+        self._look_ahead()
+
+    def update(self) -> None:
+        """Measure and publish while somebody listens."""
+        super().update()
+        if not self._idle:
+            self._look_ahead()
+
+    def _look_ahead(self) -> None:
+        """Take the velocity anew one period of the sensor before the next sample."""
+        context, hertz = self.context, self._hertz
+        if self._look is not None:
+            self._look.end()
+            self._look = None
+        if context.sensor is None or hertz <= 0.0:
+            return
+        rate = context.sensor.update_rate
+        # As appointments of a rate are: multiples of its period, 1e-6 for what rounding takes.
+        following = (math.floor(context.now_ns * 1e-9 * hertz + 1e-6) + 1) / hertz
+        ns = int((following - (1.0 / rate if rate > 0.0 else context.step_size)) * 1e9)
+        if ns > context.now_ns:
+            self._look = context.once(ns, self.begin_motion)
 
     def reset(self) -> None:
         """Biases begin anew, too."""
         for noise in self._axes:
             noise.reset(self.context.now_ns)
         super().reset()
+        self._look_ahead()
 
     clock_set = reset
 
