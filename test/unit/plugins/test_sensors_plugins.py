@@ -6,6 +6,7 @@ import math
 import numpy as np
 import pytest
 
+from my_simulations.description.model import Link, Model
 from my_simulations.description.sensor import (
     AxesNoise,
     ContactSensor,
@@ -15,6 +16,7 @@ from my_simulations.description.sensor import (
     ScanAngles,
     Sensor,
 )
+from my_simulations.description.shapes import Collision, Sphere
 from my_simulations.engine.commands import Contact
 from my_simulations.geometry import Twist
 from my_simulations.plugins.context import PluginError
@@ -167,6 +169,8 @@ def test_imu_and_range_sensors_are_no_faster_than_their_sensor_and_plugin(sensor
 def test_a_bumper_tells_of_its_link_alone_as_the_force_on_it():
     context = FakeContext(sensor=Sensor("b", "contact", update_rate=10.0,
                                         contact=ContactSensor(["c"])), sensor_link="base")
+    ground = Link("link", collisions=[Collision("floor", Sphere(1.0)), Collision("b", Sphere(1.0))])
+    context.others = {"ground": Model("ground", links=[ground])}
     Bumper(context).load()
     up = (0.0, 0.0, 1.0)
     context.touching = [
@@ -175,12 +179,25 @@ def test_a_bumper_tells_of_its_link_alone_as_the_force_on_it():
         ("a::b", "c::d", Contact(5, 6, (0, 0, 0), up, 0.0, 9.0))]
     context.advance(0.1)
     (state,) = context.published["bumper_states"][0].states
-    assert (state.collision1_name, state.collision2_name) == ("robot::base::c", "ground::link")
+    assert (state.collision1_name, state.collision2_name) == (
+        "robot::base::c", "ground::link::floor")
     assert state.total_wrench.force.z == pytest.approx(10.0)
     assert state.total_wrench.torque.y == pytest.approx(0.2)
     context.touching = []
     context.advance(0.1)
     assert context.published["bumper_states"][1].states == []
+
+
+def test_a_bumper_without_a_collision_of_its_own_names_the_first_of_its_link():
+    context = FakeContext(sensor=Sensor("b", "contact", update_rate=10.0), sensor_link="base")
+    context.others = {"robot": Model("robot", links=[
+        Link("base", collisions=[Collision("shell", Sphere(1.0))])])}
+    Bumper(context).load()
+    context.touching = [("robot::base", "gone::link",
+                         Contact(1, 0, (0, 0, 0), (0.0, 0.0, 1.0), 1e-4, 6.0))]
+    context.advance(0.1)
+    (state,) = context.published["bumper_states"][0].states
+    assert (state.collision1_name, state.collision2_name) == ("robot::base::shell", "gone::link")
 
 
 def test_joint_states_of_a_list_with_blanks():

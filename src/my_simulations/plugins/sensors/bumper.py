@@ -1,12 +1,14 @@
 """libgazebo_ros_bumper.so: gazebo_msgs/ContactsState of a contact sensor.
 
 Parameters, defaults, topic and header are those of gazebo_plugins. Positions, normals and forces
-are in world axes (there forces are in those of the link); torques about the link's origin.
+are in world axes (there forces are in those of the link); torques about the link's origin. Links
+are named by a collision, as there: by the sensor's own one, else by the first that they have.
 """
 from __future__ import annotations
 
 from typing import Any, Dict, List, Tuple
 
+from ...description.model import Model
 from ...geometry import Vec3, add, cross, scale, subtract
 from ..base import Plugin
 from ..context import PluginError
@@ -43,14 +45,18 @@ class Bumper(Plugin):
                 touching.setdefault(other if one == mine else one, []).append(
                     (contact, 1.0 if one == mine else -1.0))
         message = stamped(context, "gazebo_msgs/ContactsState", self._frame)
-        message.states = [self._state(mine, other, points) for other, points in touching.items()]
+        models = context.models() if touching else {}
+        message.states = [self._state(mine, other, points, models)
+                          for other, points in touching.items()]
         self._topic.publish(message)
 
-    def _state(self, mine: str, other: str, points: List[Tuple[Any, float]]) -> Any:
+    def _state(self, mine: str, other: str, points: List[Tuple[Any, float]],
+               models: Dict[str, Model]) -> Any:
         context, at = self.context, self._link.pose.position
         state = context.message("gazebo_msgs/ContactState")
-        state.collision1_name = f"{mine}::{self._collision}" if self._collision else mine
-        state.collision2_name = other
+        state.collision1_name = (f"{mine}::{self._collision}" if self._collision
+                                 else _first_collision(mine, models))
+        state.collision2_name = _first_collision(other, models)
         state.info = f"{len(points)} points at {context.now_ns * 1e-9:.3f} s"
         state.wrenches, state.contact_positions = [], []
         state.contact_normals, state.depths = [], []
@@ -65,6 +71,15 @@ class Bumper(Plugin):
             state.depths.append(contact.depth)
         state.total_wrench = _wrench(context, *total)
         return state
+
+
+def _first_collision(scoped: str, models: Dict[str, Model]) -> str:
+    """The scoped name of the first collision of a link; the link's where it has none."""
+    model, _, name = scoped.partition("::")
+    for link in models[model].links if model in models else ():
+        if link.name == name and link.collisions:
+            return f"{scoped}::{link.collisions[0].name}"
+    return scoped
 
 
 def _vector(context: Any, values: Vec3) -> Any:
