@@ -72,6 +72,14 @@ def test_the_world_tells_where_it_is():
     assert (fix.latitude, fix.longitude, fix.altitude) == pytest.approx((-33.0, 151.0, 20.0))
 
 
+def test_a_world_that_does_not_say_where_it_is_lies_on_the_equator_with_x_to_the_east():
+    context = of(hector.Gps, "<useWorldSphericalCoordinates>true</useWorldSphericalCoordinates>",
+                 Pose((10.0, 0.0, 0.0)))
+    (fix,) = context.published["fix"]
+    assert fix.latitude == pytest.approx(0.0, abs=1e-12) and fix.altitude == 0.0
+    assert fix.longitude == pytest.approx(math.degrees(10.0 / 6378137.0))
+
+
 def test_errors_have_their_moments():
     context = FakeContext("<plugin><gaussianNoise>0.5 0.1 0</gaussianNoise><drift>2 0 0</drift>"
                           "<driftFrequency>10</driftFrequency><offset>0 0 3</offset></plugin>")

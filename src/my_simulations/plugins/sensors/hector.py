@@ -50,14 +50,17 @@ class _OfLink(Plugin):
 
     clock_set = reset
 
+    def _place(self) -> Optional[SphericalCoordinates]:
+        """Of the world, where it is to be used; one that does not say is at 0, 0, as in Gazebo."""
+        if not self.context.parameters.flag("useWorldSphericalCoordinates", False):
+            return None
+        return self.context.place_on_earth or SphericalCoordinates()
+
     def _heading(self) -> float:
         """Of the world's x axis, rad clockwise from north."""
-        context, p = self.context, self.context.parameters
-        usual = 0.0
-        if p.flag("useWorldSphericalCoordinates", False):
-            place = context.place_on_earth or SphericalCoordinates()
-            usual = 90.0 - place.heading_deg
-        return math.radians(p.number("referenceHeading", usual))
+        place = self._place()
+        usual = 90.0 - place.heading_deg if place else 0.0
+        return math.radians(self.context.parameters.number("referenceHeading", usual))
 
 
 class Gps(_OfLink):
@@ -66,8 +69,7 @@ class Gps(_OfLink):
     def load(self) -> None:
         """Read parameters."""
         self._begin("/world")
-        context, p = self.context, self.context.parameters
-        place = context.place_on_earth if p.flag("useWorldSphericalCoordinates", False) else None
+        context, p, place = self.context, self.context.parameters, self._place()
         self._latitude = p.number("referenceLatitude", place.latitude_deg if place else 49.9)
         self._longitude = p.number("referenceLongitude", place.longitude_deg if place else 8.9)
         self._altitude = p.number("referenceAltitude", place.elevation if place else 0.0)
