@@ -15,7 +15,8 @@ from my_simulations.plugins.testing import FakeContext
 from my_simulations.sensing.api import RayReturns
 
 WHEELS = ("wheel_left_joint", "wheel_right_joint")
-NAMES = {"left_wheel_joint_name": WHEELS[0], "right_wheel_joint_name": WHEELS[1],
+NAMES = {"robotNamespace": "/",
+         "left_wheel_joint_name": WHEELS[0], "right_wheel_joint_name": WHEELS[1],
          "wheel_separation": "0.23", "wheel_diameter": "0.07", "torque": "18",
          "velocity_command_timeout": "0.6", "imu_name": "imu", "bumper_name": "bumpers",
          "cliff_sensor_left_name": "cliff_l", "cliff_sensor_center_name": "cliff_c",
@@ -59,6 +60,13 @@ def test_wheels_turn_until_the_command_is_too_old():
     assert rates(context) == pytest.approx(((0.2 - 0.115) / 0.035, (0.2 + 0.115) / 0.035))
     context.advance(0.7)
     assert rates(context) == (0.0, 0.0)
+
+
+def test_a_kobuki_without_a_namespace_is_in_that_of_its_model():
+    context = started(robotNamespace="")
+    context.advance(0.02)
+    assert {"robot/odom", "robot/joint_states"} <= set(context.published)
+    assert "robot/mobile_base/sensors/imu_data" in context.published
 
 
 def test_motors_that_are_off_stand():

@@ -37,7 +37,7 @@ class Kobuki(Plugin):
     def load(self) -> None:
         """Read parameters; offer topics."""
         context, p = self.context, self.context.parameters
-        context.use_namespace(namespace_or(p, ""))
+        context.use_namespace(namespace_or(p, context.model))
         self._wheels = [context.joint(_needed(p, f"{side}_wheel_joint_name"))
                         for side in ("left", "right")]
         self._turns = WheelTurns(self._wheels)
