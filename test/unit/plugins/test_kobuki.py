@@ -69,6 +69,34 @@ def test_a_kobuki_without_a_namespace_is_in_that_of_its_model():
     assert "robot/mobile_base/sensors/imu_data" in context.published
 
 
+def test_the_imu_of_a_kobuki_tells_its_turn_from_where_it_was_loaded():
+    context, plugin = kobuki()
+    base = context.link("base_footprint")
+    base.pose = Pose(orientation=quat_from_rpy(0.0, 0.0, 1.0))
+    plugin.load()
+    context.advance(0.02)
+    base.pose = Pose(orientation=quat_from_rpy(0.0, 0.0, 1.5))
+    context.advance(0.02)
+    yaws = [2.0 * math.atan2(one.orientation.z, one.orientation.w)
+            for one in context.published["mobile_base/sensors/imu_data"]]
+    assert yaws == pytest.approx([0.0, 0.5])
+
+
+def test_the_wheels_of_a_kobuki_are_told_in_the_frame_of_its_base():
+    context = started()
+    context.advance(0.02)
+    assert context.published["joint_states"][0].header.frame_id == "base_link"
+
+
+def test_a_cliff_event_has_the_reading_of_its_distance():
+    context = started()
+    context.advance(0.02)
+    below(context, 0.5)
+    context.advance(0.02)
+    told = context.published["mobile_base/events/cliff"]
+    assert [one.bottom for one in told] == [int(76123.0 * math.atan2(0.995, 0.5)) - 65536] * 3
+
+
 def test_motors_that_are_off_stand():
     context = started()
     context.hear("mobile_base/commands/motor_power", state=0)

@@ -10,7 +10,7 @@ import math
 from typing import Any, Dict, List, Tuple
 
 from ...description.sensor import Sensor
-from ...geometry import rpy_from_quat, scale
+from ...geometry import compose, rpy_from_quat, scale
 from ...sensing.api import RayReturns
 from ...sensing.models.imu import measure
 from ...sensing.models.motion import acceleration_between, velocity_at
@@ -28,6 +28,7 @@ _SIDES = ("left", "center", "right")
 _BITS = {"left": 4, "center": 2, "right": 1}    # in kobuki_msgs/SensorState
 _BUMPER_HEIGHT = (0.01, 0.13)                   # m above the base
 _SECTOR = math.pi / 6.0                         # half of a bumper's arc
+_READING, _READING_AT = 76123.0, 0.995          # of GazeboRosKobuki::updateCliffSensor
 _PATIENCE_NS = 10 ** 9                          # of sim time, for rays
 
 
@@ -45,9 +46,12 @@ class Kobuki(Plugin):
         self._radius = _needed_number(p, "wheel_diameter") / 2.0
         self._torque = _needed_number(p, "torque")
         self._imu_link, self._imu = self._sensor(_needed(p, "imu_name"))
+        # Gazebo's ImuSensor tells turns from where it was loaded.
+        self._reference = compose(context.link(self._imu_link).pose, self._imu.pose).orientation
         self._odometer = Odometer(context, "odom", "odom", "base_footprint", _COVARIANCE)
         self._broadcasts = p.flag("publish_tf", False)
-        self._states = WheelStates(context, self._wheels, motion=True)
+        self._states = WheelStates(context, self._wheels, motion=True,
+                                   frame=prefixed(context, "base_link"))
         prefix = str(context.parameter("base_prefix", "mobile_base")).strip("/")
         self._command = VelocityCommand(context, f"{prefix}/commands/velocity",
                                         p.number("velocity_command_timeout", 0.6))
@@ -124,7 +128,7 @@ class Kobuki(Plugin):
             return
         context, link = self.context, self.context.link(self._imu_link)
         sample = measure(link.pose, link.twist, acceleration_between(before, self._before, dt),
-                         context.gravity, self._imu.pose)
+                         context.gravity, self._imu.pose, self._reference)
         message = stamped(context, "sensor_msgs/Imu", prefixed(context, "base_link"))
         turn, rate, push = (message.orientation, message.angular_velocity,
                             message.linear_acceleration)
@@ -156,6 +160,7 @@ class KobukiEvents:
         self._pressed: Dict[str, bool] = dict.fromkeys(_SIDES, False)
         self._over: Dict[str, bool] = dict.fromkeys(_SIDES, False)
         self._dropped: Dict[str, bool] = dict.fromkeys(self._drops, False)
+        self._bottoms = dict.fromkeys(_SIDES, 0)
         self._look_again_ns = 0
         self._topics: Dict[str, Publication] = {}
         try:
@@ -223,6 +228,7 @@ class KobukiEvents:
         def seen(returns: RayReturns, ns: int) -> None:
             first = float(returns.ranges.flat[0])
             found[sides[0]] = not first < self._edge   # nothing below is a cliff
+            self._bottoms[sides[0]] = _reading(first)
             self._look(sides[1:], found)
 
         self._context.scan(fan_of(sensor.ray), False, seen, (link, sensor.pose))
@@ -236,6 +242,8 @@ class KobukiEvents:
                 message = self._context.message(f"kobuki_msgs/{kind}")
                 setattr(message, field, number)
                 message.state = int(now[side])
+                if known is self._over:
+                    message.bottom = self._bottoms[side]
                 self._topics[topic].publish(message)
 
     def _state(self) -> Any:
@@ -253,6 +261,11 @@ def sensor_named(base: Kobuki, name: str) -> Tuple[str, Sensor]:
         if sensor.name == name:
             return link, sensor
     raise PluginError(f"the model has no sensor '{name}'")
+
+
+def _reading(distance: float) -> int:
+    """What the base's converter reads at a distance (m), cut to the 16 bits of the message."""
+    return int(_READING * math.atan2(_READING_AT, distance)) & 0xFFFF
 
 
 def _needed(p: Any, name: str) -> str:

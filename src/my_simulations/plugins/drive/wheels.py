@@ -57,14 +57,16 @@ class WheelFrames:
 class WheelStates:
     """Publishes sensor_msgs/JointState of the wheels."""
 
-    def __init__(self, context: Context, joints: Sequence[Joint], motion: bool = False) -> None:
-        """`motion`: with velocities."""
+    def __init__(self, context: Context, joints: Sequence[Joint], motion: bool = False,
+                 frame: str = "") -> None:
+        """`motion`: with velocities; `frame`: of the header."""
         self._context, self._joints, self._motion = context, list(joints), motion
+        self._frame = frame
         self._topic = context.publish("joint_states", "sensor_msgs/JointState", 1000)
 
     def send(self) -> None:
         """As of now."""
-        message = stamped(self._context, "sensor_msgs/JointState")
+        message = stamped(self._context, "sensor_msgs/JointState", self._frame)
         message.name = [joint.name for joint in self._joints]
         message.position = [joint.position for joint in self._joints]
         if self._motion:
