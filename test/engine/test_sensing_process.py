@@ -1,9 +1,11 @@
 """The sensing process: started late, repeatable, and no loss when it dies."""
 from __future__ import annotations
 
+import errno
 import math
 import os
 import signal
+import subprocess
 import sys
 from dataclasses import replace
 
@@ -154,6 +156,19 @@ def test_what_waits_fails_when_the_process_dies_and_says_why(start):
     os.kill(sensing.pid, signal.SIGKILL)
     with pytest.raises(SensingGoneError, match="SIGKILL"):
         waiting.result(DEADLINE_S)
+
+
+def test_what_waits_fails_when_no_process_can_be_started_and_a_later_one_answers(
+        sensing, monkeypatch):
+    def refused(*arguments, **options):
+        raise OSError(errno.ENOMEM, "Cannot allocate memory")
+
+    with monkeypatch.context() as patched:
+        patched.setattr(subprocess, "Popen", refused)
+        with pytest.raises(SensingGoneError, match="cannot be started .*Cannot allocate memory"):
+            ahead(sensing)
+    assert len(sensing.said) == 1 and "physics goes on" in sensing.said[0]
+    assert ahead(sensing) == pytest.approx(5.0, abs=1e-6)
 
 
 def test_a_process_that_hangs_holds_nobody_up_and_is_replaced(start):

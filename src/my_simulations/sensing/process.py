@@ -191,16 +191,11 @@ class SensingProcess:
         with self._lock:
             if self._closing:
                 return False
-        ours, theirs = socket.socketpair()
-        inherited = [theirs.fileno()] + ([self._ring_fd] if self._ring_fd >= 0 else [])
-        arguments = [str(theirs.fileno()), str(self._ring_fd)]
-        with shielded():
-            child = subprocess.Popen(
-                child_command("sensing", *arguments), pass_fds=inherited,
-                stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
-                env=child_environment())
-        theirs.close()
-        wire = Wire(ours)
+        try:
+            child, wire = self._spawn()
+        except OSError as fault:  # of memory, processes or descriptors there are no more
+            self._fail_all(f"the sensing process cannot be started ({fault})")
+            return False
         with self._lock:
             self._child, self._wire = child, wire
         self._reader = threading.Thread(target=self._read, args=(child, wire),
@@ -208,6 +203,24 @@ class SensingProcess:
         self._reader.start()
         self._send((0, self._scene.whole()))
         return True
+
+    def _spawn(self) -> "Tuple[subprocess.Popen[bytes], Wire]":
+        """A child, and this end of what it is talked to through. Raises OSError."""
+        ours, theirs = socket.socketpair()
+        inherited = [theirs.fileno()] + ([self._ring_fd] if self._ring_fd >= 0 else [])
+        arguments = [str(theirs.fileno()), str(self._ring_fd)]
+        try:
+            with shielded():
+                child = subprocess.Popen(
+                    child_command("sensing", *arguments), pass_fds=inherited,
+                    stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
+                    env=child_environment())
+        except OSError:
+            ours.close()
+            raise
+        finally:
+            theirs.close()
+        return child, Wire(ours)
 
     def _send(self, message: object) -> None:
         wire = self._wire
@@ -238,7 +251,7 @@ class SensingProcess:
                                  "and was ended")
                 child.kill()
         await_end(child, wire)
-        self._bury(child, wire)
+        self._fail_all(self._verdict or _reason(child.returncode), wire)
 
     def _answer(self, number: int, message: Any) -> None:
         if number == TROUBLE:
@@ -262,15 +275,16 @@ class SensingProcess:
             oldest = min((one.since for one in self._waiting.values()), default=None)
         return oldest is not None and time.monotonic() - oldest > patience
 
-    def _bury(self, child: "subprocess.Popen[bytes]", wire: Wire) -> None:
-        reason = self._verdict or _reason(child.returncode)
+    def _fail_all(self, reason: str, wire: Optional[Wire] = None) -> None:
+        """Fail what waits; `wire`: of the child that has ended, None where none was started."""
         with self._lock:
             self._verdict = ""
             if self._wire is wire:
                 self._wire = None
             waiting, self._waiting = self._waiting, {}
             closing = self._closing
-            wire.sock.close()
+            if wire is not None:
+                wire.sock.close()
             given_up = self._give_up(reason, {one.kind for one in waiting.values()})
         if not closing:
             self._listener(given_up or f"{reason}; physics goes on, and the next ray or picture "
