@@ -80,6 +80,22 @@ def test_a_world_that_does_not_say_where_it_is_lies_on_the_equator_with_x_to_the
     assert fix.longitude == pytest.approx(math.degrees(10.0 / 6378137.0))
 
 
+def test_the_drift_of_the_velocity_is_integrated_into_the_place():
+    context = FakeContext("<plugin><updateRate>4</updateRate><velocityDrift>0 0 1</velocityDrift>"
+                          "<velocityDriftFrequency>1e-9</velocityDriftFrequency>"
+                          "<driftFrequency>0</driftFrequency></plugin>")
+    plugin = hector.Gps(context)
+    plugin.load()
+    context.advance(60.0)
+    climb = context.published["fix_velocity"][-1].vector.z
+    assert abs(climb) > 0.01
+    # 240 samples; each one has what was integrated until the one before.
+    assert context.published["fix"][-1].altitude == pytest.approx(59.75 * climb, rel=0.02)
+    plugin.reset()
+    context.advance(0.25)
+    assert context.published["fix"][-1].altitude == 0.0
+
+
 def test_errors_have_their_moments():
     context = FakeContext("<plugin><gaussianNoise>0.5 0.1 0</gaussianNoise><drift>2 0 0</drift>"
                           "<driftFrequency>10</driftFrequency><offset>0 0 3</offset></plugin>")

@@ -78,11 +78,19 @@ class Gps(_OfLink):
         self._status, self._service = p.integer("status", 0), p.integer("service", 0)
         self._place_errors = self._with_errors()
         self._velocity_errors = self._with_errors("velocity")
+        self._last_ns = context.now_ns
         fix = p.text("topicName") or "fix"
         self._fix = context.publish(fix, "sensor_msgs/NavSatFix", 10)
         self._velocity = context.publish(p.text("velocityTopicName") or "fix_velocity",
                                          "geometry_msgs/Vector3Stamped", 10)
         context.every(rate_of(p, 4.0), self.update)
+
+    def reset(self) -> None:
+        """Errors begin anew."""
+        super().reset()
+        self._last_ns = self.context.now_ns
+
+    clock_set = reset
 
     def _north_west(self, x: float, y: float) -> Tuple[float, float]:
         c, s = math.cos(self._turned), math.sin(self._turned)
@@ -93,6 +101,9 @@ class Gps(_OfLink):
         ns = self.context.now_ns
         vx, vy, vz = self._velocity_errors.apply(self._link.twist.linear, ns)
         x, y, z = self._place_errors.apply(self._link.pose.position, ns)
+        # An error of the velocity becomes one of the place, as of the next sample.
+        elapsed, self._last_ns = max(0.0, (ns - self._last_ns) * 1e-9), ns
+        self._place_errors.shift([elapsed * drift for drift in self._velocity_errors.current])
         head = header(self.context, ns, self._frame)
         if self._fix.wanted:
             north, west = self._north_west(x, y)

@@ -55,10 +55,14 @@ class SensorErrors:
         """Offset and drift at the last sample."""
         return [offset + drift for offset, drift in zip(self.offset, self.current)]
 
+    def shift(self, by: Sequence[float]) -> None:
+        """Add to the drift."""
+        self.current = [now + more for now, more in zip(self.current, by)]
+
     def apply(self, values: Sequence[float], ns: int) -> List[float]:
         """Values of the sample at a sim time, with their errors."""
         elapsed, self._last_ns = max(0.0, (ns - self._last_ns) * 1e-9), ns
-        if any(self.drift):
+        if any(self.drift) or any(self.current):
             self.current = [
                 math.exp(-f * elapsed) * now + size * math.sqrt(-math.expm1(-2 * f * elapsed)) * n
                 for f, now, size, n in zip(self._frequency, self.current, self.drift,
