@@ -1,7 +1,7 @@
 """SDF links: inertia, shapes, and the frames their poses are given in."""
 from __future__ import annotations
 
-from typing import Any, Container, Dict, List, Sequence, Set, Tuple
+from typing import Any, Container, Dict, Iterable, List, Sequence, Set, Tuple
 
 from ...description.model import WORLD, Inertial, Link
 from ...description.shapes import Heightmap, ImageMap
@@ -30,17 +30,17 @@ class LinkReader:
         given_in: (object with a pose, frame of that pose, its link or "") for each named frame.
     """
 
-    def __init__(self, source: Source, frames: FrameTree) -> None:
+    def __init__(self, source: Source, frames: FrameTree, taken: Iterable[str] = ()) -> None:
         self._source = source
         self._frames = frames
         self.elements: Dict[int, Any] = {}
         self.given_in: List[Tuple[Any, str, str]] = []
         self.world = ""
-        self._taken: Set[str] = set()
+        self._taken: Set[str] = set(taken)
 
     def read_all(self, elements: Sequence[Any], static: bool) -> List[Link]:
         """The links of the model, with unique names."""
-        known = {element.get("name", "") for element in elements}
+        known = {element.get("name", "") for element in elements} | self._taken
         return [self.read(element, static, known) for element in elements]
 
     def _name(self, element: Any, known: Set[str]) -> str:

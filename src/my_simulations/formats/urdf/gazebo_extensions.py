@@ -33,7 +33,8 @@ class Extensions:
         self._source = source
         self._by_reference: DefaultDict[str, List[Any]] = defaultdict(list)
         self._used: Set[str] = {""}
-        self.joints: List[Any] = []  # SDF's, of the model
+        self.links: List[Any] = []  # SDF's, of the model
+        self.joints: List[Any] = []  # the same
         for element in elements:
             for child in element:
                 value = child.get("value")
@@ -46,6 +47,7 @@ class Extensions:
         """Apply extensions of the model: static, plugins and others; call it first."""
         for block in self._by_reference.get("", ()):
             found = fill(model, block, GAZEBO_MODEL, self._source, model.extra)
+            self.links += found.get("link", [])
             self.joints += found.get("joint", [])
             model.plugins += [read_plugin(child, self._source)
                               for child in found.get("plugin", ())]

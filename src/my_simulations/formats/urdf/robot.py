@@ -15,6 +15,7 @@ from ..xml.source import FaultLevel, Source
 from .fixed_joint_lumping import lump, lumped_into
 from .gazebo_extensions import Extensions, moved
 from .gazebo_joint import read_sdf_joint
+from .gazebo_link import add_sdf_links
 from .joint import read_connection, turned_to
 from .kinematic_tree import LUMP, Body, Connection, parents_first
 from .link import read_body, read_origin, read_palette
@@ -73,6 +74,8 @@ class _RobotReader:
             poses = self._build(root)
             rename(model, self._renamed)
             self._read_sensors()
+            self._elements.update(add_sdf_links(extensions.links, source, model, self._bodies,
+                                                poses))
             for child in extensions.joints:
                 joint = read_sdf_joint(child, source, self._bodies, poses, model.name)
                 if joint is not None:

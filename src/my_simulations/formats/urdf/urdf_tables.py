@@ -170,7 +170,7 @@ GAZEBO_MODEL = Table("gazebo", Model, {
     "self_collide": Value("self_collide", BOOL),
     "allow_auto_disable": Value("allow_auto_disable", BOOL),
     "enable_wind": Value("enable_wind", BOOL, use=Use.KEPT),
-    "plugin": Part(), "joint": Part(),
+    "plugin": Part(), "link": Part(), "joint": Part(),
     "gripper": Kept(told=True),
     **_kept("frame", "canonicalBody", "selfCollide", "turnGravityOff"),
 })
