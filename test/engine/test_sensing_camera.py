@@ -289,6 +289,12 @@ def test_an_unreadable_picture_is_told_and_the_rest_is_drawn(view):
     assert "/nowhere/wood.png" in view.renderer.said[0]
 
 
+def test_a_mesh_that_is_missing_is_told_with_its_link(view):
+    view([body("stool", Mesh("/nowhere/stool.dae"), 0)], [Pose()])
+    (said,) = view.renderer.said
+    assert "/nowhere/stool.dae" in said and "'stool::link'" in said
+
+
 def test_a_mesh_brings_its_own_colours_unless_the_visual_says_others(view, tmp_path):
     (tmp_path / "m.mtl").write_text("newmtl a\nKd 0 1 0\n")
     path = tmp_path / "m.obj"

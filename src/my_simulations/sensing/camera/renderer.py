@@ -93,7 +93,8 @@ class Renderer:
                     continue
                 local, look = matrix(visual.pose), body.looks.get((n, m))
                 key = repr((visual.geometry, look, visual.transparency, visual.cast_shadows))
-                if (key, 0) not in self._batches and not self._prepare(key, visual, look):
+                if (key, 0) not in self._batches and not self._prepare(
+                        key, visual, look, f"{body.name}::{link.name}"):
                     continue
                 for part in range(len(self._batches)):
                     batch = self._batches.get((key, part))
@@ -101,11 +102,11 @@ class Renderer:
                         break
                     batch.add(body.name, body.first_link_row + n, local)
 
-    def _prepare(self, key: str, visual: Any, look: Any) -> bool:
+    def _prepare(self, key: str, visual: Any, look: Any, link: str) -> bool:
         try:
             pieces = pieces_of(visual, look)
         except InputError as fault:
-            self._trouble(f"cameras do not see the visual {visual.name!r}: {fault}")
+            self._trouble(f"cameras do not see the visual {visual.name!r} of {link!r}: {fault}")
             return False
         for part, piece in enumerate(piece for piece in pieces if len(piece.triangles)):
             self._batches[key, part] = Batch(self._context, self._programs, piece,
