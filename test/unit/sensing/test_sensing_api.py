@@ -138,6 +138,32 @@ def test_the_lens_is_undone_where_it_can_be():
     assert sources(ideal)[0] == pytest.approx(pixels_x)
 
 
+@pytest.mark.parametrize("lens", [
+    Distortion(0.3), Distortion(0.5), Distortion(0.2, 0.1, 0.05), Distortion(5.0),
+    Distortion(0.4, p1=0.02, p2=-0.01), Distortion(0.4, center=(0.45, 0.6))])
+@pytest.mark.parametrize("hfov", [1.57, 2.2])
+def test_a_pincushion_lens_leaves_no_pixel_black(lens, hfov):
+    column, row = sources(CameraSpec(160, 120, hfov, distortion=lens))
+    assert (column >= 0).all() and (column <= 159).all() and (row >= 0).all() and (row <= 119).all()
+    f = 80 / math.tan(hfov / 2)
+    middle = (160 * lens.center[0] - 0.5, 120 * lens.center[1] - 0.5)
+    x, y = distorted(lens, (column - middle[0]) / f, (row - middle[1]) / f)
+    pixels_x, pixels_y = np.meshgrid(np.arange(160), np.arange(120))
+    assert np.abs(x * f + middle[0] - pixels_x).max() < 1e-6
+    assert np.abs(y * f + middle[1] - pixels_y).max() < 1e-6
+
+
+def test_where_a_barrel_lens_folds_the_picture_only_its_inner_part_is_seen():
+    lens = Distortion(-1.0)  # folds at 0.577, which it puts at 0.385; -1.19 would fall on 0.5, too
+    column, row = sources(CameraSpec(161, 121, 2.4, distortion=lens))
+    f = 80.5 / math.tan(1.2)
+    seen = np.hypot(*np.meshgrid(np.arange(161) - 80, np.arange(121) - 60)) / f
+    assert np.array_equal(np.isfinite(column[np.abs(seen - 0.385) > 1 / f]),
+                          seen[np.abs(seen - 0.385) > 1 / f] < 0.385)
+    ideal = np.hypot(column - 80, row - 60)[np.isfinite(column)] / f
+    assert ideal.max() < 0.6
+
+
 def test_pictures_are_looked_up_between_pixels_and_black_outside():
     picture = np.array([[[0, 0, 0], [100, 0, 0]], [[50, 0, 0], [150, 0, 0]]], dtype=np.uint8)
     column, row = np.array([[0.5, 1.0, -0.1, np.inf]]), np.array([[0.5, 0.0, 0.0, 0.0]])

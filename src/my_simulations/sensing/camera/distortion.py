@@ -1,13 +1,19 @@
 """Lens distortion: which pixel of an ideal picture is seen where."""
 from __future__ import annotations
 
+import math
 from typing import Tuple
 
 import numpy as np
 
 from ..api import CameraSpec, Distortion
 
-_ROUNDS = 30
+_ROUNDS = 12
+_STRIDE = 0.5     # longest step of a round, of normalised coordinates
+_ENTRIES = 4096
+
+_Bend = Tuple[np.ndarray, np.ndarray, np.ndarray]
+"""The derivative of the lens, a symmetric matrix: xx, xy and yy."""
 
 
 def distorted(model: Distortion, x: np.ndarray, y: np.ndarray) -> Tuple[np.ndarray, np.ndarray]:
@@ -21,7 +27,8 @@ def distorted(model: Distortion, x: np.ndarray, y: np.ndarray) -> Tuple[np.ndarr
 def sources(spec: CameraSpec) -> Tuple[np.ndarray, np.ndarray]:
     """For each pixel of the seen picture, column and row (float) in the ideal one.
 
-    The inverse of the model, by fixed-point rounds; pixels that no ideal one falls on lie outside.
+    The inverse of the model: of its radial part from a table, the rest by Newton's rounds. Pixels
+    that no ideal one falls on, short of where the lens folds the picture, lie outside.
     """
     lens = spec.distortion or Distortion()
     f = spec.focal_length
@@ -32,15 +39,54 @@ def sources(spec: CameraSpec) -> Tuple[np.ndarray, np.ndarray]:
     if lens.crop:
         share = crop_share(spec)
         x_seen, y_seen = x_seen * share, y_seen * share
-    x, y = x_seen.copy(), y_seen.copy()
+    corner = math.hypot(max(middle[0], spec.width - 1 - middle[0]),
+                        max(middle[1], spec.height - 1 - middle[1])) / f
+    x, y = _without_radial(lens, x_seen, y_seen, corner)
     for _ in range(_ROUNDS):
-        at_x, at_y = distorted(lens, x, y)
-        x += np.clip(x_seen - at_x, -0.5, 0.5)
-        y += np.clip(y_seen - at_y, -0.5, 0.5)
-    at_x, at_y = distorted(lens, x, y)
-    lost = np.hypot(at_x - x_seen, at_y - y_seen) * f > 0.5
+        miss_x, miss_y, bend = _misses(lens, x, y, x_seen, y_seen)
+        whole = np.where(_keeps_sides(*bend), bend[0] * bend[2] - bend[1] ** 2, np.inf)
+        x += np.clip((miss_x * bend[2] - miss_y * bend[1]) / whole, -_STRIDE, _STRIDE)
+        y += np.clip((miss_y * bend[0] - miss_x * bend[1]) / whole, -_STRIDE, _STRIDE)
+    miss_x, miss_y, bend = _misses(lens, x, y, x_seen, y_seen)
+    lost = (np.hypot(miss_x, miss_y) * f > 0.5) | ~_keeps_sides(*bend)
     x[lost] = np.inf
     return x * f + middle[0], y * f + middle[1]
+
+
+def _without_radial(lens: Distortion, x_seen: np.ndarray, y_seen: np.ndarray, corner: float,
+                    ) -> Tuple[np.ndarray, np.ndarray]:
+    """Ideal coordinates as if the lens had only its radial part.
+
+    `corner`: ideal distance from the middle up to which anything is seen; what the lens puts
+    further out than that, or than its fold, comes from there.
+    """
+    ideal = np.linspace(0.0, 1.1 * corner, _ENTRIES)
+    squared = ideal * ideal
+    seen = ideal * (1.0 + squared * (lens.k1 + squared * (lens.k2 + squared * lens.k3)))
+    falls = np.flatnonzero(np.diff(seen) <= 0.0)
+    end = int(falls[0]) + 1 if len(falls) else _ENTRIES
+    away = np.hypot(x_seen, y_seen)
+    share = np.interp(away, seen[:end], ideal[:end]) / np.where(away > 0.0, away, 1.0)
+    return x_seen * share, y_seen * share
+
+
+def _misses(lens: Distortion, x: np.ndarray, y: np.ndarray, x_seen: np.ndarray,
+            y_seen: np.ndarray) -> "Tuple[np.ndarray, np.ndarray, _Bend]":
+    """How far the lens puts ideal coordinates from the seen ones, and its derivative there."""
+    squared = x * x + y * y
+    radial = 1.0 + squared * (lens.k1 + squared * (lens.k2 + squared * lens.k3))
+    slope = 2.0 * (lens.k1 + squared * (2.0 * lens.k2 + squared * 3.0 * lens.k3))
+    at_x, at_y = distorted(lens, x, y)
+    return x_seen - at_x, y_seen - at_y, (
+        radial + x * x * slope + 2.0 * lens.p1 * y + 6.0 * lens.p2 * x,
+        x * y * slope + 2.0 * lens.p1 * x + 2.0 * lens.p2 * y,
+        radial + y * y * slope + 6.0 * lens.p1 * y + 2.0 * lens.p2 * x)
+
+
+def _keeps_sides(across: np.ndarray, mixed: np.ndarray, down: np.ndarray) -> np.ndarray:
+    """Where a derivative neither mirrors nor turns the picture over: short of a fold."""
+    kept: np.ndarray = (across * down - mixed * mixed > 0.0) & (across + down > 0.0)
+    return kept
 
 
 def crop_share(spec: CameraSpec) -> float:
