@@ -101,7 +101,8 @@ class Service:
 
 
 class _Worker:
-    """A thread with a queue; it begins with the first request, and sums up changes before.
+    """A thread with a queue; it begins with the first request. Changes before are taken at once:
+    they only say what the first request will find, and nobody would empty the queue.
 
     `at_once`: there is no thread, whoever puts something in does the work.
     """
@@ -116,10 +117,10 @@ class _Worker:
         self._thread: Optional[threading.Thread] = None
 
     def put(self, number: int, message: object, state: Optional[State]) -> None:
-        if self._at_once:
+        if self._at_once or (not number and self._thread is None):
             self._work(number, message, state)
             return
-        if number and self._thread is None:
+        if self._thread is None:
             self._thread = threading.Thread(target=self._run, name=self._name, daemon=True)
             self._thread.start()
         self._queue.put((number, message, state))
