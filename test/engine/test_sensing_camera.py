@@ -462,6 +462,18 @@ def test_what_is_half_transparent_is_mixed_and_invisible_is_not_there(view):
     assert found.rgb[240, 320].tolist() == [255] * 3 and found.labels[240, 320] == 0
 
 
+def test_each_of_many_lamps_lights_the_pictures_taken_beside_it(view):
+    places = [20.0 * n for n in range(10)]
+    walls = [body(f"wall {n}", Box((0.1, 4.0, 4.0)), n, Look(diffuse=(1.0, 1.0, 1.0, 1.0)))
+             for n in range(len(places))]
+    view.renderer.set_lights([Light(f"lamp {n}", "point", Pose((1.0, place, 0.0)), linear=0.0)
+                              for n, place in enumerate(places)], DARK)
+    poses = [Pose((3.0, place, 0.0)) for place in places]
+    seen = [view(walls, poses, Pose((0.0, place, 0.0)), outputs=(RGB,)).rgb[240, 320, 0]
+            for place in places]
+    assert seen[0] > 200 and np.ptp(np.array(seen, dtype=int)) <= 1
+
+
 def test_the_background_the_sky_and_fog(view):
     view.renderer.set_lights([], Scene(background=(0.2, 0.4, 0.6, 1.0)))
     assert view([], []).rgb[0, 0] == pytest.approx([51, 102, 153], abs=1)

@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import math
+from typing import Union
 
 import numpy as np
 
@@ -29,8 +30,9 @@ def projection(spec: CameraSpec) -> np.ndarray:
                      [0, 0, -1.0, 0]])
 
 
-def in_sight(centers: np.ndarray, radius: float, spec: CameraSpec) -> np.ndarray:
-    """Which balls (view frame) the camera's pyramid may touch."""
+def in_sight(centers: np.ndarray, radius: Union[float, np.ndarray], spec: CameraSpec,
+             ) -> np.ndarray:
+    """Which balls (view frame), of one radius or of one each, the camera's pyramid may touch."""
     seen = (centers[:, 2] < radius - spec.near) & (centers[:, 2] > -spec.far - radius)
     half = math.tan(spec.hfov / 2)
     for axis, slope in ((0, half), (1, half * spec.height / spec.width)):

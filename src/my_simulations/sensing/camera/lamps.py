@@ -9,6 +9,8 @@ import numpy as np
 
 from ...description.light import Light
 from ...geometry import rotate
+from ..api import CameraSpec
+from .frustum import in_sight
 from .shaders import MOST_LIGHTS, MOST_SHADOWS
 
 SHADOW_SIZE = 1024
@@ -31,32 +33,53 @@ class ShadowView:
     pixel: float
 
 
+def chosen_lights(lights: List[Light], view: np.ndarray, spec: CameraSpec) -> List[Light]:
+    """The lights that a picture is drawn under, MOST_LIGHTS at most; `view`: camera from world.
+
+    Where there are more, directional ones come first, then those whose range the camera sees a
+    part of, then near ones. (Gazebo's Ogre chooses by distance, too, for each object.)
+    """
+    if len(lights) <= MOST_LIGHTS:
+        return lights
+    places = np.array([light.pose.position for light in lights]) @ view[:3, :3].T + view[:3, 3]
+    ranges = np.array([light.range for light in lights])
+    local = np.array([is_local(light) for light in lights])
+    order = np.lexsort((np.linalg.norm(places, axis=1) - ranges,
+                        ~in_sight(places, ranges, spec), local))
+    # By type, so that one choice has few other programs than the next one.
+    return sorted((lights[n] for n in sorted(order[:MOST_LIGHTS])), key=lambda one: one.type)
+
+
+def is_local(light: Light) -> bool:
+    """Whether a light has a place, and a range; others shine from afar."""
+    return light.type in ("point", "spot")
+
+
 def shadow_lights(lights: List[Light]) -> List[int]:
-    """Which lights cast shadows here: the first directional and spot lights that shall."""
-    wanted = [n for n, light in enumerate(lights[:MOST_LIGHTS])
-              if light.cast_shadows and light.type != "point"]
+    """Which of the chosen lights cast shadows: the first directional and spot ones that shall."""
+    wanted = [n for n, light in enumerate(lights) if light.cast_shadows and light.type != "point"]
     return wanted[:MOST_SHADOWS]
 
 
 def light_kinds(lights: List[Light], shadows: List[int]) -> Tuple[Tuple[str, int], ...]:
     """Type of each light, and its shadow map or -1, as `shaders.LitKind` wants them."""
-    return tuple((light.type if light.type in ("point", "spot") else "directional",
+    return tuple((light.type if is_local(light) else "directional",
                   shadows.index(n) if n in shadows else -1)
-                 for n, light in enumerate(lights[:MOST_LIGHTS]))
+                 for n, light in enumerate(lights))
 
 
 def light_uniforms(lights: List[Light], view: np.ndarray) -> List[Tuple[str, Any]]:
-    """Values of the shader's light arrays; `view` is camera from world."""
+    """Values of the shader's arrays for the chosen lights; `view` is camera from world."""
     at = np.zeros((MOST_LIGHTS, 4), np.float32)
     color = np.zeros((MOST_LIGHTS, 3), np.float32)
     way = np.zeros((MOST_LIGHTS, 3), np.float32)
     fade = np.zeros((MOST_LIGHTS, 4), np.float32)
     cone = np.full((MOST_LIGHTS, 3), -2.0, np.float32)
-    for n, light in enumerate(lights[:MOST_LIGHTS]):
+    for n, light in enumerate(lights):
         ahead = view[:3, :3] @ _direction(light)
         color[n] = light.diffuse[:3]
         way[n] = ahead
-        if light.type not in ("point", "spot"):
+        if not is_local(light):
             at[n] = (*-ahead, 0.0)
         else:
             at[n] = (*(view @ np.array([*light.pose.position, 1.0]))[:3], 1.0)

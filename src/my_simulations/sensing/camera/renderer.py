@@ -23,6 +23,7 @@ from .kept_pictures import Drawn, KeptPictures
 from .lamps import (
     SHADOW_SIZE,
     ShadowView,
+    chosen_lights,
     light_kinds,
     light_uniforms,
     shadow_lights,
@@ -167,9 +168,10 @@ class Renderer:
         rgb = depth = labels = None
         clip = projection(spec)
         if RGB in outputs:
-            shadows = self._shadows(spec, links, frame[:3, 3])
+            lights = chosen_lights(self._lights, view, spec)
+            shadows = self._shadows(spec, lights, links, frame[:3, 3])
             self._place(view, links, spec)
-            rgb = self._draw_rgb(spec, view, clip, shadows)
+            rgb = self._draw_rgb(spec, view, self._lighting(view, clip, lights, shadows))
         if DEPTH in outputs or LABELS in outputs:
             if RGB not in outputs:
                 self._place(view, links, spec)
@@ -201,15 +203,13 @@ class Renderer:
 
     # Colours.
 
-    def _draw_rgb(self, spec: CameraSpec, view: np.ndarray, clip: np.ndarray,
-                  shadows: List[Tuple[int, ShadowView]]) -> np.ndarray:
+    def _draw_rgb(self, spec: CameraSpec, view: np.ndarray, lighting: "_Lighting") -> np.ndarray:
         context = self._context
         samples = spec.samples or self._smooth
         target = self._targets.get("rgb", spec.width, spec.height, samples)
         target.use()
         background = self._scene.background[:3]
         target.clear(*background, 1.0, depth=1.0)
-        lighting = self._lighting(view, clip, shadows)
         context.enable_only(context.DEPTH_TEST)
         clear: List[Batch] = []
         # Small ones first: walls and grounds are mostly behind them, and need not be lit there.
@@ -239,7 +239,7 @@ class Renderer:
             self._draw_lit(batch, lighting)
         target.depth_mask = True
 
-    def _lighting(self, view: np.ndarray, clip: np.ndarray,
+    def _lighting(self, view: np.ndarray, clip: np.ndarray, lights: List[Light],
                   shadows: List[Tuple[int, ShadowView]]) -> "_Lighting":
         """What is the same for all surfaces of a picture."""
         fog, kind = self._scene.fog, ""
@@ -250,7 +250,7 @@ class Renderer:
             pixels[n] = one.pixel
         values = {"clip": clip.T, "ambient": np.array(self._scene.ambient[:3]), "up": view[:3, 2],
                   "shadow_from_view": maps, "shadow_pixel": pixels,
-                  **dict(light_uniforms(self._lights, view))}
+                  **dict(light_uniforms(lights, view))}
         if fog is not None and fog.type != "none":
             kind = "linear" if fog.type == "linear" else "exponential"
             density = fog.density * (0.5 if fog.type == "quadratic" else 1.0) / 10.0
@@ -258,7 +258,7 @@ class Renderer:
             values["fog"] = np.array([fog.start, fog.end, density])
         for n, texture in enumerate(self._maps):
             texture.use(location=1 + n)
-        return _Lighting(kind, light_kinds(self._lights, [n for n, _ in shadows]), {
+        return _Lighting(kind, light_kinds(lights, [n for n, _ in shadows]), {
             name: np.ascontiguousarray(value, dtype=np.float32) for name, value in values.items()})
 
     def _program(self, kind: shaders.LitKind, lighting: "_Lighting") -> str:
@@ -322,18 +322,18 @@ class Renderer:
 
     # Shadows.
 
-    def _shadows(self, spec: CameraSpec, links: np.ndarray, eye: np.ndarray,
+    def _shadows(self, spec: CameraSpec, lights: List[Light], links: np.ndarray, eye: np.ndarray,
                  ) -> List[Tuple[int, ShadowView]]:
         """The maps that lights need, drawn again only where something has moved."""
         if not (spec.shadows and self._scene.shadows):
             return []
-        wanted = shadow_lights(self._lights)
+        wanted = shadow_lights(lights)
         if not wanted:
             return []
         low, high, places = self._casters(links)
         found = []
         for n, index in enumerate(wanted):
-            light = self._lights[index]
+            light = lights[index]
             one = shadow_view(light, low, high, eye)
             key = (light, one.view.tobytes(), one.clip.tobytes(), places)
             if key != self._map_keys[n]:
