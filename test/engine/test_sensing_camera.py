@@ -485,6 +485,13 @@ def test_the_background_the_sky_and_fog(view):
     assert wall.rgb[240, 320].tolist() == [0, 0, 255]
 
 
+@pytest.mark.parametrize("kind, seen", [("exp", math.exp(-0.5)), ("exp2", math.exp(-0.25))])
+def test_exponential_fog_is_as_dense_as_in_gazebo(view, kind, seen):
+    view.renderer.set_lights([], Scene(fog=Fog(kind, (0, 0, 0, 1), density=0.1)))
+    wall = view([body("b", Box((1.0, 9, 9)), 0, FLAT_WHITE)], [Pose((5.5, 0, 0))])
+    assert ((wall.rgb[240, 320, 0] / 255.0 + 0.055) / 1.055) ** 2.4 == pytest.approx(seen, abs=0.01)
+
+
 def test_the_same_picture_has_the_same_sum_in_another_context(view):
     view.renderer.set_lights([Light("s", "directional", cast_shadows=True,
                                     direction=(0.3, 0.1, -1.0))], Scene(sky=Sky()))

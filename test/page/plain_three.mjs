@@ -121,6 +121,12 @@ export class Vector3 extends Vector {
     Object.assign(this, {x, y, z});
   }
 }
+export class FogExp2 extends Thing {
+  constructor(color, density) {
+    super();
+    Object.assign(this, {color, density});
+  }
+}
 export class Color extends Thing {
   setRGB(r, g, b) { return Object.assign(this, {r, g, b}); }
 }
@@ -137,7 +143,7 @@ export {
   Place as OrthographicCamera, Place as PerspectiveCamera, Shown as SkinnedMesh,
   Thing as AnimationClip, Thing as AnimationMixer, Thing as Box3, Thing as CanvasTexture,
   Thing as DataTexture, Thing as Fog,
-  Thing as FogExp2, Thing as LoadingManager, Thing as Matrix4,
+  Thing as LoadingManager, Thing as Matrix4,
   Thing as Path, Thing as Quaternion, Thing as QuaternionKeyframeTrack, Thing as Shape, Thing as Raycaster, Thing as Sphere, Thing as Texture,
   Thing as TextureLoader, Thing as Vector2,
   Thing as VectorKeyframeTrack, Thing as WebGLRenderTarget, Thing as WebGLRenderer,

@@ -14,14 +14,18 @@ from .shapes import Color, Material
 
 @dataclass
 class Fog:
-    """Fog of a scene. Source: SDF spec 1.7, scene/fog.
+    """Fog of a scene. Source: SDF spec 1.7, scene/fog; Gazebo 11 reads linear, exp, exp2 and none.
+
+    At distance d a share of exp(-density d) is seen through `exp`, exp(-(density d)^2) through
+    `exp2`. Gazebo refuses the specification's words constant and quadratic: they are drawn as thin
+    `exp2` here.
 
     Attributes:
-        type: `none`, `constant`, `linear` or `quadratic`.
+        type: `none`, `linear`, `exp`, `exp2`, `constant` or `quadratic`.
         color: r, g, b, a in 0..1.
         start: distance from the camera at which linear fog begins, m.
         end: distance from the camera at which linear fog is complete, m.
-        density: density of constant and quadratic fog, 0 (clear) to 1.
+        density: density of all but linear fog, from 0 (clear), 1/m for exp and exp2.
         extra: XML of child elements that no field holds.
     """
 

@@ -119,7 +119,7 @@ export const SKY = [
 ];
 
 export const FOG = [
-  field('type', 'type', 'choice', {choices: ['none', 'constant', 'linear', 'quadratic']}),
+  field('type', 'type', 'choice', {choices: ['none', 'linear', 'exp', 'exp2', 'constant', 'quadratic']}),
   color('color', 'color'),
   number('start', 'start', 'm', NOT_NEGATIVE),
   number('end', 'end', 'm', NOT_NEGATIVE),

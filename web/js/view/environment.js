@@ -17,13 +17,16 @@ import {Gradient, WorldSky, leavesBackground} from './sky.js';
 /** @import {Store} from '../store.js' */
 
 /**
- * Gazebo's fog in three's: constant has no thinning with distance but its density.
+ * Gazebo's fog in three's; of a negative density is what falls with the distance alone, see
+ * `exponentialFog`. Gazebo does not know constant and quadratic, words of the SDF specification.
  * @param {import('../protocol.js').Fog|null|undefined} fog
  */
 function fogOf(fog) {
   if (!fog || fog.type === 'none') return null;
   const color = colorOf(fog.color);
   if (fog.type === 'linear') return new Fog(color, fog.start, fog.end);
+  if (fog.type === 'exp') return new FogExp2(color, -Math.max(fog.density, 0));
+  if (fog.type === 'exp2') return new FogExp2(color, Math.max(fog.density, 0));
   return new FogExp2(color, fog.density * (fog.type === 'quadratic' ? 0.5 : 1) / 10);
 }
 

@@ -26,6 +26,14 @@ export function keepHighlights() {
   replace('tonemapping_pars_fragment', NO_TONE_MAPPING, HIGHLIGHTS);
 }
 
+const SQUARED_FOG = 'exp( - fogDensity * fogDensity * vFogDepth * vFogDepth )';
+const EITHER_FOG = `( fogDensity < 0.0 ? exp( fogDensity * vFogDepth ) : ${SQUARED_FOG} )`;
+
+/** Lets a FogExp2 of negative density be Gazebo's `exp`, which three lacks: without the square. */
+export function exponentialFog() {
+  replace('fog_fragment', SQUARED_FOG, EITHER_FOG);
+}
+
 /** three's softening of shadows: five samples at places turned by noise, from sines and cosines. */
 const TURNED_SAMPLES = /vec2 texelSize = vec2\( 1\.0 \) \/ shadowMapSize;[^}]*?\) \* 0\.2;/;
 /**

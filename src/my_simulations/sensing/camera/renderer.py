@@ -29,7 +29,7 @@ from .lamps import (
     shadow_lights,
     shadow_view,
 )
-from .sky import linear, sky_uniforms
+from .sky import fog_law, linear, sky_uniforms
 from .targets import Targets
 from .uploaded_textures import Textures
 
@@ -252,8 +252,7 @@ class Renderer:
                   "shadow_from_view": maps, "shadow_pixel": pixels,
                   **dict(light_uniforms(lights, view))}
         if fog is not None and fog.type != "none":
-            kind = "linear" if fog.type == "linear" else "exponential"
-            density = fog.density * (0.5 if fog.type == "quadratic" else 1.0) / 10.0
+            kind, density = fog_law(fog)
             values["fog_color"] = linear(fog.color)
             values["fog"] = np.array([fog.start, fog.end, density])
         for n, texture in enumerate(self._maps):

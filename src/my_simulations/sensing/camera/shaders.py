@@ -61,7 +61,7 @@ class LitKind(NamedTuple):
         shiny: has highlights.
         cut: what of the picture is nearly transparent is left out.
         blended: the picture's alpha counts.
-        fog: "", linear or exponential.
+        fog: "", or the law by which it hides what is further away: linear, exp or exp2.
         lights: type of each light, and the number of its shadow map or -1.
         layers: of a terrain; whether each has a normal map.
     """
@@ -118,6 +118,11 @@ _FALLEN = """  vec3 fallen = ambient * mix(0.6, 1.0, 0.5 * dot(n, up) + 0.5), sh
 """
 
 
+# How much is seen through fog at distance d.
+_CLEAR = {"linear": "clamp((fog.y - d) / max(fog.y - fog.x, 1e-6), 0.0, 1.0)",
+          "exp": "exp(-fog.z * d)", "exp2": "exp(-fog.z * fog.z * d * d)"}
+
+
 def lit_fragment(kind: LitKind) -> str:
     """The program of a surface under some lights."""
     samplers = "".join(f"uniform sampler2D layer{n}, bumps{n};\n"
@@ -141,9 +146,8 @@ def lit_fragment(kind: LitKind) -> str:
         glow = "emissive * t.rgb" if kind.textured else "emissive"
         parts.append(f"  color = albedo * fallen + shine + {glow};\n")
     if kind.fog:
-        clear = ("clamp((fog.y - d) / max(fog.y - fog.x, 1e-6), 0.0, 1.0)" if kind.fog == "linear"
-                 else "exp(-fog.z * fog.z * d * d)")
-        parts.append(f"  float d = -place.z;\n  color = mix(fog_color, color, {clear});\n")
+        parts.append("  float d = -place.z;\n"
+                     f"  color = mix(fog_color, color, {_CLEAR[kind.fog]});\n")
     return "".join([*parts, "  seen = vec4(encoded(clamp(color, 0.0, 1.0)), opacity);\n}"])
 
 

@@ -2,12 +2,12 @@
 from __future__ import annotations
 
 import math
-from typing import Any, Dict, Sequence
+from typing import Any, Dict, Sequence, Tuple
 
 import numpy as np
 
 from ...appearance.palette import SKY
-from ...description.surroundings import Sky
+from ...description.surroundings import Fog, Sky
 
 
 def linear(color: Sequence[float]) -> np.ndarray:
@@ -41,3 +41,10 @@ def sky_uniforms(sky: Sky) -> Dict[str, Any]:
         "cloud_color": tuple(linear(sky.cloud_ambient) * (1.15 * light + 0.05)),
         "cover": min(max(sky.cloud_humidity, 0.0), 1.0), "size": 0.6 + sky.cloud_mean_size,
         "drift": sky.cloud_direction}
+
+
+def fog_law(fog: Fog) -> Tuple[str, float]:
+    """Law (as in `shaders.LitKind`) and density, 1/m, of a fog; see `Fog`."""
+    if fog.type in ("linear", "exp", "exp2"):
+        return fog.type, max(fog.density, 0.0)
+    return "exp2", fog.density * (0.5 if fog.type == "quadratic" else 1.0) / 10.0
