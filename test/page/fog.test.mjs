@@ -1,5 +1,4 @@
 /** Fog: how much is seen through it at a distance. */
-import assert from 'node:assert/strict';
 import {test} from 'node:test';
 import {Store} from '../../web/js/store.js';
 import {world} from './scene.mjs';
