@@ -3,6 +3,7 @@ from __future__ import annotations
 
 import hashlib
 import math
+import os
 from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
@@ -213,6 +214,18 @@ def test_a_texture_lies_upright_on_a_wall_and_repeats(view, tmp_path):
     small = Look(diffuse=(1, 1, 1, 1), texture=path, scale=(0.5, 0.5), lit=False)
     found = view([body("b", Box((1.0, 1.0, 1.0)), 0, small)], wall).rgb
     assert found[240 - 90, 320 - 90].tolist() == found[240 - 90, 320 + 20].tolist() == [255, 0, 0]
+
+
+def test_a_texture_file_that_changed_is_seen_when_its_model_comes_again(view, tmp_path):
+    from PIL import Image
+
+    picture = tmp_path / "label.png"
+    look = Look(diffuse=(1, 1, 1, 1), texture=str(picture), lit=False)
+    for n, color in enumerate([(255, 0, 0), (0, 0, 255)]):
+        Image.new("RGB", (4, 4), color).save(str(picture))
+        os.utime(str(picture), (n, n))
+        found = view([body("b", Box((1.0, 9, 9)), 0, look)], [Pose((3.0, 0, 0))])
+        assert found.rgb[240, 320].tolist() == list(color)
 
 
 @pytest.mark.parametrize("material, faint", [

@@ -1,6 +1,7 @@
 """Pictures for textures: read from files, or drawn where Gazebo would bring its own."""
 from __future__ import annotations
 
+import os
 from typing import Any, Optional, Tuple
 
 import numpy as np
@@ -21,9 +22,23 @@ def read_picture(picture: Any) -> Optional[np.ndarray]:
     """uint8 (h, w, 4), the lowest row first, of a path or a PIL image; None if unreadable."""
     if not isinstance(picture, str):
         return pixels_of(picture, LARGEST)
-    path = existing(picture) or next(
-        (hit for hit in map(existing, places_of_mesh(picture, [])) if hit), None)
+    path = _found(picture)
     return None if path is None else read(path, LARGEST)
+
+
+def state_of(picture: str) -> Optional[Tuple[str, int, int]]:
+    """The file that `read_picture` would read, its time, ns, and its size; None without one."""
+    path = _found(picture)
+    try:
+        status = None if path is None else os.stat(path)
+    except OSError:
+        return None  # gone since; `read_picture` will say so
+    return None if path is None or status is None else (path, status.st_mtime_ns, status.st_size)
+
+
+def _found(picture: str) -> Optional[str]:
+    return existing(picture) or next(
+        (hit for hit in map(existing, places_of_mesh(picture, [])) if hit), None)
 
 
 def draw_pattern(name: str) -> Optional[np.ndarray]:

@@ -110,6 +110,7 @@ class Renderer:
             self._trouble(f"cameras do not see the visual {visual.name!r} of {link!r}: {fault}")
             return False
         for part, piece in enumerate(piece for piece in pieces if len(piece.triangles)):
+            self._textures.renew(piece.surface)
             self._batches[key, part] = Batch(self._context, self._programs, piece,
                                              visual.cast_shadows)
         return bool(pieces)
@@ -140,6 +141,7 @@ class Renderer:
         self._scenic = [Batch(self._context, self._programs, part.piece, part.casts_shadow)
                         for part in self._scenery.parts]
         for batch, part in zip(self._scenic, self._scenery.parts):
+            self._textures.renew(part.piece.surface)
             batch.add("", part.row, np.eye(4))
 
     def render(self, spec: CameraSpec, frame: np.ndarray, poses: np.ndarray,

@@ -3,7 +3,8 @@ from __future__ import annotations
 
 import weakref
 from collections import deque
-from typing import Any, Callable, Deque, Dict
+from itertools import chain
+from typing import Any, Callable, Deque, Dict, Optional, Tuple
 
 import numpy as np
 
@@ -25,6 +26,7 @@ class Textures:
     def __init__(self, context: Any, trouble: Callable[[str], None]) -> None:
         self._context, self._trouble = context, trouble
         self._made: Dict[Any, Any] = {}
+        self._states: Dict[str, Optional[Tuple[str, int, int]]] = {}   # of the files, by picture
         self._gone: Deque[int] = deque()   # ids of pictures that were, whose textures are to go
 
     def of(self, surface: Surface) -> Any:
@@ -47,6 +49,25 @@ class Textures:
                 # Another picture may get its id then; what draws it keeps the picture until then.
                 weakref.finalize(surface.picture, self._gone.append, key)
         return self._made[key]
+
+    def renew(self, surface: Surface) -> None:
+        """Forget the surface's pictures whose files are others than at the last call.
+
+        For surfaces that are made: the pictures of the others are not looked at again.
+        """
+        for path in (surface.picture, *chain.from_iterable((layer.texture, layer.normal)
+                                                           for layer in surface.layers)):
+            if not path or not isinstance(path, str):
+                continue
+            from .pictures import state_of
+
+            before, now = self._states.get(path), state_of(path)
+            self._states[path] = now
+            if before != now:
+                for key in (path, ("bumps", path)):
+                    texture = self._made.pop(key, None)
+                    if texture is not None:
+                        texture.release()
 
     def _release_gone(self) -> None:
         """In the thread of the context: pictures end in any."""
