@@ -487,6 +487,20 @@ def test_each_of_many_lamps_lights_the_pictures_taken_beside_it(view):
     assert seen[0] > 200 and np.ptp(np.array(seen, dtype=int)) <= 1
 
 
+@pytest.mark.parametrize("near, far", [(1.0, 4.0), (4.0, 2.0)])
+@pytest.mark.parametrize("shift", [0.0, 50.0])
+def test_the_nearer_of_two_panes_is_drawn_over_the_other_whatever_their_size(view, near, far,
+                                                                             shift):
+    red, blue = (Look(diffuse=color, transparency=0.5, lit=False)
+                 for color in ((1, 0, 0, 1), (0, 0, 1, 1)))
+    view.renderer.set_lights([], DARK)
+    # The origin of the nearer one's link lies further away, what is seen of it does not.
+    panes = [body("near", Box((0.01, near, near)), 0, red, pose=Pose((-shift, 0, 0))),
+             body("far", Box((0.01, far, far)), 1, blue)]
+    seen = view(panes, [Pose((2.0 + shift, 0, 0)), Pose((4.0, 0, 0))]).rgb[240, 320].astype(int)
+    assert seen[0] > 180 > 80 > seen[2] > 0
+
+
 def test_the_background_the_sky_and_fog(view):
     view.renderer.set_lights([], Scene(background=(0.2, 0.4, 0.6, 1.0)))
     assert view([], []).rgb[0, 0] == pytest.approx([51, 102, 153], abs=1)

@@ -21,6 +21,7 @@ class Batch:
         uniforms: of its surface.
         rows: link row of each; local: (n, 4, 4) link from shape.
         shape: another number for another shape.
+        ahead: z in the view frame of what was uploaded, on average; of clear surfaces only.
     """
 
     def __init__(self, context: Any, programs: Dict[str, Any], piece: Piece, shadows: bool) -> None:
@@ -29,6 +30,7 @@ class Batch:
         self.casts_shadow = shadows and not piece.surface.clear
         self.center, self.radius = _bounds(piece.rows)
         self.shape = 0
+        self.ahead = 0.0
         self.owners: List[str] = []
         self.rows = np.zeros(0, dtype=np.int64)
         self.local = np.zeros((0, 4, 4))

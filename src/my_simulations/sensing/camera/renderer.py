@@ -194,8 +194,10 @@ class Renderer:
                 center = frames[:, :3, :3] @ batch.center + frames[:, :3, 3]
                 near_enough = in_sight(center, batch.radius, spec)
                 frames, here = frames[near_enough], here[near_enough]
-            if batch.surface.clear and len(frames) > 1:
-                far_first = np.argsort(frames[:, 2, 3], kind="stable")
+            if batch.surface.clear and len(frames):
+                ahead = frames[:, 2, :3] @ batch.center + frames[:, 2, 3]
+                batch.ahead = float(ahead.mean())
+                far_first = np.argsort(ahead, kind="stable")
                 frames, here = frames[far_first], here[far_first]
             batch.upload(frames, batch.rows[here])
 
@@ -223,6 +225,7 @@ class Renderer:
         if self._scene.sky is not None:
             self._draw_sky(spec, view)
         if clear:
+            clear.sort(key=lambda one: one.ahead)  # what is behind shows through what is before it
             self._draw_clear(clear, target, lighting)
         if samples > 1:
             whole = self._targets.get("rgb", spec.width, spec.height, 1)
