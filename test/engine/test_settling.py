@@ -144,6 +144,23 @@ def test_an_arm_with_brakes_stays_where_it_is(lab: Lab, laws: Laws, base: str, s
           seconds, bar)
 
 
+BENT = """<robot name="arm"><link name="world"/>
+<link name="upper"><inertial><mass value="1"/><inertia ixx="0.01" iyy="0.01" izz="0.01" ixy="0"
+ixz="0" iyz="0"/></inertial></link><joint name="elbow" type="revolute"><parent link="world"/>
+<child link="upper"/><axis xyz="0 0 1"/><limit lower="0.8" upper="5" effort="9" velocity="9"/>
+</joint></robot>"""
+
+
+@pytest.mark.parametrize("steps", [0, 1, 7])
+def test_a_joint_that_is_spawned_past_its_stop_goes_back_at_once(steps: int):
+    """Into a world that runs, too: an arm that stood in the ground like that was flung about."""
+    with my_simulations.open_world() as world:
+        world.step(steps)
+        world.spawn(BENT)
+        world.step(1)
+        assert world.joints().position["arm::elbow"] == pytest.approx(0.4, abs=1e-6)
+
+
 @pytest.mark.parametrize("sleeps", [True, False])
 def test_boxes_stay_on_a_ramp_of_20_degrees(lab: Lab, laws: Laws, sleeps: bool):
     tilt = _slope(lab, 20.0)

@@ -98,6 +98,7 @@ class ContactSettling:
         self._iterations = 50
         self._parting_steps, self._least_steps = 1000, 100
         self._new = False                     # something was put in since the last look
+        self._arrived: List[Body] = []        # of that, what has axes
         self._until: Optional[int] = None     # the step at which split impulses end
 
     def configure(self, iterations: int, dt: float) -> None:
@@ -118,12 +119,14 @@ class ContactSettling:
             self._moving.add(body.uid)
         if body.moves and not body.rigid:
             self._trees[body.uid] = _Tree(body, [axis.index for axis in body.axes])
+            self._arrived.append(body)
         elif body.moves and not body.sleeps:
             self._rigid[body.uid] = body
 
     def forget(self, body: Body) -> None:
         """A body is gone."""
         self._trees.pop(body.uid, None)
+        self._arrived = [other for other in self._arrived if other is not body]
         self._moving.discard(body.uid)
         self._rigid.pop(body.uid, None)
         if not self._trees and not self._rigid:
@@ -133,6 +136,7 @@ class ContactSettling:
     def clear(self) -> None:
         """All bodies are gone."""
         self._trees.clear()
+        self._arrived.clear()
         self._moving.clear()
         self._rigid.clear()
         self._level, self._leaning = 0, False
@@ -177,6 +181,11 @@ class ContactSettling:
         if self._new:
             self._new, self._until = False, step + self._parting_steps
             self._split(True)
+            # At once: an arm whose zero pose is past its stops may stand in the ground there.
+            for body in self._arrived if step % EVERY else ():
+                _put_back(body, pybullet.getJointStates(
+                    body.uid, [axis.index for axis in body.axes]) or ())
+            self._arrived.clear()
         if step % EVERY:
             return
         if self._until is not None and (step >= self._until or (
