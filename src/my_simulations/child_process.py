@@ -69,6 +69,14 @@ def wait_or_kill(child: "subprocess.Popen[Any]", seconds: float) -> None:
         child.wait()
 
 
+def signal_name(number: int) -> str:
+    """Such as SIGKILL; `signal 40` for one without a name, as most real-time signals are."""
+    try:
+        return signal.Signals(number).name
+    except ValueError:
+        return f"signal {number}"
+
+
 def die_with_parent() -> None:
     """In the child: have the kernel kill it with the thread that started it (Linux).
 

@@ -7,6 +7,7 @@ import os
 import signal
 import subprocess
 import sys
+import threading
 from dataclasses import replace
 
 import numpy as np
@@ -169,6 +170,17 @@ def test_what_waits_fails_when_no_process_can_be_started_and_a_later_one_answers
             ahead(sensing)
     assert len(sensing.said) == 1 and "physics goes on" in sensing.said[0]
     assert ahead(sensing) == pytest.approx(5.0, abs=1e-6)
+
+
+def test_what_waits_fails_when_all_ends_before_a_process_is_started(monkeypatch):
+    sensing, begin = SensingProcess(), threading.Event()
+    start = sensing._start
+    monkeypatch.setattr(sensing, "_start", lambda: begin.wait(DEADLINE_S) and start())
+    waiting = sensing.cast(CastRays(MOUNT, AHEAD))
+    monkeypatch.setattr(sensing, "_hang_up", begin.set)  # called once it is closing
+    sensing.close()
+    with pytest.raises(SensingGoneError, match="ended"):
+        waiting.result(DEADLINE_S)
 
 
 def test_a_process_that_hangs_holds_nobody_up_and_is_replaced(start):

@@ -4,7 +4,6 @@ from __future__ import annotations
 import logging
 import os
 import select
-import signal
 import socket
 import subprocess
 import threading
@@ -12,7 +11,14 @@ from collections import OrderedDict
 from concurrent.futures import Future
 from typing import Callable, Dict, List, Optional, Tuple
 
-from ..child_process import await_end, child_command, child_environment, shielded, wait_or_kill
+from ..child_process import (
+    await_end,
+    child_command,
+    child_environment,
+    shielded,
+    signal_name,
+    wait_or_kill,
+)
 from . import ring as ring_module
 from .api import EngineDiedError, Event, Reply
 from .commands import Command, Nudge, SetJoints, SetLinkState, SetModelState
@@ -226,7 +232,7 @@ def answer_shown(ring: RingReader, waiting: "Dict[int, Tuple[Command, Future[Rep
 
 def _reason(code: int) -> str:
     if code < 0:
-        return f"the physics engine was killed by {signal.Signals(-code).name}"
+        return f"the physics engine was killed by {signal_name(-code)}"
     return f"the physics engine ended with code {code}"
 
 

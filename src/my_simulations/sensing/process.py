@@ -4,7 +4,6 @@ from __future__ import annotations
 import importlib
 import logging
 import queue
-import signal
 import socket
 import subprocess
 import threading
@@ -12,7 +11,14 @@ import time
 from concurrent.futures import Future
 from typing import Any, Callable, Dict, List, Optional, Set, Tuple, Union
 
-from ..child_process import await_end, child_command, child_environment, shielded, wait_or_kill
+from ..child_process import (
+    await_end,
+    child_command,
+    child_environment,
+    shielded,
+    signal_name,
+    wait_or_kill,
+)
 from ..engine.message_pipe import Wire
 from .api import (
     READY,
@@ -155,6 +161,7 @@ class SensingProcess:
         reader = self._reader
         if reader is not None:
             reader.join(_END_S)
+        self._fail_all("the sensing process was ended")  # what came before a child was there
 
     def _hang_up(self) -> None:
         with self._lock:
@@ -305,5 +312,5 @@ class SensingProcess:
 
 def _reason(code: int) -> str:
     if code < 0:
-        return f"the sensing process was killed by {signal.Signals(-code).name}"
+        return f"the sensing process was killed by {signal_name(-code)}"
     return f"the sensing process ended with code {code}"

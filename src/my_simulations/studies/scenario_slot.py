@@ -5,7 +5,6 @@ import contextlib
 import glob
 import os
 import shutil
-import signal
 import subprocess
 import sys
 import tempfile
@@ -13,7 +12,7 @@ import threading
 import time
 from typing import Dict, List, Optional, Tuple
 
-from ..child_process import wait_or_kill
+from ..child_process import signal_name, wait_or_kill
 from ..errors import CommandError, InputError
 from . import scenario_process
 from .attempts import until_no_crash
@@ -119,7 +118,7 @@ class ScenarioSlot:
             if code == scenario_process.TIMED_OUT:
                 row.status, row.issue, row.values = TIMED_OUT, f"took longer than {limit:g} s", {}
             elif code > 128:
-                row.status, row.signal, row.values = CRASHED, _signal(code), {}
+                row.status, row.signal, row.values = CRASHED, signal_name(code - 128), {}
                 row.issue = f"rostest was ended by {row.signal}"
             elif found.failures:
                 row.status, row.issue = FAILED, found.first
@@ -155,13 +154,6 @@ class ScenarioSlot:
             if process.poll() is None:
                 process.terminate()
                 wait_or_kill(process, _END_S)
-
-
-def _signal(code: int) -> str:
-    try:
-        return signal.Signals(code - 128).name
-    except ValueError:
-        return f"signal {code - 128}"
 
 
 def _last_line(folder: str) -> str:

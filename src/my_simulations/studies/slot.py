@@ -4,13 +4,13 @@ from __future__ import annotations
 import hashlib
 import math
 import os
-import signal
 import threading
 from dataclasses import dataclass
 from typing import Callable, List, Optional, Tuple
 
 import numpy as np
 
+from ..child_process import signal_name
 from ..engine.api import Engine
 from ..engine.commands import Command
 from ..engine.process_engine import ProcessEngine
@@ -73,7 +73,7 @@ class OneLifeEngine(ProcessEngine):
     def ended_by(self) -> str:
         """Name of the signal that ended it; "" if none did."""
         code = self.exit_code
-        return signal.Signals(-code).name if code is not None and code < 0 else ""
+        return signal_name(-code) if code is not None and code < 0 else ""
 
 
 @dataclass
