@@ -234,7 +234,7 @@ def test_pages_are_told_of_more_steps_than_labels(edited):
         assert told["undoable"] == 210 > len(told["undo"])
         await browser.ask("undo", to=209)
         await browser.until(lambda: browser.last("history")["depth"] == 0)
-        await browser.until(lambda: browser.document["models"][0]["name"] == "a")
+        await browser.until(lambda: browser.model("a"))
 
     made.browse(edit)
 
