@@ -8,7 +8,7 @@
  * (SDF spec 1.7, script/delay_start).
  */
 import {length, orientation, position, subtract} from './pose.js';
-import {controlsOf, onTurn} from './turn_spline.js';
+import {controlsOf, onTurn, withNeighbours} from './turn_spline.js';
 /** @import {Actor, Trajectory, Waypoint} from './protocol.js' */
 
 /**
@@ -16,9 +16,6 @@ import {controlsOf, onTurn} from './turn_spline.js';
  *   time: s since the trajectory began; slope: of the spline, m for a whole segment; turn: the
  *   orientation; control: of the spline of turns
  */
-
-/** m; ends of a path that are no further apart are one point (ignition::math::Vector3). */
-const CLOSED = 1e-3;
 
 /** Into which a segment is divided to measure it. */
 const CHORDS = 32;
@@ -38,14 +35,9 @@ function inOrder(waypoints) {
  * @param {number} tension  0: Catmull-Rom; 1: straight, with a halt at each point
  */
 function slopes(points, tension) {
-  const last = points.length - 1;
-  const closed = last > 0 &&
-    points[0].every((value, axis) => Math.abs(value - points[last][axis]) <= CLOSED);
-  return points.map((_, index) => {
-    const before = points[index > 0 ? index - 1 : closed ? last - 1 : 0];
-    const after = points[index < last ? index + 1 : closed ? 1 : last];
-    return after.map((value, axis) => 0.5 * (1 - tension) * (value - before[axis]));
-  });
+  const around = withNeighbours(points);
+  return points.map((_, index) => around[index + 2].map(
+    (value, axis) => 0.5 * (1 - tension) * (value - around[index][axis])));
 }
 
 /**

@@ -7,7 +7,7 @@
 import {conjugate, multiply, slerp} from './pose.js';
 /** @import {Quat} from './pose.js' */
 
-/** Ends of which no member differs by more are one orientation (ignition::math::Quaternion). */
+/** Ends of which no member (m, or of a quaternion) differs by more are one (ignition::math). */
 const CLOSED = 1e-3;
 
 /** Below this the sine of an angle stands for the angle. */
@@ -49,19 +49,30 @@ function alongArc(a, b, part) {
 }
 
 /**
+ * Points with the one before the first and the one after the last. Of a closed path, whose ends
+ * are one point, these are from its other end; else the ends again.
+ * @template {number[]} P
+ * @param {P[]} points
+ * @returns {P[]}
+ */
+export function withNeighbours(points) {
+  const last = points.length - 1;
+  const closed = last > 0
+    && points[0].every((value, n) => Math.abs(value - points[last][n]) <= CLOSED);
+  return [points[closed ? last - 1 : 0], ...points, points[closed ? 1 : last]];
+}
+
+/**
  * The inner control point at each orientation.
  * @param {Quat[]} turns
  * @returns {Quat[]}
  */
 export function controlsOf(turns) {
   if (turns.length < 2) return turns;
-  const last = turns.length - 1;
-  const closed = turns[0].every((value, n) => Math.abs(value - turns[last][n]) <= CLOSED);
+  const around = withNeighbours(turns);
   return turns.map((turn, n) => {
-    const before = turns[n > 0 ? n - 1 : closed ? last - 1 : 0];
-    const after = turns[n < last ? n + 1 : closed ? 1 : last];
     const back = conjugate(turn);
-    const [ahead, behind] = [after, before].map((other) => log(multiply(back, other)));
+    const [ahead, behind] = [around[n + 2], around[n]].map((other) => log(multiply(back, other)));
     return multiply(turn, exp(ahead.map((value, axis) => -0.25 * (value + behind[axis]))));
   });
 }

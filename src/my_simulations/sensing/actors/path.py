@@ -13,10 +13,8 @@ from typing import List, Mapping, NamedTuple, Optional, Tuple
 
 from ...description.actor import Actor, Trajectory, Waypoint
 from ...geometry import Pose, Quat, Vec3, add, norm, scale, subtract
-from .turn_spline import controls_of, on_turn
+from .turn_spline import controls_of, on_turn, with_neighbours
 
-_CLOSED = 1e-3
-"""m; ends of a path that are no further apart are one point (ignition::math::Vector3)."""
 _CHORDS = 32
 """Into which a segment is divided to measure it."""
 
@@ -163,9 +161,7 @@ def _slopes(points: List[Vec3], tension: float) -> List[Vec3]:
     """
     if len(points) < 2:
         return [(0.0, 0.0, 0.0)] * len(points)
-    closed = all(abs(a - b) <= _CLOSED for a, b in zip(points[0], points[-1]))
-    before, after = (points[-2], points[1]) if closed else (points[0], points[-1])
-    around = [before, *points, after]
+    around = with_neighbours(points)
     return [scale(subtract(around[n + 2], around[n]), 0.5 * (1.0 - tension))
             for n in range(len(points))]
 

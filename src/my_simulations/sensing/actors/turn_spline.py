@@ -7,23 +7,34 @@ widely where the yaw passes from pi to -pi, whose quaternions are far from each 
 from __future__ import annotations
 
 import math
-from typing import List, Sequence
+from typing import List, Sequence, TypeVar
 
 from ...geometry import Quat, conjugate, multiply, normalised, slerp
 
 _CLOSED = 1e-3
-"""Ends of which no member differs by more are one orientation (ignition::math::Quaternion)."""
+"""Ends of which no member (m, or of a quaternion) differs by more are one (ignition::math)."""
 _SMALL = 1e-3
 """Below this the sine of an angle stands for the angle."""
+
+
+Point = TypeVar("Point", bound=Sequence[float])
+
+
+def with_neighbours(points: Sequence[Point]) -> List[Point]:
+    """Two points or more with the one before the first and the one after the last.
+
+    Of a closed path, whose ends are one point, these are from its other end; else the ends again.
+    """
+    closed = all(abs(a - b) <= _CLOSED for a, b in zip(points[0], points[-1]))
+    before, after = (points[-2], points[1]) if closed else (points[0], points[-1])
+    return [before, *points, after]
 
 
 def controls_of(turns: Sequence[Quat]) -> List[Quat]:
     """The inner control point at each orientation."""
     if len(turns) < 2:
         return list(turns)
-    closed = all(abs(a - b) <= _CLOSED for a, b in zip(turns[0], turns[-1]))
-    before, after = (turns[-2], turns[1]) if closed else (turns[0], turns[-1])
-    around = [before, *turns, after]
+    around = with_neighbours(turns)
     found: List[Quat] = []
     for n, turn in enumerate(turns):
         back = conjugate(turn)
