@@ -19,9 +19,15 @@ _Bend = Tuple[np.ndarray, np.ndarray, np.ndarray]
 def distorted(model: Distortion, x: np.ndarray, y: np.ndarray) -> Tuple[np.ndarray, np.ndarray]:
     """Where the lens puts ideal normalised coordinates (Brown's model, as OpenCV's)."""
     squared = x * x + y * y
-    radial = 1.0 + squared * (model.k1 + squared * (model.k2 + squared * model.k3))
+    radial = _radial(model, squared)
     return (x * radial + 2.0 * model.p1 * x * y + model.p2 * (squared + 2.0 * x * x),
             y * radial + model.p1 * (squared + 2.0 * y * y) + 2.0 * model.p2 * x * y)
+
+
+def _radial(lens: Distortion, squared: np.ndarray) -> np.ndarray:
+    """By how much the lens stretches; `squared`: of the ideal distance from the middle."""
+    stretch: np.ndarray = 1.0 + squared * (lens.k1 + squared * (lens.k2 + squared * lens.k3))
+    return stretch
 
 
 def sources(spec: CameraSpec) -> Tuple[np.ndarray, np.ndarray]:
@@ -61,8 +67,7 @@ def _without_radial(lens: Distortion, x_seen: np.ndarray, y_seen: np.ndarray, co
     further out than that, or than its fold, comes from there.
     """
     ideal = np.linspace(0.0, 1.1 * corner, _ENTRIES)
-    squared = ideal * ideal
-    seen = ideal * (1.0 + squared * (lens.k1 + squared * (lens.k2 + squared * lens.k3)))
+    seen = ideal * _radial(lens, ideal * ideal)
     falls = np.flatnonzero(np.diff(seen) <= 0.0)
     end = int(falls[0]) + 1 if len(falls) else _ENTRIES
     away = np.hypot(x_seen, y_seen)
@@ -74,7 +79,7 @@ def _misses(lens: Distortion, x: np.ndarray, y: np.ndarray, x_seen: np.ndarray,
             y_seen: np.ndarray) -> "Tuple[np.ndarray, np.ndarray, _Bend]":
     """How far the lens puts ideal coordinates from the seen ones, and its derivative there."""
     squared = x * x + y * y
-    radial = 1.0 + squared * (lens.k1 + squared * (lens.k2 + squared * lens.k3))
+    radial = _radial(lens, squared)
     slope = 2.0 * (lens.k1 + squared * (2.0 * lens.k2 + squared * 3.0 * lens.k3))
     at_x, at_y = distorted(lens, x, y)
     return x_seen - at_x, y_seen - at_y, (
