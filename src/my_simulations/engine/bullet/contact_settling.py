@@ -98,7 +98,7 @@ class ContactSettling:
         self._iterations = 50
         self._parting_steps, self._least_steps = 1000, 100
         self._new = False                     # something was put in since the last look
-        self._arrived: List[Body] = []        # of that, what has axes
+        self._arrived: List[_Tree] = []       # of that, what has axes
         self._until: Optional[int] = None     # the step at which split impulses end
 
     def configure(self, iterations: int, dt: float) -> None:
@@ -118,15 +118,16 @@ class ContactSettling:
         if body.moves:
             self._moving.add(body.uid)
         if body.moves and not body.rigid:
-            self._trees[body.uid] = _Tree(body, [axis.index for axis in body.axes])
-            self._arrived.append(body)
+            tree = _Tree(body, [axis.index for axis in body.axes])
+            self._trees[body.uid] = tree
+            self._arrived.append(tree)
         elif body.moves and not body.sleeps:
             self._rigid[body.uid] = body
 
     def forget(self, body: Body) -> None:
         """A body is gone."""
         self._trees.pop(body.uid, None)
-        self._arrived = [other for other in self._arrived if other is not body]
+        self._arrived = [tree for tree in self._arrived if tree.body is not body]
         self._moving.discard(body.uid)
         self._rigid.pop(body.uid, None)
         if not self._trees and not self._rigid:
@@ -182,9 +183,8 @@ class ContactSettling:
             self._new, self._until = False, step + self._parting_steps
             self._split(True)
             # At once: an arm whose zero pose is past its stops may stand in the ground there.
-            for body in self._arrived if step % EVERY else ():
-                _put_back(body, pybullet.getJointStates(
-                    body.uid, [axis.index for axis in body.axes]) or ())
+            for tree in self._arrived if step % EVERY else ():
+                _put_back(tree.body, _states(tree))
             self._arrived.clear()
         if step % EVERY:
             return
@@ -197,7 +197,7 @@ class ContactSettling:
             self._leaning = any(_creeps(body) for body in self._rigid.values())
         standing = False
         for tree in self._trees.values():
-            states = pybullet.getJointStates(tree.body.uid, tree.indices) or ()
+            states = _states(tree)
             if tree.held is None:
                 _put_back(tree.body, states)
             held = tree.held is not None
@@ -271,6 +271,12 @@ class ContactSettling:
         pybullet.setPhysicsEngineParameter(
             solverResidualThreshold=_RESIDUALS[level],
             numSolverIterations=self._iterations * (_MORE_ITERATIONS if level == 2 else 1))
+
+
+def _states(tree: _Tree) -> JointStates:
+    """Of its axes."""
+    found: JointStates = pybullet.getJointStates(tree.body.uid, tree.indices) or ()
+    return found
 
 
 def _put_back(body: Body, states: JointStates) -> None:
