@@ -7,7 +7,7 @@ import pathlib
 import sys
 from typing import Callable, Dict, Iterator, List, Sequence, Tuple
 
-from source_messages import REPOSITORY, called, code_uses, constants_of, modules, text_of
+from source_messages import REPOSITORY, Module, called, code_uses, modules, text_of
 
 PAGE = REPOSITORY / "doc" / "messages.md"
 SERVICES = "ros/services/"
@@ -20,17 +20,15 @@ read at one sitting. `{name}` stands for a value. Codes of issues are explained 
 """
 
 Rows = List[Tuple[str, str]]
-Trees = Sequence[Tuple[str, ast.Module]]
 
 
-def _texts(trees: Trees, finds: Callable[[ast.AST], Iterator[ast.expr]]) -> Rows:
+def _texts(sources: Sequence[Module], finds: Callable[[ast.AST], Iterator[ast.expr]]) -> Rows:
     """Module and text of the expressions that `finds` yields, in order, without repeats."""
     found: Dict[Tuple[str, str], None] = {}
-    for path, tree in trees:
-        constants = dict(constants_of(tree))
-        at = [(node.lineno, node.col_offset, text_of(node, constants))
-              for outer in ast.walk(tree) for node in finds(outer)]
-        found.update(dict.fromkeys((path, text) for _, _, text in sorted(at) if text))
+    for module in sources:
+        at = [(node.lineno, node.col_offset, text_of(node, module.constants))
+              for outer in module.nodes for node in finds(outer)]
+        found.update(dict.fromkeys((module.path, text) for _, _, text in sorted(at) if text))
     return list(found)
 
 
@@ -94,15 +92,14 @@ def _escaped(text: str) -> str:
 
 def page() -> str:
     """The text of doc/messages.md."""
-    trees = modules()
-    services = [(path, tree) for path, tree in trees if path.startswith(SERVICES)]
+    services = [module for module in modules() if module.path.startswith(SERVICES)]
     lines = [HEAD.rstrip()]
     lines += _section("Status messages of services: success", _texts(services, _returned))
     lines += _section("Status messages of services: prefixes of Gazebo",
                       _texts(services, _prefixes))
-    lines += _section("Errors of requests, tools and downloads", _texts(trees, _raised))
-    lines += _section("Log lines and output of programs", _texts(trees, _logged))
-    lines += _section("Options of command lines", _texts(trees, _options))
+    lines += _section("Errors of requests, tools and downloads", _texts(modules(), _raised))
+    lines += _section("Log lines and output of programs", _texts(modules(), _logged))
+    lines += _section("Options of command lines", _texts(modules(), _options))
     lines += ["", "## Issues by code", "", "| code | text |", "|---|---|"]
     issues = sorted({(use.pattern, _escaped(use.text)) for use in code_uses() if use.text})
     lines += [f"| `{code}` | {text} |" for code, text in issues]

@@ -6,7 +6,7 @@ import functools
 import pathlib
 import re
 from dataclasses import dataclass
-from typing import Dict, Iterator, List, Optional, Set, Tuple
+from typing import Dict, Iterable, Iterator, List, Optional, Set, Tuple
 
 REPOSITORY = pathlib.Path(__file__).resolve().parents[2]
 PACKAGE = REPOSITORY / "src" / "my_simulations"
@@ -39,12 +39,32 @@ class Use:
     line: int
 
 
+@dataclass(frozen=True)
+class Module:
+    """One module of the package.
+
+    Attributes:
+        path: below the package.
+        constants: values of the names that it assigns, `A, B = ...` too.
+        nodes: its calls, raises, assignments, functions and classes, at whatever depth.
+    """
+
+    path: str
+    constants: Dict[str, ast.expr]
+    nodes: Tuple[ast.AST, ...]
+
+
 @functools.lru_cache(maxsize=None)
-def modules() -> Tuple[Tuple[str, ast.Module], ...]:
-    """Path below the package and syntax tree of each of its modules, read once."""
-    return tuple((file.relative_to(PACKAGE).as_posix(),
-                  ast.parse(file.read_text(encoding="utf-8")))
-                 for file in sorted(PACKAGE.rglob("*.py")))
+def modules() -> Tuple[Module, ...]:
+    """Each module of the package, read once: to walk all of their trees takes seconds."""
+    found: List[Module] = []
+    for file in sorted(PACKAGE.rglob("*.py")):
+        tree = ast.parse(file.read_text(encoding="utf-8"))
+        found.append(Module(
+            file.relative_to(PACKAGE).as_posix(), dict(_constants_of(tree)),
+            tuple(node for node in ast.walk(tree) if isinstance(
+                node, (ast.Call, ast.Raise, ast.Assign, ast.FunctionDef, ast.ClassDef)))))
+    return tuple(found)
 
 
 def text_of(node: Optional[ast.expr], constants: Optional[Dict[str, ast.expr]] = None) -> str:
@@ -90,20 +110,17 @@ def _placeholder(part: ast.expr) -> str:
 @functools.lru_cache(maxsize=None)
 def code_uses() -> Tuple[Use, ...]:
     """Every place of the package where an issue code is given."""
-    trees = modules()
-    positions = _code_positions(tree for _, tree in trees)
+    positions = _code_positions(modules())
     found: List[Use] = []
-    for path, tree in trees:
-        constants = dict(constants_of(tree))
-        for node in ast.walk(tree):
+    for module in modules():
+        for node in module.nodes:
             for expression, severity, text in _codes_at(node, positions):
-                found += [Use(pattern, severity, text, path, expression.lineno)
-                          for pattern in _patterns(expression, constants)]
+                found += [Use(pattern, severity, text, module.path, expression.lineno)
+                          for pattern in _patterns(expression, module.constants)]
     return tuple(found)
 
 
-def constants_of(tree: ast.Module) -> Iterator[Tuple[str, ast.expr]]:
-    """Names and values that a module assigns, `A, B = ...` too."""
+def _constants_of(tree: ast.Module) -> Iterator[Tuple[str, ast.expr]]:
     for node in tree.body:
         for target in node.targets if isinstance(node, ast.Assign) else []:
             if isinstance(target, ast.Name):
@@ -113,11 +130,11 @@ def constants_of(tree: ast.Module) -> Iterator[Tuple[str, ast.expr]]:
                             if isinstance(name, ast.Name))
 
 
-def _code_positions(trees: Iterator[ast.Module]) -> Dict[str, Set[int]]:
+def _code_positions(sources: Iterable[Module]) -> Dict[str, Set[int]]:
     """By the name of a function or class: at which positions it takes an issue code."""
     found: Dict[str, Set[int]] = {"say": {0}}  # a bound `report` or `tolerate`
-    for tree in trees:
-        for node in ast.walk(tree):
+    for module in sources:
+        for node in module.nodes:
             names: List[str] = []
             owner = getattr(node, "name", "")
             if isinstance(node, ast.ClassDef):

@@ -22,7 +22,7 @@ SIGNALS = {"_StopParsing", "CallOverdue"}
 def exceptions():
     """Name, bases and module of every exception class of the package."""
     classes = [(node.name, [getattr(base, "id", getattr(base, "attr", "")) for base in node.bases],
-                path) for path, tree in modules() for node in ast.walk(tree)
+                module.path) for module in modules() for node in module.nodes
                if isinstance(node, ast.ClassDef)]
     known = {name for name, kind in vars(builtins).items()
              if isinstance(kind, type) and issubclass(kind, BaseException)}
