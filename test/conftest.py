@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import os
+import sys
 from typing import Dict, Iterator, List, Optional
 
 import pytest
@@ -76,3 +77,12 @@ def pytest_configure(config: pytest.Config) -> None:
     shown = config.getoption("--processor-time")
     if shown:
         config.pluginmanager.register(ProcessorTimes(shown), "processor-times")
+
+
+@pytest.fixture
+def quick_threads() -> Iterator[None]:
+    """Threads take turns fifty times as often: more orders are seen, and none spins meanwhile."""
+    before = sys.getswitchinterval()
+    sys.setswitchinterval(before / 50)
+    yield
+    sys.setswitchinterval(before)

@@ -91,7 +91,7 @@ def test_an_empty_or_taken_name_is_refused(case, name):
     assert sim.models.names() == ["taken"]
 
 
-def test_a_replaced_model_goes_last_and_is_never_absent(case):
+def test_a_replaced_model_goes_last_and_is_never_absent(case, quick_threads):
     sim = case(box("a"), box("b")).sim
     absent = []
     stop = threading.Event()

@@ -94,7 +94,7 @@ def test_a_reset_takes_an_edited_model_to_where_it_was_loaded(case):
     close(sim.states.model_state("a")[0], (7, 0, 0))
 
 
-def test_readers_never_miss_a_model_that_is_being_edited(case):
+def test_readers_never_miss_a_model_that_is_being_edited(case, quick_threads):
     sim = case(box("a")).sim
     missed, stop = [], threading.Event()
 

@@ -141,7 +141,7 @@ def test_it_comes_back_when_its_neighbours_have_gone(case):
     assert sim.models.names() == ["c"]
 
 
-def test_nobody_sees_it_elsewhere_before(case):
+def test_nobody_sees_it_elsewhere_before(case, quick_threads):
     sim = case(box("a"), box("b"), box("c")).sim
     history = History(sim)
     seen, stop = set(), threading.Event()
