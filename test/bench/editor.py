@@ -12,6 +12,7 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import os
+import shutil
 import statistics
 import sys
 import tempfile
@@ -27,7 +28,8 @@ from my_simulations.editor.transport import address_file
 
 Row = Tuple[str, str, str, bool]
 EMPTY = scenes.world("boxes", 0, True, 1000.0)
-CHROMIUM = os.environ.get("CHROMIUM", "/usr/bin/chromium")
+CHROMIUM = (os.environ.get("CHROMIUM") or shutil.which("chromium-headless-shell")
+            or shutil.which("chromium") or "chromium")
 SHAPES = ("<box><size>.5 .5 .5</size></box>", "<sphere><radius>.3</radius></sphere>",
           "<cylinder><radius>.3</radius><length>.5</length></cylinder>")
 

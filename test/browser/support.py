@@ -26,6 +26,8 @@ CLEARING = f"""if (window.name === '{ANEW}') {{
   sessionStorage.clear();
 }}"""
 """Runs before the scripts of a page, and after the last of the page before it."""
+CHROMIUM = ("chromium-headless-shell", "chromium", "chromium-browser")
+"""Names of its programs: the first is without windows, and what the pages do is the same."""
 WEBGL_FLAGS = ("--use-angle=gl-egl", "--ignore-gpu-blocklist", "--disable-gpu-compositing")
 """Mesa computes WebGL, in half of the time of SwiftShader. Only that: to compose the page as well
 would take twice as long."""
@@ -128,7 +130,7 @@ class Browser:
 
     def launch(self, *flags):
         """A Chromium with other flags, for the caller to close."""
-        binary = shutil.which("chromium") or shutil.which("chromium-browser")
+        binary = next(filter(None, map(shutil.which, CHROMIUM)), None)
         off = "--disable-features=" + ",".join((*PLAYWRIGHTS_OWN, *UNUSED_FEATURES))
         return self._playwright.chromium.launch(executable_path=binary,
                                                 args=["--no-sandbox", off, *flags])

@@ -143,6 +143,7 @@ system_packages() {
   [ "$1" = run ] || ! lacks_npm || lists+=(packages-page)
   for list in "${lists[@]}"; do packages_of "$CLONE/tools/apt-$list.txt"; done
   embree_packages
+  [ "$WITH_TEST_TOOLS" = 0 ] || browser_packages
 }
 
 # lacks_npm: whether npm must be installed. A Node.js from elsewhere is as good, and Debian's npm brings

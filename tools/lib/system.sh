@@ -62,3 +62,13 @@ ask_administrator() {
 embree_packages() {
   [ "$(uname -m)" = x86_64 ] || ! apt-cache show libembree4-4 >/dev/null 2>&1 || printf 'libembree4-4\n'
 }
+
+# browser_packages: what the tests of the page run in. The shell draws the same without windows, in
+# four fifths of the time; older distributions have only the whole Chromium.
+browser_packages() {
+  if apt-cache show chromium-headless-shell >/dev/null 2>&1; then
+    printf 'chromium-headless-shell\n'
+  else
+    printf 'chromium\n'
+  fi
+}

@@ -26,6 +26,8 @@ SYSTEMS = {
     "bookworm": ("debian", "Debian GNU/Linux 12 (bookworm)", False, True),
     "trixie": ("debian", "Debian GNU/Linux 13 (trixie)", False, True),
 }
+RECENT = {"libembree4-4": ["trixie"], "chromium-headless-shell": ["bookworm", "trixie"]}
+"""Packages that not all of them have, and which have them."""
 
 
 class System:
@@ -52,9 +54,9 @@ class System:
         shells.fake(home, "apt-cache", "if [ $1 = policy ]; then "
                     f"echo '500 archive jammy/{'universe' if universe else 'main'} all'; exit; fi\n"
                     "shift; found=1; for name; do case $name in --*) continue ;; " + no_ros +
-                    " libembree4-4) "
-                    + ("echo Package: $name; found=0" if name == "trixie" else "true") +
-                    " ;; *) echo Package: $name; found=0 ;; esac; done; exit $found")
+                    "".join(f" {package}) true ;;" for package, systems in RECENT.items()
+                            if name not in systems) +
+                    " *) echo Package: $name; found=0 ;; esac; done; exit $found")
         (home / "installed").write_text("")
 
     def run(self, script):
@@ -102,6 +104,17 @@ def test_package_that_only_new_lists_name_is_installed(clone, tmp_path):
     done = system.run("COMMON_PACKAGES=0; install_system_packages")
     assert done.returncode == 0, done.stderr
     assert "libembree4-4" in (system.home / "calls").read_text().split()
+
+
+@pytest.mark.parametrize("name", ["bookworm", "focal"])
+def test_tests_have_the_browser_without_windows_where_there_is_one(clone, tmp_path, name):
+    system = System(clone, tmp_path / "home", name)
+    done = system.run("WITH_TEST_TOOLS=1; system_packages all; WITH_TEST_TOOLS=0; echo; "
+                      "system_packages all")
+    browsers = [[word for word in part.split() if word.startswith("chromium")]
+                for part in done.stdout.split("\n\n")]
+    expected = "chromium-headless-shell" if name == "bookworm" else "chromium"
+    assert browsers == [[expected], []]
 
 
 def test_system_without_ros_is_told_what_has_it_before_anything_is_installed(clone, tmp_path):
