@@ -1,15 +1,11 @@
-#!/usr/bin/env python3
 """Every service, every kind of bad input: a reason soon, and the world as it was.
 
 A row of `REFUSED` is a valid request of `VALID` with some fields made bad, and a word that the
 reason must hold; a row of `FORGIVEN` is odd input that has a meaning.
 """
 import os
-import sys
 import unittest
 import xmlrpc.client
-
-sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 
 import rosgraph
 import rospy
@@ -304,7 +300,3 @@ for number, (of, bad, reason) in enumerate(REFUSED):
     setattr(BadInput, f"test_{number:03}_{of}_refuses_{told(bad)}", refusal(of, bad, reason))
 for number, (of, odd) in enumerate(FORGIVEN):
     setattr(BadInput, f"test_odd_{number:02}_{of}", acceptance(of, odd))
-
-
-if __name__ == "__main__":
-    support.run("bad_input")

@@ -1,13 +1,8 @@
-#!/usr/bin/env python3
 """Requests that cannot be carried out: a clear answer, nothing half done, and the node goes on."""
-import os
 import socket
 import struct
-import sys
 import unittest
 from urllib.parse import urlparse
-
-sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 
 import rosgraph
 import rospy
@@ -216,7 +211,3 @@ class BadRequests(unittest.TestCase):
             assert more, "the server hung up without an answer"
             data += more
         return data
-
-
-if __name__ == "__main__":
-    support.run("bad_requests")

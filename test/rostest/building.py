@@ -1,11 +1,7 @@
-#!/usr/bin/env python3
 """A saved building is an object like others: it is spawned from a list."""
 import os
-import sys
 import tempfile
 import unittest
-
-sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 
 import object_flow_support as flow
 import rospy
@@ -54,7 +50,3 @@ class Building(flow.ToolCase, unittest.TestCase):
         bodies = self.gazebo.get_model_properties("house").body_names
         self.assertEqual(sorted(bodies), ["Wall_0", "Wall_1"])
         self.assertTrue(self.gazebo.get_model_properties("house").is_static)
-
-
-if __name__ == "__main__":
-    support.run("building")

@@ -1,12 +1,8 @@
-#!/usr/bin/env python3
 """The command gz against a running node."""
 import os
 import re
-import sys
 import tempfile
 import unittest
-
-sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 
 import support
 from support import Program, box, executable, pose, wait_for
@@ -97,7 +93,3 @@ class Gz(unittest.TestCase):
 
     def test_what_is_not_offered_says_what_to_use(self):
         self.assertIn("apply_joint_effort", self.gz("joint", "-m", "one", status=2))
-
-
-if __name__ == "__main__":
-    support.run("gz_program")

@@ -1,11 +1,6 @@
-#!/usr/bin/env python3
 """Spawning, deleting, reading and moving models, in a running and in a paused world."""
 import math
-import os
-import sys
 import unittest
-
-sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 
 import rospy
 import support
@@ -303,7 +298,3 @@ class Paused(Base, unittest.TestCase):
         self.gazebo.place("one", pose(0.0, 0.0, 2.0), twist((0.0, 0.0, 1.0)))
         self.assertEqual(self.gazebo.z("one"), 2.0)
         self.assertEqual(self.gazebo.sim_time(), before)
-
-
-if __name__ == "__main__":
-    support.run("models")

@@ -1,10 +1,5 @@
-#!/usr/bin/env python3
 """The object flow: spawn, replace and remove objects of the list in a running world."""
-import os
-import sys
 import unittest
-
-sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 
 import object_flow_support as flow
 import rospy
@@ -104,7 +99,3 @@ class ObjectFlow(flow.ToolCase, unittest.TestCase):
     def test_removing_all_twice_is_no_failure(self):
         self.run_tool("remove_object.py", "all")
         self.assertIn("none of these objects", self.run_tool("remove_object.py", "all"))
-
-
-if __name__ == "__main__":
-    support.run("object_flow")

@@ -1,10 +1,5 @@
-#!/usr/bin/env python3
 """What the object tools answer to faulty lists, names and files, and without a simulator."""
-import os
-import sys
 import unittest
-
-sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 
 import object_flow_support as flow
 import rospy
@@ -124,7 +119,3 @@ class Faults(flow.ToolCase, unittest.TestCase):
                                  status=1)
             self.assertIn("/nobody", text)
             self.assertIn("timed out after 2 s", text)
-
-
-if __name__ == "__main__":
-    support.run("object_flow_faults")

@@ -1,11 +1,6 @@
-#!/usr/bin/env python3
 """The object tools with many objects, and the launch file that spawns one without a list."""
-import os
 import signal
-import sys
 import unittest
-
-sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 
 import object_flow_support as flow
 import rospy
@@ -80,7 +75,3 @@ class ManyObjects(flow.ToolCase, unittest.TestCase):
         at = self.gazebo.get_model_state("ball", "").pose.position
         self.assertAlmostEqual(at.x, 1.5, 2)
         self.assertAlmostEqual(at.y, -2.0, 2)
-
-
-if __name__ == "__main__":
-    support.run("object_flow_many")

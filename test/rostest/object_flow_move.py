@@ -1,11 +1,6 @@
-#!/usr/bin/env python3
 """Moving objects: to a pose, along a polygon and a circle, and past things in the way."""
 import math
-import os
-import sys
 import unittest
-
-sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 
 import object_flow_support as flow
 import support
@@ -104,7 +99,3 @@ class Moving(flow.ToolCase, unittest.TestCase):
                              "-c", "[0,0]", "--timeout", "3", status=1)
         self.assertIn("model 'blok' does not exist", text)
         self.assertIn("did you mean block?", text)
-
-
-if __name__ == "__main__":
-    support.run("object_flow_move")

@@ -1,11 +1,7 @@
-#!/usr/bin/env python3
 """Object lists of another package, as the tutorial's cob_gazebo_objects is one."""
 import os
-import sys
 import tempfile
 import unittest
-
-sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 
 import object_flow_support as flow
 import support
@@ -78,7 +74,3 @@ class OtherPackage(flow.ToolCase, unittest.TestCase):
             f"model 'typo', {os.path.join(self.package, 'objects/typo.urdf')}:2")
         self.run_here("spawn_object.py", "typo")
         self.assertIn("<jiont>", heard()[0].msg)
-
-
-if __name__ == "__main__":
-    support.run("object_flow_package")

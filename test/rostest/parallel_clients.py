@@ -1,11 +1,6 @@
-#!/usr/bin/env python3
 """Several clients at once: every call gets its own right answer."""
-import os
-import sys
 import threading
 import unittest
-
-sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 
 import support
 from support import pose
@@ -79,7 +74,3 @@ class ParallelClients(unittest.TestCase):
 
         self.in_parallel(work)
         self.assertEqual(sum(results), 1)
-
-
-if __name__ == "__main__":
-    support.run("parallel_clients")

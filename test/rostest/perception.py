@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 """What image_proc, depth_image_proc, laser_geometry and PCL make of pictures, depth and scans.
 
 Each case computes from our messages alone what such a program computes, by its documented formula,
@@ -13,8 +12,6 @@ import sys
 import tempfile
 import unittest
 
-sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-
 import numpy as np
 import roslib.packages
 import rospkg
@@ -22,7 +19,7 @@ import rospy
 import tf2_ros
 from geometry_msgs.msg import Quaternion, TransformStamped
 from sensor_msgs.msg import CameraInfo, Image, LaserScan, PointCloud2
-from support import Collected, Gazebo, Program, Transforms, pose, run, wait_for
+from support import Collected, Gazebo, Program, Transforms, pose, wait_for
 
 WIDTH, HEIGHT, HFOV = 320, 240, 1.2
 FOCAL = WIDTH / 2 / math.tan(HFOV / 2)
@@ -351,7 +348,3 @@ class Perception(unittest.TestCase):
         board = np.abs(y) < SIDE / 2
         self.assertGreater(board.sum(), 10)
         np.testing.assert_allclose(x, np.where(board, BOARD, WALL), atol=1e-3)
-
-
-if __name__ == "__main__":
-    run("perception")

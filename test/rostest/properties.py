@@ -1,11 +1,6 @@
-#!/usr/bin/env python3
 """Properties of lights, links, joints and physics: what is set is read back, and acts."""
 import math
-import os
-import sys
 import unittest
-
-sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 
 import rospy
 import support
@@ -218,7 +213,3 @@ class Properties(unittest.TestCase):
         self.assertGreater(heard[-1].real_time_factor, 0.0)
         self.assertGreater(heard[-1].header.stamp.to_sec(), 0.0)
         metrics.close()
-
-
-if __name__ == "__main__":
-    support.run("properties")

@@ -1,14 +1,9 @@
-#!/usr/bin/env python3
 """robot_state_publisher has the lab robot's links where the physics has them."""
-import os
-import sys
 import unittest
-
-sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 
 import rospy
 from geometry_msgs.msg import Twist, Vector3
-from support import Gazebo, Transforms, run, wait_for
+from support import Gazebo, Transforms, wait_for
 
 WHEELS = ("left_wheel", "right_wheel")
 SENSORS = ("laser_link", "camera_optical_frame", "imu_link")
@@ -51,7 +46,3 @@ class RobotFrames(unittest.TestCase):
         # Optical frames look along z, with y down: REP 103.
         for value, wanted in zip((turn.x, turn.y, turn.z, turn.w), (-0.5, 0.5, -0.5, 0.5)):
             self.assertAlmostEqual(abs(value), abs(wanted), delta=0.2)
-
-
-if __name__ == "__main__":
-    run("robot_frames")

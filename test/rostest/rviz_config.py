@@ -1,17 +1,13 @@
-#!/usr/bin/env python3
 """What each display of our rviz configurations names is in the live graph, with the right type."""
 import glob
 import os
-import sys
 import unittest
 import xml.etree.ElementTree as ElementTree
-
-sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 
 import rospy
 import yaml
 from roslib.message import get_message_class
-from support import Gazebo, Transforms, run, wait_for
+from support import Gazebo, Transforms, wait_for
 
 CONFIGURATIONS = sorted(glob.glob(os.path.join(
     os.path.dirname(os.path.abspath(__file__)), "..", "..", "config", "*.rviz")))
@@ -89,7 +85,3 @@ class RvizConfiguration(unittest.TestCase):
                 frame = (display.get("TF Prefix") or "") + link.get("name")
                 self.transforms.wait(manager["Global Options"]["Fixed Frame"], frame,
                                      f"the frame of link {frame} that {name} shows")
-
-
-if __name__ == "__main__":
-    run("rviz_config")

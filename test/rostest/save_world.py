@@ -1,12 +1,8 @@
-#!/usr/bin/env python3
 """The running world is saved to a file below the allowed folders, and nowhere else."""
 import os
-import sys
 import tempfile
 import unittest
 from xml.etree import ElementTree
-
-sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 
 import rospy
 import support
@@ -71,7 +67,3 @@ class Saving(unittest.TestCase):
         world = ElementTree.parse(answer.path).getroot().find("world")
         self.assertEqual([uri.text for uri in world.findall("include/uri")],
                          ["model://ground_plane"])
-
-
-if __name__ == "__main__":
-    support.run("save_world")

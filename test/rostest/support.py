@@ -8,6 +8,7 @@ import subprocess
 import sys
 import threading
 import time
+import unittest
 from unittest import mock
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.realpath(__file__)), os.pardir, "unit",
@@ -319,6 +320,32 @@ class Launched:
             self.program.interrupt()
             self.program.ended()
         self.program.__exit__(None, None, None)
+
+
+class Prepared(unittest.TestSuite):
+    """Tests of one module, before which the world of a shared node is put back."""
+
+    def __init__(self, tests, prepare):
+        super().__init__(tests)
+        self._prepare = prepare
+
+    def run(self, result, debug=False):
+        self._prepare()
+        return super().run(result, debug)
+
+
+def at_one_node(modules, prepare):
+    """A `load_tests` (of unittest) for modules that share a node: to start one takes two seconds.
+
+    Args:
+        modules: names of modules beside this one; they run in this order.
+        prepare: called before each; puts back what the module before it may have left.
+    """
+    def load_tests(loader, _standard, _pattern):
+        return unittest.TestSuite(Prepared([loader.loadTestsFromName(name)], prepare)
+                                  for name in modules)
+
+    return load_tests
 
 
 def run(test_name):

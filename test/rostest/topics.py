@@ -1,11 +1,6 @@
-#!/usr/bin/env python3
 """/clock, model_states and link_states."""
-import os
-import sys
 import time
 import unittest
-
-sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 
 import rospy
 import support
@@ -161,7 +156,3 @@ class Topics(unittest.TestCase):
                                      ("/gazebo/link_states", LinkStates)):
             for _ in range(3):
                 rospy.wait_for_message(topic, message_class, timeout=support.SECONDS)
-
-
-if __name__ == "__main__":
-    support.run("topics")
