@@ -97,6 +97,14 @@ def test_pip_requirements_are_pinned(name):
         assert re.match(rf"[\w-]+==[\w.]+(; {python}({machine})?)?$", line), line
 
 
+@pytest.mark.parametrize("path", sorted(
+    path for path in (REPOSITORY / "compat").glob("*/CMakeLists.txt")
+    if "\ngenerate_messages(" in path.read_text()), ids=lambda path: path.parent.name)
+def test_definitions_of_messages_are_not_checked_in_each_catkin_make(path):
+    before, _ = path.read_text().split("\ngenerate_messages(")
+    assert "set(GENMSG_CHECK_DEPS_SCRIPT -I -S -c pass)" in before.split("find_package")[-1]
+
+
 def test_every_top_level_folder_of_data_is_installed():
     text = (REPOSITORY / "CMakeLists.txt").read_text()
     installed = re.search(r"foreach\(folder ([^)]*)\)", text).group(1).split()
