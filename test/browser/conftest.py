@@ -41,6 +41,18 @@ def visit(browser):
 
 
 @pytest.fixture
+def editor(node, visit):
+    """A page on an empty world that stands still."""
+    opened = visit(node.url)
+    for request, fields in (("pause", {}), ("new", {"discard": True})):
+        opened.page.evaluate("([type, fields]) => editor.request(type, fields)", [request, fields])
+    opened.until("editor.store.document.models.length === 1 && editor.store.stats.paused",
+                 "an empty world that stands")
+    yield opened
+    assert opened.faults == []
+
+
+@pytest.fixture
 def launch(tmp_path):
     """Starts nodes that end with the test; each call is a fresh one in the same home folder."""
     nodes = []

@@ -26,9 +26,7 @@ def off_the_handles(centre):
     return (centre[0] - 0.25, centre[1] - 0.5, centre[2] - 0.2)
 
 
-def test_a_world_built_by_mouse_is_the_same_in_a_fresh_node(launch, browser):
-    node = launch("worlds/empty.world")
-    editor = browser.open(node.url)
+def test_a_world_built_by_mouse_is_the_same_in_a_fresh_node(editor, node, launch, browser):
     insert_the_three_shapes(editor)
     move_the_box_to_whole_metres(editor)
     turn_the_box_by_45_degrees(editor)
@@ -36,9 +34,6 @@ def test_a_world_built_by_mouse_is_the_same_in_a_fresh_node(launch, browser):
     delete_the_sphere_and_bring_it_back(editor)
     path = save_as(editor, node, "built_by_hand")
     built = {name: editor.model(name) for name in editor.names()}
-    assert editor.faults == []
-    editor.close()
-    node.close()
 
     fresh = launch(path)
     assert set(fresh.ask("get_world_properties", GetWorldProperties).model_names) == set(built)
@@ -150,9 +145,7 @@ ROBOT = """<robot name="robo" my_simulations_launch="{launch}"><link name="base"
 <collision><geometry><box size="0.2 0.2 0.2"/></geometry></collision></link></robot>"""
 
 
-def test_a_robot_of_the_launch_file_is_saved_only_when_its_box_is_ticked(launch, browser):
-    node = launch("worlds/empty.world")
-    editor = browser.open(node.url)
+def test_a_robot_of_the_launch_file_is_saved_only_when_its_box_is_ticked(editor, node):
     # As spawn_model does that the launch file starts.
     assert node.ask("spawn_urdf_model", SpawnModel, model_name="robo",
                     model_xml=ROBOT.format(launch=node.process.pid)).success
@@ -165,8 +158,6 @@ def test_a_robot_of_the_launch_file_is_saved_only_when_its_box_is_ticked(launch,
     dialog = editor.page.get_by_role("dialog", name="Save World As")
     wait_for(lambda: dialog.get_by_role("checkbox", name="Include robo").is_checked(), "the tick")
     assert not dialog.get_by_role("checkbox", name="With state").is_checked()
-    assert editor.faults == []
-    editor.close()
 
 
 def save_with(editor, node, launched):
@@ -189,12 +180,9 @@ def save_with(editor, node, launched):
     return [model.get("name") for model in world.findall("model")]
 
 
-def test_the_middle_of_the_drawn_view_is_where_a_person_points(launch, browser):
+def test_the_middle_of_the_drawn_view_is_where_a_person_points(editor):
     """The tests' own idea of the camera is the page's: a click on the ground lands there."""
-    node = launch("worlds/empty.world")
-    editor = browser.open(node.url)
     for place in ((0.0, 0.0), (2.0, 1.0), (-3.0, 2.0)):
         name = editor.place("Box", on_ground(*place))
         x, y = editor.model(name)["pose"][:2]
         assert math.hypot(x - place[0], y - place[1]) < 0.02
-    editor.close()

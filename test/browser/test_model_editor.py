@@ -4,7 +4,6 @@ from __future__ import annotations
 import os
 import subprocess
 
-import pytest
 import rospy
 from gazebo_msgs.srv import ApplyJointEffort, GetJointProperties
 from pytest import approx
@@ -123,17 +122,6 @@ def test_a_cart_built_by_mouse_loads_without_a_warning_and_its_wheels_turn(launc
         wait_for(lambda name=wheel: fresh.ask(
             "get_joint_properties", GetJointProperties,
             joint_name=f"cart::{name}").position[0] > 0.5, f"turns of {wheel}")
-
-
-@pytest.fixture
-def editor(node, visit):
-    page = visit(node.url)
-    for request, fields in (("pause", {}), ("new", {"discard": True})):
-        page.page.evaluate("([type, fields]) => editor.request(type, fields)", [request, fields])
-    page.until("editor.store.document.models.length === 1 && editor.store.stats.paused",
-               "an empty world that stands")
-    yield page
-    assert page.faults == []
 
 
 def test_a_link_is_moved_by_its_handles_and_back_by_undo(editor):

@@ -5,7 +5,6 @@ import base64
 import math
 import os
 
-import pytest
 import trimesh
 from gazebo_msgs.srv import GetModelState, GetPhysicsProperties
 from pytest import approx
@@ -18,18 +17,6 @@ HINGED = """<sdf version="1.7"><model name="gate"><pose>0 0 1 0 0 0</pose>
   <joint name="hinge" type="revolute"><parent>post</parent><child>leaf</child>
     <axis><xyz>0 0 1</xyz></axis></joint>
 </model></sdf>"""
-
-
-@pytest.fixture
-def editor(node, visit):
-    """A page on an empty world that stands still."""
-    opened = visit(node.url)
-    for request in ("pause", "new"):
-        opened.get(f"editor.request({request!r}, {request!r} === 'new' ? {{discard: true}} : {{}})")
-    opened.until("editor.store.document.models.length === 1", "the empty world")
-    opened.until("editor.store.stats.paused", "the pause")
-    yield opened
-    assert opened.faults == []
 
 
 def with_box(editor, place=(0.0, 0.0)):
