@@ -335,7 +335,9 @@ def _in_each_other(cores: List[_Core],
             depth = min(min(one.high[i], other.high[i]) - max(one.low[i], other.low[i])
                         for i in range(3))
             if depth > DEEPEST_M and _may_touch(one.collision, other.collision):
-                mover, still = (other, one) if one.static else (one, other)
+                # The one that is asked for, where both can move.
+                swap = one.static or (other.model == only and not other.static)
+                mover, still = (other, one) if swap else (one, other)
                 yield mover.link, still.link, depth, mover.collision
 
 

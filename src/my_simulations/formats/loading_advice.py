@@ -1,6 +1,7 @@
 """Warnings about suspicious models: those of `description.advice`, and about mesh shapes."""
 from __future__ import annotations
 
+from dataclasses import dataclass
 from itertools import islice
 from typing import Any, Dict, Iterator, List, Mapping, Optional, Sequence
 
@@ -13,6 +14,25 @@ from ..errors import Issue, warning
 
 ADVICE_LIMIT = 20
 """Most findings logged for one world: overlapping models cause one for each pair."""
+
+
+@dataclass(frozen=True)
+class Written:
+    """Where models are written.
+
+    Attributes:
+        file: for the issues; "" if unknown.
+        root: root element of the file, for line and XPath; None if unknown.
+        name: of the one model that is wanted, in the file; "" where it has the same in the world.
+    """
+
+    file: str = ""
+    root: Any = None
+    name: str = ""
+
+
+UNKNOWN = Written()
+"""Models that were written nowhere, or nobody knows where."""
 
 
 def findings(models: Sequence[Model], meshes: Mapping[str, MeshTable],
@@ -31,54 +51,57 @@ def findings(models: Sequence[Model], meshes: Mapping[str, MeshTable],
             yield from _thin_meshes(model, table)
 
 
-def advice_issues(models: Sequence[Model], meshes: Mapping[str, MeshTable], file: str = "", *,
-                  only: str = "", root: Any = None,
+def advice_issues(models: Sequence[Model], meshes: Mapping[str, MeshTable],
+                  written: Written = UNKNOWN, *, only: str = "",
                   limit: Optional[int] = ADVICE_LIMIT) -> List[Issue]:
     """The findings as warnings.
 
     Args:
         models: see `findings`.
         meshes: see `findings`.
-        file: file of the models, for the issues.
+        written: where the models are written, or the one that `only` names.
         only: see `findings`.
-        root: root element of the file, for line and XPath; None if unknown.
         limit: greatest number of findings; one more warning says how to get the others. None for
             all findings.
     """
     found = findings(models, meshes, only)
     listed = list(found if limit is None else islice(found, limit + 1))
-    issues = [_issue(one, models, file, root) for one in listed[:limit]]
+    issues = [_issue(one, [model for model in models if only in ("", model.name)], written)
+              for one in listed[:limit]]
     if len(listed) > len(issues):
-        issues.append(warning("advice-many", "there are more warnings of this kind", file=file,
-                              hint=f"rosrun my_simulations check_model {file or 'FILE'}"))
+        # What is spawned is called by more than its file's name.
+        file = "FILE" if written.name else written.file or "FILE"
+        issues.append(warning("advice-many", "there are more warnings of this kind",
+                              file=written.file, hint=f"rosrun my_simulations check_model {file}"))
     return issues
 
 
-def _issue(fault: Fault, models: Sequence[Model], file: str, root: Any) -> Issue:
+def _issue(fault: Fault, models: Sequence[Model], written: Written) -> Issue:
     """The finding as an issue, located at its element or at the `<include>` of the model."""
-    where: Dict[str, Any] = {"file": file}
-    element = _element_of(fault.subject, models, root) if root is not None else None
+    where: Dict[str, Any] = {"file": written.file}
+    element = _element_of(fault.subject, models, written) if written.root is not None else None
     if element is not None:
         where["line"] = element.sourceline or 0
         where["xpath"] = element.getroottree().getpath(element)
     return Issue(fault.severity, fault.code, fault.message, hint=fault.hint, **where)
 
 
-def _element_of(subject: Any, models: Sequence[Model], root: Any) -> Any:
+def _element_of(subject: Any, models: Sequence[Model], written: Written) -> Any:
     for model in models:
         for link in flattened(model).links:
             if subject is link.inertial or any(subject is one for one in link.collisions):
-                return _named(root, model, link, getattr(subject, "name", ""))
+                return _named(written.root, written.name or model.name, model.uri, link,
+                              getattr(subject, "name", ""))
     return None
 
 
-def _named(root: Any, model: Model, link: Link, collision: str) -> Any:
+def _named(root: Any, model: str, uri: str, link: Link, collision: str) -> Any:
     """The innermost element with the names of model, link and collision; None if not found."""
     holder = root if root.tag == "robot" else None
     for element in root.iter("model", "include"):
         name = element.get("name") if element.tag == "model" else element.findtext("name")
-        uri = (element.findtext("uri") or "").strip()
-        if name == model.name or (name is None and uri and uri == model.uri):
+        included = (element.findtext("uri") or "").strip()
+        if name == model or (name is None and included and included == uri):
             holder = element
             break
     if holder is None:

@@ -13,7 +13,7 @@ from ..description.world import World
 from ..errors import InputError, Issue, error, errors_of
 from ..resources.resolver import Resolver
 from .include_overrides import IncludeOverrides
-from .loading_advice import ADVICE_LIMIT, advice_issues
+from .loading_advice import ADVICE_LIMIT, Written, advice_issues
 from .mesh.loading import collision_meshes
 from .sdf.include import read_include
 from .sdf.light import LightPlacement, read_light
@@ -127,7 +127,7 @@ def _loaded_world(root: Any, source: Source, parsed: World, advice_limit: Option
         meshes[model.name], faults = collision_meshes(model)
         issues += faults
     progress("", len(world.models), len(world.models))
-    issues += advice_issues(world.models, meshes, source.file, root=root, limit=advice_limit)
+    issues += advice_issues(world.models, meshes, Written(source.file, root), limit=advice_limit)
     return LoadedWorld(world, meshes, issues)
 
 
@@ -180,6 +180,10 @@ class ParsedDocument:
                       for issue in log.issues]
         self._source.file = file
 
+    def written(self, name: str) -> Written:
+        """Where its model is written, which has this name in the document."""
+        return Written(self._source.file, self._root, name)
+
     def read_entity(self) -> Tuple[Entity, List[Issue]]:
         """The first model or light; see the function `read_entity`. Call it once."""
         return _entity_in(self._root, self._source), self._source.log.issues
@@ -227,7 +231,7 @@ def read_any(text: Text, resolver: Resolver,
     if isinstance(entity, Model):
         meshes, faults = collision_meshes(entity)
         issues += faults
-        issues += advice_issues([entity], {entity.name: meshes}, file, root=root, limit=None)
+        issues += advice_issues([entity], {entity.name: meshes}, Written(file, root), limit=None)
     return entity, issues
 
 

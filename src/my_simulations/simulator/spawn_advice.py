@@ -8,7 +8,7 @@ from ..description.model import Model
 from ..description.shapes import MeshTable
 from ..engine.ring import LINK_WIDTH, Snapshot
 from ..errors import Issue
-from ..formats.loading_advice import advice_issues
+from ..formats.loading_advice import UNKNOWN, Written, advice_issues
 from ..geometry import IDENTITY, Pose, Twist
 from .entity import Entity
 from .simulator import Simulator
@@ -44,12 +44,16 @@ def _placed(entity: Entity) -> List[Tuple[int, float]]:
             for n, reach in enumerate(entity.reaches)]
 
 
-def arrival_advice(simulator: Simulator, name: str, meshes: Optional[MeshTable]) -> List[Issue]:
-    """Warnings about implausible inertia, thin shapes, and overlaps with other models."""
+def arrival_advice(simulator: Simulator, name: str, meshes: Optional[MeshTable],
+                   written: Written = UNKNOWN) -> List[Issue]:
+    """Warnings about implausible inertia, thin shapes, and overlaps with other models.
+
+    `written` says where the new model is written.
+    """
     if simulator.models.count > NEIGHBOURS:
         models = [_as_it_stands(simulator.models.entity(name), simulator.states.link_at)]
     else:
         entities, snapshot = simulator.states.latest()
         models = [_as_it_stands(entity, snapshot.link) for new in entities
                   if new.model.name == name for entity in _near(new, entities, snapshot)]
-    return advice_issues(models, {name: meshes or {}}, only=name)
+    return advice_issues(models, {name: meshes or {}}, written, only=name)

@@ -1,6 +1,8 @@
 """Advice about a model that was put into a running world."""
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 
 from my_simulations.description.model import Inertial, Joint, JointAxis, Link, Model
@@ -8,8 +10,10 @@ from my_simulations.description.shapes import Box, Collision, Plane
 from my_simulations.description.world import World
 from my_simulations.engine.inline_engine import InlineEngine
 from my_simulations.engine.kinematic_backend import KinematicBackend
-from my_simulations.formats.loading_advice import ADVICE_LIMIT, advice_issues
+from my_simulations.formats.loading_advice import ADVICE_LIMIT, Written, advice_issues
+from my_simulations.formats.reading import parse_document
 from my_simulations.geometry import STILL, Pose
+from my_simulations.resources.resolver import Resolver
 from my_simulations.simulator import spawn_advice
 from my_simulations.simulator.simulator import Simulator
 from my_simulations.simulator.spawn_advice import arrival_advice
@@ -83,6 +87,50 @@ def test_in_a_crowd_only_the_model_itself_is_looked_at(sim, monkeypatch):
 
 
 def test_a_pile_is_told_of_up_to_a_number_of_findings():
-    pile = advice_issues([cube(f"c{n}", 3.0) for n in range(9)], {}, "w.world")
+    pile = advice_issues([cube(f"c{n}", 3.0) for n in range(9)], {}, Written("w.world"))
     assert len(pile) == ADVICE_LIMIT + 1 and pile[-1].code == "advice-many"
     assert "check_model w.world" in pile[-1].hint
+
+
+URDF = """<robot name="written">
+  <link name="l">
+    <inertial><mass value="1"/>
+      <inertia ixx="20" ixy="0" ixz="0" iyy="20" iyz="0" izz="20"/></inertial>
+    <collision name="c"><geometry><box size="1 1 1"/></geometry></collision>
+  </link>
+</robot>"""
+SDF = """<sdf version="1.6">
+  <model name="written">
+    <link name="l">
+      <inertial><mass>1</mass><inertia><ixx>20</ixx><iyy>20</iyy><izz>20</izz></inertia></inertial>
+      <collision name="c">
+        <geometry><box><size>1 1 1</size></box></geometry>
+      </collision>
+    </link>
+  </model>
+</sdf>"""
+
+
+@pytest.mark.parametrize(("text", "link", "collision"), [
+    (URDF, (2, "/robot/link"), (2, "/robot/link")),
+    (SDF, (3, "/sdf/model/link"), (5, "/sdf/model/link/collision"))], ids=["URDF", "SDF"])
+def test_advice_says_file_and_line_of_a_model_that_is_spawned_by_another_name(
+        sim, text, link, collision):
+    document = parse_document(text, Resolver(), "odd.file")
+    entity, _ = document.read_entity()
+    sim.models.spawn(replace(entity, name="new"), Pose((0, 0, 4.5)))
+    found = {one.code: one for one in arrival_advice(sim, "new", {},
+                                                     document.written(entity.name))}
+    assert sorted(found) == ["inertia-odd", "starts-inside"]
+    for code, where in (("inertia-odd", link), ("starts-inside", collision)):
+        assert (found[code].file, found[code].line, found[code].xpath) == ("odd.file", *where)
+
+
+def test_advice_gives_no_line_of_another_document(sim):
+    """The link of the model that is met has the same name; its file is not the one at hand."""
+    document = parse_document(URDF, Resolver(), "odd.file")
+    entity, _ = document.read_entity()
+    sim.models.spawn(replace(entity, name="new", static=True), Pose((0, 0, 4.5)))
+    (met,) = (one for one in arrival_advice(sim, "new", {}, document.written(entity.name))
+              if one.code == "starts-inside")
+    assert (met.file, met.line) == ("odd.file", 0)

@@ -155,7 +155,8 @@ class ModelServices:
         with gazebo_prefix("", NO_FRAME), told_if_taken(f"model {model.name!r}"):
             self._simulator.models.spawn(model, where, frame, meshes, replace, launched=launched)
         self._changed()
-        self._report(arrival_advice(self._simulator, model.name, meshes))
+        self._report(arrival_advice(self._simulator, model.name, meshes,
+                                    document.written(entity.name)))
         warned = sum(issue.severity is not Severity.NOTE for issue in issues)
         counted = "1 warning" if warned == 1 else f"{warned} warnings"
         return "Successfully spawned entity" + (f" ({counted}, see log)" if warned else "")
