@@ -240,7 +240,7 @@ models:
   box: {file: box.sdf, pose: [0, 0, 1]}
 vary:
   gravity: {set: gravity.z, values: [-9.8, -5]}
-limits: {processor_seconds: 1.5}
+limits: {processor_seconds: 0.75}
 """
 
 
@@ -251,7 +251,7 @@ def test_a_case_that_uses_up_its_processor_time_is_ended(folder):
 
 
 def test_a_case_that_fills_the_memory_is_ended_and_told(folder):
-    text = LONG.replace("processor_seconds: 1.5", "memory_mb: 20")
+    text = LONG.replace("processor_seconds: 0.75", "memory_mb: 20")
     assert run(folder, text, "--slots", "1") == 1
     assert [row["status"] for row in table(folder)] == ["too large", "too large"]
     assert "20 MB" in table(folder)[0]["issue"]

@@ -55,9 +55,9 @@ def shell(clone, script, home, **variables):
     rospack = programs / "rospack"
     rospack.write_text(
         "#!/bin/bash\nIFS=:\nfor folder in $ROS_PACKAGE_PATH; do\n"
-        "  for place in \"$folder\" \"$folder\"/*; do\n"
-        "    grep -q \"<name> *$2 *<\" \"$place/package.xml\" 2>/dev/null || continue\n"
-        "    echo \"$place\"; exit 0\n  done\ndone\nexit 1\n")
+        "  found=$(grep -l \"<name> *$2 *<\" \"$folder\"/{,*/}package.xml 2>/dev/null)\n"
+        "  found=${found%%$'\\n'*}\n"
+        "  [ -z \"$found\" ] || { echo \"${found%/package.xml}\"; exit 0; }\ndone\nexit 1\n")
     rospack.chmod(0o755)
     environment = {"HOME": str(home), "PATH": f"{programs}:{os.environ['PATH']}", **variables}
     return subprocess.run(["bash", str(command)], env=environment, stdin=subprocess.DEVNULL,
