@@ -127,6 +127,12 @@ export class FogExp2 extends Thing {
     Object.assign(this, {color, density});
   }
 }
+export class Fog extends Thing {
+  constructor(color, near, far) {
+    super();
+    Object.assign(this, {color, near, far});
+  }
+}
 export class Color extends Thing {
   setRGB(r, g, b) { return Object.assign(this, {r, g, b}); }
 }
@@ -142,7 +148,7 @@ export {
   Looks as SpriteMaterial, Place as Bone, Place as Camera, Place as Light, Place as Object3D,
   Place as OrthographicCamera, Place as PerspectiveCamera, Shown as SkinnedMesh,
   Thing as AnimationClip, Thing as AnimationMixer, Thing as Box3, Thing as CanvasTexture,
-  Thing as DataTexture, Thing as Fog,
+  Thing as DataTexture,
   Thing as LoadingManager, Thing as Matrix4,
   Thing as Path, Thing as Quaternion, Thing as QuaternionKeyframeTrack, Thing as Shape, Thing as Raycaster, Thing as Sphere, Thing as Texture,
   Thing as TextureLoader, Thing as Vector2,

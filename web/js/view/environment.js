@@ -18,7 +18,7 @@ import {Gradient, WorldSky, leavesBackground} from './sky.js';
 
 /**
  * Gazebo's fog in three's; of a negative density is what falls with the distance alone, see
- * `exponentialFog`. Gazebo does not know constant and quadratic, words of the SDF specification.
+ * `gazeboFog`. Gazebo does not know constant and quadratic, words of the SDF specification.
  * @param {import('../protocol.js').Fog|null|undefined} fog
  */
 function fogOf(fog) {

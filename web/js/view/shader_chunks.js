@@ -29,9 +29,16 @@ export function keepHighlights() {
 const SQUARED_FOG = 'exp( - fogDensity * fogDensity * vFogDepth * vFogDepth )';
 const EITHER_FOG = `( fogDensity < 0.0 ? exp( fogDensity * vFogDepth ) : ${SQUARED_FOG} )`;
 
-/** Lets a FogExp2 of negative density be Gazebo's `exp`, which three lacks: without the square. */
-export function exponentialFog() {
+const SMOOTH_FOG = 'smoothstep( fogNear, fogFar, vFogDepth )';
+const LINEAR_FOG = '1.0 - clamp( ( fogFar - vFogDepth ) / max( fogFar - fogNear, 1e-6 ), 0.0, 1.0 )';
+
+/**
+ * Gazebo's fog, as cameras have it: three's Fog grows evenly, and a FogExp2 of negative density is `exp`, which three
+ * lacks: without the square.
+ */
+export function gazeboFog() {
   replace('fog_fragment', SQUARED_FOG, EITHER_FOG);
+  replace('fog_fragment', SMOOTH_FOG, LINEAR_FOG);
 }
 
 /** three's softening of shadows: five samples at places turned by noise, from sines and cosines. */

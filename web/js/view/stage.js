@@ -7,7 +7,7 @@ import {
   SRGBColorSpace, WebGLRenderer, WebGLRenderTarget,
 } from 'three';
 import {GiveWay} from './give_way.js';
-import {exponentialFog, keepHighlights, spareProcessor} from './shader_chunks.js';
+import {gazeboFog, keepHighlights, spareProcessor} from './shader_chunks.js';
 /** @import {Camera} from 'three' */
 
 /** Pictures that take longer (ms) make the next ones coarser, quicker than the other finer. */
@@ -114,7 +114,7 @@ export class Stage {
       throw new NoWebGL(error instanceof Error ? error.message : String(error));
     }
     keepHighlights();
-    exponentialFog();
+    gazeboFog();
     if (software) spareProcessor();
     this.renderer.toneMapping = CustomToneMapping;
     this.renderer.shadowMap.enabled = true;
