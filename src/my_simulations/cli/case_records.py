@@ -82,16 +82,14 @@ class LogRecord:
         self._documents = Documents(Resolver.from_environment())
         self._reader: Optional[PoseReader] = None
         self._revision = -1
-        self._end = 0.0
 
     def look(self, world: OpenWorld) -> None:
         """Add the present state; of one world only."""
         simulator = world.simulator
         self._reader = self._reader or PoseReader(simulator)
-        self._end = simulator.clock.sim_ns * 1e-9
         if simulator.models.revision != self._revision:
             message = Mirror(simulator, self._documents).whole()
-            self._writer.document(self._end, message["document"])
+            self._writer.document(simulator.clock.sim_ns * 1e-9, message["document"])
             self._revision = message["revision"]
         poses = self._reader.read(self._revision, 0.0)
         if poses is not None:
@@ -99,4 +97,4 @@ class LogRecord:
 
     def close(self) -> None:
         """Finish the file."""
-        self._writer.close(self._end)
+        self._writer.close()

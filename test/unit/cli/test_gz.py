@@ -3,10 +3,12 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from my_simulations.cli import gz_command
 from my_simulations.editor.logs.state_log import LogWriter
+from my_simulations.editor.transport.pose_messages import Poses
 
 REPOSITORY = Path(__file__).resolve().parents[3]
 
@@ -66,8 +68,9 @@ def test_log_info_tells_the_times(tmp_path, capsys):
     path = tmp_path / "state.log"
     log = LogWriter(str(path))
     log.document(1.0, {})
-    log.begin = 1.0
-    log.close(3.5)
+    for seconds in (1.0, 3.5):
+        log.poses(Poses(np.empty(0, np.int64), np.empty((0, 7), np.float32), 0, seconds, 0.0))
+    log.close()
     assert gz_command.main(["gz", "log", "-i", "-f", str(path)]) == gz_command.OK
     assert "End: 3.500 s" in capsys.readouterr().out
 

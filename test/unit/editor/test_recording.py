@@ -91,6 +91,18 @@ def test_a_log_begins_before_the_first_step_and_ends_with_the_last(running):
     log.close()
 
 
+def test_a_log_that_ends_amid_the_run_shows_what_was_at_its_end(running, monkeypatch):
+    world = running()
+    world.run_until(0.2)
+    old = world.sim.feed.poses()
+    monkeypatch.setattr(world.sim.feed, "poses", lambda: old)  # the engine is behind with them
+    world.run_until(0.4)
+    world.recorder.stop()
+    log = LogReader(world.path)
+    assert x_at(log, log.end) == pytest.approx(2.0 * log.end, abs=1e-3)
+    log.close()
+
+
 def test_the_period_is_sim_time_between_states(running):
     world = running(0.25)
     world.run_until(1.1)

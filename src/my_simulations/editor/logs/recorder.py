@@ -97,11 +97,12 @@ class Recorder:
         writer, self._writer = self._writer, None
         if writer is None or self._thread.is_alive():
             return
-        self._turn = -1  # the last state is written whether or not its time has come
+        # The last state is written whether or not its time has come, or anything has moved.
+        self._turn = self._sequence = -1
         try:
             self._look(writer)
         finally:
-            writer.close(self._now())
+            writer.close()
 
     def _run(self) -> None:
         writer = self._writer

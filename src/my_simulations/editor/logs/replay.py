@@ -93,11 +93,11 @@ class Logs:
             self._end(replay)
             client.replay = None
 
-    def close(self, time: Optional[float] = None) -> None:
-        """Finish what is being recorded; nothing has moved until `time`."""
+    def close(self) -> None:
+        """Finish what is being recorded."""
         writer, self._writer = self._writer, None
         if writer is not None:
-            writer.close(time)
+            writer.close()
 
     # -- recording -------------------------------------------------------------------------------
 
@@ -123,7 +123,7 @@ class Logs:
             await self._fetching
             self._tick(*self._hub.now())
         try:
-            self.close(self._hub.simulator.clock.sim_ns * 1e-9)
+            self.close()
         finally:
             self._hub.listen(-1)
             self._hub.push(self.state())

@@ -76,15 +76,11 @@ class LogWriter:
         except OSError as fault:
             raise CommandError(f"{self.path} cannot be written: {fault.strerror}") from fault
 
-    def close(self, time: Optional[float] = None) -> None:
-        """Nothing more comes; what was last stayed so until `time`.
-
-        Raises CommandError when not all of it could be written.
-        """
+    def close(self) -> None:
+        """Nothing more comes. Raises CommandError when not all of it could be written."""
         try:
-            if time is not None and self.begin is not None and time > self._written:
-                self._write(MOVED, time, b"")
-                self.end = time
+            if self.begin is not None and self.end > self._written:  # nothing has moved since
+                self._write(MOVED, self.end, b"")
         finally:
             try:
                 self._file.close()
