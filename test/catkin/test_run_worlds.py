@@ -10,7 +10,7 @@ ROOT = Path(__file__).resolve().parents[2]
 CUBE = """<link name="l"><collision name="c"><geometry><box><size>1 1 1</size></box></geometry>
 </collision></link>"""
 WORLD = f"""<sdf version="1.6"><world name="w">
-<physics type="ode"><real_time_update_rate>0</real_time_update_rate></physics>
+<physics type="ode"><real_time_update_rate>4000</real_time_update_rate></physics>
 <model name="ground"><static>true</static><link name="l"><collision name="c"><geometry>
 <box><size>6 6 0.02</size></box></geometry></collision></link></model>
 <model name="lies"><pose>0 0 0.51 0 0 0</pose>{CUBE}</model>

@@ -60,7 +60,10 @@ def places(simulator: Simulator) -> Places:
 
     What has no collision shape falls in Gazebo, too.
     """
-    entities, snapshot = simulator.states.latest()
+    try:
+        entities, snapshot = simulator.states.fresh()
+    except CommandError:  # the engine has died, which is counted
+        entities, snapshot = simulator.states.latest()
     return {entity.model.name: {
         link: snapshot.link(entity.first_link_row + n)[0].position
         for n, link in enumerate(entity.link_names)}
