@@ -52,6 +52,30 @@ class Finder:
 sys.meta_path.insert(0, Finder)
 """
 
+# A node whose registration thread does not look by itself whether the node has ended.
+PATIENT = """import threading, time, rospy
+from rospy.impl.registration import RegManager
+from my_simulations.ros.prompt_end import end_promptly
+
+class Patient(threading.Condition):
+    def wait(self, timeout=None):
+        return super().wait()
+
+def prepare(self, handler, usual=RegManager.__init__):
+    usual(self, handler)
+    self.cond = Patient()
+    managers.append(self)
+
+managers, RegManager.__init__ = [], prepare
+rospy.init_node("patient", disable_rostime=True)
+end_promptly()
+while not managers[0].cond._waiters:
+    time.sleep(0.01)
+threads = list(rospy.core._shutdown_threads)
+rospy.signal_shutdown("done")
+print(len(threads), "threads,", sum(thread.is_alive() for thread in threads), "alive")
+"""
+
 
 def children_of(pid):
     """Process ids of what a process has started."""
@@ -120,6 +144,11 @@ class NodeLife(unittest.TestCase):
         self.addCleanup(log.close)
         self.assertEqual(log.begin, 0.0)
         self.assertAlmostEqual(log.end, last, 9)
+
+    def test_the_end_waits_for_no_thread_that_looks_now_and_then(self):
+        with Program([sys.executable, "-c", PATIENT]) as program:
+            self.assertEqual(program.ended(), 0, program.text)
+            self.assertIn("1 threads, 0 alive", program.text)
 
     def test_a_state_log_is_whole_after_an_interrupt(self):
         self.assert_logs(signal.SIGINT)

@@ -24,6 +24,7 @@ from rosgraph_msgs.msg import Log
 
 from my_simulations.ros import interface
 from my_simulations.ros.lifecycle import master_api
+from my_simulations.ros.prompt_end import end_promptly
 from my_simulations.ros.registration import class_of
 
 PACKAGE = "my_simulations"
@@ -354,4 +355,5 @@ def run(test_name):
     The node runs on wall time: the world may stand still.
     """
     rospy.init_node(test_name, disable_rostime=True)
+    end_promptly()
     rostest.rosrun(PACKAGE, test_name, test_name)

@@ -134,9 +134,12 @@ def _as_node(model: str, remappings: Sequence[str], work: Callable[[], None]) ->
     """
     import rospy
 
+    from ..ros.prompt_end import end_promptly
+
     clean = re.sub(r"\W", "_", model)
     # rospy's own handler of Ctrl-C would cut a service call off in the middle.
     rospy.init_node(f"move_{clean}", argv=list(remappings), anonymous=True, disable_signals=True)
+    end_promptly()
     try:
         work()
     except client.ToolError:

@@ -132,8 +132,10 @@ def _spawn(options: argparse.Namespace, words: List[str]) -> None:
     import rospy
 
     from ..ros import service_client
+    from ..ros.prompt_end import end_promptly
 
     rospy.init_node("spawn_model", argv=words, anonymous=True, disable_rostime=True)
+    end_promptly()
     try:
         if options.wait:
             _wait_for_model(options)

@@ -244,6 +244,7 @@ class Server:
     def _init_node(self) -> None:
         import rospy
 
+        from ..prompt_end import end_promptly
         from ..registration import publisher
 
         self._profile.mark("rospy imported")
@@ -256,6 +257,7 @@ class Server:
                             log_level=level)
         except rospy.ROSInitException as fault:
             raise OSError(str(fault)) from fault
+        end_promptly()
         rospy.on_shutdown(self._ended.set)
         # Advertised early: subscribers need time to connect.
         self._clock = publisher("/clock", queue_size=CLOCK_QUEUE, tcp_nodelay=True)
