@@ -24,7 +24,7 @@ def main(folder, *wanted):
                     continue
                 node = Node(os.path.join(home, name), world)
                 try:
-                    editor = browser.open(node.url, color_scheme=color_scheme)
+                    editor = browser.open(node.url, color_scheme=color_scheme, scale=1)
                     without_hints(editor)
                     prepare(editor)
                     settle(editor)
@@ -35,7 +35,7 @@ def main(folder, *wanted):
             if not wanted or FILM in wanted:
                 node = Node(os.path.join(home, FILM), "worlds/empty.world")
                 try:
-                    editor = browser.open(node.url, size=(960, 540), color_scheme="dark")
+                    editor = browser.open(node.url, size=(960, 540), color_scheme="dark", scale=1)
                     film(editor, os.path.join(folder, f"{FILM}.webp"))
                     editor.close()
                 finally:

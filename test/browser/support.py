@@ -146,12 +146,14 @@ class Browser:
 class Editor:
     """One page with the editor; `faults` are errors of its scripts.
 
-    Its user has asked for less motion: a second of flight to a view costs that of processor.
+    Its user has asked for less motion: a second of flight to a view costs that of processor. So do
+    pixels: by default its screen has half as many a line as the layout; tests of pictures have all.
     """
 
     def __init__(self, browser, url, size=(WIDTH, HEIGHT), color_scheme="dark", wait=True,
-                 motion="reduce", **options):
+                 motion="reduce", scale=0.5, **options):
         self.context = browser.new_context(viewport={"width": size[0], "height": size[1]},
+                                           device_scale_factor=scale,
                                            color_scheme=color_scheme, accept_downloads=True,
                                            reduced_motion=motion, **options)
         self.context.set_default_timeout(1000.0 * SECONDS)

@@ -61,7 +61,7 @@ def editor(launch, browser, tmp_path):
     folder.mkdir()
     (folder / "cube.dae").write_text(SKIN)
     (folder / "walk.world").write_text(WORLD)
-    page = browser.open(launch(str(folder / "walk.world")).url)
+    page = browser.open(launch(str(folder / "walk.world")).url, scale=1)
     yield page
     page.close()
 
@@ -222,7 +222,7 @@ def test_the_page_and_cameras_have_actors_in_the_same_shape_at_the_same_place(
     (folder / "figures.world").write_text(
         "<sdf version='1.6'><world name='figures'>"
         + "".join(element(one) for one in FIGURES.values()) + "</world></sdf>")
-    page = browser.open(launch(str(folder / "figures.world")).url)
+    page = browser.open(launch(str(folder / "figures.world")).url, scale=1)
     documents = {one["name"]: one for one in page.get("editor.store.document.actors")}
     assert set(documents) == set(FIGURES)
     for name, actor in FIGURES.items():

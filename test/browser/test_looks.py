@@ -86,7 +86,7 @@ def node(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def editor(node, browser):
-    page = browser.open(node.url)
+    page = browser.open(node.url, scale=1)
     yield page
     faults = page.faults
     page.close()
@@ -346,7 +346,7 @@ def test_swiftshader_draws_what_mesa_draws(node, editor, browser):
     editor.get("editor.actions.edit({kind: 'insert', shape: 'sphere', name: 'ball',"
                " pose: [0, 0, 0.5, 0, 0, 0, 1]})")
     chromium = browser.launch(*SWIFTSHADER_FLAGS)
-    pages = [editor, Editor(chromium, node.url)]
+    pages = [editor, Editor(chromium, node.url, scale=1)]
     shown = []
     for page in pages:
         page.until("Boolean(editor.store.model('ball') && editor.view.pixelOf('ball'))", "the ball")
