@@ -7,6 +7,7 @@ a whole processor.
 from __future__ import annotations
 
 import threading
+from functools import partial
 
 import rospy.core
 from rospy.impl.registration import RegManager
@@ -21,9 +22,9 @@ def end_promptly() -> None:
     for hook in rospy.core._preshutdown_hooks:
         manager = getattr(hook, "__self__", None)
         if isinstance(manager, RegManager):
-            rospy.core.add_shutdown_hook(lambda _reason, woken=manager.cond: _wake(woken))
+            rospy.core.add_shutdown_hook(partial(_wake, manager.cond))
 
 
-def _wake(condition: threading.Condition) -> None:
+def _wake(condition: threading.Condition, _reason: str) -> None:
     with condition:
         condition.notify_all()
