@@ -3,6 +3,7 @@ from __future__ import annotations
 
 import io
 import os
+import random
 import stat
 import threading
 import zipfile
@@ -242,6 +243,21 @@ def test_a_zip_bomb_is_refused_by_what_comes_out_of_it(server, cache, monkeypatc
     monkeypatch.setattr(DownloadTime, "__init__", _limited(small))
     with pytest.raises(ModelNotProvidedError, match="more than 99 files or 1048576 bytes"):
         FuelModels([str(cache)], [server.uri]).path(lamp(server))
+
+
+@pytest.mark.parametrize("method", [zipfile.ZIP_DEFLATED, zipfile.ZIP_BZIP2, zipfile.ZIP_LZMA],
+                         ids=["deflate", "bzip2", "lzma"])
+def test_a_damaged_entry_is_called_broken_however_it_is_compressed(method, models, server):
+    info = zipfile.ZipInfo("texture.bin")
+    info.compress_type = method
+    content = random.Random(1).getrandbits(40000).to_bytes(5000, "little")
+    where = offer(server, more=[(info, content)])
+    packed = bytearray(server.files[where])
+    begin = packed.index(b"texture.bin")
+    packed[begin + 40:begin + 3000] = b"\xff" * 2960
+    server.files[where] = bytes(packed)
+    with pytest.raises(ModelNotProvidedError, match="the archive is broken: "):
+        models.path(lamp(server))
 
 
 def _limited(limits):

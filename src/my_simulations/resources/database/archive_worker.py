@@ -14,6 +14,11 @@ import zipfile
 import zlib
 from typing import IO, Any, Iterator, List, Optional, Tuple
 
+try:
+    from lzma import LZMAError
+except ImportError:   # a Python without liblzma, whose zipfile refuses such entries itself
+    LZMAError = zlib.error  # type: ignore[assignment,misc]
+
 MEMORY = 256 << 20
 _CHUNK = 1 << 16
 
@@ -159,8 +164,8 @@ def main(argv: List[str]) -> int:
         said = str(fault)
     except MemoryError:
         said = f"the archive needs more than {MEMORY >> 20} MB of memory to be read"
-    except (tarfile.TarError, zipfile.BadZipFile, zlib.error, EOFError, ValueError, RecursionError,
-            NotImplementedError, RuntimeError, KeyError, IndexError) as fault:
+    except (tarfile.TarError, zipfile.BadZipFile, zlib.error, LZMAError, EOFError, ValueError,
+            RecursionError, NotImplementedError, RuntimeError, KeyError, IndexError) as fault:
         said = f"the archive is broken: {fault}"
     except OSError as fault:
         # gzip raises it, without errno, for a wrong checksum; a full disk has an errno.
