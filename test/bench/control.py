@@ -27,13 +27,8 @@ from my_simulations.description.model import Inertial, Joint, JointAxis, Link, M
 from my_simulations.description.plugin import PluginSpec
 from my_simulations.description.world import World
 from my_simulations.engine.bullet.backend import BulletBackend
-from my_simulations.engine.commands import (
-    JointServo,
-    LoadModel,
-    PhysicsSettings,
-    PidGains,
-    SetServos,
-)
+from my_simulations.engine.commands import LoadModel, PhysicsSettings
+from my_simulations.engine.drive_commands import JointServo, PidGains, SetServos
 from my_simulations.engine.process_engine import ProcessEngine
 from my_simulations.engine.spline import Spline, segment_between
 from my_simulations.geometry import Pose

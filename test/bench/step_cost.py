@@ -100,7 +100,7 @@ def _ours(scene: str) -> Steps:
 
     from my_simulations.description.model import Model
     from my_simulations.description.shapes import Cylinder
-    from my_simulations.engine.commands import JointMotor, SetMotors
+    from my_simulations.engine.drive_commands import JointMotor, SetMotors
     from my_simulations.formats.reading import read_file
     from my_simulations.resources.resolver import Resolver
     lab = Lab()

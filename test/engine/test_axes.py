@@ -10,7 +10,8 @@ from laws import Laws
 
 from my_simulations.description.model import Inertial, Joint, JointAxis, Link, Model
 from my_simulations.description.shapes import Box
-from my_simulations.engine.commands import FOREVER, AddTimedForces, SetJoints, TimedEffort
+from my_simulations.engine.commands import FOREVER, SetJoints
+from my_simulations.engine.timed_forces import AddTimedForces, TimedEffort
 from my_simulations.geometry import Pose
 
 G = 9.8

@@ -23,13 +23,8 @@ from my_simulations.description.shapes import (
     Surface,
     mesh_key,
 )
-from my_simulations.engine.commands import (
-    FOREVER,
-    AddTimedForces,
-    SetJoints,
-    SetModelState,
-    TimedWrench,
-)
+from my_simulations.engine.commands import FOREVER, SetJoints, SetModelState
+from my_simulations.engine.timed_forces import AddTimedForces, TimedWrench
 from my_simulations.geometry import Pose, Twist, quat_from_rpy
 
 G = 9.8

@@ -10,7 +10,8 @@ from test_process import kill, start  # noqa: F401
 
 from my_simulations.description.model import Inertial, JointAxis, Link
 from my_simulations.description.shapes import Box, Collision
-from my_simulations.engine.commands import FOREVER, TimedEffort, TimedWrench
+from my_simulations.engine.commands import FOREVER
+from my_simulations.engine.timed_forces import TimedEffort, TimedWrench
 from my_simulations.errors import CommandError
 from my_simulations.geometry import STILL, Pose, Twist, quat_from_rpy
 

@@ -9,7 +9,8 @@ from laws import Laws
 
 from my_simulations.description.model import Joint, JointAxis, Model
 from my_simulations.description.shapes import Box, Surface
-from my_simulations.engine.commands import FOREVER, AddTimedForces, TimedEffort
+from my_simulations.engine.commands import FOREVER
+from my_simulations.engine.timed_forces import AddTimedForces, TimedEffort
 from my_simulations.geometry import Pose
 
 SECONDS = [10, pytest.param(60, marks=pytest.mark.long)]

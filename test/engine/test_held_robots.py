@@ -10,20 +10,16 @@ from test_settling import _on, _robot, _slope
 
 from my_simulations.description.model import Joint, JointAxis, Model
 from my_simulations.description.shapes import Box
-from my_simulations.engine.commands import (
-    AddTimedForces,
-    Command,
+from my_simulations.engine.commands import Command, RemoveModel, SetModelState
+from my_simulations.engine.drive_commands import (
     JointMotor,
     JointServo,
     PidGains,
-    RemoveModel,
-    SetModelState,
     SetMotors,
     SetServos,
-    TimedEffort,
-    TimedWrench,
 )
 from my_simulations.engine.spline import Spline, segment_between
+from my_simulations.engine.timed_forces import AddTimedForces, TimedEffort, TimedWrench
 from my_simulations.geometry import Pose, Twist
 
 

@@ -9,19 +9,15 @@ from conftest import Lab, arm
 
 from my_simulations.description.model import JointAxis
 from my_simulations.engine.api import CommandRefusedError
-from my_simulations.engine.commands import (
-    FOREVER,
+from my_simulations.engine.commands import FOREVER, PhysicsSettings
+from my_simulations.engine.drive_commands import JointServo, PidGains, ReadEfforts, SetServos
+from my_simulations.engine.spline import Spline, segment_between
+from my_simulations.engine.timed_forces import (
     AddTimedForces,
     ClearTimedForces,
     JointPid,
-    JointServo,
-    PhysicsSettings,
-    PidGains,
-    ReadEfforts,
-    SetServos,
     TimedEffort,
 )
-from my_simulations.engine.spline import Spline, segment_between
 
 Z = (0.0, 0.0, 1.0)
 Y = (0.0, 1.0, 0.0)

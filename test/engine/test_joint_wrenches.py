@@ -13,17 +13,14 @@ from my_simulations.description.model import Inertial, Joint, JointAxis, Link, M
 from my_simulations.description.shapes import Box, Surface
 from my_simulations.engine.commands import (
     FOREVER,
-    AddTimedForces,
     ConnectModels,
-    JointMotor,
     JointWrench,
     PinModels,
     ReadJointWrenches,
     Restart,
-    SetMotors,
-    TimedEffort,
-    TimedWrench,
 )
+from my_simulations.engine.drive_commands import JointMotor, SetMotors
+from my_simulations.engine.timed_forces import AddTimedForces, TimedEffort, TimedWrench
 from my_simulations.geometry import Pose, conjugate, quat_from_rpy, rotate
 
 G = 9.8

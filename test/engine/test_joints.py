@@ -11,15 +11,13 @@ from my_simulations.description.model import Inertial, Joint, JointAxis, Link, M
 from my_simulations.engine.api import CommandRefusedError
 from my_simulations.engine.commands import (
     FOREVER,
-    AddTimedForces,
     LinkState,
     ModelState,
     SetJoints,
     SetLinkState,
     SetModelState,
-    TimedEffort,
-    TimedWrench,
 )
+from my_simulations.engine.timed_forces import AddTimedForces, TimedEffort, TimedWrench
 from my_simulations.geometry import (
     IDENTITY,
     Pose,

@@ -23,7 +23,7 @@ from my_simulations.description.shapes import (
     Surface,
     mesh_key,
 )
-from my_simulations.engine.commands import JointMotor, SetMotors
+from my_simulations.engine.drive_commands import JointMotor, SetMotors
 from my_simulations.geometry import Pose, Quat, dot, quat_from_rpy, rotate
 
 G = 9.8

@@ -7,12 +7,8 @@ from laws import Laws
 
 from my_simulations.description.model import Model
 from my_simulations.description.shapes import Box, Surface
-from my_simulations.engine.commands import (
-    FOREVER,
-    AddTimedForces,
-    ClearTimedForces,
-    TimedWrench,
-)
+from my_simulations.engine.commands import FOREVER
+from my_simulations.engine.timed_forces import AddTimedForces, ClearTimedForces, TimedWrench
 from my_simulations.geometry import STILL
 
 G = 9.8

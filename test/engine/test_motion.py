@@ -10,7 +10,8 @@ from laws import Laws
 
 from my_simulations.description.model import Inertial, Joint, JointAxis, Link, Model
 from my_simulations.description.shapes import Box, Surface
-from my_simulations.engine.commands import FOREVER, AddTimedForces, SetModelState, TimedWrench
+from my_simulations.engine.commands import FOREVER, SetModelState
+from my_simulations.engine.timed_forces import AddTimedForces, TimedWrench
 from my_simulations.geometry import Pose, Twist, conjugate, quat_from_rpy, rotate
 
 G = 9.8

@@ -8,10 +8,10 @@ from conftest import Lab, arm, box, ground
 
 from my_simulations.description.model import JointAxis
 from my_simulations.engine.api import CommandRefusedError
-from my_simulations.engine.commands import (
+from my_simulations.engine.commands import PhysicsSettings
+from my_simulations.engine.drive_commands import (
     JointMotor,
     JointServo,
-    PhysicsSettings,
     PidGains,
     PlanarVelocity,
     SetMotors,

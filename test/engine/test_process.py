@@ -17,8 +17,9 @@ from my_simulations.description.model import Inertial, JointAxis, Link, Model
 from my_simulations.description.saved_state import InitialState
 from my_simulations.description.shapes import Collision, Mesh, MeshData, Surface, mesh_key
 from my_simulations.description.world import Physics, World
-from my_simulations.engine.commands import FOREVER, JointPid, LoadModel, Restart, TimedWrench
+from my_simulations.engine.commands import FOREVER, LoadModel, Restart
 from my_simulations.engine.process_engine import ProcessEngine
+from my_simulations.engine.timed_forces import JointPid, TimedWrench
 from my_simulations.errors import CommandError, EngineLostError
 from my_simulations.geometry import STILL, Pose, Twist
 from my_simulations.simulator.simulator import Simulator

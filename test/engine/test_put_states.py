@@ -8,15 +8,8 @@ import pytest
 from conftest import STILL
 
 from my_simulations.description.model import Inertial, Joint, JointAxis, Link, Model
-from my_simulations.engine.commands import (
-    FOREVER,
-    AddTimedForces,
-    LinkState,
-    ModelState,
-    SetJoints,
-    SetModelState,
-    TimedWrench,
-)
+from my_simulations.engine.commands import FOREVER, LinkState, ModelState, SetJoints, SetModelState
+from my_simulations.engine.timed_forces import AddTimedForces, TimedWrench
 from my_simulations.geometry import Pose
 
 PITCH = 10.0

@@ -7,7 +7,8 @@ import pybullet
 from conftest import Lab, arm, ball, box, ground, inertial_of_box
 
 from my_simulations.description.model import JointAxis, Link, Model
-from my_simulations.engine.commands import JointMotor, Restart, SetMotors
+from my_simulations.engine.commands import Restart
+from my_simulations.engine.drive_commands import JointMotor, SetMotors
 from my_simulations.geometry import Pose
 
 

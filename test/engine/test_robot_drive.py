@@ -11,8 +11,8 @@ from plugin_graph import Graph
 
 from my_simulations.description.world import World
 from my_simulations.engine.bullet.backend import BulletBackend
-from my_simulations.engine.commands import JointPid
 from my_simulations.engine.inline_engine import InlineEngine
+from my_simulations.engine.timed_forces import JointPid
 from my_simulations.formats.reading import read_file
 from my_simulations.geometry import rpy_from_quat
 from my_simulations.plugins.host import PluginHost

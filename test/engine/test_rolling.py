@@ -22,8 +22,9 @@ from my_simulations.description.shapes import (
     Surface,
     mesh_key,
 )
-from my_simulations.engine.commands import FOREVER, AddTimedForces, SetJoints, TimedWrench
+from my_simulations.engine.commands import FOREVER, SetJoints
 from my_simulations.engine.convex.decomposition import ready_parts
+from my_simulations.engine.timed_forces import AddTimedForces, TimedWrench
 from my_simulations.geometry import Pose, multiply, quat_from_rpy
 
 SIZES = [(0.03, 0.02), (0.03, 0.1), (0.1, 0.3), (0.5, 0.02), (0.5, 0.5)]   # radius, width

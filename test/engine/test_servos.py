@@ -6,12 +6,11 @@ from closed_forms import oscillator
 from conftest import Lab, arm
 
 from my_simulations.description.model import JointAxis
-from my_simulations.engine.commands import (
-    FOREVER,
+from my_simulations.engine.commands import FOREVER, Restart
+from my_simulations.engine.timed_forces import (
     AddTimedForces,
     ClearTimedForces,
     JointPid,
-    Restart,
     TimedEffort,
 )
 from my_simulations.geometry import Pose

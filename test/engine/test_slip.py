@@ -10,16 +10,9 @@ from laws import Laws
 
 from my_simulations.description.model import Inertial, Joint, JointAxis, Link, Model
 from my_simulations.description.shapes import Box, Collision, Cylinder, Surface
-from my_simulations.engine.commands import (
-    FOREVER,
-    AddTimedForces,
-    JointMotor,
-    ReadContacts,
-    SetMotors,
-    SetWheelSlips,
-    TimedWrench,
-    WheelSlip,
-)
+from my_simulations.engine.commands import FOREVER, ReadContacts
+from my_simulations.engine.drive_commands import JointMotor, SetMotors, SetWheelSlips, WheelSlip
+from my_simulations.engine.timed_forces import AddTimedForces, TimedWrench
 from my_simulations.geometry import Pose, quat_from_rpy
 
 G = 9.8

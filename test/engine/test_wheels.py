@@ -11,7 +11,8 @@ from laws import Laws
 
 from my_simulations.description.model import Inertial, Joint, JointAxis, Link, Model
 from my_simulations.description.shapes import Box, Collision, Cylinder, Surface
-from my_simulations.engine.commands import AddTimedForces, ReadContacts, TimedEffort
+from my_simulations.engine.commands import ReadContacts
+from my_simulations.engine.timed_forces import AddTimedForces, TimedEffort
 from my_simulations.geometry import Pose, quat_from_rpy
 
 LYING = quat_from_rpy(-math.pi / 2, 0, 0)

@@ -1,18 +1,17 @@
 """Commands of the engine: every change of the world is one of them.
 
 Commands are applied between steps, also while paused. The simulator identifies a model by its id, a
-link by its row in the ring's link table, a joint axis by its row in the joint table.
+link by its row in the ring's link table, a joint axis by its row in the joint table. Those that
+drive joints are in `drive_commands`, those that let forces act for some time in `timed_forces`.
 """
 from __future__ import annotations
 
-import math
-from dataclasses import dataclass, field, replace
-from typing import Dict, Optional, Tuple, TypeVar, Union
+from dataclasses import dataclass, field
+from typing import Dict, Optional, Tuple
 
-from ..description.model import Joint, Model, SoftLimits
+from ..description.model import Joint, Model
 from ..description.shapes import MeshData
 from ..geometry import IDENTITY_QUAT, STILL, ZERO3, Pose, Quat, Twist, Vec3
-from .spline import Spline
 
 FOREVER = 1 << 62
 """A step count that is never reached: no horizon."""
@@ -54,88 +53,6 @@ class PhysicsSettings:
     rate: float = 1000.0
     iterations: int = 50
     cone: bool = True
-
-
-@dataclass(frozen=True)
-class JointPid:
-    """A PID controller of a joint axis, computed in every step (see `engine.bullet.joint_pid`).
-
-    Attributes:
-        target: rad or m, or with `rate` per second.
-        rate: True to control the velocity, False for the position.
-        p, i, d: gains: effort by error, by its integral over time, and by its rate.
-    """
-
-    target: float
-    rate: bool = False
-    p: float = 1.0
-    i: float = 0.1
-    d: float = 0.01
-
-
-@dataclass(frozen=True)
-class TimedWrench:
-    """A wrench on a link, exact to the step.
-
-    Acts in steps `start` (the first step whose beginning is at this count) to `stop` - 1.
-
-    Attributes:
-        force_id: id, to clear it.
-        row: link row.
-        start, stop: step counts; `stop` FOREVER for until cleared.
-        force, torque: N and N m, world axes, at the centre of mass.
-        in_link_axes: force, torque and point are in link axes and turn with the link.
-        point: m, from the centre of mass to where the force is applied, same axes as the force.
-    """
-
-    force_id: int
-    row: int
-    start: int
-    stop: int
-    force: Vec3 = (0.0, 0.0, 0.0)
-    torque: Vec3 = (0.0, 0.0, 0.0)
-    in_link_axes: bool = False
-    point: Vec3 = (0.0, 0.0, 0.0)
-
-    def begun(self, step: int) -> "TimedWrench":
-        """The same with its full duration from `step` on, if its start has passed."""
-        return _begun(self, step)
-
-
-@dataclass(frozen=True)
-class TimedEffort:
-    """An effort on a joint axis, exact to the step.
-
-    Attributes:
-        force_id: id, to clear it.
-        row: joint row.
-        start, stop: as of `TimedWrench`.
-        effort: N m or N; ignored with `pid`.
-        pid: computes the effort in every step.
-    """
-
-    force_id: int
-    row: int
-    start: int
-    stop: int
-    effort: float = 0.0
-    pid: Optional[JointPid] = None
-
-    def begun(self, step: int) -> "TimedEffort":
-        """The same with its full duration from `step` on, if its start has passed."""
-        return _begun(self, step)
-
-
-TimedForce = Union[TimedWrench, TimedEffort]
-_Timed = TypeVar("_Timed", TimedWrench, TimedEffort)
-
-
-def _begun(force: _Timed, step: int) -> _Timed:
-    late = step - force.start
-    if late <= 0:
-        return force
-    return replace(force, start=step,
-                   stop=FOREVER if force.stop == FOREVER else force.stop + late)
 
 
 class Command:
@@ -262,162 +179,6 @@ class SetAxes(Command):
 
     model_id: int
     joints: Tuple[Joint, ...]
-
-
-@dataclass(frozen=True)
-class JointMotor:
-    """A motor that drives a joint axis to a rate with a limited effort (ODE's `vel` and `fmax`).
-
-    Attributes:
-        row: joint row.
-        rate: rad/s or m/s.
-        effort: maximum effort, N m or N; 0 turns the motor off and restores the joint friction.
-    """
-
-    row: int
-    rate: float
-    effort: float
-
-
-@dataclass(frozen=True)
-class SetMotors(Command):
-    """Set motors of some joint axes; others are unchanged. A motor replaces joint friction."""
-
-    motors: Tuple[JointMotor, ...]
-
-
-@dataclass(frozen=True)
-class PidGains:
-    """Gains of a loop, and the limits of its integral term; control_toolbox's parameters.
-
-    Attributes:
-        p, i, d: output by error, by its integral over time, and by its rate.
-        i_min, i_max: limits of the integral term.
-        antiwindup: the integral itself stays within the limits.
-    """
-
-    p: float
-    i: float = 0.0
-    d: float = 0.0
-    i_min: float = 0.0
-    i_max: float = 0.0
-    antiwindup: bool = False
-
-
-@dataclass(frozen=True)
-class JointServo:
-    """A controller of a joint axis, which the engine evaluates in every step.
-
-    A target, or a loop about it (`gains`), commands a drive: an effort, the rate of a motor, or
-    the position that a motor follows; or, with `drive_gains`, the target of a loop that gives an
-    effort. Sources: ros_control's controllers, gazebo_ros_control. Units: rad or m, s, N m or N.
-
-    Attributes:
-        row: joint row.
-        drive: "effort", "velocity" or "position"; "" ends the servo.
-        target: a position, with `of_rate` or as the command of a velocity drive a rate, as the
-            command of an effort drive an effort.
-        target_rate: the rate at the target.
-        spline: the target as a function of time, instead of `target`.
-        gains: of the loop about the target; None passes it on.
-        of_rate: that loop is about the rate, else about the position.
-        by_rates: its d is about the difference of the rates, else that of errors in time.
-        feedforward: what is commanded a target rate.
-        drive_gains: of the loop of the drive.
-        wraps: position errors are angles in -pi to pi.
-        lower, upper, most_rate, most_effort: limits of commands.
-        soft: soft limits.
-    """
-
-    row: int
-    drive: str
-    target: float = 0.0
-    target_rate: float = 0.0
-    spline: Optional[Spline] = None
-    gains: Optional[PidGains] = None
-    of_rate: bool = False
-    by_rates: bool = False
-    feedforward: float = 0.0
-    drive_gains: Optional[PidGains] = None
-    wraps: bool = False
-    lower: float = -math.inf
-    upper: float = math.inf
-    most_rate: float = math.inf
-    most_effort: float = math.inf
-    soft: Optional[SoftLimits] = None
-
-    def same_loops(self, other: "JointServo") -> bool:
-        """Whether it differs in its target alone."""
-        return self == replace(other, target=self.target, target_rate=self.target_rate,
-                               spline=self.spline)
-
-
-@dataclass(frozen=True)
-class SetServos(Command):
-    """Set the servos of some joint axes; those of others stay, and so do integrals of loops."""
-
-    servos: Tuple[JointServo, ...]
-
-
-@dataclass(frozen=True)
-class ReadEfforts(Command):
-    """Reply value: what servos and motors spent in the last step, N m or N, by joint row."""
-
-    rows: Tuple[int, ...]
-
-
-@dataclass(frozen=True)
-class WheelSlip:
-    """A wheel that slips in proportion to its speed (Gazebo's WheelSlipPlugin).
-
-    Its slips (see `Surface.slip1`) are `radius` times the rate of its joint, by the normal force,
-    times a compliance: worked out anew in every step.
-
-    Attributes:
-        row: link row of the wheel.
-        joint_row: row of the joint axis that it turns about.
-        radius: m.
-        normal_force: N, about what the wheel carries.
-        lateral, longitudinal: compliances along the first direction of friction (the axle, by the
-            plugin's convention) and across it, no unit.
-    """
-
-    row: int
-    joint_row: int
-    radius: float
-    normal_force: float
-    lateral: float = 0.0
-    longitudinal: float = 0.0
-
-
-@dataclass(frozen=True)
-class SetWheelSlips(Command):
-    """Let wheels slip from now on, until their models are removed; those of others stay."""
-
-    wheels: Tuple[WheelSlip, ...]
-
-
-@dataclass(frozen=True)
-class PlanarVelocity:
-    """A velocity that is set before every step, in the heading of the model frame.
-
-    Attributes:
-        model_id: the model.
-        x, y: m/s, along the model frame's x and y axis, level; the vertical velocity is 0.
-        yaw_rate: rad/s, about the vertical.
-    """
-
-    model_id: int
-    x: float
-    y: float
-    yaw_rate: float
-
-
-@dataclass(frozen=True)
-class SetPlanarVelocities(Command):
-    """Set the planar velocities of models, regardless of forces; replaces all earlier ones."""
-
-    velocities: Tuple[PlanarVelocity, ...]
 
 
 @dataclass(frozen=True)
@@ -566,24 +327,6 @@ class Advance(Command):
 @dataclass(frozen=True)
 class EndAdvance(Command):
     """End an `Advance` that is under way after its running step; it is answered as if done."""
-
-
-@dataclass(frozen=True)
-class AddTimedForces(Command):
-    """Add timed wrenches and efforts; those on one link or axis add up.
-
-    With `whole`, an entry whose start has passed begins with the next step and keeps its duration.
-    """
-
-    forces: Tuple[TimedForce, ...]
-    whole: bool = False
-
-
-@dataclass(frozen=True)
-class ClearTimedForces(Command):
-    """Clear timed wrenches and efforts by id; ids that have expired are ignored."""
-
-    force_ids: Tuple[int, ...]
 
 
 @dataclass(frozen=True)

@@ -9,22 +9,16 @@ from ..description.model import Model
 from ..geometry import Pose, Quat, add, compose, inverse, multiply, normalised, scale
 from .api import CommandRefusedError, Event
 from .commands import (
-    AddTimedForces,
     Clear,
-    ClearTimedForces,
     Command,
     ConnectModels,
     DisconnectModels,
-    JointMotor,
-    JointServo,
     JointWrench,
     LinkState,
     LoadModel,
     PhysicsSettings,
     PinModels,
-    PlanarVelocity,
     ReadContacts,
-    ReadEfforts,
     ReadJointWrenches,
     RemoveModel,
     Restart,
@@ -32,6 +26,12 @@ from .commands import (
     SetJoints,
     SetLinkState,
     SetModelState,
+)
+from .drive_commands import (
+    JointMotor,
+    JointServo,
+    PlanarVelocity,
+    ReadEfforts,
     SetMotors,
     SetPlanarVelocities,
     SetServos,
@@ -40,6 +40,7 @@ from .commands import (
 )
 from .ring import JOINT_WIDTH, LINK_WIDTH
 from .ring_rows import axis_rows
+from .timed_forces import AddTimedForces, ClearTimedForces
 
 _LINK = struct.Struct(f"={LINK_WIDTH}d")
 

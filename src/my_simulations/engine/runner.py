@@ -12,7 +12,6 @@ from typing import List, Optional, Protocol, Tuple
 
 from .api import Backend, CommandRefusedError, EngineBrokenError, Event, Reply
 from .commands import (
-    AddTimedForces,
     Advance,
     Batch,
     Clear,
@@ -42,6 +41,7 @@ from .ring import (
     RingWriter,
     picoseconds,
 )
+from .timed_forces import AddTimedForces
 
 _BURST_S = 0.0008        # bursts between two looks at the commands
 _MAX_DEBT_S = 0.2        # a world that is later than this has given up the rest

@@ -8,7 +8,7 @@ from __future__ import annotations
 import math
 from typing import Callable, Optional, Tuple
 
-from .commands import JointServo, PidGains
+from .drive_commands import JointServo, PidGains
 from .spline import follower
 
 _TWO_PI = 2.0 * math.pi

@@ -14,7 +14,8 @@ from ..description.model import Joint as JointSpec
 from ..description.sensor import Sensor
 from ..description.surroundings import SphericalCoordinates
 from ..description.transmission import Transmission
-from ..engine.commands import JointServo, JointWrench
+from ..engine.commands import JointWrench
+from ..engine.drive_commands import JointServo
 from ..errors import SimulationError
 from ..geometry import STILL, Pose, Twist, Vec3
 from ..sensing.api import CameraSpec, Pictures, RayFan, RayReturns

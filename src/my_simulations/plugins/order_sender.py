@@ -3,7 +3,7 @@ from __future__ import annotations
 
 from typing import List, Sequence
 
-from ..engine.commands import JointMotor, JointServo, PlanarVelocity
+from ..engine.drive_commands import JointMotor, JointServo, PlanarVelocity
 from ..simulator.simulator import Simulator
 from .simulated_context import SimulatedContext
 

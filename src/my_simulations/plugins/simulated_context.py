@@ -10,7 +10,8 @@ from ..description.model import Mimic, Model
 from ..description.sensor import Sensor
 from ..description.surroundings import SphericalCoordinates
 from ..description.transmission import Transmission
-from ..engine.commands import JointWrench, PlanarVelocity, WheelSlip
+from ..engine.commands import JointWrench
+from ..engine.drive_commands import PlanarVelocity, WheelSlip
 from ..errors import CommandError, InputError, Issue, Severity
 from ..geometry import IDENTITY, STILL, Pose, Twist, Vec3, compose
 from ..sensing.api import Mount, Pictures, RayFan, RayReturns

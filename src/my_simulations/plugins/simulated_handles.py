@@ -6,7 +6,7 @@ from typing import Dict, Optional, Tuple
 
 from ..description.model import Inertial
 from ..description.model import Joint as JointSpec
-from ..engine.commands import JointMotor, JointServo, PlanarVelocity
+from ..engine.drive_commands import JointMotor, JointServo, PlanarVelocity
 from ..geometry import Pose, Twist, Vec3
 from ..simulator.states import States
 

@@ -5,7 +5,7 @@ from typing import Optional, Tuple
 
 from ..description.model import Inertial, JointAxis
 from ..description.model import Joint as JointSpec
-from ..engine.commands import JointServo
+from ..engine.drive_commands import JointServo
 from ..engine.servo_law import FOLLOW, ServoLaw
 from ..geometry import IDENTITY, STILL
 

@@ -5,9 +5,8 @@ import math
 from dataclasses import replace
 from typing import Any, Dict, List, Optional, Sequence, Tuple
 
-from ..engine.commands import (
-    Batch,
-    Command,
+from ..engine.commands import Batch, Command
+from ..engine.drive_commands import (
     JointMotor,
     JointServo,
     PlanarVelocity,

@@ -9,7 +9,6 @@ from ..description.model import WORLD, Inertial, Joint, Model
 from ..description.shapes import MeshTable
 from ..description.world import World
 from ..engine.commands import (
-    AddTimedForces,
     Batch,
     Command,
     DisconnectModels,
@@ -19,6 +18,7 @@ from ..engine.commands import (
     RemoveModel,
 )
 from ..engine.ring import Snapshot
+from ..engine.timed_forces import AddTimedForces
 from ..errors import CommandError, error
 from ..formats.mesh.loading import without_missing_meshes
 from ..geometry import Pose, compose, inverse, normalised

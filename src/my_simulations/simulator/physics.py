@@ -5,7 +5,8 @@ from dataclasses import replace
 from typing import Optional
 
 from ..description.world import Physics
-from ..engine.commands import FOREVER, AddTimedForces, Batch, Pause, PhysicsSettings, SetPhysics
+from ..engine.commands import FOREVER, Batch, Pause, PhysicsSettings, SetPhysics
+from ..engine.timed_forces import AddTimedForces
 from ..geometry import Vec3
 from .clock import SimClock
 from .session import Session

@@ -3,16 +3,8 @@ from __future__ import annotations
 
 from typing import List
 
-from ..engine.commands import (
-    AddTimedForces,
-    Batch,
-    ClearTimedForces,
-    Command,
-    Pause,
-    Restart,
-    SetClock,
-    SetModelState,
-)
+from ..engine.commands import Batch, Command, Pause, Restart, SetClock, SetModelState
+from ..engine.timed_forces import AddTimedForces, ClearTimedForces
 from ..geometry import STILL
 from .clock import SimClock
 from .drives import Drives

@@ -11,16 +11,8 @@ from typing import Callable, ContextManager, Dict, List, Optional
 from ..description.shapes import MeshTable
 from ..description.world import World
 from ..engine.api import Engine, Event, Reply
-from ..engine.commands import (
-    FOREVER,
-    AddTimedForces,
-    Batch,
-    Clear,
-    ClearTimedForces,
-    Command,
-    Pause,
-    SetClock,
-)
+from ..engine.commands import FOREVER, Batch, Clear, Command, Pause, SetClock
+from ..engine.timed_forces import AddTimedForces, ClearTimedForces
 from ..errors import CommandError, Issue, Severity, error, warning
 from .appointments import Appointments
 from .clock import SimClock

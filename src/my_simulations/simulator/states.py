@@ -4,7 +4,6 @@ from __future__ import annotations
 from typing import Dict, List, Optional, Tuple
 
 from ..engine.commands import (
-    AddTimedForces,
     Batch,
     Command,
     Contact,
@@ -17,6 +16,7 @@ from ..engine.commands import (
     SetModelState,
 )
 from ..engine.ring import LINK_WIDTH, Snapshot
+from ..engine.timed_forces import AddTimedForces
 from ..geometry import IDENTITY, Pose, Twist, compose
 from .clock import SimClock
 from .entity import Entity

@@ -4,18 +4,16 @@ from __future__ import annotations
 from dataclasses import astuple, replace
 from typing import Dict, List, Optional, Sequence, Tuple, Union
 
-from ..engine.commands import (
-    FOREVER,
+from ..engine.commands import FOREVER, Batch, Command
+from ..engine.ring import Clock
+from ..engine.timed_forces import (
     AddTimedForces,
-    Batch,
     ClearTimedForces,
-    Command,
     JointPid,
     TimedEffort,
     TimedForce,
     TimedWrench,
 )
-from ..engine.ring import Clock
 from ..errors import CommandError
 from ..geometry import ZERO3, Vec3, compose, inverse, is_finite, rotate, subtract, transform
 from .entity import Entity

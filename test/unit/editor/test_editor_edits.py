@@ -8,7 +8,7 @@ import pytest
 from editor_case import Refused, arm, box, cases, sun
 
 from my_simulations.description.compare import differences
-from my_simulations.engine.commands import JointPid
+from my_simulations.engine.timed_forces import JointPid
 from my_simulations.geometry import STILL, Pose
 from my_simulations.simulator.joint_gains import default_gains
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 import pytest
 
 from my_simulations.engine.bullet.joint_pid import PidController
-from my_simulations.engine.commands import JointPid
+from my_simulations.engine.timed_forces import JointPid
 
 DT = 0.01
 

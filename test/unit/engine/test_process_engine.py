@@ -8,9 +8,10 @@ import threading
 import pytest
 
 from my_simulations.engine.api import Reply
-from my_simulations.engine.commands import ClearTimedForces, Ping
+from my_simulations.engine.commands import Ping
 from my_simulations.engine.message_pipe import Wire
 from my_simulations.engine.process_engine import ProcessEngine
+from my_simulations.engine.timed_forces import ClearTimedForces
 
 WAIT = 60.0
 

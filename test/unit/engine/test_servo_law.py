@@ -7,7 +7,7 @@ from dataclasses import replace
 import pytest
 
 from my_simulations.description.model import SoftLimits
-from my_simulations.engine.commands import JointServo, PidGains
+from my_simulations.engine.drive_commands import JointServo, PidGains
 from my_simulations.engine.servo_law import Pid, ServoLaw
 from my_simulations.engine.spline import Spline, sample, segment_between, standing
 

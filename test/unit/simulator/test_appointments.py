@@ -111,7 +111,7 @@ def test_what_is_ordered_at_an_appointment_acts_from_that_step_on(simulator):
     wheel = simulator.models.inventory()[1][0].axis_row("hinge", 0)
 
     def act(moment):
-        from my_simulations.engine.commands import JointMotor
+        from my_simulations.engine.drive_commands import JointMotor
         simulator.drives.set([JointMotor(wheel, float(moment.step), 1.0)])
 
     diary = Diary(simulator, 100.0, act)
@@ -130,7 +130,7 @@ def test_a_reset_ends_the_credits_and_is_a_meeting_of_its_own(simulator):
 
 
 def test_a_new_engine_has_the_motors_and_makes_the_appointments_anew(simulator):
-    from my_simulations.engine.commands import JointMotor
+    from my_simulations.engine.drive_commands import JointMotor
 
     row = simulator.models.inventory()[1][0].axis_row("hinge", 0)
     simulator.drives.set([JointMotor(row, 2.0, 1.0)])

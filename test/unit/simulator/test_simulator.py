@@ -10,9 +10,10 @@ import pytest
 from my_simulations.description.model import Inertial, Joint, JointAxis, Link, Model
 from my_simulations.description.shapes import Box, Collision, Mesh
 from my_simulations.description.world import World
-from my_simulations.engine.commands import FOREVER, TimedWrench
+from my_simulations.engine.commands import FOREVER
 from my_simulations.engine.inline_engine import InlineEngine
 from my_simulations.engine.kinematic_backend import KinematicBackend
+from my_simulations.engine.timed_forces import TimedWrench
 from my_simulations.errors import CommandError, EngineLostError
 from my_simulations.geometry import IDENTITY, STILL, Pose, Twist, quat_from_rpy
 from my_simulations.simulator.feeds import ROW_WIDTH

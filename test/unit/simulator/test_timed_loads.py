@@ -7,10 +7,11 @@ import pytest
 
 from my_simulations.description.model import Inertial, Joint, JointAxis, Link, Model
 from my_simulations.description.world import World
-from my_simulations.engine.commands import FOREVER, JointPid, TimedWrench
+from my_simulations.engine.commands import FOREVER
 from my_simulations.engine.inline_engine import InlineEngine
 from my_simulations.engine.kinematic_backend import KinematicBackend
 from my_simulations.engine.ring import Clock
+from my_simulations.engine.timed_forces import JointPid, TimedWrench
 from my_simulations.errors import CommandError
 from my_simulations.geometry import Pose, Twist, quat_from_rpy
 from my_simulations.simulator.registry import UnknownEntityError, UnknownFrameError

@@ -7,7 +7,8 @@ import pytest
 
 from my_simulations.description.model import Inertial, Joint, JointAxis, Link, Model
 from my_simulations.description.world import World
-from my_simulations.engine.commands import JointWrench, WheelSlip
+from my_simulations.engine.commands import JointWrench
+from my_simulations.engine.drive_commands import WheelSlip
 from my_simulations.engine.inline_engine import InlineEngine
 from my_simulations.engine.kinematic_backend import KinematicBackend
 from my_simulations.errors import CommandError

@@ -9,7 +9,7 @@ from ...description.light import Light
 from ...description.model import Model
 from ...description.scoped_names import split_scoped
 from ...description.unflatten import unflattened
-from ...engine.commands import JointPid
+from ...engine.timed_forces import JointPid
 from ...errors import CommandError, Issue
 from ...formats.sdf.writer.entities import write_world
 from ...geometry import Pose, compose, inverse, normalised, pose_is_finite

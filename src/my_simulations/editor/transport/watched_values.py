@@ -4,8 +4,8 @@ from __future__ import annotations
 from typing import Any, Dict, Iterable, List, Optional, Sequence, Tuple
 
 from ...description.scoped_names import split_scoped
-from ...engine.commands import JointPid
 from ...engine.ring import Snapshot
+from ...engine.timed_forces import JointPid
 from ...errors import CommandError, SimulationError
 from ...geometry import Pose, Twist, rpy_from_quat
 from ...simulator.entity import Entity

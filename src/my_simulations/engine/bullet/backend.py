@@ -11,9 +11,7 @@ from ...geometry import Pose, pose_is_finite
 from ..api import CommandRefusedError, EngineBrokenError, Event
 from ..body_plan import BodyPlanError, open_joints
 from ..commands import (
-    AddTimedForces,
     Clear,
-    ClearTimedForces,
     Command,
     ConnectModels,
     DisconnectModels,
@@ -22,7 +20,6 @@ from ..commands import (
     PhysicsSettings,
     PinModels,
     ReadContacts,
-    ReadEfforts,
     ReadJointWrenches,
     RemoveModel,
     Restart,
@@ -30,12 +27,10 @@ from ..commands import (
     SetJoints,
     SetLinkState,
     SetModelState,
-    SetMotors,
-    SetPlanarVelocities,
-    SetServos,
-    SetWheelSlips,
 )
+from ..drive_commands import ReadEfforts, SetMotors, SetPlanarVelocities, SetServos, SetWheelSlips
 from ..ring import JOINTS, LINKS
+from ..timed_forces import AddTimedForces, ClearTimedForces
 from . import bodies, extra_surfaces, joint_axes
 from .bodies import Body, Part
 from .body_builder import Builder

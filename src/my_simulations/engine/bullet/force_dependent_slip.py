@@ -34,7 +34,7 @@ from ...geometry import (
     subtract,
 )
 from ..body_plan import BASE
-from ..commands import WheelSlip
+from ..drive_commands import WheelSlip
 from .bodies import Axis, Body, Part
 from .extra_surfaces import anisotropy
 from .surface_coefficients import directed, of_link

@@ -9,7 +9,7 @@ from typing import Callable, Dict, FrozenSet, List, Optional, Sequence, Set, Tup
 import pybullet
 
 from ...geometry import Quat, Vec3, add, conjugate, cross, rotate, scale
-from ..commands import TimedEffort, TimedForce, TimedWrench
+from ..timed_forces import TimedEffort, TimedForce, TimedWrench
 from .bodies import Axis, Body, Part, set_sleep
 from .force_dependent_slip import ForceDependentSlip
 from .implicit_axes import ImplicitAxes

@@ -7,7 +7,7 @@ import pybullet
 
 from ...description.model import JointAxis, Model
 from ..api import CommandRefusedError
-from ..commands import JointMotor
+from ..drive_commands import JointMotor
 from .bodies import Axis, Body
 from .joint_axes import specs_of
 

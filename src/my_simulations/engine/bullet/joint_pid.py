@@ -3,7 +3,7 @@ from __future__ import annotations
 
 from typing import Optional
 
-from ..commands import JointPid
+from ..timed_forces import JointPid
 
 MOST_EFFORT = 1000.0
 """N m or N that a loop may ask for where the axis has no limit (Gazebo's `JointController`)."""

@@ -8,7 +8,7 @@ import pybullet
 
 from ...description.model import Model
 from ..api import CommandRefusedError
-from ..commands import JointServo
+from ..drive_commands import JointServo
 from ..servo_law import FOLLOW, Advance, ServoLaw
 from .bodies import Axis, Body
 from .joint_axes import specs_of

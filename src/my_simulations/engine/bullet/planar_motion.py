@@ -7,7 +7,7 @@ from typing import Callable, Dict, Iterable, List, Mapping
 import pybullet
 
 from ...geometry import Pose, Vec3, cross, rpy_from_quat, subtract
-from ..commands import PlanarVelocity
+from ..drive_commands import PlanarVelocity
 from .bodies import Body, set_sleep
 from .state_restore import Entry
 from .step_helper import FAR

@@ -3,7 +3,7 @@ from __future__ import annotations
 
 from typing import Any, Callable, Dict, List
 
-from ...engine.commands import PidGains
+from ...engine.drive_commands import PidGains
 from ..context import Context, Ending, Handle, Publication
 from ..finite_messages import finite_only
 from .hardware import Hardware, HardwareJoint

@@ -4,7 +4,7 @@ from __future__ import annotations
 import math
 from typing import Any, Optional
 
-from ...engine.commands import PidGains
+from ...engine.drive_commands import PidGains
 from ..actions import ActionServer, Goal
 from ..finite_messages import is_all_finite
 from ..time_out import TimeOut

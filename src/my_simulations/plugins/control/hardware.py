@@ -9,7 +9,7 @@ from dataclasses import replace
 from typing import Dict, List, Optional, Sequence, Tuple
 
 from ...description.transmission import Transmission
-from ...engine.commands import JointServo, PidGains
+from ...engine.drive_commands import JointServo, PidGains
 from ...engine.spline import Spline
 from ..context import Context, Joint, PluginError
 from ..reconfigure import Reconfigure
@@ -65,7 +65,7 @@ class HardwareJoint:
                gains: Optional[PidGains] = None, target_rate: float = 0.0, of_rate: bool = False,
                by_rates: bool = False, feedforward: float = 0.0,
                most_effort: float = math.inf) -> None:
-        """Have a loop about a target command the interface; see `engine.commands.JointServo`."""
+        """Have a loop about a target command the interface (`engine.drive_commands.JointServo`)."""
         if self.halted:
             return
         self._steer(replace(

@@ -4,7 +4,7 @@ from __future__ import annotations
 from functools import partial
 from typing import Dict
 
-from ...engine.commands import PidGains
+from ...engine.drive_commands import PidGains
 from ...engine.servo_law import shortest
 from ..frames import stamped
 from .controller import Controller

@@ -8,7 +8,7 @@ from __future__ import annotations
 from functools import partial
 from typing import Any, List, NamedTuple, Optional, Set, Tuple
 
-from ...engine.commands import PidGains
+from ...engine.drive_commands import PidGains
 from ...engine.servo_law import shortest
 from ...engine.spline import Spline, segment_between, standing
 from ..actions import ActionServer, Goal

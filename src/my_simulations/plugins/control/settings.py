@@ -3,7 +3,7 @@ from __future__ import annotations
 
 from typing import Any, List, Optional
 
-from ...engine.commands import PidGains
+from ...engine.drive_commands import PidGains
 from ..context import Context, PluginError
 
 

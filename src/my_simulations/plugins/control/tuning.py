@@ -3,7 +3,7 @@ from __future__ import annotations
 
 from typing import Callable, Dict
 
-from ...engine.commands import PidGains
+from ...engine.drive_commands import PidGains
 from ..context import Context
 from ..reconfigure import Option, Reconfigure, Value
 

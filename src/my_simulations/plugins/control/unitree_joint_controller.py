@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from ...engine.commands import PidGains
+from ...engine.drive_commands import PidGains
 from .controller import Controller
 from .hardware import EFFORT
 from .speed_limits import clamped

@@ -10,7 +10,7 @@ from __future__ import annotations
 import re
 from typing import List
 
-from ...engine.commands import JointServo, PidGains
+from ...engine.drive_commands import JointServo, PidGains
 from ..base import Plugin
 from ..context import PluginError
 from ..parameters import Parameters

@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 from typing import Any, Callable, List
 
-from ...engine.commands import JointServo, PidGains
+from ...engine.drive_commands import JointServo, PidGains
 from ..base import Plugin
 from ..context import Joint, PluginError
 from ..parameters import namespace_or
