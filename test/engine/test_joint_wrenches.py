@@ -287,4 +287,4 @@ def test_joints_that_are_gone_are_not_measured(lab: Lab) -> None:
     lab.steps(1)
     assert _read(lab, number, "hinge") == [None]
     lab.steps(1)
-    assert lab.backend._wrenches.idle
+    assert lab.backend._helpers.wrenches.idle

@@ -417,7 +417,7 @@ def test_velocity_decay_slows_a_free_articulated_body_as_a_rigid_one(lab: Lab):
     assert lab.twist(jointed).linear == pytest.approx([v * 0.99 ** 100 for v in (3, -2, 1)],
                                                       rel=1e-4)
     lab.remove(jointed)
-    assert not lab.backend._decay._links
+    assert not lab.backend._helpers._decay._links
 
 
 @pytest.mark.filterwarnings("ignore:overflow")

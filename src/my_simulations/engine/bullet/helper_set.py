@@ -1,0 +1,187 @@
+"""What acts around the steps of Bullet and what remembers bodies, made and wired to one another."""
+from __future__ import annotations
+
+from typing import Dict, Tuple
+
+import pybullet
+
+from ...description.model import Model
+from ..commands import PhysicsSettings
+from . import bodies, extra_surfaces, joint_axes
+from .bodies import Body, Part
+from .constraint_book import ConstraintBook
+from .contact_settling import ContactSettling
+from .force_dependent_slip import slips
+from .forces import Forces
+from .gyroscopic_rigid import GyroscopicRigid
+from .inter_model_joints import InterModelJoints
+from .joint_motors import JointMotors
+from .joint_wrenches import JointWrenches
+from .landing_contacts import LandingContacts
+from .level_seams import LevelSeams
+from .notices import Notices
+from .pair_friction import FrictionBalance
+from .pair_restitution import PairRestitution
+from .pinned_bodies import PinnedBodies
+from .planar_motion import PlanarMotion
+from .residual_friction import ResidualFriction
+from .rolling_contacts import RollingContacts
+from .seam_contacts import SeamContacts
+from .sliding import Sliding
+from .solver_settings import configure_solver
+from .state_readout import StateReadout
+from .state_restore import Entry
+from .state_setter import StateSetter
+from .step_helper import StepLoop
+from .surface_stop import SurfaceStop
+from .velocity_decay import VelocityDecay
+from .wake_up import WakeUp
+
+
+class HelperSet:
+    """The helpers of a world, each of which sees the bodies that are added here.
+
+    Attributes:
+        settings: the settings in use, see `configure`.
+        loop: makes the steps, with the helpers around them.
+        notices: what users are told of bodies.
+        readout: the tables of states.
+        waker: wakes what a command reaches.
+        mover: puts models, links and joints elsewhere.
+        book: the constraints of joints.
+        forces, motors, planar, holds, sliding, ties, wrenches: what commands set and read.
+
+    Args:
+        models: by id.
+        bodies_by_uid: of all models.
+        rows: link rows to bodies and their parts.
+        axes: joint rows to bodies and their axes.
+    """
+
+    def __init__(self, models: Dict[int, Entry], bodies_by_uid: Dict[int, Body],
+                 rows: Dict[int, Tuple[Body, Part]],
+                 axes: Dict[int, Tuple[Body, bodies.Axis]]) -> None:
+        self.settings = PhysicsSettings()
+        self.notices = Notices(models, bodies_by_uid)
+        self.readout = StateReadout(self._on_diverged, self._on_raced)
+        self._residual = ResidualFriction()
+        self._rolling = RollingContacts(lambda links, step: self._landing.see_rolling(links, step),
+                                        lambda: self.forces.loaded_bodies)
+        self._seams = SeamContacts(self._rolling)
+        self._level = LevelSeams(lambda: self._residual.fast)
+        self.sliding = Sliding()
+        self.waker = WakeUp(bodies_by_uid, self._touched)
+        driver = WakeUp(bodies_by_uid, self._driven)
+        self.forces = Forces(driver.around, lambda rows: self.motors.yield_to(rows),
+                             lambda body, axis: self.motors.restore(body, axis))
+        self._friction = FrictionBalance(self.notices.misfit)
+        self._bounces = PairRestitution(self.notices.odd_bounce)
+        self._spin = GyroscopicRigid(lambda: self.forces.wrenched_links)
+        self.holds = PinnedBodies(self.waker.around)
+        self.book = ConstraintBook()
+        self.ties = InterModelJoints(self.book)
+        self._decay = VelocityDecay()
+        self._settling = ContactSettling(
+            lambda: self.forces.loaded_bodies,
+            lambda row: self.motors.rate_of(row) or self.forces.servos.rate_of(row),
+            self._on_held)
+        self._landing = LandingContacts(self._rolling.landed, self._settling.solve_impact)
+        self._stop = SurfaceStop()
+        self.mover = StateSetter(rows, axes, self.readout, self.waker, self.forces, self._spin,
+                                 self.holds)
+        self.motors = JointMotors(axes, driver.around)
+        self.planar = PlanarMotion(models, self.mover.model_pose, driver.around)
+        self.wrenches = JointWrenches(models, self.forces, self.sliding)
+        # What acts around the steps, in the order in which it does.
+        helpers = (self._friction, self._bounces, self._settling, self._decay, self.forces,
+                   self.planar, self._rolling, self._spin, self._residual, self.sliding,
+                   self.holds, self._stop, self._landing, self._level, self._seams)
+        self.loop = StepLoop(helpers, pybullet.stepSimulation)
+        # Everything that remembers bodies one by one.
+        self._keepers = (*helpers, self.ties, self.motors, self.wrenches, self.readout, self.loop)
+        # Whom it concerns that a command, or a force that begins, reaches a body.
+        self._hearers = tuple(part.touched for part in (
+            self.loop, self._friction, self._settling, self._residual, self._rolling,
+            self.sliding, self._stop, self._landing, self._seams))
+
+    def configure(self, settings: PhysicsSettings) -> None:
+        """Use these settings from the next step on, and have Bullet use them."""
+        self.settings = settings
+        configure_solver(settings)
+        self._settling.configure(settings.iterations, settings.step_size)
+        self.sliding.configure(settings.cone)
+
+    def add(self, body: Body, model: Model) -> None:
+        """A body of a model is there."""
+        self.loop.add(body)
+        self.forces.add_body(body)
+        self._friction.add(body)
+        self._bounces.add(body)
+        self._spin.add(body)
+        self._residual.add(body)
+        self._settling.add(body)
+        self._stop.add(body)
+        self.readout.add(body)
+        dt = self.settings.step_size
+        self._decay.add(body, dt)
+        for part in body.parts:
+            self._rolling.add(body, part, part.link)
+            self._level.add(body, part, part.link)
+            if not slips(part.link):
+                self.sliding.add(body, part, part.link)
+        for part in body.colliders:
+            self._landing.add(body, part, part.link)
+            extra_surfaces.store(body, part, part.link, dt)
+            self.forces.slip.add(body, part, part.link)
+        self.set_up_axes(body, model)
+
+    def set_up_axes(self, body: Body, model: Model) -> None:
+        """Give the axes of a body the limits, friction, springs and motors of its model."""
+        dt = self.settings.step_size
+        joint_axes.set_up(body, model, self.forces, dt)
+        self.motors.set_up(body, model)
+        self.forces.servos.set_up(body, model, dt)
+
+    def use_step_size(self, body: Body, model: Model) -> None:
+        """The step size has changed: work out anew what follows from it."""
+        self.set_up_axes(body, model)
+        self._decay.add(body, self.settings.step_size)
+
+    def forget(self, body: Body) -> None:
+        """A body is gone."""
+        for keeper in self._keepers:
+            keeper.forget(body)
+
+    def clear(self) -> None:
+        """All bodies are gone."""
+        self.notices.forget_all()
+        for keeper in self._keepers:
+            keeper.clear()
+        self.book.clear()
+
+    def _touched(self, body: Body) -> None:
+        """A command reached a body: it may be elsewhere."""
+        self.notices.forget(body.model_id)
+        self.readout.touch(body)
+        self._tell(body)
+
+    def _driven(self, body: Body) -> None:
+        """A force or a motor acts on a body from the next step on: it is where it was."""
+        self.readout.woken(body)
+        self._tell(body)
+
+    def _tell(self, body: Body) -> None:
+        for hear in self._hearers:
+            hear(body)
+
+    def _on_held(self, body: Body, held: bool) -> None:
+        self.forces.rest(body, held)
+        self.loop.touched(body)
+
+    def _on_diverged(self, body: Body) -> None:
+        self.loop.changed()
+        self.mover.put_back(body)
+        self.notices.diverged(body)
+
+    def _on_raced(self, body: Body) -> None:
+        self.notices.raced(body, self.settings.step_size)
