@@ -2,9 +2,8 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
 from itertools import chain
-from typing import Any, Callable, Dict, Iterator, List, Optional, Set, Tuple
+from typing import Any, Callable, Dict, Iterator, List, Optional, Tuple
 
 import numpy as np
 
@@ -24,26 +23,15 @@ from .lamps import (
     SHADOW_SIZE,
     ShadowView,
     chosen_lights,
-    light_kinds,
-    light_uniforms,
     shadow_lights,
     shadow_view,
 )
-from .sky import fog_law, linear, sky_uniforms
+from .lit_surfaces import Lighting, LitSurfaces
+from .sky import sky_uniforms
 from .targets import Targets
 from .uploaded_textures import Textures
 
 _VIEW_FROM_SENSOR = np.array([[0.0, -1, 0, 0], [0, 0, 1, 0], [-1, 0, 0, 0], [0, 0, 0, 1]])
-
-
-@dataclass
-class _Lighting:
-    """What all surfaces of one picture share; `told`: the programs that know it."""
-
-    fog: str
-    kinds: Tuple[Tuple[str, int], ...]
-    values: Dict[str, np.ndarray]
-    told: Set[str] = field(default_factory=set)
 
 
 class Renderer:
@@ -80,6 +68,7 @@ class Renderer:
         for one in self._maps:
             one.compare_func = "<="
             one.repeat_x = one.repeat_y = False
+        self._lit = LitSurfaces(self._context, self._programs, self._textures, self._maps)
         self._map_targets = [self._context.framebuffer(depth_attachment=one) for one in self._maps]
         self._map_keys: List[Any] = [None] * len(self._maps)
         self._kept = KeptPictures()
@@ -173,7 +162,8 @@ class Renderer:
             lights = chosen_lights(self._lights, view, spec)
             shadows = self._shadows(spec, lights, links, frame[:3, 3])
             self._place(view, links, spec)
-            rgb = self._draw_rgb(spec, view, self._lighting(view, clip, lights, shadows))
+            rgb = self._draw_rgb(spec, view, self._lit.lighting(
+                view, clip, lights, shadows, self._scene))
         if DEPTH in outputs or LABELS in outputs:
             if RGB not in outputs:
                 self._place(view, links, spec)
@@ -207,7 +197,7 @@ class Renderer:
 
     # Colours.
 
-    def _draw_rgb(self, spec: CameraSpec, view: np.ndarray, lighting: "_Lighting") -> np.ndarray:
+    def _draw_rgb(self, spec: CameraSpec, view: np.ndarray, lighting: Lighting) -> np.ndarray:
         context = self._context
         samples = spec.samples or self._smooth
         target = self._targets.get("rgb", spec.width, spec.height, samples)
@@ -221,7 +211,7 @@ class Renderer:
             if batch.surface.clear:
                 clear.append(batch)
             else:
-                self._draw_lit(batch, lighting)
+                self._lit.draw(batch, lighting)
         if self._scene.sky is not None:
             self._draw_sky(spec, view)
         if clear:
@@ -235,82 +225,14 @@ class Renderer:
         made = np.frombuffer(target.read(components=3, alignment=1), dtype=np.uint8)
         return made.reshape(spec.height, spec.width, 3)
 
-    def _draw_clear(self, batches: List[Batch], target: Any, lighting: "_Lighting") -> None:
+    def _draw_clear(self, batches: List[Batch], target: Any, lighting: Lighting) -> None:
         context = self._context
         context.enable_only(context.DEPTH_TEST | context.BLEND)
         context.blend_func = context.SRC_ALPHA, context.ONE_MINUS_SRC_ALPHA
         target.depth_mask = False
         for batch in batches:
-            self._draw_lit(batch, lighting)
+            self._lit.draw(batch, lighting)
         target.depth_mask = True
-
-    def _lighting(self, view: np.ndarray, clip: np.ndarray, lights: List[Light],
-                  shadows: List[Tuple[int, ShadowView]]) -> "_Lighting":
-        """What is the same for all surfaces of a picture."""
-        fog, kind = self._scene.fog, ""
-        maps = np.zeros((shaders.MOST_SHADOWS, 4, 4), np.float32)
-        pixels = np.zeros(shaders.MOST_SHADOWS, np.float32)
-        for n, (_, one) in enumerate(shadows):
-            maps[n] = (one.clip @ one.view @ inverse(view)).T
-            pixels[n] = one.pixel
-        values = {"clip": clip.T, "ambient": np.array(self._scene.ambient[:3]), "up": view[:3, 2],
-                  "shadow_from_view": maps, "shadow_pixel": pixels,
-                  **dict(light_uniforms(lights, view))}
-        if fog is not None and fog.type != "none":
-            kind, density = fog_law(fog)
-            values["fog_color"] = linear(fog.color)
-            values["fog"] = np.array([fog.start, fog.end, density])
-        for n, texture in enumerate(self._maps):
-            texture.use(location=1 + n)
-        return _Lighting(kind, light_kinds(lights, [n for n, _ in shadows]), {
-            name: np.ascontiguousarray(value, dtype=np.float32) for name, value in values.items()})
-
-    def _program(self, kind: shaders.LitKind, lighting: "_Lighting") -> str:
-        """The name of the program for surfaces of a kind, with what a picture sets set."""
-        name = repr(kind)
-        if name not in self._programs:
-            made = self._programs[name] = self._context.program(
-                shaders.LIT_VERTEX, shaders.lit_fragment(kind))
-            for unit, sampler in enumerate((
-                    "picture", "shadow0", "shadow1",
-                    *(f"layer{n}" for n in range(shaders.MOST_LAYERS)),
-                    *(f"bumps{n}" for n in range(shaders.MOST_BUMPS)))):
-                if sampler in made:
-                    made[sampler] = unit
-        if name not in lighting.told:
-            lighting.told.add(name)
-            program = self._programs[name]
-            for uniform, values in lighting.values.items():
-                if uniform in program:
-                    _write(program[uniform], values.tobytes())
-        return name
-
-    def _draw_lit(self, batch: Batch, lighting: "_Lighting") -> None:
-        if not batch.count:
-            return
-        surface = batch.surface
-        texture = self._textures.of(surface)
-        layers = [(self._textures.of_layer(layer), n < shaders.MOST_BUMPS
-                   and self._textures.bumps_of(layer))
-                  for n, layer in enumerate(surface.layers[:shaders.MOST_LAYERS])]
-        name = self._program(shaders.LitKind(
-            texture is not None, surface.lit, surface.lit and max(surface.specular[:3]) > 0.0,
-            self._textures.cutting(surface) is not None, surface.blended,
-            lighting.fog, lighting.kinds if surface.lit else (),
-            tuple(bool(bumps) for _, bumps in layers)), lighting)
-        program = self._programs[name]
-        for uniform, values in batch.uniforms.items():
-            if uniform in program and isinstance(values, bytes):
-                _write(program[uniform], values)
-            elif uniform in program:
-                program[uniform] = values
-        if texture is not None:
-            texture.use(location=0)
-        for n, (map_of_layer, bumps) in enumerate(layers):
-            map_of_layer.use(location=shaders.FIRST_LAYER + n)
-            if bumps:
-                bumps.use(location=shaders.FIRST_BUMPS + n)
-        batch.draw(name)
 
     def _draw_sky(self, spec: CameraSpec, view: np.ndarray) -> None:
         program = self._programs["sky"]
@@ -415,11 +337,6 @@ class Renderer:
         return (None if rgb is None else distortion.blended(rgb, column, row),
                 None if depth is None else distortion.nearest(depth, column, row, np.inf),
                 None if labels is None else distortion.nearest(labels, column, row, NO_ROW))
-
-
-def _write(member: Any, values: bytes) -> None:
-    """Set a uniform of float32; of an array the compiler keeps as much as is used."""
-    member.write(values[:member.array_length * member.dimension * 4])
 
 
 def _set(program: Any, name: str, values: np.ndarray) -> None:

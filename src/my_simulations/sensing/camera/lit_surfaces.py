@@ -1,0 +1,126 @@
+"""Draws surfaces with lights, shadows and fog, by a program for each kind of surface."""
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any, Dict, List, Sequence, Set, Tuple
+
+import numpy as np
+
+from ...description.light import Light
+from ...description.surroundings import Scene
+from ..poses import inverse
+from . import shaders
+from .batches import Batch
+from .lamps import ShadowView, light_kinds, light_uniforms
+from .sky import fog_law, linear
+from .uploaded_textures import Textures
+
+
+@dataclass
+class Lighting:
+    """What all surfaces of one picture share; `told`: the programs that know it."""
+
+    fog: str
+    kinds: Tuple[Tuple[str, int], ...]
+    values: Dict[str, np.ndarray]
+    told: Set[str] = field(default_factory=set)
+
+
+class LitSurfaces:
+    """Draws batches as cameras see them.
+
+    Args:
+        context: the OpenGL context.
+        programs: by name, to which those of kinds of surfaces are added.
+        textures: of surfaces.
+        maps: the shadow maps.
+    """
+
+    def __init__(self, context: Any, programs: Dict[str, Any], textures: Textures,
+                 maps: Sequence[Any]) -> None:
+        self._context = context
+        self._programs = programs
+        self._textures = textures
+        self._maps = maps
+
+    def lighting(self, view: np.ndarray, clip: np.ndarray, lights: List[Light],
+                 shadows: List[Tuple[int, ShadowView]], scene: Scene) -> Lighting:
+        """What is the same for all surfaces of a picture.
+
+        Args:
+            view: 4x4, view from world.
+            clip: 4x4, clip from view.
+            lights: at most as many as a program counts with.
+            shadows: which of the lights have the first shadow maps, and how these look.
+            scene: ambient light and fog.
+        """
+        fog, kind = scene.fog, ""
+        maps = np.zeros((shaders.MOST_SHADOWS, 4, 4), np.float32)
+        pixels = np.zeros(shaders.MOST_SHADOWS, np.float32)
+        for n, (_, one) in enumerate(shadows):
+            maps[n] = (one.clip @ one.view @ inverse(view)).T
+            pixels[n] = one.pixel
+        values = {"clip": clip.T, "ambient": np.array(scene.ambient[:3]), "up": view[:3, 2],
+                  "shadow_from_view": maps, "shadow_pixel": pixels,
+                  **dict(light_uniforms(lights, view))}
+        if fog is not None and fog.type != "none":
+            kind, density = fog_law(fog)
+            values["fog_color"] = linear(fog.color)
+            values["fog"] = np.array([fog.start, fog.end, density])
+        for n, texture in enumerate(self._maps):
+            texture.use(location=1 + n)
+        return Lighting(kind, light_kinds(lights, [n for n, _ in shadows]), {
+            name: np.ascontiguousarray(value, dtype=np.float32) for name, value in values.items()})
+
+    def draw(self, batch: Batch, lighting: Lighting) -> None:
+        """Draw a batch into the target in use."""
+        if not batch.count:
+            return
+        surface = batch.surface
+        texture = self._textures.of(surface)
+        layers = [(self._textures.of_layer(layer), n < shaders.MOST_BUMPS
+                   and self._textures.bumps_of(layer))
+                  for n, layer in enumerate(surface.layers[:shaders.MOST_LAYERS])]
+        name = self._program(shaders.LitKind(
+            texture is not None, surface.lit, surface.lit and max(surface.specular[:3]) > 0.0,
+            self._textures.cutting(surface) is not None, surface.blended,
+            lighting.fog, lighting.kinds if surface.lit else (),
+            tuple(bool(bumps) for _, bumps in layers)), lighting)
+        program = self._programs[name]
+        for uniform, values in batch.uniforms.items():
+            if uniform in program and isinstance(values, bytes):
+                _write(program[uniform], values)
+            elif uniform in program:
+                program[uniform] = values
+        if texture is not None:
+            texture.use(location=0)
+        for n, (map_of_layer, bumps) in enumerate(layers):
+            map_of_layer.use(location=shaders.FIRST_LAYER + n)
+            if bumps:
+                bumps.use(location=shaders.FIRST_BUMPS + n)
+        batch.draw(name)
+
+    def _program(self, kind: shaders.LitKind, lighting: Lighting) -> str:
+        """The name of the program for surfaces of a kind, with what a picture sets set."""
+        name = repr(kind)
+        if name not in self._programs:
+            made = self._programs[name] = self._context.program(
+                shaders.LIT_VERTEX, shaders.lit_fragment(kind))
+            for unit, sampler in enumerate((
+                    "picture", "shadow0", "shadow1",
+                    *(f"layer{n}" for n in range(shaders.MOST_LAYERS)),
+                    *(f"bumps{n}" for n in range(shaders.MOST_BUMPS)))):
+                if sampler in made:
+                    made[sampler] = unit
+        if name not in lighting.told:
+            lighting.told.add(name)
+            program = self._programs[name]
+            for uniform, values in lighting.values.items():
+                if uniform in program:
+                    _write(program[uniform], values.tobytes())
+        return name
+
+
+def _write(member: Any, values: bytes) -> None:
+    """Set a uniform of float32; of an array the compiler keeps as much as is used."""
+    member.write(values[:member.array_length * member.dimension * 4])
