@@ -320,6 +320,8 @@ _TABLE: Tuple[Tuple[str, Tuple[Tuple[str, str, str, str], ...]], ...] = (
     ("Physics engine", (
         ("engine-died", ERROR, "The physics engine crashed and was restarted from the last "
          "snapshot.", "Report the model that triggers it."),
+        ("engine-replaced", WARNING, "A change failed after a part of it was made, and was undone "
+         "by a new physics engine.", "Correct what the message names."),
         ("engine-stalled", ERROR, "The physics engine stopped responding and is restarted.",
          "Simplify the model that triggers it."),
         ("engine-lost", ERROR, "The physics engine could not be restarted.",

@@ -8,12 +8,13 @@ import subprocess
 import sys
 import threading
 import time
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from conftest import arm, ball, box, ground
 
-from my_simulations.description.model import Inertial, JointAxis, Link, Model
+from my_simulations.description.model import Inertial, Joint, JointAxis, Link, Model
 from my_simulations.description.saved_state import InitialState
 from my_simulations.description.shapes import Collision, Mesh, MeshData, Surface, mesh_key
 from my_simulations.description.world import Physics, World
@@ -22,6 +23,9 @@ from my_simulations.engine.process_engine import ProcessEngine
 from my_simulations.engine.timed_forces import JointPid, TimedWrench
 from my_simulations.errors import CommandError, EngineLostError
 from my_simulations.geometry import STILL, Pose, Twist
+from my_simulations.simulator.history import History
+from my_simulations.simulator.inter_model_joints import InterModelJoints
+from my_simulations.simulator.operations import RemoveModel
 from my_simulations.simulator.simulator import Simulator
 
 
@@ -29,9 +33,10 @@ from my_simulations.simulator.simulator import Simulator
 def start():
     made = []
 
-    def begin(*models, paused=True, physics=None):
+    def begin(*models, paused=True, physics=None, joints=()):
         issues = []
-        sim = Simulator(World(models=[ground(), *models], physics=physics or Physics()),
+        sim = Simulator(World(models=[ground(), *models], physics=physics or Physics(),
+                              joints=list(joints)),
                         engine_factory=ProcessEngine, paused=paused, log=issues.append)
         sim.issues = issues
         made.append(sim)
@@ -388,3 +393,44 @@ def test_a_moving_concave_mesh_is_divided_before_it_is_spawned(start, tmp_path, 
     sim.models.spawn(ball(radius=0.3), Pose((0, 0, 1.2)))
     sim.clock.advance(2000)
     assert sim.states.model_state("ball")[0].position[2] == pytest.approx(0.5, abs=0.05)
+
+
+def _sliding_pair(start):
+    """Two boxes with a prismatic joint between them, and the history of their edits."""
+    slide = Joint("slide", "prismatic", "left::link", "right::link", axis=JointAxis((1, 0, 0)))
+    sim = start(box("left"), box("right"), joints=[slide])
+    return sim, History(sim)
+
+
+def _poses(sim):
+    return [number for name in sim.models.names()
+            for part in sim.states.model_state(name)[0] for number in part]
+
+
+def test_undo_brings_back_both_models_of_a_prismatic_joint(start):
+    sim, history = _sliding_pair(start)
+    history.do("delete right", RemoveModel("right"))
+    history.do("delete left", RemoveModel("left"))
+    history.undo()
+    history.undo()
+    assert sim.models.names() == ["ground", "left", "right"]
+    assert [joint.name for joint in sim.models.inter_model_joints] == ["slide"]
+    assert sim.issues == []
+
+
+def test_a_spawn_that_is_refused_halfway_leaves_no_body_behind(start):
+    sim, _ = _sliding_pair(start)
+    sim.models.spawn(box("rigid"), Pose((0, 3, 0.5)))
+    deleted = sim.models.delete("right")
+    joint = Joint("bad", "prismatic", "rigid::link", "right::link", axis=JointAxis((1, 0, 0)))
+    sim.clock.advance(40)
+    before = _poses(sim)
+    with pytest.raises(CommandError, match="articulated"):
+        sim.models.spawn(box("right"), Pose((0, 5, 0.5)),
+                         deleted=replace(deleted, joints=InterModelJoints([joint])))
+    assert [issue.code for issue in sim.issues] == ["engine-replaced"]
+    assert _poses(sim) == pytest.approx(before, abs=1e-9)
+    sim.models.spawn(box("next"), Pose((7, 0, 0.5)))
+    sim.clock.advance(200)
+    assert sim.states.model_state("next")[0].position == pytest.approx((7, 0, 0.5), abs=1e-3)
+    assert not any("right" in name for name in sim.states.link_names().values())

@@ -22,13 +22,16 @@ class Reply:
         step: step count at which it was applied.
         sequence: ring sequence of the first snapshot that shows its effect.
         value: result value of the command.
-        error: one sentence if it was rejected, and nothing has changed; "" otherwise.
+        error: one sentence if it was rejected; "" otherwise.
+        is_partial: whether a rejected command has changed the world already. The engine then waits
+            to be replaced; the newest snapshot shows the world before the command.
     """
 
     step: int
     sequence: int
     value: object = None
     error: str = ""
+    is_partial: bool = False
 
 
 @dataclass(frozen=True)
@@ -89,8 +92,16 @@ class EngineDiedError(SimulationError):
     """The engine died before it replied."""
 
 
+class EngineNotRunningError(EngineDiedError):
+    """The command was not sent, because there was no engine."""
+
+
 class CommandRefusedError(SimulationError):
     """A rejected command; the message is one sentence for the user."""
+
+
+class PartiallyAppliedError(SimulationError):
+    """A command failed after it had changed the world; the message is one sentence for the user."""
 
 
 class EngineBrokenError(SimulationError):

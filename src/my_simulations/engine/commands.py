@@ -281,10 +281,11 @@ class Restart(Command):
 
 @dataclass(frozen=True)
 class Batch(Command):
-    """Commands applied in the same gap between steps, in order.
+    """Commands applied in the same gap between steps, in order: all of them or none.
 
-    The first rejected command ends the batch: earlier ones stay applied, and the reply has its
-    error. Reply value: the list of their values.
+    The first rejected command ends the batch, and the reply has its error. If earlier ones were
+    applied, the engine is replaced by one with the world before the batch (`Reply.is_partial`).
+    Reply value: the list of their values.
     """
 
     commands: Tuple[Command, ...]

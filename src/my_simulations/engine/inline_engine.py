@@ -6,7 +6,7 @@ import threading
 from concurrent.futures import Future
 from typing import Callable, Dict, List, Tuple
 
-from .api import Backend, EngineDiedError, Event, Reply
+from .api import Backend, EngineDiedError, EngineNotRunningError, Event, Reply
 from .commands import Command, Nudge
 from .ring import Memory, RingReader, RingWriter
 from .runner import Runner
@@ -90,7 +90,7 @@ class InlineEngine:
         future: "Future[Reply]" = Future()
         with self._lock:
             if not self._alive:
-                future.set_exception(EngineDiedError("the engine is not running"))
+                future.set_exception(EngineNotRunningError("the engine is not running"))
                 return future
             self._numbers += 1
             self._waiting[self._numbers] = (command, future)

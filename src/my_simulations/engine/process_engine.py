@@ -20,7 +20,7 @@ from ..child_process import (
     wait_or_kill,
 )
 from . import ring as ring_module
-from .api import EngineDiedError, Event, Reply
+from .api import EngineDiedError, EngineNotRunningError, Event, Reply
 from .commands import Command, Nudge, SetJoints, SetLinkState, SetModelState
 from .message_pipe import Wire
 from .ring import RingReader
@@ -113,7 +113,8 @@ class ProcessEngine:
             with self._lock:
                 wire = self._wire
                 if wire is None:
-                    future.set_exception(EngineDiedError("the physics engine is not running"))
+                    future.set_exception(
+                        EngineNotRunningError("the physics engine is not running"))
                     return future
                 self._numbers += 1
                 number = self._numbers

@@ -10,7 +10,14 @@ import time
 import traceback
 from typing import List, Optional, Protocol, Tuple
 
-from .api import Backend, CommandRefusedError, EngineBrokenError, Event, Reply
+from .api import (
+    Backend,
+    CommandRefusedError,
+    EngineBrokenError,
+    Event,
+    PartiallyAppliedError,
+    Reply,
+)
 from .commands import (
     Advance,
     Batch,
@@ -95,6 +102,8 @@ class Runner:
         # Setting of the clock and step of the last meeting: none before the clock is set, since the
         # last states must stay readable for who puts them back.
         self._met = (self._clock_sets, self._step)
+        # The same of the newest snapshot: that of an earlier engine is the one to restore.
+        self._shown = self._met
         self._advance: Optional[Tuple[int, int]] = None  # (command number, last step)
         self._ended: List[int] = []  # numbers of advances that were ended early, to be answered
         self._due = 0.0
@@ -160,35 +169,63 @@ class Runner:
         if not commands:
             return True
         answers: List[Tuple[int, object, str]] = []
-        refused = False
         for number, command in commands:
+            if isinstance(command, Batch):
+                self._show_before(answers)
             try:
                 value = self._apply(number, command)
                 if not isinstance(command, Advance):
                     answers.append((number, value, ""))
-                    # What comes after a refusal is not vouched for: one number says it all.
-                    self._applied = self._applied if refused else number
             except CommandRefusedError as refusal:
-                refused = True
                 answers.append((number, None, str(refusal)))
+            except PartiallyAppliedError as fault:
+                self._await_replacement(number, str(fault))
             except EngineBrokenError:
                 raise
-            except Exception as fault:  # a fault of the engine's own must not end the world
-                refused = True
+            except Exception as fault:  # of the engine's own; how much it has done is unknown
                 traceback.print_exc()
-                answers.append((number, None, f"the physics engine failed: {fault!r}"))
+                self._await_replacement(number, f"the physics engine failed: {fault!r}")
+        self._answer(answers)
+        return True
+
+    def _show_before(self, answers: List[Tuple[int, object, str]]) -> None:
+        """Have the newest snapshot show the world as it is now, and answer what led to it.
+
+        A batch that fails halfway is undone by a new engine with the world of that snapshot.
+        """
+        if answers or self._ended:
+            self._answer(answers)
+            answers.clear()
+        elif self._shown != (self._clock_sets, self._step):
+            self._write(force=True)
+
+    def _answer(self, answers: List[Tuple[int, object, str]]) -> None:
+        """Write a snapshot that shows the effect of commands, then reply to them."""
+        # Only what precedes the first refusal counts as applied: one number says it all.
+        for number, _, error in answers:
+            if error:
+                break
+            self._applied = number
         sequence = self._write(force=True)
         answers[:0] = [(number, self._step, "") for number in self._ended]
         self._ended.clear()
         for number, value, error in answers:
             self._channel.reply(number, Reply(self._step, sequence, value, error))
         self._report_events()
-        return True
+
+    def _await_replacement(self, number: int, error: str) -> None:
+        """Report a command that changed only a part of the world, and do nothing more.
+
+        No snapshot shows that part. Raises EOFError when the other side hangs up.
+        """
+        self._channel.reply(number, Reply(self._step, self._words[LATEST], None, error, True))
+        while True:
+            self._channel.receive(_IDLE_S)
 
     def _apply(self, number: int, command: Command) -> object:
         self._words[PROGRESS] += 1
         if isinstance(command, Batch):
-            return [self._apply(number, part) for part in command.commands]
+            return self._apply_batch(number, command)
         if isinstance(command, Run):
             if not self._running:
                 self._due = time.perf_counter()
@@ -215,6 +252,17 @@ class Runner:
         if isinstance(command, AddTimedForces) and command.whole:
             command = AddTimedForces(tuple(force.begun(self._step) for force in command.forces))
         return self._backend.apply(command)
+
+    def _apply_batch(self, number: int, batch: Batch) -> List[object]:
+        values: List[object] = []
+        for command in batch.commands:
+            try:
+                values.append(self._apply(number, command))
+            except CommandRefusedError as refusal:
+                if not values:
+                    raise
+                raise PartiallyAppliedError(str(refusal)) from refusal
+        return values
 
     def _end_advance(self) -> None:
         if self._advance is not None:
@@ -368,6 +416,7 @@ class Runner:
             return self._words[LATEST]
         links, joints = self._backend.tables()
         sequence = self._writer.write(self._step, self._clock, links, joints, self._applied)
+        self._shown = (self._clock_sets, self._step)
         self._words[CLOCK_SETS] = self._clock_sets
         if force and self._words[BELL]:
             self._channel.bell()

@@ -131,8 +131,12 @@ class SimClock:
         """Stay paused after a restart of the engine, because stepping crashes it repeatedly."""
         self._paused = True
 
-    def start_command(self, start_ns: int, step_size: float) -> Command:
-        """Set the clock to a sim time (ns), and the step at which a limited run pauses."""
-        step = round(start_ns * 1e-9 / step_size)
-        self._horizon = FOREVER if self._steps == FOREVER else step + self._steps
-        return SetClock(step, start_ns)
+    def begin(self, start_ns: int, step_size: float) -> None:
+        """Set the step at which a limited run pauses, for a world that begins at a sim time."""
+        if self._steps != FOREVER:
+            self._horizon = self.start_command(start_ns, step_size).step + self._steps
+
+    @staticmethod
+    def start_command(start_ns: int, step_size: float) -> SetClock:
+        """The command that sets the clock to a sim time (ns)."""
+        return SetClock(round(start_ns * 1e-9 / step_size), start_ns)

@@ -7,6 +7,7 @@ from typing import List, Optional
 
 from ..errors import CommandError
 from .operations import Operation
+from .registry import UnknownEntityError
 from .simulator import Simulator
 
 LONGEST = 500
@@ -108,8 +109,8 @@ class History:
     def undo(self, to: int = 0) -> str:
         """Undo the newest step, or all down to the `to`-th newest; returns its label.
 
-        Raises CommandError: nothing to undo, or an entity that the step needs was deleted; such a
-        step is dropped.
+        Raises CommandError: nothing to undo, the engine refused the step, or an entity that the
+        step needs was deleted; only such a step is dropped.
         """
         return self._move(self._done, self._undone, to, "undo")
 
@@ -139,6 +140,8 @@ class History:
                 try:
                     inverse = step.inverse.apply(self._simulator)
                 except CommandError as fault:
+                    if not isinstance(fault, UnknownEntityError):
+                        source.append(step)
                     raise CommandError(f"cannot {verb} {step.label!r}: {fault}") from fault
                 target.append(Step(step.label, inverse, step.number, step.author))
             return step.label

@@ -91,6 +91,10 @@ class InterModelJoints:
         return self._of([one for one in self._all if one.joint.name != joint.name]
                         + [_Connection(joint, parent_from_joint)])
 
+    def named(self, name: str) -> "InterModelJoints":
+        """The joint of this name."""
+        return self._of([one for one in self._all if one.joint.name == name])
+
     def removed(self, names: Sequence[str]) -> "InterModelJoints":
         """Without the joints of these names."""
         return self._of([one for one in self._all if one.joint.name not in names])
@@ -123,13 +127,14 @@ class InterModelJoints:
 class DeletedModel:
     """What restores a deleted model: its position in the order, its joints to other models.
 
-    `launched`, `start`: see `Entity`.
+    `launched`, `start`, `articulated`: see `Entity`.
     """
 
     slot: OrderSlot
     joints: InterModelJoints
     launched: bool = False
     start: Optional[InitialState] = None
+    articulated: bool = False
 
 
 def _touches(joint: Joint, model: str) -> bool:

@@ -100,8 +100,11 @@ class Models(KnownModels):
             between = self._between.joined(again)
             with session.registry_lock:
                 old = self._replaceable(model.name, replace)
+                # A joint to a model that is restored later may need it articulated.
+                articulated = between.slides(model.name) or (deleted is not None
+                                                             and deleted.articulated)
                 entity = session.new_entity(model, self._world_pose(model, pose, frame), meshes,
-                                            between.slides(model.name))
+                                            articulated)
                 entity.launched = launched or (deleted is not None and deleted.launched)
                 entity.start = (self._saved_starts.pop(model.name, None) if deleted is None
                                 else deleted.start)
@@ -110,7 +113,8 @@ class Models(KnownModels):
                     load_command(entity, state),
                     *initial_commands(entity, entity.start if state is None else None),
                     *again.commands(session.registry, model.name, entity),
-                    *([] if old is None else [RemoveModel(old.model_id)]))))
+                    *([] if old is None else [RemoveModel(old.model_id)]),
+                    *self._pins_with(model.name, entity))))
             except CommandError:
                 self._forget(entity)
                 raise
@@ -121,8 +125,6 @@ class Models(KnownModels):
                 if old is not None:
                     self._between = self._between.without(model.name)
                     self._forget(old)
-            if old is not None and model.name in self._pinned + self._held:
-                session.call(self._pin_command())
 
     def delete(self, name: str) -> DeletedModel:
         """Delete a model; returns when it is gone, with the data that `spawn` restores it from.
@@ -140,6 +142,7 @@ class Models(KnownModels):
                     self._between.removed(self._attached).of(name),
                     entity.launched,
                     entity.start,
+                    entity.articulated,
                 )
                 session.registry.remove(name)
                 self._between = self._between.without(name)
@@ -212,7 +215,8 @@ class Models(KnownModels):
                     replaced(load_command(entity), inherit=old.model_id),
                     RemoveModel(old.model_id),
                     *self._between.commands(session.registry, name, entity),
-                    *([AddTimedForces(tuple(forces))] if forces else []), *driving)))
+                    *([AddTimedForces(tuple(forces))] if forces else []), *driving,
+                    *self._pins_with(name, entity))))
             except CommandError:
                 self._forget(entity)
                 raise
@@ -225,8 +229,6 @@ class Models(KnownModels):
             self._drives.adopt(driving)
             self._pinned, self._held = ([model.name if one == name else one for one in names]
                                         for names in (self._pinned, self._held))
-            if model.name in self._pinned or model.name in self._held:
-                session.call(self._pin_command())
 
     def set_link_inertial(self, link: str, inertial: Inertial,
                           gravity: Optional[bool] = None) -> None:
@@ -258,26 +260,34 @@ class Models(KnownModels):
             with self._session.registry_lock:
                 for name in names:
                     self._session.registry.model(name)
+            self._session.call(self._pin_command([*names, *self._held]))
             self._pinned = list(names)
-            self._session.call(self._pin_command())
 
     def hold(self, name: str, held: bool) -> None:
-        """Keep one model at rest where it is put, or no more; besides those that are pinned.
+        """Keep one model at rest where it is put, or release it; besides those that are pinned.
 
         Raises UnknownEntityError.
         """
         with self._session.structure_lock:
             with self._session.registry_lock:
                 self._session.registry.model(name)
-            self._held = [one for one in self._held if one != name] + ([name] if held else [])
-            self._session.call(self._pin_command())
+            wanted = [one for one in self._held if one != name] + ([name] if held else [])
+            self._session.call(self._pin_command([*self._pinned, *wanted]))
+            self._held = wanted
 
-    def _pin_command(self) -> PinModels:
+    def _pin_command(self, names: Sequence[str]) -> PinModels:
         with self._session.registry_lock:
             registry = self._session.registry
-            return PinModels(tuple(registry.model(name).model_id
-                              for name in dict.fromkeys(self._pinned + self._held)
-                              if name in registry))
+            return PinModels(tuple(registry.model(name).model_id for name in dict.fromkeys(names)
+                                   if name in registry))
+
+    def _pins_with(self, name: str, entity: Entity) -> List[PinModels]:
+        """The command that pins `entity` if the model `name`, which it replaces, is pinned."""
+        names = [*self._pinned, *self._held]
+        if name not in names:
+            return []
+        others = self._pin_command([one for one in names if one != name])
+        return [PinModels((*others.model_ids, entity.model_id))]
 
     # -- joints between models ---------------------------------------------------------------------
 
@@ -342,15 +352,16 @@ class Models(KnownModels):
                 left_out = f"skipped model '{model.name}': {fault}"
                 self._losses.append(left_out)
                 session.log(error("model-refused", left_out, file=session.world.file))
-        self._between, issues = self._between.located(session.registry)
+        located, issues = self._between.located(session.registry)
         for issue in issues:
             session.log(replaced(issue, file=session.world.file))
-        for command in self._between.commands(session.registry):
+        self._between = InterModelJoints()  # a restarted engine gets those that were made
+        for command in located.commands(session.registry):
             try:
                 session.call(command)
+                self._between = self._between.joined(located.named(command.joint.name))
             except CommandError as fault:
                 session.log(error("joint-refused", str(fault), file=session.world.file))
-        self._between = self._between.present(session.registry)
 
     def divide_meshes(self, world: World, meshes: Dict[str, MeshTable],
                       gently: bool = False) -> None:
@@ -370,18 +381,25 @@ class Models(KnownModels):
                 self._forget(entity)
         self._pinned, self._held, self._attached = [], [], []
 
-    def commands_after_loading(self) -> List[Command]:
-        """Commands to send after all models were loaded: joints between models, and pins."""
-        commands: List[Command] = list(self._between.commands(self._session.registry))
+    def commands_after_loading(self, reset: bool = False) -> List[Command]:
+        """Commands to send after all models were loaded: joints between models, and pins.
+
+        With `reset`, without the joints of `attach`.
+        """
+        between = self._between.removed(self._attached) if reset else self._between
+        commands: List[Command] = list(between.commands(self._session.registry))
         if self._pinned or self._held:
-            commands.append(self._pin_command())
+            commands.append(self._pin_command([*self._pinned, *self._held]))
         return commands
 
-    def detach_all(self) -> List[Command]:
-        """Forget what `attach` has made: the world begins anew. Returns what undoes it."""
-        names, self._attached = tuple(self._attached), []
-        self._between = self._between.removed(names)
-        return [DisconnectModels(names)] if names else []
+    def detach_commands(self) -> List[Command]:
+        """Commands that remove the joints of `attach` from the engine."""
+        return [DisconnectModels(tuple(self._attached))] if self._attached else []
+
+    def forget_attached(self) -> None:
+        """Forget the joints of `attach`, after the engine has removed them."""
+        self._between = self._between.removed(self._attached)
+        self._attached = []
 
     def restore_commands(self, snapshot: Snapshot) -> List[Command]:
         """Commands that load every model into a new engine, in the states of a snapshot."""

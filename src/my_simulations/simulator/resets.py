@@ -5,6 +5,7 @@ from typing import List
 
 from ..engine.commands import Batch, Command, Pause, Restart, SetClock, SetModelState
 from ..engine.timed_forces import AddTimedForces, ClearTimedForces
+from ..errors import CommandError
 from ..geometry import STILL
 from .clock import SimClock
 from .drives import Drives
@@ -44,9 +45,10 @@ class Resets:
         session = self._session
         with session.structure_lock:
             entities = session.registry.entities()
-            session.call(Batch((*self._models.detach_all(), *(
+            session.call(Batch((*self._models.detach_commands(), *(
                 SetModelState(entity.model_id, entity.initial_pose, STILL)
                 for entity in entities if entity.link_names))))
+            self._models.forget_attached()
             self._move_linkless_models(entities)
             self.world_resets += 1
 
@@ -64,20 +66,26 @@ class Resets:
             entities = session.registry.entities()
             clock = SetClock(0, 0) if not to_start else self._clock.start_command(
                 session.world.initial_ns, self._clock.now()[1].step_ps * 1e-12)
-            self.simulation_resets += 1
             commands: List[Command] = [
-                *self._models.detach_all(),
+                *self._models.detach_commands(),
                 Restart(tuple((entity.model_id, entity.initial_pose) for entity in entities)),
                 clock]
             for entity in entities:
                 commands += initial_commands(entity, entity.start)
-            commands += self._models.commands_after_loading()
-            session.call(Batch(tuple(commands)))
+            commands += self._models.commands_after_loading(reset=True)
+            self.simulation_resets += 1
+            restarts = session.supervisor.restarts
+            try:
+                session.call(Batch(tuple(commands)))
+            except CommandError:
+                self.simulation_resets -= 1
+                raise
+            self._models.forget_attached()
             self._move_linkless_models(entities)
             dropped = self._wrenches.ids
             self._wrenches.replace_all()
             self._drives.forget_all()
-            if dropped:  # a restarted engine may have received them already
+            if session.supervisor.restarts != restarts:  # the new engine may have received them
                 session.call(ClearTimedForces(dropped))
 
     def _move_linkless_models(self, entities: List[Entity]) -> None:

@@ -6,7 +6,7 @@ snapshot shows their effect. All parts are safe from any thread.
 from __future__ import annotations
 
 import traceback
-from typing import Callable, ContextManager, Dict, List, Optional
+from typing import Callable, ContextManager, Dict, List, Optional, Tuple
 
 from ..description.shapes import MeshTable
 from ..description.world import World
@@ -107,6 +107,7 @@ class Simulator:
         Models that cannot be loaded are logged and skipped. Raises CommandError if no engine
         starts.
         """
+        self._session.call(Batch(self._settings_of(self.world)))
         self._fill()
         self._session.supervisor.engine.on_event(self._on_event)
         for command in self.clock.resume_commands():
@@ -125,24 +126,30 @@ class Simulator:
         session = self._session
         self.models.divide_meshes(world, meshes or {}, gently=True)  # the old world runs meanwhile
         with session.structure_lock:
-            session.call(Batch((Pause(), Clear(), ClearTimedForces(self.wrenches.ids))))
+            restarts = session.supervisor.restarts
+            # What can be refused comes with the end of the old world, so that it can stay.
+            session.call(Batch((Pause(), Clear(), ClearTimedForces(self.wrenches.ids),
+                                *self._settings_of(world))))
             self.models.forget_all()
             self.wrenches.replace_all()
             self.drives.forget_all()
-            # Again: an engine that was restarted just now has received the old models.
-            session.call(Batch((Pause(), Clear())))
+            if session.supervisor.restarts != restarts:  # the new engine received the old models
+                session.call(Batch((Pause(), Clear(), *self._settings_of(world))))
             session.world, self._world_meshes = world, meshes or {}
             self.physics.adopt_world()
             self._fill()
             for command in self.clock.resume_commands():
                 session.call(command)
 
+    def _settings_of(self, world: World) -> Tuple[Command, ...]:
+        """Commands that set the physics and the clock of a world."""
+        return (self.physics.command(world.physics, world.gravity),
+                self.clock.start_command(world.initial_ns, world.physics.max_step_size))
+
     def _fill(self) -> None:
-        """Load settings, clock and models of the world into an empty engine."""
+        """Load the models of the world into an empty engine that has its settings."""
+        self.clock.begin(self.world.initial_ns, self.world.physics.max_step_size)
         with self.clock.stopped_while_loading():
-            self._session.call(self.physics.command())
-            self._session.call(self.clock.start_command(
-                self.world.initial_ns, self.physics.settings.max_step_size))
             self.models.load_all(self._world_meshes)
 
     def _on_event(self, event: Event) -> None:

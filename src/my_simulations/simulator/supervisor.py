@@ -11,18 +11,32 @@ import queue
 import threading
 import time
 from concurrent.futures import TimeoutError as FutureTimeout
-from typing import Callable, List, Optional, Tuple
+from typing import Callable, List, NamedTuple, Optional, Tuple
 
-from ..engine.api import Engine, EngineDiedError, Reply
+from ..engine.api import Engine, EngineDiedError, EngineNotRunningError, Reply
 from ..engine.commands import Advance, Batch, Command, LoadModel
 from ..engine.ring import HEARTBEAT, PROGRESS
-from ..errors import CommandError, EngineLostError, EngineTimeoutError, Issue, error
+from ..errors import CommandError, EngineLostError, EngineTimeoutError, Issue, error, warning
 from .watchdog import PERIOD_S, Watchdog
 
 _COMMAND_S = 120.0    # time limit of a command (a large mesh takes long)
 _RAPID_S = 10.0       # _RAPID_DEATHS crashes in this time: stepping the world crashes the engine
 _RAPID_DEATHS = 3
 _TRIES = 2            # a command that crashes this many engines is not sent again
+
+
+class _Death(NamedTuple):
+    """The end of an engine.
+
+    Attributes:
+        reason: why it ended.
+        is_replaced: it was killed because a change had failed halfway.
+        at_a_load: it crashed while it loaded a model.
+    """
+
+    reason: str
+    is_replaced: bool
+    at_a_load: bool
 
 
 class Supervisor:
@@ -47,9 +61,11 @@ class Supervisor:
         self._log = log
         self._watchdog = watchdog or Watchdog()
         self._restoring = False
+        self.restarts = 0  # how many engines have received the world after a crash
+        self._is_replacing = False  # the engine was killed to undo a part of a change
         self._ready = threading.Event()
         self._closing = False
-        self._deaths: "queue.Queue[Optional[Tuple[str, bool]]]" = queue.Queue()
+        self._deaths: "queue.Queue[Optional[_Death]]" = queue.Queue()
         self._killers: List[Tuple[Command, str]] = []
         self._recent: List[float] = []
         self._failure: Optional[str] = None
@@ -91,11 +107,11 @@ class Supervisor:
                 raise CommandError(self._failure)
             try:
                 reply = self._answer(engine, command)
-            except EngineDiedError:
+            except EngineDiedError as death:
                 deaths += self._await_restart(command)
-                if isinstance(command, Advance) and deaths:
+                if isinstance(command, Advance) and not isinstance(death, EngineNotRunningError):
                     raise EngineLostError(
-                        f"{deaths[0]} during this request; the world was restored to "
+                        f"{death} during this request; the world was restored to "
                         f"its state at step {engine.ring.step}"
                     ) from None
                 if len(deaths) >= _TRIES:
@@ -104,6 +120,8 @@ class Supervisor:
                         "was restored to its state before the request"
                     ) from None
                 continue
+            if reply.is_partial:
+                self._replace(engine, reply.error)
             if reply.error:
                 raise CommandError(reply.error)
             return reply
@@ -115,6 +133,17 @@ class Supervisor:
         self._deaths.put(None)
         if self._thread is not threading.current_thread():
             self._thread.join(10.0)
+
+    def _replace(self, engine: Engine, why: str) -> None:
+        """Replace an engine that holds a part of a change; returns when its successor has the world
+        before that change. Raises CommandError if there is none in time.
+        """
+        self._ready.clear()
+        self._is_replacing = True
+        engine.kill(f"a change failed halfway: {why}")
+        if not self._ready.wait(self._patience):
+            raise CommandError(f"{why}; the physics engine did not restart within "
+                               f"{self._patience:g} s")
 
     def _await_restart(self, command: Command) -> List[str]:
         """Why the engine crashed, if this command caused it."""
@@ -146,7 +175,7 @@ class Supervisor:
                 continue
             if death is None or self._closing:
                 break
-            self._revive(*death)
+            self._revive(death)
         if self._engine is not None:
             self._engine.close()
 
@@ -164,29 +193,36 @@ class Supervisor:
         if self._closing:
             return
         self._ready.clear()
-        if unanswered and not self._restoring:
+        death = _Death(reason, self._is_replacing, bool(unanswered) and not self._restoring
+                       and _brings_models(unanswered[0]))
+        self._is_replacing = False
+        if unanswered and not death.is_replaced and not self._restoring:
             self._killers.append((unanswered[0], reason))
-        self._deaths.put((reason, bool(unanswered) and not self._restoring
-                          and _brings_models(unanswered[0])))
+        self._deaths.put(death)
 
-    def _revive(self, reason: str, at_a_load: bool) -> None:
+    def _revive(self, death: _Death) -> None:
         now = time.monotonic()
         self._recent = [at for at in self._recent if now - at < _RAPID_S]
-        if not at_a_load:  # otherwise the world is not the cause
+        if not (death.is_replaced or death.at_a_load):  # otherwise the world is not the cause
             self._recent.append(now)
         paused = len(self._recent) >= _RAPID_DEATHS
         if len(self._recent) > 3 * _RAPID_DEATHS:
-            self._failure = f"{reason} repeatedly; restart the simulator"
+            self._failure = f"{death.reason} repeatedly; restart the simulator"
             self._log(error("engine-lost", self._failure))
             self._ready.set()
             return
-        self._log(error("engine-died", f"{reason}; restarting from the last snapshot"
-                        + (", paused because of repeated crashes" if paused else "")))
+        if death.is_replaced:
+            self._log(warning("engine-replaced", f"{death.reason}; the physics engine is replaced "
+                              "by one with the world before the change"))
+        else:
+            self._log(error("engine-died", f"{death.reason}; restarting from the last snapshot"
+                            + (", paused because of repeated crashes" if paused else "")))
         assert self._engine is not None
         self._watchdog.begin()
         self._restoring = True
         try:
             self._engine.restart()
+            self.restarts += 1
             self._restore(self._submit, paused)
         except EngineDiedError:
             return  # it crashed again: that crash is in the queue

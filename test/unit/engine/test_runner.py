@@ -158,12 +158,32 @@ def test_commands_work_while_paused_and_the_reply_names_a_snapshot_that_shows_th
     assert engine.ring.read(reply.sequence).link(0)[0].position == (5, 0, 0)
 
 
-def test_a_batch_is_applied_in_one_gap_and_ends_at_the_first_refusal(engine):
+def test_a_batch_that_is_refused_halfway_is_reported_as_partial_and_never_shown(engine):
     load(engine)
     reply = ask(engine, Batch((SetModelState(1, Pose((1, 0, 0)), Twist()), RemoveModel(77),
                                SetModelState(1, Pose((2, 0, 0)), Twist()))))
-    assert "not there" in reply.error
-    assert engine.ring.link(0)[0].position == (1, 0, 0)
+    assert "not there" in reply.error and reply.is_partial
+    assert engine.ring.link(0)[0].position == (0, 0, 0)
+
+
+def test_a_batch_that_is_refused_at_its_first_command_has_changed_nothing(engine):
+    load(engine)
+    reply = ask(engine, Batch((RemoveModel(77), SetModelState(1, Pose((1, 0, 0)), Twist()))))
+    assert "not there" in reply.error and not reply.is_partial
+    assert ask(engine, Advance(1)).step == 1
+    assert engine.ring.link(0)[0].position == (0, 0, 0)
+
+
+def test_the_snapshot_before_a_batch_is_of_the_step_at_which_it_is_applied(engine):
+    load(engine)
+    ask(engine, SetModelState(1, Pose(), Twist((1.0, 0, 0))))
+    ask(engine, SetPhysics(PhysicsSettings(rate=0.0)))
+    ask(engine, Run())
+    until(lambda: engine.ring.step > 1000)
+    reply = ask(engine, Batch((SetModelState(1, Pose((9, 0, 0)), Twist()), RemoveModel(77))))
+    shown = engine.ring.read()
+    assert reply.is_partial and shown.step == reply.step == engine.ring.step
+    assert shown.link(0)[0].position[0] == pytest.approx(reply.step * 0.001)
 
 
 def test_real_time_is_kept_and_late_steps_are_made_up(engine):
