@@ -20,7 +20,9 @@ from my_simulations.description.shapes import (
 )
 from my_simulations.geometry import IDENTITY, Pose, quat_from_rpy
 from my_simulations.sensing.rays.embree import Embree, library_path
-from my_simulations.sensing.rays.ray_scene import RayScene, RayShape, fan_directions
+from my_simulations.sensing.rays.fan import fan_directions
+from my_simulations.sensing.rays.ray_scene import RayScene
+from my_simulations.sensing.rays.ray_shapes import RayShape
 
 TENTH_MM = 1e-4
 LEVEL = np.zeros(3)
@@ -178,6 +180,39 @@ def test_a_mesh_is_seen_as_its_triangles_not_as_its_hull(scene, tmp_path):
     scene.move(table([Pose()]))
     assert ranges(scene, (1.5, 3.0, 0.5), (0, -1, 0)) == pytest.approx(2.0, abs=1e-6)
     assert ranges(scene, (0.5, 3.0, 0.5), (0, -1, 0)) == pytest.approx(1.0, abs=1e-6)
+
+
+HOUSINGS = [Box((0.1, 0.1, 0.1)), Sphere(0.05), Cylinder(0.05, 0.1), Capsule(0.04, 0.05),
+            Ellipsoid((0.05, 0.04, 0.06)), Cone(0.06, 0.2)]
+
+
+@pytest.mark.parametrize("housing", HOUSINGS, ids=lambda shape: type(shape).__name__)
+def test_rays_pass_the_back_faces_of_shapes_that_are_not_double_sided(scene, housing):
+    wall = RayShape(Box((0.2, 60.0, 60.0)), Pose((3.1, 0.0, 0.0)), 7.0, double_sided=False)
+    turned = Pose((0.0, 0.0, 0.0), quat_from_rpy(0.4, 0.2, 0.3))
+    scene.add("m", [(0, [RayShape(housing, turned, 1.0, double_sided=False)]), (1, [wall])])
+    scene.move(table([Pose((1.0, 2.0, 3.0)), Pose((1.0, 2.0, 3.0))]))
+    ways = fan_directions(40, -1.0, 1.0, 9, -0.5, 0.5)
+    origin = np.array((1.0, 2.0, 3.0))
+    found, retro, rows = scene.cast(origin, ways, 0.0, 50.0)
+    assert found == pytest.approx(3.0 / ways[:, 0], rel=1e-5)
+    assert (retro == 7.0).all() and (rows == 1).all()
+    # From outside its front faces are met as before.
+    found, retro, rows = scene.cast(np.array((-9.0, 2.0, 3.0)), np.array([(1.0, 0, 0)]), 0, 50)
+    assert rows == [0] and 9.9 < found[0] < 10.0 and retro == [1.0]
+
+
+def test_a_double_sided_shape_is_met_from_within(scene):
+    scene.add("m", [(0, [RayShape(Box((1.0, 1.0, 1.0)), IDENTITY, 0.0, double_sided=True)])])
+    scene.move(table([IDENTITY]))
+    assert ranges(scene, LEVEL, [(1, 0, 0)]) == pytest.approx([0.5])
+
+
+def test_a_ray_passes_many_back_faces_one_after_the_other(scene):
+    scene.add("m", [(0, [RayShape(Box((size, size, size)), IDENTITY, 0.0, double_sided=False)
+                         for size in np.linspace(0.1, 1.0, 20)])])
+    scene.move(table([IDENTITY]))
+    assert ranges(scene, LEVEL, [(1, 0, 0), (0, -1, 0)]).tolist() == [math.inf] * 2
 
 
 def test_a_shape_that_cannot_be_read_is_told_and_passed_through(scene):

@@ -28,7 +28,8 @@ from my_simulations.sensing.api import (
 from my_simulations.sensing.camera.renderer import Renderer
 from my_simulations.sensing.poses import matrix
 from my_simulations.sensing.rays.embree import Embree
-from my_simulations.sensing.rays.ray_scene import RayScene, RayShape
+from my_simulations.sensing.rays.ray_scene import RayScene
+from my_simulations.sensing.rays.ray_shapes import RayShape
 
 ALL = (RGB, DEPTH, LABELS)
 BRIGHT = Scene(ambient=(1.0, 1.0, 1.0, 1.0), background=(0.0, 0.0, 0.0, 1.0))

@@ -23,6 +23,7 @@ class Look:
         alpha_test: what of the texture has less alpha, 0..1, is not drawn at all; 0 for no such
             limit.
         blended: the texture's alpha makes it transparent.
+        double_sided: cameras see its faces from behind, too.
         layers: textures of a terrain, blended by height; empty for everything else. They take the
             place of colours and texture.
     """
@@ -39,4 +40,5 @@ class Look:
     lit: bool = True
     alpha_test: float = 0.0
     blended: bool = False
+    double_sided: bool = False
     layers: Tuple[TerrainLayer, ...] = ()

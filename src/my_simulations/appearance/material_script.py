@@ -35,6 +35,7 @@ class ScriptMaterial:
     lighting: bool = True
     blend: bool = False
     alpha_test: float = 0.0
+    double_sided: bool = False
     texture: str = ""
     scale: Tuple[float, float] = (1.0, 1.0)
     parent: str = field(default="", repr=False)
@@ -132,6 +133,8 @@ def _setting(line: List[str], material: ScriptMaterial) -> None:
         numbers = _numbers(values[1:])
         kept = values[0] in ("greater", "greater_equal")
         material.alpha_test = min(numbers[0] / 255.0, 1.0) if kept and numbers else 0.0
+    elif word == "cull_hardware" and values:
+        material.double_sided = values[0] == "none"
     elif word == "texture" and values:
         material.texture = "" if "\0" in values[0] else values[0]
     elif word == "scale" and len(_numbers(values)) >= 2:

@@ -52,6 +52,8 @@ class Materials:
         if material.texture:
             found = replace(found, texture=self._path(material.texture), pattern="",
                             scale=(1.0, 1.0))
+        if material.double_sided:
+            found = replace(found, double_sided=True)
         if found.diffuse is not None and found.transparency == 0.0:
             found = replace(found, transparency=min(1.0, max(0.0, 1.0 - found.diffuse[3])))
         return found
@@ -90,7 +92,7 @@ class Materials:
                     texture, scale=script.scale if texture else (1.0, 1.0),
                     transparency=transparency, lit=script.lighting,
                     alpha_test=script.alpha_test if texture else 0.0,
-                    blended=script.blend and bool(texture))
+                    blended=script.blend and bool(texture), double_sided=script.double_sided)
 
     def _load(self, uri: str, wanted: str) -> List[str]:
         """Read the scripts of a URI; returns the folders that may contain their images."""

@@ -284,6 +284,7 @@ class Material:
         script_uris: URIs of Ogre material scripts.
         script_name: name of a material in the scripts, "" for none.
         texture: URI of a texture image as written in a URDF file, "" for none.
+        double_sided: cameras see its faces from behind, too.
     """
 
     ambient: Optional[Color] = None
@@ -293,6 +294,7 @@ class Material:
     script_uris: List[str] = field(default_factory=list)
     script_name: str = ""
     texture: str = ""
+    double_sided: bool = False
 
 
 @dataclass

@@ -9,6 +9,7 @@ from typing import Any, Callable, Dict, List, Optional, Tuple, Union
 
 import numpy as np
 
+from ..appearance.looks import Look
 from ..engine.message_pipe import Wire
 from ..engine.ring import RingReader
 from .api import (
@@ -198,7 +199,7 @@ class _Rays:
     def _fan(self, fan: Any) -> np.ndarray:
         found = self._fans.get(fan)
         if found is None:
-            from .rays.ray_scene import fan_directions
+            from .rays.fan import fan_directions
 
             found = self._fans[fan] = fan_directions(
                 fan.samples, fan.min_angle, fan.max_angle, fan.rows, fan.min_elevation,
@@ -219,7 +220,7 @@ class _Rays:
 
     @staticmethod
     def _add(scene: Any, sees: str, body: Body) -> None:
-        from .rays.ray_scene import RayShape
+        from .rays.ray_shapes import RayShape
 
         links: List[Tuple[int, List[RayShape]]] = []
         for n, link in enumerate(body.model.links):
@@ -227,8 +228,9 @@ class _Rays:
                 shapes = [RayShape(one.geometry, one.pose, one.laser_retro, endless=True)
                           for one in link.collisions]
             else:
-                shapes = [RayShape(one.geometry, one.pose, one.laser_retro)
-                          for one in link.visuals if one.transparency < 1.0]
+                shapes = [RayShape(one.geometry, one.pose, one.laser_retro,
+                                   double_sided=_is_double_sided(body.looks.get((n, m))))
+                          for m, one in enumerate(link.visuals) if one.transparency < 1.0]
             links.append((body.first_link_row + n, shapes))
         scene.add(body.name, links)
 
@@ -270,6 +272,10 @@ class _Camera:
         pictures: Pictures = self._renderer.render(request.camera, frame, poses, request.outputs,
                                                    step, request.ns)
         return pictures
+
+
+def _is_double_sided(look: Optional[Look]) -> bool:
+    return look is not None and look.double_sided
 
 
 def sensor_frame(mount: Mount, poses: np.ndarray) -> np.ndarray:

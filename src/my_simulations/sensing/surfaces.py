@@ -23,7 +23,8 @@ class Surface:
 
     `picture`: a path, a PIL image, or None; `pattern`: a drawn one; `brightness`: times the
     diffuse colour in linear units; `alpha_test`: what of the picture has less alpha is not drawn;
-    `blended`: the picture's alpha makes it transparent; `layers`: of a terrain, instead of a
+    `blended`: the picture's alpha makes it transparent; `double_sided`: its faces are seen from
+    behind, too; `layers`: of a terrain, instead of a
     picture and colours: texture coordinates are m from its corner of least x and greatest y then,
     and `base` is the height, m, from which those of the layers count.
     """
@@ -39,6 +40,7 @@ class Surface:
     brightness: float = 1.0
     alpha_test: float = 0.0
     blended: bool = False
+    double_sided: bool = False
     layers: Tuple[TerrainLayer, ...] = ()
     base: float = 0.0
 
@@ -100,7 +102,8 @@ def own_surface(part: Any, opacity: float) -> Surface:
     paint = part.paint
     color = paint.color or _OF_MESH
     return Surface(color, emissive=paint.emission or _DULL, picture=paint.picture,
-                   opacity=opacity * color[3], alpha_test=paint.alpha_test, blended=paint.blended)
+                   opacity=opacity * color[3], alpha_test=paint.alpha_test, blended=paint.blended,
+                   double_sided=paint.double_sided)
 
 
 def piece_of(vertices: np.ndarray, normals: np.ndarray, uv: np.ndarray, triangles: np.ndarray,
@@ -124,4 +127,5 @@ def surface_of(look: Optional[Look], opacity: float) -> Surface:
     return Surface(diffuse, specular, look.emissive or _DULL, look.texture or None,
                    look.pattern, (1.0 / (look.scale[0] or 1.0), 1.0 / (look.scale[1] or 1.0)),
                    (1.0 - look.transparency) * opacity, look.lit,
-                   alpha_test=look.alpha_test, blended=look.blended)
+                   alpha_test=look.alpha_test, blended=look.blended,
+                   double_sided=look.double_sided)

@@ -200,3 +200,4 @@ def test_what_a_script_rejects_by_alpha_is_not_drawn():
     found = read_materials(text)
     assert found["Leaf"].alpha_test == pytest.approx(128 / 255)
     assert found["Bark"].alpha_test == 0.0
+    assert found["Leaf"].double_sided and not found["Bark"].double_sided

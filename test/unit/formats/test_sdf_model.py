@@ -210,13 +210,14 @@ def test_an_unknown_element_is_kept_with_a_warning_and_a_guess():
 def test_materials_keep_colours_and_scripts():
     link, issues = link_of(
         '<visual name="v"><geometry><box/></geometry><transparency>0.5</transparency>'
-        "<cast_shadows>0</cast_shadows><material><ambient>1 0 0</ambient>"
+        "<cast_shadows>0</cast_shadows><material><double_sided>1</double_sided>"
+        "<ambient>1 0 0</ambient>"
         "<diffuse>0 1 0 0.5</diffuse><script><uri>model://a/scripts</uri><uri>model://a/t</uri>"
         "<name>A/B</name></script><shader type='pixel'/></material></visual>")
     visual = link.visuals[0]
     assert issues == []
     assert (visual.transparency, visual.cast_shadows) == (0.5, False)
-    assert visual.material.ambient == (1, 0, 0, 1)
+    assert visual.material.ambient == (1, 0, 0, 1) and visual.material.double_sided
     assert visual.material.diffuse == (0, 1, 0, 0.5)
     assert visual.material.specular is None
     assert visual.material.script_uris == ["model://a/scripts", "model://a/t"]

@@ -27,6 +27,8 @@ class Paint(NamedTuple):
         emission: what it glows, times the picture; None for nothing.
         blended: whether the picture's alpha makes it transparent.
         alpha_test: what of the picture has less alpha is not drawn.
+        double_sided: cameras see it from behind, too. COLLADA's element of that name has no effect,
+            as in Gazebo.
     """
 
     color: Optional[Color] = None
@@ -34,6 +36,7 @@ class Paint(NamedTuple):
     emission: Optional[Color] = None
     blended: bool = False
     alpha_test: float = HOLE
+    double_sided: bool = False
 
 
 def effect_of(material: Any, folder: str) -> Paint:
@@ -124,7 +127,8 @@ def _of_gltf(material: Any) -> Paint:
     cutoff = 0.5 if material.alphaCutoff is None else float(material.alphaCutoff)
     return Paint((*rgb, opacity), picture, emission,
                  blends and picture is not None and picture.mode not in ("RGB", "L", "1"),
-                 cutoff if material.alphaMode == "MASK" else HOLE if blends else 0.0)
+                 cutoff if material.alphaMode == "MASK" else HOLE if blends else 0.0,
+                 bool(material.doubleSided))
 
 
 def _rgb(color: Any) -> Tuple[float, float, float]:

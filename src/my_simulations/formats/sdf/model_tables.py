@@ -172,7 +172,8 @@ MATERIAL = Table("material", Material, {
     "script": Group({
         "uri": Value("script_uris", TEXT, repeated=True), "name": Value("script_name", TEXT),
     }),
-    **_kept("shader", "lighting", "shininess", "double_sided", "pbr", "render_order"),
+    "double_sided": Value("double_sided", BOOL),
+    **_kept("shader", "lighting", "shininess", "pbr", "render_order"),
 }, level=WARNING, use=SHOWN)
 
 INERTIAL = Table("inertial", Inertial, {

@@ -51,7 +51,7 @@ class _Points(RayPlugin):
         import numpy as np
 
         if self._directions is None:
-            from ...sensing.rays.ray_scene import fan_directions
+            from ...sensing.rays.fan import fan_directions
 
             fan = self._fan
             self._directions = fan_directions(fan.samples, fan.min_angle, fan.max_angle, fan.rows,

@@ -73,10 +73,17 @@ class Batch:
             self._instances = self._context.buffer(reserve=table.nbytes * 2, dynamic=True)
         self._instances.write(table.tobytes())
 
-    def draw(self, program: str) -> None:
-        """Draw what was uploaded."""
+    def draw(self, program: str, culled: bool = True) -> None:
+        """Draw what was uploaded; with `culled` only faces that are seen from their front.
+
+        The back faces of a double-sided surface are drawn, too.
+        """
         if not self.count:
             return
+        if culled and not self.surface.double_sided:
+            self._context.enable(self._context.CULL_FACE)
+        else:
+            self._context.disable(self._context.CULL_FACE)
         if program not in self._arrays:
             made = self._programs[program]
             self._arrays[program] = self._context.vertex_array(

@@ -46,6 +46,7 @@ class Renderer:
     def __init__(self, trouble: Callable[[str], None]) -> None:
         self._trouble = trouble
         self._context = new_context()
+        self._context.front_face = "cw"  # `projection` turns pictures upside down
         self._finish = finisher()
         self._smooth = 4 if draws_with_a_card(self._context) else 1
         program = self._context.program
@@ -327,7 +328,8 @@ class Renderer:
             for uniform in ("alpha_test", "repeats"):
                 self._programs[name][uniform] = batch.uniforms[uniform]
         _set(self._programs[name], "clip", clip.T)
-        batch.draw(name)
+        # Light falls on whatever is in its way, from either side.
+        batch.draw(name, culled=not name.startswith("shadow"))
 
     def _distort(self, spec: CameraSpec, rgb: Optional[np.ndarray], depth: Optional[np.ndarray],
                  labels: Optional[np.ndarray]) -> Tuple[Optional[np.ndarray], ...]:

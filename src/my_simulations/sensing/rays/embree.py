@@ -28,7 +28,7 @@ PACKET = 16
 """Rays a call."""
 # A packet's fields, `PACKET` words each: RTCRay16 then RTCHit16 (one level of instances). BODY is a
 # place in the array of instances.
-(ORIGIN, NEAR, DIRECTION, TIME, FAR, MASK, _ID, _FLAGS, _NORMAL, _U, _V, _PRIMITIVE, GEOMETRY,
+(ORIGIN, NEAR, DIRECTION, TIME, FAR, MASK, _ID, _FLAGS, NORMAL, _U, _V, _PRIMITIVE, GEOMETRY,
  _ARRAY, BODY) = (0, 3, 4, 7, 8, 9, 10, 11, 12, 15, 16, 17, 18, 19, 20)
 FIELDS = 21
 

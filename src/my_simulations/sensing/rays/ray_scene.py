@@ -7,56 +7,42 @@ from __future__ import annotations
 
 import ctypes
 from dataclasses import dataclass, field
-from typing import Any, Callable, Dict, List, Optional, Sequence, Tuple
+from typing import Any, Callable, Dict, List, Optional, Sequence, Tuple, Union
 
 import numpy as np
 
-from ...description.shapes import Capsule, Ellipsoid, Geometry, Plane, Sphere
+from ...description.shapes import Plane
 from ...errors import InputError
-from ...geometry import Pose
 from ..api import NO_ROW, SetScenery
 from ..poses import matrices, matrix, transforms
 from ..scenery import Scenery
-from ..tessellation import sides, tapered, triangles_of
 from .embree import (
     BODY,
     DIRECTION,
     FAR,
     FIELDS,
-    FLOAT3,
-    FLOAT4,
     GEOMETRY,
     INDEX,
     INSTANCES,
     MASK,
     MATRIX,
     NEAR,
+    NORMAL,
     NOTHING,
     ORIGIN,
     PACKET,
-    SPHERES,
     TIME,
     TRANSFORM,
-    TRIANGLES,
     UINT,
-    UINT3,
-    VERTEX,
     Embree,
 )
+from .ray_shapes import RayShape, buffers_of, triangle_buffers
 
 _ALIGNED = 64
 _PARALLEL = -1e-300
 _STILL = np.eye(4)
-
-
-@dataclass(frozen=True)
-class RayShape:
-    """A collision or a visual: what rays meet, where it is on its link, and how bright it is."""
-
-    geometry: Geometry
-    pose: Pose
-    retro: float
-    endless: bool = False
+_MOST_BACK_FACES = 64  # that a ray passes; it meets the next one
+_PASSED = 1e-5         # m behind a back face at which its ray goes on
 
 
 @dataclass
@@ -65,6 +51,7 @@ class _Parts:
 
     scene: int
     retro: List[float]
+    double_sided: List[bool]
     users: int = 0
 
 
@@ -161,13 +148,13 @@ class RayScene:
         self._scenery = Scenery(scenery, self._trouble, "rays")
         for n, part in enumerate(self._scenery.parts):
             scene = self._embree.scene(dynamic=True)
-            kind, (vertices, triangles) = _triangles(_STILL, part.piece.rows[:, :3],
+            kind, (vertices, triangles) = triangle_buffers(_STILL, part.piece.rows[:, :3],
                                                      part.piece.triangles)
             self._surfaces.append(self._embree.attach(scene, kind, (triangles, vertices)))
             self._embree.rtcCommitScene(scene)
             self._embree.check()
             self._scenic.append(_Instance(part.row, f"scenery {n}"))
-            self._parts[f"scenery {n}"] = _Parts(scene, [0.0])
+            self._parts[f"scenery {n}"] = _Parts(scene, [0.0], [part.piece.surface.double_sided])
         self._changed = True
 
     def _reshape(self, ns: int) -> bool:
@@ -190,18 +177,20 @@ class RayScene:
     def _build(self, shapes: Tuple[RayShape, ...]) -> _Parts:
         scene = self._embree.scene(dynamic=False)
         retro: List[float] = []
+        double_sided: List[bool] = []
         for shape in shapes:
             try:
-                made = _buffers(shape)
+                made = buffers_of(shape)
             except InputError as fault:
                 self._trouble(f"rays do not see a shape: {fault}")
                 continue
             for kind, buffers in made:
                 self._embree.attach(scene, kind, buffers)
                 retro.append(shape.retro)
+                double_sided.append(shape.double_sided)
         self._embree.rtcCommitScene(scene)
         self._embree.check()
-        return _Parts(scene, retro)
+        return _Parts(scene, retro, double_sided)
 
     def move(self, poses: np.ndarray, ns: int = 0) -> None:
         """Put every link where (n, 7) poses of link rows say, and actors where they are at `ns`.
@@ -235,18 +224,22 @@ class RayScene:
         self._most_row = int(self._rows.max(initial=NO_ROW))
         self._last = np.full((len(instances), 7), np.inf)
         self._planes = [plane for model in self._models.values() for plane in model.planes]
-        first_retro: Dict[str, int] = {}
+        first: Dict[str, int] = {}
         retro: List[float] = []
+        double_sided: List[bool] = []
         for key, parts in self._parts.items():
-            first_retro[key] = len(retro)
+            first[key] = len(retro)
             retro += parts.retro
+            double_sided += parts.double_sided
         # What has met nothing has numbers of -1: the last ones of these tables.
         # Scenery has a row below that, and is no link either.
         self._row_of = np.array([*(max(one.row, NO_ROW) for one in instances), NO_ROW],
                                 dtype=np.int32)
-        self._first_retro = np.array([*(first_retro[one.key] for one in instances),
-                                      len(retro) + 1], dtype=np.int64)
+        self._first = np.array([*(first[one.key] for one in instances), len(retro) + 1],
+                               dtype=np.int64)
         self._retro = np.array([*retro, 0.0], dtype=np.float32)
+        self._double_sided = np.array([*double_sided, True])
+        self._culls = not self._double_sided.all()
         # What follows is Embree's while it builds and looks; it reads whole 16 bytes.
         which = np.zeros(len(instances) + 4, dtype=np.uint32)
         which[:len(instances)] = [scenes[one.key] for one in instances]
@@ -290,6 +283,46 @@ class RayScene:
 
         `origins` (3,) or (n, 3) and unit `directions` (n, 3), in the world. Call `move` before.
         """
+        ranges, body, shape = self._nearest(origins, directions, near, far)
+        rows, retro = self._row_of[body], self._retro[shape]
+        for plane in self._planes:
+            self._meet(plane, origins, directions, near, far, (ranges, retro, rows))
+        return ranges, retro, rows
+
+    def _nearest(self, origins: np.ndarray, directions: np.ndarray, near: float, far: float,
+                 ) -> Tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Ranges, instances and shapes of the first faces that rays meet.
+
+        A back face of a shape that is not double-sided is passed: the ray goes on behind it.
+        """
+        ranges, body, shape, normals = self._intersect(origins, directions, near, far)
+        if not self._culls:
+            return ranges, body, shape
+        which = np.arange(len(directions))
+        for _ in range(_MOST_BACK_FACES):
+            which = which[self._back_faces(directions[which], body[which], shape[which], normals)]
+            if not len(which):
+                break
+            start = origins if origins.ndim == 1 else origins[which]
+            ranges[which], body[which], shape[which], normals = self._intersect(
+                start, directions[which], ranges[which] + _PASSED, far)
+        return ranges, body, shape
+
+    def _back_faces(self, directions: np.ndarray, body: np.ndarray, shape: np.ndarray,
+                    normals: np.ndarray) -> np.ndarray:
+        """Which rays have met a back face; normals (n, 3) in the frames of the links."""
+        turns = self._transforms[body, :3]  # rows: the axes of the link in the world
+        along = np.einsum("ni,nij,nj->n", normals, turns, directions)
+        found: np.ndarray = (along > 0.0) & (body >= 0) & ~self._double_sided[shape]
+        return found
+
+    def _intersect(self, origins: np.ndarray, directions: np.ndarray,
+                   near: Union[float, np.ndarray], far: float,
+                   ) -> Tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+        """Ranges, instances, shapes, and normals in link frames of what rays meet first.
+
+        `near`: one for all rays, or (n,).
+        """
         count = len(directions)
         packets = -(-count // PACKET)
         if len(self._buffer) < packets:
@@ -298,7 +331,10 @@ class RayScene:
         words = buffer.view(np.uint32)
         _fill(buffer[:, ORIGIN:ORIGIN + 3], origins, count)
         _fill(buffer[:, DIRECTION:DIRECTION + 3], directions, count)
-        buffer[:, NEAR] = near
+        if isinstance(near, np.ndarray):
+            _fill(buffer[:, NEAR:NEAR + 1], near[:, None], count)
+        else:
+            buffer[:, NEAR] = near
         buffer[:, FAR] = far
         buffer[:, TIME] = 0.0
         words[:, MASK] = NOTHING
@@ -311,11 +347,9 @@ class RayScene:
         body = numbers[:, BODY].ravel()[:count]
         ranges: Any = buffer[:, FAR].ravel()[:count].astype(np.float64)
         ranges[body < 0] = np.inf
-        rows = self._row_of[body]
-        retro = self._retro[self._first_retro[body] + numbers[:, GEOMETRY].ravel()[:count]]
-        for plane in self._planes:
-            self._meet(plane, origins, directions, near, far, (ranges, retro, rows))
-        return ranges, retro, rows
+        shape = self._first[body] + numbers[:, GEOMETRY].ravel()[:count]
+        normals = buffer[:, NORMAL:NORMAL + 3].transpose(0, 2, 1).reshape(-1, 3)[:count]
+        return ranges, body, shape, normals
 
     def _meet(self, plane: _PlaneOnLink, origins: np.ndarray, directions: np.ndarray, near: float,
               far: float, found: Tuple[np.ndarray, np.ndarray, np.ndarray]) -> None:
@@ -350,59 +384,14 @@ _ALL[:] = -1
 
 
 def _fill(fields: np.ndarray, values: np.ndarray, count: int) -> None:
-    """Put (3,) or (n, 3) values into (packets, 3, PACKET); what is left over repeats the last."""
+    """Put (k,) or (n, k) values into (packets, k, PACKET); the rest repeats the last ones."""
     if values.ndim == 1:
         fields[:] = values[None, :, None]
         return
     whole = count // PACKET
-    fields[:whole] = values[:whole * PACKET].reshape(whole, PACKET, 3).transpose(0, 2, 1)
+    fields[:whole] = values[:whole * PACKET].reshape(
+        whole, PACKET, values.shape[1]).transpose(0, 2, 1)
     if whole < len(fields):
         rest = values[whole * PACKET:]
         fields[whole, :, :len(rest)] = rest.T
         fields[whole, :, len(rest):] = rest[-1][:, None]
-
-
-def _buffers(shape: RayShape) -> "List[Tuple[int, Tuple[Tuple[int, int, np.ndarray], ...]]]":
-    """The Embree geometries of a shape, in the link frame."""
-    frame, solid = matrix(shape.pose), shape.geometry
-    if isinstance(solid, Sphere):
-        return [_spheres(frame, [(0.0, 0.0, 0.0, solid.radius)])]
-    if isinstance(solid, Capsule):
-        side = tapered(solid.radius, solid.radius, solid.length, sides(solid.radius))
-        half = solid.length / 2
-        return [_triangles(frame, side.vertices, side.triangles),
-                _spheres(frame, [(0, 0, -half, solid.radius), (0, 0, half, solid.radius)])]
-    if isinstance(solid, Ellipsoid) and len(set(solid.radii)) == 1:
-        return [_spheres(frame, [(0.0, 0.0, 0.0, solid.radii[0])])]
-    surface = triangles_of(solid)
-    return [] if surface is None else [_triangles(frame, surface.vertices, surface.triangles)]
-
-
-def _spheres(frame: np.ndarray, balls: Sequence[Tuple[float, float, float, float]],
-             ) -> "Tuple[int, Tuple[Tuple[int, int, np.ndarray], ...]]":
-    table = np.array(balls, dtype=np.float64)
-    table[:, :3] = table[:, :3] @ frame[:3, :3].T + frame[:3, 3]
-    return SPHERES, ((VERTEX, FLOAT4, np.ascontiguousarray(table, dtype=np.float32)),)
-
-
-def _triangles(frame: np.ndarray, vertices: np.ndarray, triangles: np.ndarray,
-               ) -> "Tuple[int, Tuple[Tuple[int, int, np.ndarray], ...]]":
-    placed = vertices @ frame[:3, :3].T + frame[:3, 3]
-    return TRIANGLES, ((VERTEX, FLOAT3, np.ascontiguousarray(placed, dtype=np.float32)),
-                       (INDEX, UINT3, np.ascontiguousarray(triangles, dtype=np.uint32)))
-
-
-def fan_directions(samples: int, min_angle: float, max_angle: float, rows: int,
-                   min_elevation: float, max_elevation: float) -> np.ndarray:
-    """Unit directions (rows * samples, 3) of a fan, row by row; a single one is the minimum."""
-    yaw, pitch = np.meshgrid(_spread(samples, min_angle, max_angle),
-                             _spread(rows, min_elevation, max_elevation))
-    yaw, pitch = yaw.ravel(), pitch.ravel()
-    return np.stack([np.cos(pitch) * np.cos(yaw), np.cos(pitch) * np.sin(yaw), np.sin(pitch)],
-                    axis=1)
-
-
-def _spread(count: int, low: float, high: float) -> np.ndarray:
-    return np.linspace(low, high, count) if count > 1 else np.array([low])
-
-
