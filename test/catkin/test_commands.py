@@ -69,8 +69,8 @@ def test_xacro_fails_with_a_status_on_a_missing_file():
 
 
 def test_every_world_launch_file_forwards_every_argument():
-    launches = sorted(path.name.replace(".launch.in", ".launch")
-                      for path in (REPOSITORY / "compat/gazebo_ros/launch").glob("*.launch*"))
+    launches = sorted(path.name for path in
+                      (REPOSITORY / "compat/gazebo_ros/launch").glob("*.launch"))
     assert len(launches) > 5
     told = _roslaunch_each(*(
         ["--args", "/gazebo", "gazebo_ros", launch, "paused:=true", "recording:=true",
@@ -82,6 +82,18 @@ def test_every_world_launch_file_forwards_every_argument():
         assert words[0].endswith("/gzserver"), launch
         assert words[1:9] == ["-u", "-r", "--verbose", "-e", "bullet", "--seed", "7",
                               "some.world"], launch
+
+
+@pytest.mark.parametrize("name, robot", [
+    ("exercises", "true"), ("lab_course", "false"), ("lab_room", "false")])
+def test_a_launch_file_named_after_a_world_takes_the_arguments_of_world_launch(name, robot):
+    launch = f"{name}.launch"
+    args = _run("roslaunch", "--args", "/gazebo", "my_simulations", launch, "pause:=true")
+    assert args.stdout.split()[1] == "-u", args.stderr
+    assert args.stdout.split()[2].endswith(f"/world/{name}.world")
+    params = _run("roslaunch", "--dump-params", "my_simulations", launch, "gui:=false", "x:=2.0")
+    assert f"/gazebo/spawn_robot: {robot}" in params.stdout, params.stderr
+    assert "/gazebo/gui: false" in params.stdout and "/gazebo/robot_x: 2.0" in params.stdout
 
 
 def test_launch_file_sets_the_parameters_of_its_arguments():

@@ -19,7 +19,7 @@ from my_simulations.python_api.plain_values import pose_of, twist_of, vector_of
 from my_simulations.python_api.world_choice import WorldChoice
 
 ROOT = Path(__file__).resolve().parents[2]
-LIST = str(ROOT / "config/test/object_locations.yaml")
+LIST = str(ROOT / "test/data/object_list/object_locations.yaml")
 BALL = """<sdf version="1.7"><model name="ball"><link name="link">
 <inertial><mass>2</mass></inertial>
 <collision name="c"><geometry><sphere><radius>0.1</radius></sphere></geometry></collision>

@@ -80,7 +80,7 @@ def test_the_table_of_supported_elements_is_the_readers_own():
 # -- launch files --------------------------------------------------------------------------------
 
 LAUNCH_FILES = sorted([*(REPOSITORY / "launch").glob("*.launch"),
-                       *(REPOSITORY / "compat").glob("*/launch/*.launch*")])
+                       *(REPOSITORY / "compat").glob("*/launch/*.launch")])
 
 
 @pytest.mark.parametrize("path", LAUNCH_FILES, ids=lambda path: path.name)

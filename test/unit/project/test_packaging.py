@@ -29,13 +29,13 @@ def _arguments(path):
 
 
 def test_empty_world_launch_has_gazebos_arguments_and_defaults_and_ours():
-    arguments = _arguments(LAUNCH / "empty_world.launch.in")
+    arguments = _arguments(LAUNCH / "empty_world.launch")
     found = {arg.get("name"): arg.get("default") for arg in arguments}
     assert found == {**ARGUMENTS, **OURS}
 
 
 def test_no_engine_is_named_to_the_server_unless_somebody_asks_for_one():
-    root = ET.parse(LAUNCH / "empty_world.launch.in").getroot()
+    root = ET.parse(LAUNCH / "empty_world.launch").getroot()
     (flag,) = (arg.get("value") for arg in root.findall("arg") if arg.get("name") == "physics_flag")
     words = flag[len("$(eval "):-1]
     assert eval(words, {"physics": ARGUMENTS["physics"]}) == ""
@@ -44,7 +44,7 @@ def test_no_engine_is_named_to_the_server_unless_somebody_asks_for_one():
     assert "$(arg physics_flag)" in node.get("args") and "-e " not in node.get("args")
 
 
-@pytest.mark.parametrize("path", sorted(LAUNCH.glob("*.launch*")), ids=lambda path: path.name)
+@pytest.mark.parametrize("path", sorted(LAUNCH.glob("*.launch")), ids=lambda path: path.name)
 def test_world_launch_file_documents_and_offers_every_argument(path):
     arguments = _arguments(path)
     assert all(arg.get("doc") for arg in arguments)
@@ -53,7 +53,7 @@ def test_world_launch_file_documents_and_offers_every_argument(path):
 
 @pytest.mark.parametrize("name", ["empty", "shapes", "mud", "rubble", "willowgarage"])
 def test_world_that_a_launch_file_names_is_shipped(name):
-    [path] = LAUNCH.glob(f"{name}_world.launch*")
+    [path] = LAUNCH.glob(f"{name}_world.launch")
     arguments = {arg.get("name"): arg.get("default") for arg in _arguments(path)}
     assert (REPOSITORY / "world" / arguments["world_name"]).is_file()
 
