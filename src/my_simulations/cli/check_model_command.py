@@ -106,29 +106,29 @@ def check(file: str, resolver: Resolver,
 
 
 def unknown_plugins(loaded: Loaded) -> List[Issue]:
-    """Plugins of models and sensors that nobody brings, each library once."""
-    models = [flattened(model) for model in _models(loaded)]
-    if not any(_with_plugins(model) for model in models):
+    """Notes on the plugins of libraries for which there is no class, one for each library."""
+    from ..plugins.found_plugins import plugins_of, world_plugins
+
+    specs = [one.spec for model in _models(loaded) for one in plugins_of(flattened(model))]
+    if isinstance(loaded, World):
+        specs += world_plugins(loaded)
+    elif isinstance(loaded, Actor):
+        specs += loaded.plugins
+    if not specs:
         return []
-    from ..plugins.found_plugins import plugins_of
     from ..plugins.registry import PluginRegistry, library_name
     from ..resources.ros_packages import PackageIndex
 
-    registry, told, found = PluginRegistry(folders=PackageIndex().folders), set(), []
-    for one in (plugin for model in models for plugin in plugins_of(model)):
-        name = library_name(one.spec.filename)
-        if name not in told and not registry.knows(one.spec.filename):
-            told.add(name)
-            found.append(Issue(
-                Severity.NOTE, "not-simulated", f"<plugin {one.spec.name}> does nothing: there is"
-                f" none for {name or 'a library without a name'}", one.spec.file, one.spec.line,
-                hint="a package can bring one: see doc/plugins.md"))
-    return found
-
-
-def _with_plugins(model: Model) -> bool:
-    return bool(_plugins(model)) or any(
-        sensor.plugins for link in model.links for sensor in link.sensors)
+    registry = PluginRegistry(folders=PackageIndex().folders)
+    unknown: Dict[str, Issue] = {}
+    for spec in specs:
+        library = library_name(spec.filename)
+        if library not in unknown and not registry.knows(spec.filename):
+            unknown[library] = Issue(
+                Severity.NOTE, "not-simulated", f"<plugin {spec.name}> has no effect: there is no"
+                f" plugin for {library or 'a library without a name'}", spec.file, spec.line,
+                hint="a package can bring one: see doc/plugins.md")
+    return list(unknown.values())
 
 
 def _document(file: str, any_xacro: bool) -> Tuple[str, Union[str, bytes]]:

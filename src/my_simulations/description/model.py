@@ -192,7 +192,7 @@ class Model:
         static: whether the model never moves.
         self_collide: whether links of the model collide with each other.
         allow_auto_disable: whether the physics engine may put the model to sleep at rest.
-        enable_wind: whether wind would act on the model; kept, no force comes of it.
+        enable_wind: whether the wind of libWindPlugin.so acts on the model.
         canonical_link: name of the link that the model frame moves with, "" for the first link.
         links: links, in the order of the file.
         joints: joints, in the order of the file.

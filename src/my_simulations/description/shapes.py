@@ -307,7 +307,7 @@ class Collision:
         pose: pose of the shape in the link frame.
         surface: contact properties.
         max_contacts: greatest number of contacts with another collision; kept.
-        laser_retro: intensity returned to a laser; kept.
+        laser_retro: intensity that laser sensors report.
         extra: XML of child elements that no field holds.
     """
 
@@ -331,7 +331,7 @@ class Visual:
         material: appearance; None for the default.
         cast_shadows: whether the shape casts shadows.
         transparency: 0 opaque to 1 invisible.
-        laser_retro: intensity returned to a laser; kept.
+        laser_retro: intensity that laser sensors report.
         layer: layer that the editor can hide (`meta/layer`; in buildings the storey); None for
             none.
         extra: XML of child elements that no field holds.

@@ -84,7 +84,7 @@ class World:
         physics: the physics preset in use.
         models: top-level models, in the order of the file.
         lights: lights, in the order of the file.
-        plugins: world plugins; not loaded.
+        plugins: world plugins.
         extra: XML of child elements that no field holds.
         file: path of the file, or a name for text from elsewhere.
         magnetic_field: T, world axes.

@@ -2,11 +2,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Iterator, Optional, Sequence
+from typing import Iterator, List, Optional, Sequence
 
 from ..description.model import Model
 from ..description.plugin import PluginSpec
 from ..description.sensor import Sensor
+from ..description.world import World
 
 
 @dataclass(frozen=True)
@@ -33,6 +34,11 @@ def plugins_of(model: Model, scope: str = "") -> Iterator[Found]:
             yield from _of_sensors(joint.sensors, joint.name, "", joint.name)
     for nested in (model.guide.models if model.guide is not None else model.models):
         yield from plugins_of(nested, f"{scope}{nested.name}::")
+
+
+def world_plugins(world: World) -> List[PluginSpec]:
+    """The plugins of a world and of its actors, which no model has."""
+    return [*world.plugins, *(spec for actor in world.actors for spec in actor.plugins)]
 
 
 def _of_sensors(sensors: Sequence[Sensor], owner: str, link: str, joint: str) -> Iterator[Found]:

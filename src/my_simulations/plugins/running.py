@@ -10,7 +10,7 @@ from ..geometry import IDENTITY
 from ..simulator.entity import Entity
 from ..simulator.simulator import Simulator
 from .base import Plugin
-from .found_plugins import Found, plugins_of
+from .found_plugins import Found, plugins_of, world_plugins
 from .simulated_context import SimulatedContext
 
 WORLD_SCOPE = ""
@@ -93,8 +93,7 @@ class ModelPlugins:
 
     def _world_entity(self) -> Entity:
         """What stands for the world as owner of its plugins."""
-        world = self._simulator.world  # plugins of actors are unknown here, and told so
-        plugins = [*world.plugins, *(spec for actor in world.actors for spec in actor.plugins)]
+        plugins = world_plugins(self._simulator.world)
         before = self._models.get(WORLD_SCOPE)
         if before is not None and before[0].model.plugins == plugins:
             return before[0]

@@ -10,6 +10,7 @@ from reading import INVALID, VALID, sdf
 
 from my_simulations.cli.check_model_command import check, main
 from my_simulations.errors import Severity
+from my_simulations.plugins.registry import BUILT_IN, PROVIDED
 from my_simulations.resources.resolver import Resolver
 
 ROOT = Path(__file__).resolve().parents[3]
@@ -260,3 +261,35 @@ def test_plugins_that_nobody_brings_are_named_once(tmp_path):
              for issue in check(str(path), Resolver())[1] if "plugin" in issue.message]
     assert sorted(found, key=lambda one: one[2]) == [
         (Severity.NOTE, 3, "libmystery.so"), (Severity.NOTE, 2, "libunseen.so")]
+
+
+PLACES = ("<model name='m'><link name='l'/>{}</model>",
+          "<model name='m'><model name='n'><link name='l'/>{}</model></model>",
+          "<model name='m'><link name='l'><sensor name='s' type='ray'><ray/>{}</sensor></link>"
+          "</model>",
+          "<model name='m'><link name='l'/><link name='o'/><joint name='j' type='fixed'>"
+          "<parent>l</parent><child>o</child><sensor name='s' type='force_torque'>{}</sensor>"
+          "</joint></model>",
+          "<actor name='a'>{}</actor>",
+          "{}")
+"""Elements of a world in which plugins run."""
+
+
+@pytest.mark.parametrize("place", PLACES)
+def test_exactly_the_plugins_without_a_class_are_reported(tmp_path, place):
+    unknown = ["libmystery.so", "libgazebo_ros_mystery.so"]
+    libraries = [*BUILT_IN, *PROVIDED, *unknown]
+    plugins = "".join(f"<plugin name='p' filename='{library}'/>" for library in libraries)
+    path = tmp_path / "plugins.world"
+    path.write_text(sdf(f"<world name='w'>{place.format(plugins)}</world>", "1.7"))
+    issues = check(str(path), Resolver())[1]
+    reported = [library for library in libraries
+                if any(library in issue.message for issue in issues)]
+    assert reported == unknown, [str(issue) for issue in issues]
+
+
+def test_wind_is_not_reported_as_kept(tmp_path):
+    path = tmp_path / "windy.world"
+    path.write_text(sdf("<world name='w'><wind><linear_velocity>3 0 0</linear_velocity></wind>"
+                        "<plugin name='p' filename='libWindPlugin.so'/></world>", "1.7"))
+    assert check(str(path), Resolver())[1] == []

@@ -251,11 +251,12 @@ def test_the_static_of_an_include_reaches_through_the_includes_below(tmp_path):
 
 def test_other_flags_of_an_include_count_for_the_whole_as_well(tmp_path):
     resolver = shelf(tmp_path, hand="<self_collide>1</self_collide><allow_auto_disable>0"
-                                    "</allow_auto_disable>" + LINK)
+                                    "</allow_auto_disable><enable_wind>1</enable_wind>" + LINK)
     model, _ = model_of(include("hand") + LINK, "1.7", resolver)
-    assert model.self_collide and not model.allow_auto_disable
-    model, issues = model_of("<self_collide>0</self_collide>" + include("hand"), "1.7", resolver)
-    assert not model.self_collide and not model.allow_auto_disable
+    assert model.self_collide and not model.allow_auto_disable and model.enable_wind
+    own = "<self_collide>0</self_collide><enable_wind>0</enable_wind>"
+    model, issues = model_of(own + include("hand"), "1.7", resolver)
+    assert not model.self_collide and not model.allow_auto_disable and not model.enable_wind
     assert [one.code for one in issues] == ["include-flag"] and issues[0].line == 1
 
 

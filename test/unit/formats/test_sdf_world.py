@@ -201,15 +201,14 @@ def test_what_is_not_simulated_is_kept_without_a_warning():
     assert world.extra == [] and errors(issues) == [] and warnings(issues) == []
     assert world.scene == Scene(shadows=False) and world.gui == Gui()
     assert [actor.name for actor in world.actors] == ["man"] and world.state.world_name == "w"
-    assert codes(issues) == ["not-simulated"] * 2  # the plugin and the actor
+    assert codes(issues) == ["not-simulated"]  # the actor
     assert [plugin.name for plugin in world.plugins] == ["p"]
 
 
-def test_plugins_are_told_once_for_each_library():
+def test_plugins_of_the_client_are_told_once_for_each_library():
     plugin = '<plugin name="{}" filename="lib{}.so"/>'
-    model = '<model name="{}"><link name="l"/>' + plugin.format("p", "one") + "</model>"
-    world, issues = world_of(model.format("a") + model.format("b") + plugin.format("q", "two")
-                             + plugin.format("r", "one"))
+    world, issues = world_of("<gui>" + plugin.format("p", "one") + plugin.format("q", "two")
+                             + plugin.format("r", "one") + "</gui>")
     assert sorted(issue.message.split()[1] for issue in issues) == ["libone.so>", "libtwo.so>"]
 
 

@@ -1,4 +1,4 @@
-"""The flags of a model: `<static>`, `<self_collide>` and `<allow_auto_disable>`.
+"""The flags of a model: `<static>`, `<self_collide>`, `<allow_auto_disable>`, `<enable_wind>`.
 
 libsdformat 9 dissolves a model that is included in another one (`addNestedModel`): links, joints,
 frames, nested models, plugins and grippers move to the outer model, and so does every other child
@@ -16,7 +16,7 @@ from ...description.validate import link_names
 from ...errors import Issue, Severity
 from ..xml.source import Source
 
-FLAGS = ("static", "self_collide", "allow_auto_disable")
+FLAGS = ("static", "self_collide", "allow_auto_disable", "enable_wind")
 """Children of `<model>` that included models may override."""
 
 
@@ -28,11 +28,13 @@ class ModelFlags:
         static: the model does not move.
         self_collide: links of the model collide with each other.
         allow_auto_disable: the physics engine may put the model to sleep.
+        enable_wind: wind acts on the model.
     """
 
     static: Optional[bool] = None
     self_collide: Optional[bool] = None
     allow_auto_disable: Optional[bool] = None
+    enable_wind: Optional[bool] = None
 
 
 def own_flags(model: Model, element: Any) -> ModelFlags:
@@ -80,7 +82,8 @@ def _take_over(model: Model, flag: str, value: bool, element: Any, source: Sourc
     what = {"static": "static" if value else "able to move",
             "self_collide": "made of links that collide with each other" if value
             else "made of links that pass through each other",
-            "allow_auto_disable": "allowed to sleep" if value else "kept awake"}[flag]
+            "allow_auto_disable": "allowed to sleep" if value else "kept awake",
+            "enable_wind": "moved by wind" if value else "not moved by wind"}[flag]
     source.log.add(Issue(
         Severity.NOTE, "include-flag", f"model {model.name!r} is {what} as a whole, since the model"
         f" included here says <{flag}>{'true' if value else 'false'}</{flag}>; reported once",

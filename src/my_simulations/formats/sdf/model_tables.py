@@ -46,7 +46,7 @@ from .world_tables import SURROUNDINGS
 FATAL, ERROR, WARNING = FaultLevel.FATAL, FaultLevel.ERROR, FaultLevel.WARNING
 
 
-SHOWN, KEPT = Use.SHOWN, Use.KEPT
+PLUGINS, SHOWN, KEPT = Use.PLUGINS, Use.SHOWN, Use.KEPT
 
 
 def _kept(*names: str, since: str = "") -> Dict[str, Entry]:
@@ -151,7 +151,7 @@ COLLISION = Table("collision", Collision, {
     "geometry": Part(),
     "surface": Group(SURFACE_CHILDREN, part="surface"),
     "max_contacts": Value("max_contacts", INT, use=KEPT),
-    "laser_retro": Value("laser_retro", FLOAT, use=KEPT),
+    "laser_retro": Value("laser_retro", FLOAT, use=PLUGINS),
     **_kept("frame", "density", "mass"),
 }, known_attributes=("name",))
 
@@ -161,7 +161,7 @@ VISUAL = Table("visual", Visual, {
     "material": Part(),
     "cast_shadows": Value("cast_shadows", BOOL),
     "transparency": Value("transparency", FLOAT),
-    "laser_retro": Value("laser_retro", FLOAT, use=KEPT),
+    "laser_retro": Value("laser_retro", FLOAT, use=PLUGINS),
     "meta": Group({"layer": Value("layer", INT)}),
     **_kept("frame", "visibility_flags"), **_told("plugin"),
 }, level=WARNING, known_attributes=("name",), use=SHOWN)
@@ -196,8 +196,8 @@ LINK = Table("link", Link, {
     "velocity_decay": Group({
         "linear": Value("linear_decay", FLOAT), "angular": Value("angular_decay", FLOAT),
     }),
-    **_kept("frame", "light", "must_be_base_link", "enable_wind"),
-    "sensor": Part(use=KEPT, kept=True),
+    **_kept("frame", "light", "must_be_base_link"), "enable_wind": Kept(use=PLUGINS),
+    "sensor": Part(use=PLUGINS, kept=True),
     **_told("projector", "audio_source", "audio_sink", "battery", "particle_emitter", "plugin"),
 }, known_attributes=("name",))
 
@@ -228,7 +228,7 @@ JOINT = Table("joint", Joint, {
     "screw_thread_pitch": Part("1.10"),
     "gearbox_ratio": Value("gearbox_ratio", FLOAT),
     "gearbox_reference_body": Value("gearbox_reference", TEXT),
-    "sensor": Part(use=KEPT, kept=True),
+    "sensor": Part(use=PLUGINS, kept=True),
     **_kept("frame", "physics"),
 }, known_attributes=("name", "type"))
 
@@ -241,8 +241,8 @@ MODEL = Table("model", Model, {
     "self_collide": Value("self_collide", BOOL),
     "allow_auto_disable": Value("allow_auto_disable", BOOL),
     "link": Part(), "joint": Part(), "model": Part("1.5"), "include": Part("1.4"),
-    "frame": Part("1.5", kept=True), "plugin": Part(),
-    "enable_wind": Value("enable_wind", BOOL, use=KEPT),
+    "frame": Part("1.5", kept=True), "plugin": Part(use=PLUGINS),
+    "enable_wind": Value("enable_wind", BOOL, use=PLUGINS),
     **_told("gripper"),
 }, attributes={"canonical_link": Value("canonical_link", TEXT, since="1.7")},
    known_attributes=("name", "placement_frame"))
@@ -252,7 +252,7 @@ INCLUDE = Table("include", Model, {
     "name": Value("name", TEXT),
     "pose": Value("pose", POSE, FATAL),
     "static": Value("static", BOOL),
-    "plugin": Part(),
+    "plugin": Part(use=PLUGINS),
     "placement_frame": Part("1.8"),
 }, known_attributes=("merge",))
 
@@ -268,7 +268,7 @@ LIGHT = Table("light", Light, {
         "inner_angle": Value("inner_angle", FLOAT), "outer_angle": Value("outer_angle", FLOAT),
         "falloff": Value("falloff", FLOAT),
     }),
-    **_kept("frame", "intensity", "light_on", "visualize", "plugin"),
+    **_kept("frame", "intensity", "light_on", "visualize"), **_told("plugin"),
 }, attributes={"type": Value("type", TEXT)}, level=WARNING, known_attributes=("name",), use=SHOWN)
 
 PHYSICS = Table("physics", Physics, {
@@ -299,10 +299,10 @@ PHYSICS = Table("physics", Physics, {
 WORLD = Table("world", World, {
     "gravity": Value("gravity", VECTOR3, since="1.6"),
     "physics": Part(), "light": Part(use=SHOWN), "model": Part(), "include": Part(),
-    "plugin": Part(use=KEPT, told=True),
-    "population": Part(use=SHOWN), "frame": Part("1.7", kept=True),
+    "plugin": Part(use=PLUGINS),
+    "population": Part(), "frame": Part("1.7", kept=True),
     "state": Part(), "joint": Part("1.10"),
-    "magnetic_field": Value("magnetic_field", VECTOR3, since="1.6", use=KEPT),
+    "magnetic_field": Value("magnetic_field", VECTOR3, since="1.6", use=PLUGINS),
     **SURROUNDINGS,
     **_told("audio"),
 }, known_attributes=("name",))

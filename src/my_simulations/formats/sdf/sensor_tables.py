@@ -23,6 +23,8 @@ from ..xml.tables import Entry, Group, Kept, Part, Table, Use, Value
 from ..xml.values import BOOL, FLOAT, INT, LIMIT, POSE, TEXT, VECTOR2, VECTOR3
 
 _WARNING, _KEPT = FaultLevel.WARNING, Use.KEPT
+_UNUSED = ("sonar", "air_pressure", "logical_camera", "transceiver")
+"""Sensor blocks that no plugin reads."""
 
 
 def _kept(*names: str) -> Dict[str, Entry]:
@@ -47,7 +49,8 @@ _AXES: Mapping[str, Entry] = {axis: _noisy(axis) for axis in "xyz"}
 
 
 def _table(name: str, of: type, children: Mapping[str, Entry], **more: object) -> Table:
-    return Table(name, of, children, level=_WARNING, use=_KEPT, **more)  # type: ignore[arg-type]
+    use = _KEPT if name in _UNUSED else Use.PLUGINS
+    return Table(name, of, children, level=_WARNING, use=use, **more)  # type: ignore[arg-type]
 
 
 def _scan(part: str) -> Group:
@@ -61,7 +64,7 @@ RAY = _table("ray", Ray, {
     "scan": Group({"horizontal": _scan("horizontal"), "vertical": _scan("vertical")}),
     "range": Group({
         "min": Value("min_range", LIMIT), "max": Value("max_range", LIMIT),
-        "resolution": Value("range_resolution", FLOAT),
+        "resolution": Value("range_resolution", FLOAT, use=_KEPT),
     }),
     "noise": _noise("noise"),
     **_kept("visibility_mask"),
@@ -76,8 +79,9 @@ CAMERA = _table("camera", Camera, {
     }),
     "clip": Group({"near": Value("near", FLOAT), "far": Value("far", FLOAT)}),
     "depth_camera": Group({
-        "output": Value("depth_output", TEXT),
-        "clip": Group({"near": Value("depth_near", FLOAT), "far": Value("depth_far", FLOAT)}),
+        "output": Value("depth_output", TEXT, use=_KEPT),
+        "clip": Group({"near": Value("depth_near", FLOAT, use=_KEPT),
+                       "far": Value("depth_far", FLOAT, use=_KEPT)}),
     }),
     "noise": _noise("noise"),
     "distortion": Group({
@@ -89,17 +93,19 @@ CAMERA = _table("camera", Camera, {
 }, attributes={"name": Value("name", TEXT)})
 
 CONTACT = _table("contact", ContactSensor, {
-    "collision": Value("collisions", TEXT, repeated=True), "topic": Value("topic", TEXT),
+    "collision": Value("collisions", TEXT, repeated=True),
+    "topic": Value("topic", TEXT, use=_KEPT),
 })
 
 IMU = _table("imu", Imu, {
     "angular_velocity": Group(_AXES, part="angular_velocity"),
     "linear_acceleration": Group(_AXES, part="linear_acceleration"),
     "orientation_reference_frame": Group({
-        "localization": Value("localization", TEXT),
-        "custom_rpy": Value("custom_rpy", VECTOR3), "grav_dir_x": Value("grav_dir_x", VECTOR3),
+        "localization": Value("localization", TEXT, use=_KEPT),
+        "custom_rpy": Value("custom_rpy", VECTOR3, use=_KEPT),
+        "grav_dir_x": Value("grav_dir_x", VECTOR3, use=_KEPT),
     }),
-    "enable_orientation": Value("enable_orientation", BOOL),
+    "enable_orientation": Value("enable_orientation", BOOL, use=_KEPT),
     **_kept("topic", "noise"),
 })
 
@@ -154,12 +160,12 @@ FIELDS: Mapping[str, str] = {"lidar": "ray", "navsat": "gps"}
 
 SENSOR = _table("sensor", Sensor, {
     "pose": Value("pose", POSE),
-    "always_on": Value("always_on", BOOL),
+    "always_on": Value("always_on", BOOL, use=_KEPT),
     "update_rate": Value("update_rate", FLOAT),
-    "visualize": Value("visualize", BOOL),
-    "topic": Value("topic", TEXT),
+    "visualize": Value("visualize", BOOL, use=_KEPT),
+    "topic": Value("topic", TEXT, use=_KEPT),
     "camera": Part(), "plugin": Part(),
-    **{tag: Part() for tag in BLOCKS},
+    **{tag: Part(use=table.use) for tag, table in BLOCKS.items()},
     **_kept("frame", "rfid", "rfidtag", "enable_metrics", "force_torque_sensor", "gz_frame_id",
             "ignition_frame_id"),
 }, attributes={"type": Value("type", TEXT)}, known_attributes=("name",))

@@ -34,7 +34,8 @@ from ..xml.values import (
     numbers,
 )
 
-WARNING, SHOWN, KEPT = FaultLevel.WARNING, Use.SHOWN, Use.KEPT
+WARNING = FaultLevel.WARNING
+PLUGINS, SHOWN, KEPT = Use.PLUGINS, Use.SHOWN, Use.KEPT
 
 SKY = Table("sky", Sky, {
     "time": Value("time", FLOAT), "sunrise": Value("sunrise", FLOAT),
@@ -75,7 +76,7 @@ GUI_CAMERA = Table("camera", GuiCamera, {
 }, attributes={"name": Value("name", TEXT)}, level=WARNING, use=SHOWN)
 
 WIND = Table("wind", Wind, {"linear_velocity": Value("linear_velocity", VECTOR3)},
-             level=WARNING, use=KEPT)
+             level=WARNING, use=PLUGINS)
 
 ATMOSPHERE = Table("atmosphere", Atmosphere, {
     name: Value(name, FLOAT) for name in ("temperature", "pressure", "temperature_gradient")
@@ -86,16 +87,16 @@ SPHERICAL = Table("spherical_coordinates", SphericalCoordinates, {
     "world_frame_orientation": Value("world_frame_orientation", TEXT),
     **{name: Value(name, FLOAT)
        for name in ("latitude_deg", "longitude_deg", "elevation", "heading_deg")},
-}, level=WARNING, use=KEPT)
+}, level=WARNING, use=PLUGINS)
 
 SURROUNDINGS: Mapping[str, Entry] = {
     "gui": Part(use=SHOWN),
     "scene": Nested("scene", SCENE, required=("ambient", "background", "shadows"), use=SHOWN),
     "actor": Part(use=SHOWN, told=True), "road": Part(use=SHOWN, told=True),
-    "wind": Nested("wind", WIND, required=("linear_velocity",), use=KEPT, told=True),
+    "wind": Nested("wind", WIND, required=("linear_velocity",), use=PLUGINS),
     "atmosphere": Nested("atmosphere", ATMOSPHERE, required=("@type",), use=KEPT),
     "spherical_coordinates": Nested("spherical_coordinates", SPHERICAL, required=(
-        "surface_model", "latitude_deg", "longitude_deg", "elevation", "heading_deg"), use=KEPT),
+        "surface_model", "latitude_deg", "longitude_deg", "elevation", "heading_deg"), use=PLUGINS),
 }
 """Children of `<world>` around its models, in the order in which they are written."""
 
@@ -129,7 +130,7 @@ ACTOR = Table("actor", Actor, {
         "auto_start": Value("auto_start", BOOL),
         "trajectory": Nested("trajectories", TRAJECTORY, required=("@id", "@type")),
     }),
-    "plugin": Part(use=KEPT),
+    "plugin": Part(use=PLUGINS),
     **{name: Kept() for name in ("link", "joint", "frame", "static", "origin", "enable_wind",
                                  "allow_auto_disable", "self_collide")},
 }, level=WARNING, known_attributes=("name", "static"), use=SHOWN)

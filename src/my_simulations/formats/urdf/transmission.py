@@ -18,12 +18,12 @@ _TYPE = Value("interfaces", TEXT, repeated=True)
 TRANSMISSION_JOINT = Table("joint", TransmissionJoint, {
     "hardwareInterface": _TYPE, "role": Kept(use=Use.IGNORED),
     "mechanicalReduction": Kept(use=Use.IGNORED), "offset": Kept(use=Use.IGNORED),
-}, level=FaultLevel.WARNING, use=Use.IGNORED, known_attributes=("name",))
+}, level=FaultLevel.WARNING, use=Use.PLUGINS, known_attributes=("name",))
 
 ACTUATOR = Table("actuator", Actuator, {
     "hardwareInterface": _TYPE, "mechanicalReduction": Value("reduction", FLOAT),
     "role": Kept(use=Use.IGNORED), "motorTorqueConstant": Kept(use=Use.IGNORED),
-}, level=FaultLevel.WARNING, use=Use.IGNORED, known_attributes=("name",))
+}, level=FaultLevel.WARNING, use=Use.PLUGINS, known_attributes=("name",))
 
 TRANSMISSION = Table("transmission", Transmission, {
     "type": Value("type", TEXT), "joint": Part(), "actuator": Part(),
@@ -34,7 +34,7 @@ TRANSMISSION = Table("transmission", Transmission, {
     "mechanicalReduction": Kept(use=Use.IGNORED), "compensator": Kept(use=Use.IGNORED),
     "simulated_actuated_joint": Kept(use=Use.IGNORED), "use_simulated_gripper_joint": Kept(
         use=Use.IGNORED), "motorTorqueConstant": Kept(use=Use.IGNORED),
-}, attributes={"type": Value("type", TEXT)}, level=FaultLevel.WARNING, use=Use.IGNORED,
+}, attributes={"type": Value("type", TEXT)}, level=FaultLevel.WARNING, use=Use.PLUGINS,
     known_attributes=("name",))
 
 

@@ -96,7 +96,7 @@ ORIGIN = Table("origin", Origin, attributes={
 
 ROBOT = Table("robot", Model, {
     "link": Part(), "joint": Part(), "material": Part(), "gazebo": Part(), "origin": Part(),
-    "transmission": Part(use=Use.IGNORED),
+    "transmission": Part(use=Use.PLUGINS),
     **_ignored("sensor", "verbose", "group_state", "ros2_control"),
 }, known_attributes=("name", "version", "static", "type"), strict=True,
     hint="call a macro of xacro with the prefix: <xacro:{name}>")
@@ -169,8 +169,8 @@ GAZEBO_MODEL = Table("gazebo", Model, {
     "static": Value("static", BOOL),
     "self_collide": Value("self_collide", BOOL),
     "allow_auto_disable": Value("allow_auto_disable", BOOL),
-    "enable_wind": Value("enable_wind", BOOL, use=Use.KEPT),
-    "plugin": Part(), "link": Part(), "joint": Part(),
+    "enable_wind": Value("enable_wind", BOOL, use=Use.PLUGINS),
+    "plugin": Part(use=Use.PLUGINS), "link": Part(), "joint": Part(),
     "gripper": Kept(told=True),
     **_kept("frame", "canonicalBody", "selfCollide", "turnGravityOff"),
 })

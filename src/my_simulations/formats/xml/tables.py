@@ -18,10 +18,11 @@ from .values import Kind
 class Use(enum.Enum):
     """How an element is used."""
 
-    SIMULATED = "simulated"  # simulated
-    SHOWN = "shown"          # drawn in the editor, without effect on motion
-    KEPT = "kept"            # read and saved, without other effect
-    IGNORED = "ignored"      # neither simulated nor saved
+    SIMULATED = "simulated"        # simulated
+    PLUGINS = "used by plugins"    # read by plugins, without effect if the file names none of them
+    SHOWN = "shown"                # drawn in the editor, without effect on motion
+    KEPT = "kept"                  # read and saved, without other effect
+    IGNORED = "ignored"            # neither simulated nor saved
 
 
 @dataclass(frozen=True)
