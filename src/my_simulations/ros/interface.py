@@ -36,7 +36,8 @@ class Row:
         direction: served, published or subscribed.
         handler: `group.method`, see `registration`; `BY_ROSPY` where rospy provides it.
         title: prefix of every status message of a service (Gazebo behaviour).
-        extension: not part of Gazebo 9's interface; not offered with `~extensions` false.
+        extension: not in gazebo_ros with Gazebo 9; not offered with `~extensions` false.
+        since: version of Gazebo from which on gazebo_ros has an extension, too; "" for never.
         always: offered even with `~enable_ros_network` false.
         meaning: description for the documentation; "" where the name says it all.
     """
@@ -47,6 +48,7 @@ class Row:
     handler: str
     title: str = ""
     extension: bool = False
+    since: str = ""
     always: bool = False
     meaning: str = ""
 
@@ -87,7 +89,8 @@ TABLE: Tuple[Row, ...] = (
     Row("link_states", "gazebo_msgs/LinkStates", PUBLISHES, "publishers",
         meaning="as `model_states`"),
     Row("performance_metrics", "gazebo_msgs/PerformanceMetrics", PUBLISHES, "metrics",
-        extension=True, meaning="at 5 Hz while there are subscribers and the simulation runs"),
+        extension=True, since="11.2",
+        meaning="at 5 Hz while there are subscribers and the simulation runs"),
     Row("parameter_descriptions", "dynamic_reconfigure/ConfigDescription", PUBLISHES,
         "reconfigure", meaning="dynamic_reconfigure, latched"),
     Row("parameter_updates", "dynamic_reconfigure/Config", PUBLISHES, "reconfigure",
@@ -196,6 +199,7 @@ def markdown() -> str:
 
 
 def _line(row: Row) -> str:
-    parts = ("*extension*" if row.extension else "", row.meaning)
+    origin = f"since Gazebo {row.since}" if row.since else "*extension*" if row.extension else ""
+    parts = (origin, row.meaning)
     meaning = "; ".join(part for part in parts if part)
     return f"| `{row.name}` | `{row.type}` | {meaning} |"

@@ -35,6 +35,13 @@ def test_without_extensions_the_services_are_gazebos():
     assert sorted(names(SERVES, extensions=False)) == sorted(GAZEBOS)
 
 
+def test_what_newer_versions_of_gazebo_have_is_not_called_an_extension():
+    (line,) = (line for line in interface.markdown().splitlines()
+               if "`performance_metrics`" in line)
+    assert "since Gazebo 11.2" in line and "extension" not in line
+    assert "performance_metrics" not in names(PUBLISHES, extensions=False)
+
+
 def test_without_extensions_the_topics_are_gazebos():
     assert names(PUBLISHES, extensions=False) == [
         "/clock", "model_states", "link_states", "parameter_descriptions", "parameter_updates",
