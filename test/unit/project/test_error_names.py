@@ -9,7 +9,7 @@ import sys
 REPOSITORY = pathlib.Path(__file__).resolve().parents[3]
 sys.path.insert(0, str(REPOSITORY / "tools" / "generate"))
 
-from source_messages import modules
+from source_codes import modules
 
 ROOT = "SimulationError"
 STANDALONE = {"resources/database/archive_worker.py"}

@@ -10,7 +10,7 @@ import pytest
 REPOSITORY = pathlib.Path(__file__).resolve().parents[3]
 sys.path.insert(0, str(REPOSITORY / "tools" / "generate"))
 
-from source_messages import code_uses
+from source_codes import code_uses
 
 from my_simulations.issue_codes import CODES, EITHER, SECTIONS, markdown
 

@@ -1,4 +1,4 @@
-"""Finds issue codes and the texts of messages in the sources, without importing them."""
+"""Finds the issue codes in the sources, without importing them."""
 from __future__ import annotations
 
 import ast
@@ -6,7 +6,7 @@ import functools
 import pathlib
 import re
 from dataclasses import dataclass
-from typing import Dict, Iterable, Iterator, List, Optional, Set, Tuple
+from typing import Dict, Iterable, Iterator, List, Set, Tuple
 
 REPOSITORY = pathlib.Path(__file__).resolve().parents[2]
 PACKAGE = REPOSITORY / "src" / "my_simulations"
@@ -27,14 +27,12 @@ class Use:
     Attributes:
         pattern: regular expression of the codes meant; a literal code unless part is computed.
         severity: "error", "warning", "note", or "" where it is not written there.
-        text: message, `{...}` for computed parts; "" where it is not written there.
         path: of the module, below the package.
         line: 1-based.
     """
 
     pattern: str
     severity: str
-    text: str
     path: str
     line: int
 
@@ -67,46 +65,6 @@ def modules() -> Tuple[Module, ...]:
     return tuple(found)
 
 
-def text_of(node: Optional[ast.expr], constants: Optional[Dict[str, ast.expr]] = None) -> str:
-    """The text of a string expression, `{name}` for computed parts; "" for anything else.
-
-    Args:
-        node: the expression.
-        constants: values of the module's constants by name.
-    """
-    if isinstance(node, ast.Constant) and isinstance(node.value, str):
-        return node.value
-    if isinstance(node, ast.JoinedStr):
-        return "".join(text_of(part) if isinstance(part, ast.Constant)
-                       else _constant_part(part, constants) or _placeholder(part)
-                       for part in node.values)
-    if isinstance(node, ast.BinOp) and isinstance(node.op, ast.Add):
-        left, right = text_of(node.left, constants), text_of(node.right, constants)
-        return (left or "{...}") + (right or "{...}") if left or right else ""
-    if isinstance(node, ast.IfExp):
-        both = (text_of(node.body, constants), text_of(node.orelse, constants))
-        return "[" + " / ".join(filter(None, both)) + "]" if any(both) else ""
-    if isinstance(node, ast.Name) and constants and node.id in constants:
-        return text_of(constants[node.id])
-    return ""
-
-
-def _constant_part(part: ast.expr, constants: Optional[Dict[str, ast.expr]]) -> str:
-    value = part.value if isinstance(part, ast.FormattedValue) else part
-    return text_of(value, constants) if isinstance(value, ast.Name) else ""
-
-
-def _placeholder(part: ast.expr) -> str:
-    """`{name}` for a computed part of a text: its last name, `{...}` where it has none."""
-    value = part.value if isinstance(part, ast.FormattedValue) else part
-    while isinstance(value, (ast.Call, ast.Subscript)):
-        value = (value.args[0] if isinstance(value, ast.Call) and value.args
-                 else value.func if isinstance(value, ast.Call) else value.value)
-    name = (value.id if isinstance(value, ast.Name)
-            else value.attr if isinstance(value, ast.Attribute) else "...")
-    return "{" + name.lstrip("_").lower() + "}"
-
-
 @functools.lru_cache(maxsize=None)
 def code_uses() -> Tuple[Use, ...]:
     """Every place of the package where an issue code is given."""
@@ -114,8 +72,8 @@ def code_uses() -> Tuple[Use, ...]:
     found: List[Use] = []
     for module in modules():
         for node in module.nodes:
-            for expression, severity, text in _codes_at(node, positions):
-                found += [Use(pattern, severity, text, module.path, expression.lineno)
+            for expression, severity in _codes_at(node, positions):
+                found += [Use(pattern, severity, module.path, expression.lineno)
                           for pattern in _patterns(expression, module.constants)]
     return tuple(found)
 
@@ -153,17 +111,17 @@ def _code_positions(sources: Iterable[Module]) -> Dict[str, Set[int]]:
 
 
 def _codes_at(node: ast.AST, positions: Dict[str, Set[int]]
-              ) -> Iterator[Tuple[ast.expr, str, str]]:
-    """The expressions that give a code here, each with severity and message."""
+              ) -> Iterator[Tuple[ast.expr, str]]:
+    """The expressions that give a code here, each with its severity."""
     if isinstance(node, ast.Call) and not _is_log_call(node):
         yield from _codes_of_call(node, positions)
     elif isinstance(node, ast.Assign):
         if any(isinstance(target, ast.Name) and target.id in CARRIERS for target in node.targets):
-            yield node.value, "", ""
+            yield node.value, ""
     elif isinstance(node, ast.FunctionDef):
         for argument, default in zip(reversed(node.args.args), reversed(node.args.defaults)):
             if argument.arg in CARRIERS:
-                yield default, "", ""
+                yield default, ""
 
 
 def _is_log_call(call: ast.Call) -> bool:
@@ -172,21 +130,20 @@ def _is_log_call(call: ast.Call) -> bool:
 
 
 def _codes_of_call(call: ast.Call, positions: Dict[str, Set[int]]
-                   ) -> Iterator[Tuple[ast.expr, str, str]]:
-    name = called(call)
+                   ) -> Iterator[Tuple[ast.expr, str]]:
+    name = _called(call)
     for position in positions.get(name, ()):
         if position < len(call.args):
-            message = 0 if name == "MeshError" else position + 1
-            text = text_of(call.args[message]) if message < len(call.args) else ""
-            yield call.args[position], _severity(name, call), text
+            yield call.args[position], _severity(name, call)
     for keyword in call.keywords:
         if keyword.arg in CARRIERS and name in positions:
-            yield keyword.value, "", text_of(call.args[0]) if call.args else ""
-    if name == "getattr" and len(call.args) == 3 and text_of(call.args[1]) in CARRIERS:
-        yield call.args[2], "", ""
+            yield keyword.value, ""
+    if (name == "getattr" and len(call.args) == 3 and isinstance(call.args[1], ast.Constant)
+            and call.args[1].value in CARRIERS):
+        yield call.args[2], ""
 
 
-def called(call: ast.Call) -> str:
+def _called(call: ast.Call) -> str:
     """The last name of what is called."""
     return (call.func.id if isinstance(call.func, ast.Name)
             else call.func.attr if isinstance(call.func, ast.Attribute) else "")
