@@ -93,7 +93,7 @@ class Faults(flow.ToolCase, unittest.TestCase):
     def test_a_list_of_another_world_is_dropped_by_the_upload(self):
         rospy.set_param("/objects", {"stale": entry()})
         rospy.set_param("/object_groups", {"stale": ["stale"]})
-        self.run_tool("upload_objects.py", "--world", "test")
+        self.run_tool("upload_objects.py", "--world", "shapes")
         self.assertNotIn("stale", rospy.get_param("/objects"))
         self.assertNotIn("stale", rospy.get_param("/object_groups"))
 
