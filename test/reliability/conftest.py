@@ -1,4 +1,4 @@
-"""Keeps the figures of proofs for doc/reliability.md."""
+"""Keeps the figures of proofs for doc/dev/reliability.md."""
 from __future__ import annotations
 
 import json
@@ -27,7 +27,7 @@ def silent() -> Iterator[None]:
 
 @pytest.fixture
 def record(request: pytest.FixtureRequest) -> Callable[..., None]:
-    """Keeps the figures of a proof that has passed, for doc/reliability.md."""
+    """Keeps the figures of a proof that has passed, for doc/dev/reliability.md."""
     began = time.monotonic()
 
     def keep(proof: str, **figures: Any) -> None:

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Puts the figures of test/reliability into the tables of doc/reliability.md.
+"""Puts the figures of test/reliability into the tables of doc/dev/reliability.md.
 
 usage: reliability_table.py RECORDS   the file reliability.jsonl of a run of tools/test
 
@@ -14,10 +14,10 @@ import sys
 from pathlib import Path
 from typing import Any, Dict, List
 
-PAGE = Path(__file__).resolve().parents[2] / "doc" / "reliability.md"
+PAGE = Path(__file__).resolve().parents[2] / "doc" / "dev" / "reliability.md"
 
 
-TESTS = PAGE.parents[1] / "test"
+TESTS = PAGE.parents[2] / "test"
 
 
 def rows(records: List[Dict[str, Any]], before: str = "") -> str:

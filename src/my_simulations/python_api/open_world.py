@@ -79,7 +79,7 @@ class OpenWorld:
 
     Attributes:
         issues: faults and advice found so far, in order.
-        simulator: the simulator, which can do more (see doc/architecture.md).
+        simulator: the simulator, which can do more (see doc/dev/architecture.md).
     """
 
     def __init__(self, choice: WorldChoice, *, resolver: Optional[Resolver] = None,

@@ -1,4 +1,4 @@
-"""The pages: links, sizes, commands and the walks of the architecture page are right."""
+"""The pages: links, sizes, commands and the walks through the code are right."""
 from __future__ import annotations
 
 import re
@@ -17,8 +17,10 @@ sys.path.insert(0, str(REPOSITORY / "tools" / "generate"))
 from supported_table import PAGE as SUPPORT
 from supported_table import with_table
 
-PAGES = [REPOSITORY / "README.md", REPOSITORY / "CONTRIBUTING.md",
-         *sorted((REPOSITORY / "doc").glob("*.md"))]
+README, MAINTAINERS = REPOSITORY / "README.md", REPOSITORY / "doc" / "dev" / "README.md"
+USERS_PAGES = sorted((REPOSITORY / "doc").glob("*.md"))
+MAINTAINERS_PAGES = [REPOSITORY / "CONTRIBUTING.md", *sorted(MAINTAINERS.parent.glob("*.md"))]
+PAGES = [README, *USERS_PAGES, *MAINTAINERS_PAGES]
 README_BYTES = 8192
 
 BLOCK = re.compile(r"^```(\w*)[^\n]*\n(.*?)^```$", re.MULTILINE | re.DOTALL)
@@ -54,10 +56,18 @@ def test_every_link_of_a_page_leads_somewhere(page):
             assert anchor in anchors(target), f"{page.name}: {link}"
 
 
-def test_every_page_is_reached_from_the_readme():
-    reached = {(REPOSITORY / link).resolve() for link in links(REPOSITORY / "README.md")
-               if "://" not in link}
-    assert {page.resolve() for page in PAGES[1:]} <= reached
+def targets(page):
+    return {(page.parent / link).resolve() for link in links(page) if "://" not in link}
+
+
+def test_the_readme_links_every_page_for_users_and_the_index_every_page_for_maintainers():
+    index = re.split(r"^## Documentation$", text_of(README), flags=re.MULTILINE)[1]
+    rows = {REPOSITORY / link for row in re.findall(r"^\|.*$", index, re.MULTILINE)
+            for link in LINK.findall(row)}
+    assert {page.resolve() for page in rows} == {page.resolve() for page in USERS_PAGES}
+    assert MAINTAINERS.resolve() in targets(README)
+    assert {page.resolve() for page in MAINTAINERS_PAGES} - {MAINTAINERS.resolve()} <= (
+        targets(MAINTAINERS))
 
 
 def test_every_picture_is_shown_on_a_page():
@@ -67,9 +77,8 @@ def test_every_picture_is_shown_on_a_page():
 
 
 def test_readme_is_short_and_has_two_pictures():
-    readme = REPOSITORY / "README.md"
-    assert len(readme.read_bytes()) <= README_BYTES
-    assert len(re.findall(r"!\[[^\]]+\]\(doc/images/", text_of(readme))) >= 2
+    assert len(README.read_bytes()) <= README_BYTES
+    assert len(re.findall(r"!\[[^\]]+\]\(doc/images/", text_of(README))) >= 2
 
 
 def test_the_table_of_supported_elements_is_the_readers_own():
@@ -230,11 +239,11 @@ def test_changelog_is_catkins():
     assert lines[1] == "Changelog for package my_simulations"
     assert set(lines[0]) == set(lines[2]) == {"^"} and len(lines[0]) >= len(lines[1])
     sections = [line for line, under in zip(lines, lines[1:]) if under and set(under) == {"-"}]
-    assert sections[0] == "Forthcoming"
-    assert all(re.fullmatch(r"\d+\.\d+\.\d+ \(\d{4}-\d\d-\d\d\)", name) for name in sections[1:])
+    released = sections[sections[0] == "Forthcoming":]
+    assert all(re.fullmatch(r"\d+\.\d+\.\d+ \(\d{4}-\d\d-\d\d\)", name) for name in released)
 
 
-# -- the walks of the architecture page ----------------------------------------------------------
+# -- the walks through the code ----------------------------------------------------------
 
 @pytest.mark.parametrize("title, stated, rows", walks(), ids=lambda value: str(value)[:20])
 def test_walk_counts_its_modules_right(title, stated, rows):

@@ -65,7 +65,7 @@ def test_the_figures_of_proofs_become_a_table():
     fuzzed = [{**record, "proof": name, "figures": {"inputs": 500, "slowest_ms": 3}}
               for name in ("one", "other")]
     assert table.rows(fuzzed).endswith("|\n\nInputs in all: 1000, of 2 proofs.")
-    page = (REPOSITORY / "doc" / "reliability.md").read_text(encoding="utf-8")
+    page = (REPOSITORY / "doc" / "dev" / "reliability.md").read_text(encoding="utf-8")
     assert text in table.with_table(page, "short runs", text)
     before = table.table_of(page, "short runs")
     kept = table.rows([record], before).splitlines()

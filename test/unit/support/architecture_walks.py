@@ -1,11 +1,11 @@
-"""The walks of doc/architecture.md: which modules and functions a request passes."""
+"""The walks of doc/dev/walks.md: which modules and functions a request passes."""
 from __future__ import annotations
 
 import re
 from pathlib import Path
 from typing import List, NamedTuple, Tuple
 
-PAGE = Path(__file__).resolve().parents[3] / "doc" / "architecture.md"
+PAGE = Path(__file__).resolve().parents[3] / "doc" / "dev" / "walks.md"
 _COUNTS = re.compile(r"(\d+) modules, (\d+) revisits")
 
 
@@ -18,9 +18,9 @@ class Walk(NamedTuple):
 
 
 def walks() -> List[Walk]:
-    text = PAGE.read_text(encoding="utf-8").split("## Four walks")[1].split("\n## ")[0]
+    text = PAGE.read_text(encoding="utf-8")
     found = []
-    for part in text.split("\n### ")[1:]:
+    for part in text.split("\n## ")[1:]:
         lines = re.search(r"```text walk\n(.*?)```", part, re.DOTALL).group(1).splitlines()
         # Remarks begin after two spaces or more, or after a name without a comma.
         rows = [re.match(r"(\S+)\s+(\w+(?:, \w+)*)", line).groups() for line in lines]
