@@ -26,10 +26,9 @@ MESSAGES = ("control_msgs", "controller_manager_msgs", "gazebo_msgs", "my_simula
 PARTS = ("lib/python3/dist-packages/{}", "include/{}", "share/{}/msg", "share/common-lisp/ros/{}")
 """Folders of a devel space with what is generated from a package's messages."""
 COMPILED = shutil.ignore_patterns("__pycache__")
-OLDER = """#!/bin/sh
-# make generates again what is older than its definition: definitions of a clone are old.
-find . -path '*/compat/*' -type f -exec touch -d 2020-01-01 {} +
-"""
+OLDER = ["find", ".", "-path", "*/compat/*", "-type", "f", "-exec",
+         "touch", "-d", "2020-01-01", "{}", "+"]
+"""make generates again what is older than its definition: definitions of a clone are old."""
 
 BLOCK = re.compile(r"^```(\w+)(?: ([\w-]+))?\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 COMMAND_SECONDS = 900.0
@@ -66,12 +65,11 @@ def blocks(text):
 class Terminals:
     """A home folder, and terminals that are opened in it."""
 
-    def __init__(self, home: Path, repository: Path) -> None:
+    def __init__(self, home: Path) -> None:
         self.home = home
         self.environment = {
             "HOME": str(home), "PATH": "/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin",
-            "LANG": "C.UTF-8", "REPOSITORY": str(repository), "MY_SIMULATIONS_NO_BROWSER": "1",
-            "GIT_TEMPLATE_DIR": str(repository.parent / "template"),
+            "LANG": "C.UTF-8", "MY_SIMULATIONS_NO_BROWSER": "1",
             "ROS_MASTER_URI": f"http://127.0.0.1:{free_port()}", "ROS_IP": "127.0.0.1",
             # What tells the tests' own processes from others.
             **{key: value for key, value in os.environ.items()
@@ -129,10 +127,6 @@ def repository(tmp_path_factory):
     author = ["-c", "user.name=test", "-c", "user.email=test@localhost"]
     for words in (["init", "-q"], ["add", "-A"], [*author, "commit", "-qm", "x"]):
         subprocess.run(["git", *words], cwd=folder, check=True)
-    hook = folder.parent / "template" / "hooks" / "post-checkout"
-    hook.parent.mkdir(parents=True)
-    hook.write_text(OLDER)
-    hook.chmod(0o755)
     return folder
 
 
@@ -153,7 +147,10 @@ def terminals(tmp_path, repository):
     for name in ("venv", "node_modules", ".page"):
         (own / name).symlink_to(OWN / name)
     copy_messages(home / "simulation_ws" / "devel")
-    opened = Terminals(home, repository)
+    clone = home / "my_simulations_clone"
+    subprocess.run(["git", "clone", "-q", str(repository), str(clone)], check=True)
+    subprocess.run(OLDER, cwd=clone, check=True)
+    opened = Terminals(home)
     yield opened
     opened.end()
 
