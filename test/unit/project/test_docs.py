@@ -17,6 +17,8 @@ sys.path.insert(0, str(REPOSITORY / "tools" / "generate"))
 from supported_table import PAGE as SUPPORT
 from supported_table import with_table
 
+from my_simulations.plugins.registry import BUILT_IN, PROVIDED
+
 README, MAINTAINERS = REPOSITORY / "README.md", REPOSITORY / "doc" / "dev" / "README.md"
 USERS_PAGES = sorted((REPOSITORY / "doc").glob("*.md"))
 MAINTAINERS_PAGES = [REPOSITORY / "CONTRIBUTING.md", *sorted(MAINTAINERS.parent.glob("*.md"))]
@@ -84,6 +86,14 @@ def test_readme_is_short_and_has_two_pictures():
 def test_the_table_of_supported_elements_is_the_readers_own():
     page = text_of(SUPPORT)
     assert with_table(page) == page, "run tools/generate/supported_table.py"
+
+
+def test_the_robots_page_lists_every_library_of_the_registry_and_no_other():
+    page = text_of(REPOSITORY / "doc" / "robots.md")
+    rows = {name for row in re.findall(r"^\| (`lib[^|]*) \|", page, re.MULTILINE)
+            for name in re.findall(r"`(lib\w+\.so)`", row)}
+    assert rows == set(BUILT_IN)
+    assert [name for name in PROVIDED if f"`{name}`" not in page] == []
 
 
 # -- launch files --------------------------------------------------------------------------------
