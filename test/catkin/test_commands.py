@@ -75,13 +75,13 @@ def test_every_world_launch_file_forwards_every_argument():
     told = _roslaunch_each(*(
         ["--args", "/gazebo", "gazebo_ros", launch, "paused:=true", "recording:=true",
          "verbose:=true", "physics:=bullet", "extra_gazebo_args:=--seed 7",
-         "world_name:=some.world", "gui:=false"] for launch in launches))
+         "gui:=false"] for launch in launches))
     assert len(told) == len(launches)
     for launch, text in zip(launches, told):
         words = text.split()
         assert words[0].endswith("/gzserver"), launch
-        assert words[1:9] == ["-u", "-r", "--verbose", "-e", "bullet", "--seed", "7",
-                              "some.world"], launch
+        assert words[1:8] == ["-u", "-r", "--verbose", "-e", "bullet", "--seed", "7"], launch
+        assert words[8].startswith("worlds/") and words[8].endswith(".world"), launch
 
 
 @pytest.mark.parametrize("name, robot", [
