@@ -1,10 +1,13 @@
 """What Python does for a command does not grow with the bodies that are there."""
 from __future__ import annotations
 
+import pybullet
 import pytest
 from conftest import ball, box, ground
 from work_count import lines_run
 
+from my_simulations.description.model import Link, Model
+from my_simulations.description.shapes import Box, Collision
 from my_simulations.engine.commands import LoadModel, RemoveModel
 from my_simulations.geometry import Pose
 
@@ -35,3 +38,40 @@ def test_a_body_that_is_read_out_after_a_command_is_the_only_one(lab):
         lab.apply(LoadModel(n + 2, box(f"b{n}"), Pose((3.0 * n, 0.0, 0.5)), n + 1, 0, {}))
         read[n + 1] = lines_run(lab.backend.read)
     assert read[MANY] - read[FEW] < 20
+
+
+def _loading(lab, model):
+    links = len(model.links)
+    return lines_run(lambda: lab.apply(LoadModel(1, model, Pose(), 0, 0, {}))) / links
+
+
+@pytest.mark.parametrize("shapes", [0, 1])
+def test_a_link_without_collisions_costs_no_look_at_the_others_of_its_model(lab, shapes):
+    def model(count):
+        solid = [Collision("c", Box((0.1, 0.1, 0.1)))] * shapes
+        return Model("m", links=[Link(f"l{n}", Pose((0.2 * n, 0, 1)), collisions=solid)
+                                 if n < 2 else Link(f"l{n}") for n in range(count)])
+
+    few = _loading(lab, model(FEW))
+    lab.apply(RemoveModel(1))
+    assert _loading(lab, model(MANY)) < 1.1 * few
+
+
+def test_a_static_link_of_many_shapes_costs_as_much_a_shape_as_one_of_few(lab):
+    def load(count):
+        link = Link("link", collisions=[Collision(f"c{n}", Box((0.1, 0.1, 0.1)), Pose((n, 0, 0)))
+                                        for n in range(count)])
+        return _loading(lab, Model("m", static=True, links=[link])) / count
+
+    few = load(100)
+    lab.apply(RemoveModel(1))
+    assert load(1000) < 1.1 * few
+
+
+def test_links_without_collisions_meet_nothing(lab, monkeypatch):
+    # Bullet keeps a pair for any two bodies at one place whose filters let them meet.
+    filters = []
+    monkeypatch.setattr(pybullet, "setCollisionFilterGroupMask",
+                        lambda uid, index, group, mask: filters.append((group, mask)))
+    lab.load(Model("m", links=[Link(f"l{n}") for n in range(4)]))
+    assert filters == [(0, 0)] * 4

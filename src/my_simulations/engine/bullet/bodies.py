@@ -12,6 +12,7 @@ from typing import Dict, List, Optional, Set, Tuple
 import pybullet
 
 from ...description.model import Link
+from ...description.shapes import Surface
 from ...geometry import (
     IDENTITY,
     Pose,
@@ -181,11 +182,9 @@ class Body:
         return self.parts[0] if self.parts[0].index == BASE else None
 
 
-def set_dynamics(uid: int, index: int, link: Link, mass: float, moments: Vec3,
+def set_dynamics(uid: int, index: int, surface: Surface, mass: float, moments: Vec3,
                  may_sleep: bool) -> None:
     """Gazebo's dynamics for one link: the file's inertia, no hidden damping, its surface."""
-    surface = surface_coefficients.of_link(link)
-
     # One call each: some settings make PyBullet apply all of a call to the base (measured, 3.2.7:
     # with maxJointVelocity, the mass of a link became that of the base and freed a fixed one).
     def change(**settings: object) -> None:

@@ -151,17 +151,22 @@ class Builder:
                                      useMaximalCoordinates=int(not self._articulated))
             for shape, stand in places
         ]
+        if not rigid.pieces:
+            collision_groups.NOTHING.set(uids[0], BASE)  # else Bullet keeps a pair for any two
+        filters = {role: (collision_groups.static(link, role) if rigid.static
+                          else collision_groups.moving(link))
+                   for role in {piece.role for piece in rigid.pieces}}
         for uid, piece in zip(uids, rigid.pieces):
-            (collision_groups.static(link, piece.role) if rigid.static
-             else collision_groups.moving(link)).set(uid, BASE)
+            filters[piece.role].set(uid, BASE)
             _fit(uid, BASE, piece)
+        surface = surface_coefficients.of_link(link)
         part = self._part(rigid.number, BASE, masses, link)
         body = Body(uids[0], self.model_id, [part], more=tuple(uids[1:]),
                     moves=not rigid.static, rigid=not self._articulated,
                     is_ball=[type(c.geometry) for c in link.collisions] == [Sphere],
                     may_sleep=self._may_sleep(link), shapes=taken)
         for uid in uids:
-            set_dynamics(uid, BASE, link, masses.mass, masses.moments,
+            set_dynamics(uid, BASE, surface, masses.mass, masses.moments,
                          body.may_sleep and not rigid.static)
             if body.rigid and rigid.static:
                 let_rest(uid)
@@ -262,7 +267,8 @@ class Builder:
         for n, (node, masses) in enumerate(zip(tree.plan.links, tree.masses)):
             index = n if tree.plan.fixed_base else n - 1
             link = carried_by(node, self._model)
-            set_dynamics(uid, index, link, masses.mass, masses.moments, False)
+            set_dynamics(uid, index, surface_coefficients.of_link(link), masses.mass,
+                         masses.moments, False)
             shape = tree.shapes[n]
             if shape is not None:
                 (collision_groups.static(link) if link.kinematic
@@ -317,8 +323,9 @@ class Builder:
         for plan, body in zip(self.plans, built):
             if self._collide(plan):
                 self._ignore_pairs(itertools.combinations(_colliders(body), 2), ignored)
-        for one, other in itertools.combinations(built, 2):
-            self._ignore_pairs(itertools.product(_colliders(one), _colliders(other)), ignored)
+        colliders = [found for found in map(_colliders, built) if found]
+        for one, other in itertools.combinations(colliders, 2):
+            self._ignore_pairs(itertools.product(one, other), ignored)
 
     def _ignore_pairs(self, pairs: Iterable[Tuple[_Collider, _Collider]], ignored: bool) -> None:
         for (one, index, row), (other, other_index, other_row) in pairs:
@@ -327,7 +334,8 @@ class Builder:
 
 
 def _colliders(body: Body) -> List[_Collider]:
-    return [(uid, part.index, part.row) for uid in body.uids for part in body.colliders]
+    return [(uid, part.index, part.row) for uid in body.uids for part in body.colliders
+            if part.link.collisions]
 
 
 def _fit(uid: int, index: int, shape: Recipe) -> None:

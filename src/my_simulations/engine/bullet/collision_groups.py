@@ -37,6 +37,10 @@ class Filter(NamedTuple):
         pybullet.setCollisionFilterGroupMask(uid, index, self.group, self.mask)
 
 
+NOTHING = Filter(0, 0)
+"""Of a link without collisions: it meets nothing."""
+
+
 def moving(link: Link) -> Filter:
     """Of a link that moves: it meets what shares a bit of the collide_bitmask with it."""
     bits = _bits(link)
