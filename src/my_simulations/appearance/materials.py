@@ -4,20 +4,19 @@ from __future__ import annotations
 import os
 import threading
 from dataclasses import replace
-from typing import Dict, List, Optional, Protocol, Tuple
+from typing import Dict, List, Optional, Protocol
 
 from ..description.compare import BUILT_IN as BUILT_IN_SCRIPT
 from ..description.shapes import Color, Material, Visual
 from ..resources.resolver import Resolver, ResourceNotFoundError
 from .gazebo_materials import BUILT_IN, Paint, Rgb
 from .looks import Look
-from .material_script import LARGEST, ScriptMaterial, read_materials
+from .material_script import ScriptMaterial
+from .script_files import materials_of, scripts_of
 from .terrain_layers import terrain_layers
 
 _COLORS = ("ambient", "diffuse", "specular", "emissive")
 _WHITE: Color = (1.0, 1.0, 1.0, 1.0)
-_MOST_OF_A_FOLDER = 8 * LARGEST
-"""Bytes of scripts that are read of one folder."""
 
 
 class Textures(Protocol):
@@ -33,7 +32,7 @@ class Materials:
     def __init__(self, resolver: Resolver, textures: Textures) -> None:
         self._resolver = resolver
         self._textures = textures
-        self._scripts: Dict[Tuple[str, int], Dict[str, ScriptMaterial]] = {}
+        self._scripts: Dict[str, Dict[str, ScriptMaterial]] = {}
         self._folders: Dict[str, List[str]] = {}
         self._seen: Dict[str, ScriptMaterial] = {}
         self._lock = threading.Lock()
@@ -97,14 +96,9 @@ class Materials:
     def _load(self, uri: str, wanted: str) -> List[str]:
         """Read the scripts of a URI; returns the folders that may contain their images."""
         try:
-            path = self._resolver.resolve(uri)
+            scripts, folders = scripts_of(uri, self._resolver)
         except ResourceNotFoundError:
             return []
-        if os.path.isdir(path):
-            scripts, folders = _scripts_in(path), [path]
-        else:
-            scripts = [path] if path.endswith(".material") else []
-            folders = [os.path.dirname(path)]
         for script in scripts:
             self._read(script, wanted)
         return folders
@@ -115,18 +109,12 @@ class Materials:
         Many visuals may name a folder of many materials.
         """
         try:
-            key = (path, os.stat(path).st_mtime_ns)
-            found = self._scripts.get(key)
-            if found is not None:
-                names = [wanted] if wanted in found else []
-            elif os.path.isfile(path):  # nobody may ever write to a named pipe
-                with open(path, encoding="utf-8", errors="replace") as stream:
-                    found = self._scripts[key] = read_materials(stream.read(LARGEST))
-                names = list(found)
-            else:
-                return
+            found = materials_of(path)
         except OSError:
             return
+        names = [wanted] if wanted in found else []
+        if self._scripts.get(path) is not found:
+            self._scripts[path], names = found, list(found)
         for name in names:
             self._seen[name] = found[name]
             self._folders[name] = [os.path.dirname(path)]
@@ -136,21 +124,6 @@ class Materials:
             return self._resolver.resolve(uri)
         except ResourceNotFoundError:
             return ""
-
-
-def _scripts_in(folder: str) -> List[str]:
-    """The scripts of a folder, as many as may be read."""
-    try:
-        names = [name for name in sorted(os.listdir(folder)) if name.endswith(".material")]
-    except OSError:
-        return []
-    found, size = [], 0
-    for path in (os.path.join(folder, name) for name in names):
-        size += min(os.path.getsize(path), LARGEST) if os.path.isfile(path) else 0
-        if size > _MOST_OF_A_FOLDER:
-            break
-        found.append(path)
-    return found
 
 
 def _of_paint(name: str, paint: Paint) -> Look:

@@ -15,6 +15,7 @@ from ..resources.resolver import Resolver
 from .include_overrides import IncludeOverrides
 from .loading_advice import ADVICE_LIMIT, Written, advice_issues
 from .mesh.loading import collision_meshes
+from .mesh.visual_files import decoded_visual_issues, visual_file_issues
 from .sdf.include import read_include
 from .sdf.light import LightPlacement, read_light
 from .sdf.model import read_model
@@ -127,6 +128,7 @@ def _loaded_world(root: Any, source: Source, parsed: World, advice_limit: Option
         meshes[model.name], faults = collision_meshes(model)
         issues += faults
     progress("", len(world.models), len(world.models))
+    issues += visual_file_issues(world.models, source.resolver)
     issues += advice_issues(world.models, meshes, Written(source.file, root), limit=advice_limit)
     return LoadedWorld(world, meshes, issues)
 
@@ -186,7 +188,10 @@ class ParsedDocument:
 
     def read_entity(self) -> Tuple[Entity, List[Issue]]:
         """The first model or light; see the function `read_entity`. Call it once."""
-        return _entity_in(self._root, self._source), self._source.log.issues
+        entity = _entity_in(self._root, self._source)
+        shown = ([] if isinstance(entity, Light)
+                 else visual_file_issues([entity], self._source.resolver))
+        return entity, [*self._source.log.issues, *shown]
 
 
 def parse_document(text: Text, resolver: Resolver, file: str = "<model_xml>") -> ParsedDocument:
@@ -212,7 +217,8 @@ def read_any(text: Text, resolver: Resolver,
              file: str) -> Tuple[Union[World, Model, Light, Actor], List[Issue]]:
     """The first world of a document, else its first model or light, else an actor.
 
-    The issues are complete, as those of `read_world`, and include all advice.
+    The issues are complete, as those of `read_world`, and include all advice and faults of meshes
+    that are only shown.
 
     Raises:
         InputError: nothing is usable.
@@ -221,7 +227,8 @@ def read_any(text: Text, resolver: Resolver,
     issues = source.log.issues
     if root.find("world") is not None:
         loaded = _loaded_world(root, source, _world_in(root, source, 0, ""), None)
-        return loaded.world, loaded.issues
+        return loaded.world, [*loaded.issues, *decoded_visual_issues(loaded.world.models,
+                                                                     loaded.issues)]
     actor = root.find("actor")
     if actor is not None and not any(root.find(tag) is not None
                                      for tag in ("model", "light", "include")):
@@ -229,6 +236,8 @@ def read_any(text: Text, resolver: Resolver,
         return read_actor(actor, source), issues
     entity = _entity_in(root, source)
     if isinstance(entity, Model):
+        issues += visual_file_issues([entity], resolver)
+        issues += decoded_visual_issues([entity], issues)
         meshes, faults = collision_meshes(entity)
         issues += faults
         issues += advice_issues([entity], {entity.name: meshes}, Written(file, root), limit=None)

@@ -85,7 +85,7 @@ def test_colours_are_found_by_name_wherever_they_are_defined():
     assert materials[1].diffuse == (0, 0, 1, 0.5)
     assert materials[2].texture == "package://p/a.png"
     assert materials[3].diffuse is None
-    assert warnings(issues) == ["material-unknown"]
+    assert warnings(issues) == ["image-not-found", "material-unknown"]
 
 
 def test_a_hinge_is_read():

@@ -5,7 +5,7 @@ import json
 import os
 import stat
 import struct
-from typing import Any, List
+from typing import Any, List, Tuple
 from urllib.parse import unquote
 
 from .part import MOST_TRIANGLES, MeshError
@@ -24,17 +24,27 @@ def check_gltf(data: bytes, path: str) -> None:
     Raises:
         MeshError: the file is rejected.
     """
-    tree = _tree(data)
+    tree = gltf_tree(data)
     if sum(_counts(tree)) > 3 * MOST_TRIANGLES:
         raise MeshError(f"it has more than {MOST_TRIANGLES} triangles")
     nodes = _dicts(tree, "nodes")
     children = [child for node in nodes for child in node.get("children") or ()]
     if len(nodes) > _MOST_NODES or len(children) != len({str(child) for child in children}):
         raise MeshError(f"it has more than {_MOST_NODES} nodes, or one with two parents")
-    for item in (*_dicts(tree, "buffers"), *_dicts(tree, "images")):
-        uri = item.get("uri")
-        if isinstance(uri, str) and not uri.startswith("data:"):
-            _check_file(os.path.join(os.path.dirname(path), unquote(uri)), uri)
+    for _, uri in named_in_gltf(tree):
+        _check_file(os.path.join(os.path.dirname(path), unquote(uri)), uri)
+
+
+def named_in_gltf(tree: Any) -> List[Tuple[str, str]]:
+    """The URIs of the files that a glTF document refers to, each after `buffers` or `images`.
+
+    Raises:
+        MeshError: the document is damaged.
+    """
+    uris = [(kind, item.get("uri")) for kind in ("buffers", "images")
+            for item in _dicts(tree, kind)]
+    return [(kind, uri) for kind, uri in uris
+            if isinstance(uri, str) and not uri.startswith("data:")]
 
 
 def _counts(tree: Any) -> List[int]:
@@ -57,7 +67,12 @@ def _check_file(file: str, uri: str) -> None:
         raise MeshError(f"{uri!r} is no plain file of at most {_LARGEST_BUFFER >> 20} MB")
 
 
-def _tree(data: bytes) -> Any:
+def gltf_tree(data: bytes) -> Any:
+    """The JSON document of a .gltf or .glb file.
+
+    Raises:
+        MeshError: it has none.
+    """
     text = data
     if data[:4] == b"glTF":
         if len(data) < 20:

@@ -10,6 +10,7 @@ from typing import Any, Callable, Iterator, List, Optional, Tuple
 from ...description.model import Link, Model
 from ...description.shapes import SOLIDS, Collision, Mesh, MeshData, MeshTable, Solid, mesh_key
 from ...errors import InputError, Issue, Severity, error
+from ...resources.lfs_pointer import LFS_HINT, LFS_POINTER, is_lfs_pointer
 from ..reader_process import read_elsewhere
 from ..xml.binding import closest
 from .part import MeshError, MeshPart
@@ -192,7 +193,10 @@ def _parts(path: str) -> List[MeshPart]:
                      " format that is read", path, hint="use .dae, .stl or .obj")
     try:
         with open(path, "rb") as stream:
-            return reader(stream.read())
+            data = stream.read()
+        if is_lfs_pointer(data):
+            raise _fault("mesh-unreadable", LFS_POINTER, path, hint=LFS_HINT)
+        return reader(data)
     except OSError as fault:
         raise _fault("mesh-unreadable", f"cannot be read: {fault.strerror}", path) from None
     except MeshError as fault:

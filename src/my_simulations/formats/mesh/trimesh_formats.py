@@ -35,14 +35,9 @@ def read_stl(data: bytes) -> List[MeshPart]:
     Raises:
         MeshError: neither binary nor ASCII STL.
     """
-    # A binary file may begin with `solid`, too; its length identifies it.
-    if len(data) >= _HEADER:
-        count = int.from_bytes(data[80:_HEADER], "little")
-        end = _HEADER + _RECORD * count
-        if len(data) >= end and not (count == 0 and data[:5].lower() == b"solid"):
-            return [_welded(part) for part in _read(data[:end], "stl")]
-    if data.lstrip()[:5].lower() != b"solid":
-        raise MeshError("neither a binary STL of that length nor an ASCII one")
+    end = binary_stl_end(data, len(data))
+    if end:
+        return [_welded(part) for part in _read(data[:end], "stl")]
     rows: List[str] = []
     for line, row in enumerate(text_of(data).split("\n"), 1):
         words = row.split()
@@ -54,6 +49,27 @@ def read_stl(data: bytes) -> List[MeshPart]:
     # The name of a solid may contain the word vertex, and its end may be missing.
     plain = "\n".join(["solid", *rows, "endsolid", ""])
     return [_welded(part) for part in _read(plain.encode(), "stl")]
+
+
+def binary_stl_end(data: bytes, size: int) -> int:
+    """Where the triangles of a binary STL file end, in bytes; 0 for an ASCII file.
+
+    Args:
+        data: the file, or its first bytes, at least 84.
+        size: of the file, bytes.
+
+    Raises:
+        MeshError: neither binary nor ASCII STL.
+    """
+    # A binary file may begin with `solid`, too; its length identifies it.
+    if size >= _HEADER:
+        count = int.from_bytes(data[80:_HEADER], "little")
+        end = _HEADER + _RECORD * count
+        if size >= end and not (count == 0 and data[:5].lower() == b"solid"):
+            return end
+    if data.lstrip()[:5].lower() != b"solid":
+        raise MeshError("neither a binary STL of that length nor an ASCII one")
+    return 0
 
 
 def read_obj(data: bytes) -> List[MeshPart]:

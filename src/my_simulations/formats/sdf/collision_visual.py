@@ -20,6 +20,7 @@ from ...resources.resolver import ResourceNotFoundError
 from ..xml.binding import BAD, REFUSED, Found, closest, fill, read_text, to_xml
 from ..xml.source import FaultLevel, Source
 from ..xml.values import VECTOR2
+from .material_files import check_script
 from .model_tables import COLLISION, GEOMETRIES, MATERIAL, VISUAL
 from .terrain_textures import check_textures
 
@@ -65,6 +66,7 @@ def fill_material(element: Any, source: Source, extra: List[str]) -> Material:
     fill(material, element, MATERIAL, source, kept)
     extra += [f"<material>{xml}</material>" for xml in kept]
     material.script_uris = [_anchored(uri, source.base_dir) for uri in material.script_uris]
+    check_script(material, element, source)
     return material
 
 

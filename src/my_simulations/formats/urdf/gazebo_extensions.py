@@ -2,12 +2,14 @@
 from __future__ import annotations
 
 from collections import defaultdict
+from dataclasses import replace
 from typing import Any, DefaultDict, List, Sequence, Set
 
 from ...description.model import Model
 from ...description.shapes import Material
 from ...geometry import Pose, compose
 from ..sdf.collision_visual import fill_material
+from ..sdf.material_files import check_script
 from ..sdf.model_tables import COLLISION as SDF_COLLISION
 from ..sdf.model_tables import VISUAL as SDF_VISUAL
 from ..sdf.plugin import read_plugin
@@ -92,9 +94,11 @@ class Extensions:
             for value in GAZEBO_LINK[tag]:
                 self._set(link, value, child)
         elif tag == "material":
+            named = Material(script_name=(child.text or "").strip(),
+                             script_uris=[BUILT_IN_MATERIALS])
+            check_script(named, child, self._source)
             for _, visual in body.visuals:
-                visual.material = Material(script_name=(child.text or "").strip(),
-                                           script_uris=[BUILT_IN_MATERIALS])
+                visual.material = replace(named)
         else:
             return False
         return True

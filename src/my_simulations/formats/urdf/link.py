@@ -8,6 +8,7 @@ from ...description.model import Inertial, Link
 from ...description.shapes import Collision, Empty, Geometry, Material, Visual
 from ...geometry import IDENTITY, Pose
 from ..sdf.collision_visual import checked, unknown_shape
+from ..sdf.material_files import check_texture_uri
 from ..xml.binding import BAD, closest, fill
 from ..xml.source import FaultLevel, Source
 from .kinematic_tree import Body
@@ -124,6 +125,8 @@ def read_material(element: Any, source: Source, palette: Palette) -> Material:
                         closest(paint.name, list(palette)))
             return Material()
         return replace(palette[paint.name])
+    if paint.texture:
+        check_texture_uri(paint.texture, element, source)
     material = Material(ambient=paint.color, diffuse=paint.color, texture=paint.texture)
     if paint.name:
         palette.setdefault(paint.name, material)

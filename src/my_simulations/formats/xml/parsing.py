@@ -12,6 +12,7 @@ import re
 from typing import Any, Union
 
 from ...errors import InputError, error
+from ...resources.lfs_pointer import LFS_HINT, LFS_POINTER, is_lfs_pointer
 from ...resources.limited_file import at_most
 from ...xml_characters import forbidden_character, without_forbidden
 from .source import IssueCollector
@@ -61,6 +62,8 @@ def parse(text: Union[str, bytes], file: str, log: IssueCollector) -> Any:
     data = _encoded(text, file) if isinstance(text, str) else text
     if len(data) > LARGEST:
         raise _too_large(file)
+    if is_lfs_pointer(data):
+        raise _fault("git-lfs-pointer", LFS_POINTER, file, hint=LFS_HINT)
     if not data.strip(b" \t\r\n\0"):
         raise _fault("xml-empty", "the document is empty", file)
     _refuse_entities(data, file)

@@ -1,0 +1,59 @@
+"""Finds the material scripts of a URI and reads them; each file is read once."""
+from __future__ import annotations
+
+import functools
+import os
+from typing import Dict, List, Tuple
+
+from ..resources.resolver import Resolver
+from .material_script import LARGEST, ScriptMaterial, read_materials
+
+_MOST_OF_A_FOLDER = 8 * LARGEST
+"""Bytes of scripts that are read of one folder."""
+
+
+def scripts_of(uri: str, resolver: Resolver) -> Tuple[List[str], List[str]]:
+    """The scripts of a URI, and the folders that may contain their images.
+
+    Raises:
+        ResourceNotFoundError: neither a file nor a folder.
+    """
+    path = resolver.resolve(uri)
+    if os.path.isdir(path):
+        return _scripts_in(path), [path]
+    return [path] if path.endswith(".material") else [], [os.path.dirname(path)]
+
+
+def materials_of(script: str) -> Dict[str, ScriptMaterial]:
+    """The materials of a script by name, cached by time; none for what is not a plain file.
+
+    Callers must not change them.
+
+    Raises:
+        OSError: it cannot be read.
+    """
+    status = os.stat(script)
+    if not os.path.isfile(script):  # nobody may ever write to a named pipe
+        return {}
+    return _read(script, status.st_mtime_ns, status.st_size)
+
+
+@functools.lru_cache(maxsize=256)
+def _read(script: str, _changed: int, _size: int) -> Dict[str, ScriptMaterial]:
+    with open(script, encoding="utf-8", errors="replace") as stream:
+        return read_materials(stream.read(LARGEST))
+
+
+def _scripts_in(folder: str) -> List[str]:
+    """The scripts of a folder, as many as may be read."""
+    try:
+        names = [name for name in sorted(os.listdir(folder)) if name.endswith(".material")]
+    except OSError:
+        return []
+    found, size = [], 0
+    for path in (os.path.join(folder, name) for name in names):
+        size += min(os.path.getsize(path), LARGEST) if os.path.isfile(path) else 0
+        if size > _MOST_OF_A_FOLDER:
+            break
+        found.append(path)
+    return found

@@ -1,0 +1,194 @@
+"""Lists the files that a mesh file refers to, and checks its outer form, without its triangles.
+
+This takes milliseconds, so each visual can be checked when it is read. `loading` decodes meshes.
+"""
+from __future__ import annotations
+
+import functools
+import os
+import re
+from dataclasses import dataclass
+from typing import Any, Callable, Dict, List, Optional, Tuple, Union
+from urllib.parse import unquote
+
+from ...resources.lfs_pointer import LFS_POINTER, is_lfs_pointer
+from ...resources.limited_file import at_most
+from .gltf import gltf_tree, named_in_gltf
+from .part import MeshError
+from .trimesh_formats import binary_stl_end
+
+LARGEST = 64 << 20
+"""Bytes; larger files are not checked."""
+
+_HEAD_BYTES = 1024
+_LAST_LINE = 65535
+"""Largest line number of libxml2; elements further down have this line number, too."""
+
+_OBJ_FACE = re.compile(rb"^[ \t]*f[ \t]", re.MULTILINE)
+_OBJ_LIBRARY = re.compile(rb"^[ \t]*mtllib[ \t]+([^\r\n]+)", re.MULTILINE)
+_MTL_PICTURE = re.compile(rb"^[ \t]*map_Kd[ \t]+([^\r\n]+)", re.MULTILINE | re.IGNORECASE)
+_MTL_OPTION = re.compile(r"-[a-zA-Z]+(?:\s+(?:on|off|[-+.\d]+(?:e[-+]?\d+)?|[rgbmlz](?=\s)))*\s+")
+
+IMAGE, MATERIALS, BUFFER = "image", "material library", "buffer"
+
+
+@dataclass(frozen=True)
+class NamedFile:
+    """A file that another one refers to.
+
+    Attributes:
+        kind: IMAGE, MATERIALS or BUFFER.
+        name: path as written, without percent encoding; relative to the folder of the mesh.
+        line: line of the reference, from 1; 0 if unknown.
+    """
+
+    kind: str
+    name: str
+    line: int = 0
+
+
+Names = Tuple[NamedFile, ...]
+
+
+def named_files(path: str) -> Names:
+    """The files that a mesh or .mtl file refers to, in the order of the file.
+
+    Of a COLLADA effect, only the image that Gazebo shows. Formats other than COLLADA, OBJ, MTL and
+    glTF refer to no files. The result is cached by time and size of the file.
+
+    Raises:
+        MeshError: the file is not of its format, is cut off, or is a Git LFS pointer.
+        OSError: it cannot be read.
+    """
+    status = os.stat(path)
+    if status.st_size > LARGEST:
+        return ()
+    found = _read(path, status.st_mtime_ns, status.st_size)
+    if isinstance(found, MeshError):
+        raise found
+    return found
+
+
+@functools.lru_cache(maxsize=1024)
+def _read(path: str, _changed: int, size: int) -> Union[Names, MeshError]:
+    reader = _READERS.get(os.path.splitext(path)[1].lower())
+    with open(path, "rb") as stream:
+        data = at_most(stream, LARGEST if reader else _HEAD_BYTES)
+    try:
+        if not data.strip():
+            raise MeshError("the file is empty", code="mesh-empty")
+        if is_lfs_pointer(data):
+            raise MeshError(LFS_POINTER)
+        if path.lower().endswith((".stl", ".stla", ".stlb")):
+            binary_stl_end(data, size)
+        return tuple(reader(data)) if reader else ()
+    except MeshError as fault:
+        return fault
+
+
+def _of_obj(data: bytes) -> List[NamedFile]:
+    if not _OBJ_FACE.search(data):
+        raise MeshError("it has no faces", code="mesh-empty")
+    if b"mtllib" not in data:
+        return []
+    return [NamedFile(MATERIALS, _text(found.group(1)), _line(data, found.start(1)))
+            for found in _OBJ_LIBRARY.finditer(data)]
+
+
+def _of_mtl(data: bytes) -> List[NamedFile]:
+    named = []
+    for found in _MTL_PICTURE.finditer(data):
+        name = _text(found.group(1))
+        option = _MTL_OPTION.match(name)
+        while option is not None:
+            name = name[option.end():]
+            option = _MTL_OPTION.match(name)
+        named.append(NamedFile(IMAGE, name, _line(data, found.start(1))))
+    return named
+
+
+def _text(value: bytes) -> str:
+    return value.decode("utf-8", "replace").partition("#")[0].strip().strip('"')
+
+
+def _line(data: bytes, at: int) -> int:
+    return data.count(b"\n", 0, at) + 1
+
+
+def _of_gltf(data: bytes) -> List[NamedFile]:
+    named = []
+    for kind, uri in named_in_gltf(gltf_tree(data)):
+        at = data.find(b'"' + uri.encode() + b'"')
+        named.append(NamedFile(IMAGE if kind == "images" else BUFFER, unquote(uri),
+                               _line(data, at) if at >= 0 and data[:4] != b"glTF" else 0))
+    return named
+
+
+def _of_collada(data: bytes) -> List[NamedFile]:
+    from .collada_cleanup import parsed
+
+    return _ColladaImages(parsed(data)).shown()
+
+
+class _ColladaImages:
+    """The images of a document's materials."""
+
+    def __init__(self, root: Any) -> None:
+        self._by_id: Dict[str, Any] = {
+            element.get("id"): element
+            for element in root.iter("{*}material", "{*}effect", "{*}image") if element.get("id")}
+        self._materials = dict.fromkeys(
+            element.get("target", "") for element in root.iter("{*}instance_material"))
+
+    def shown(self) -> List[NamedFile]:
+        """The images of all materials that a geometry uses, each once."""
+        found: Dict[NamedFile, None] = {}
+        for target in self._materials:
+            material = self._target(target)
+            instance = None if material is None else material.find("{*}instance_effect")
+            effect = None if instance is None else self._target(instance.get("url", ""))
+            image = None if effect is None else self._image(effect)
+            file = None if image is None else _file_of_image(image)
+            if file is not None:
+                found[file] = None
+        return list(found)
+
+    def _target(self, url: str) -> Any:
+        return self._by_id.get(url.rpartition("#")[2])
+
+    def _image(self, effect: Any) -> Any:
+        """The image of an effect, by the rule of `paint._picture`; None for none."""
+        for kind in ("diffuse", "specular", "emission", "ambient"):
+            texture = effect.find(f".//{{*}}{kind}/{{*}}texture")
+            if texture is not None:
+                return self._sampled(effect, texture.get("texture", ""))
+        return None
+
+    def _sampled(self, effect: Any, name: str) -> Any:
+        """The image of a sampler (COLLADA 1.4 or 1.5), or the image that has this id itself."""
+        parameters = {one.get("sid"): one for one in effect.iter("{*}newparam")}
+        sampler = parameters.get(name)
+        if sampler is None:
+            return self._by_id.get(name)
+        direct = sampler.find(".//{*}instance_image")
+        if direct is not None:
+            return self._target(direct.get("url", ""))
+        surface = parameters.get((sampler.findtext(".//{*}source") or "").strip())
+        named = None if surface is None else surface.findtext(".//{*}init_from")
+        return self._by_id.get((named or "").strip())
+
+
+def _file_of_image(image: Any) -> Optional[NamedFile]:
+    source = image.find(".//{*}init_from")
+    if source is None:
+        return None
+    ref = source.find("{*}ref")
+    element = source if ref is None else ref
+    name = unquote((element.text or "").strip())
+    line: int = element.sourceline or 0
+    return NamedFile(IMAGE, name, line if line < _LAST_LINE else 0) if name else None
+
+
+_READERS: Dict[str, Callable[[bytes], List[NamedFile]]] = {
+    ".dae": _of_collada, ".obj": _of_obj, ".mtl": _of_mtl, ".gltf": _of_gltf, ".glb": _of_gltf,
+}

@@ -1,0 +1,95 @@
+"""Warns about material scripts, materials and textures that do not exist."""
+from __future__ import annotations
+
+import os
+from typing import Any, Dict, List, Tuple
+
+from ...appearance.gazebo_materials import BUILT_IN
+from ...appearance.material_script import ScriptMaterial
+from ...appearance.script_files import materials_of, scripts_of
+from ...appearance.textures import TextureFiles
+from ...description.compare import BUILT_IN as BUILT_IN_SCRIPT
+from ...description.shapes import Material
+from ...errors import warning
+from ...resources.resolver import ResourceNotFoundError
+from ..xml.binding import closest
+from ..xml.source import Source
+
+
+def check_script(material: Material, element: Any, source: Source) -> None:
+    """Check the scripts of a material, its name, and its texture.
+
+    Args:
+        material: with absolute script URIs.
+        element: its `<material>`.
+        source: receives warnings, and resolves URIs.
+    """
+    known, folders, complete = _read_scripts(material.script_uris, element, source)
+    name = material.script_name
+    if name in known:
+        _check_texture(*known[name], folders, source)
+    elif name and name not in BUILT_IN and material.script_uris and complete:
+        source.warn("material-unknown", f"no material script defines {name!r}; white is shown",
+                    element, closest(name, [*known, *BUILT_IN]))
+
+
+def _read_scripts(uris: List[str], element: Any, source: Source
+                  ) -> "Tuple[Dict[str, Tuple[ScriptMaterial, str]], List[str], bool]":
+    """The materials of scripts with their files, the folders of images, and whether all exist."""
+    known: Dict[str, Tuple[ScriptMaterial, str]] = {}
+    folders: List[str] = []
+    complete = True
+    written = element.findall("script/uri")
+    for number, uri in enumerate(uris):
+        if uri == BUILT_IN_SCRIPT:
+            continue
+        try:
+            scripts, more = scripts_of(uri, source.resolver)
+            folders += more
+            for script in scripts:
+                known.update((name, (found, script))
+                             for name, found in materials_of(script).items())
+        except (ResourceNotFoundError, OSError) as fault:
+            complete = False
+            missing = isinstance(fault, ResourceNotFoundError)
+            reason = str(fault) if missing else f"{uri!r} cannot be read: {fault}"
+            source.warn("material-script-not-found", f"the material script {reason}; it is left"
+                        " out", written[number] if len(written) == len(uris) else element,
+                        hint=source.resolver.meant(fault)
+                        if isinstance(fault, ResourceNotFoundError) else "")
+    return known, folders, complete
+
+
+def _check_texture(material: ScriptMaterial, script: str, folders: List[str],
+                   source: Source) -> None:
+    name = os.path.basename(material.texture)
+    if not name or TextureFiles(source.resolver).texture(name, folders) is not None:
+        return
+    expected = os.path.normpath(os.path.join(os.path.dirname(script), "..", "textures"))
+    source.log.add(warning(
+        "image-not-found", f"the texture {material.texture!r} of material {material.name!r} was"
+        " not found; the material is shown without it", file=script,
+        line=_line_of(material.texture, script), hint=f"copy it to {expected}"))
+
+
+def _line_of(texture: str, script: str) -> int:
+    """The first line of a script that names a texture, from 1; 0 if there is none."""
+    with open(script, encoding="utf-8", errors="replace") as stream:
+        return next((number for number, line in enumerate(stream, 1)
+                     if line.split()[:1] == ["texture"] and texture in line), 0)
+
+
+def check_texture_uri(uri: str, element: Any, source: Source) -> None:
+    """Check the texture of a URDF material.
+
+    Args:
+        uri: as written.
+        element: the `<texture>` or its material.
+        source: receives a warning, and resolves the URI.
+    """
+    try:
+        source.resolver.resolve(uri)
+    except ResourceNotFoundError as missing:
+        source.warn("image-not-found", f"the texture {missing}; the visual is shown without it",
+                    element, hint=source.resolver.meant(missing) + "check the path and"
+                    " ROS_PACKAGE_PATH")
