@@ -263,6 +263,8 @@ _TABLE: Tuple[Tuple[str, Tuple[Tuple[str, str, str, str], ...]], ...] = (
         ("wrong-value", ERROR, "A value has the wrong type.", "See the message."),
         ("object-name", ERROR, "The name of an object is not text.", "Quote the name."),
         ("object-name-twice", ERROR, "Two objects have the same flattened name.", "Rename one."),
+        ("object-indentation", ERROR, "A key of an object is not indented below its name.",
+         "Indent it by two spaces."),
         ("object-wrong-type", ERROR, "The object is not a map with the required keys.",
          "Give model, position and orientation."),
         ("model-without-package", ERROR, "The model names no package.", "Write PACKAGE/FILE."),

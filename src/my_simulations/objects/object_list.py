@@ -9,7 +9,7 @@ from __future__ import annotations
 import difflib
 import math
 from dataclasses import dataclass, field, replace
-from typing import Any, Dict, List, Mapping, Optional, Sequence, Tuple
+from typing import Any, Dict, List, Mapping, Optional, Sequence, Set, Tuple
 
 from ..errors import Issue, error, warning
 from ..geometry import Vec3
@@ -123,13 +123,37 @@ class _Reader:
 
     def entries(self, tree: Mapping[Any, Any], path: KeyPath, chain: Tuple[str, ...],
                 origin: Vec3, yaw: float) -> None:
+        stray = self._stray_keys(tree, path, chain)
         for key, value in tree.items():
+            if key in stray:
+                continue
             if not isinstance(key, str) or not key.strip():
                 self._fault("_".join([*chain, str(key)]), error(
                     "object-name", f"the name of an object must be a string, is {key!r}",
                     **self._source.where((*path, str(key))), hint="put the name in quotes"))
                 continue
             self._entry(value, (*path, key), (*chain, key), origin, yaw)
+
+    def _stray_keys(self, tree: Mapping[Any, Any], path: KeyPath,
+                    chain: Tuple[str, ...]) -> Set[Any]:
+        """Keys of an object that stand beside its name instead of below it, and that name.
+
+        They get one fault, at the first of them.
+        """
+        names = list(tree)
+        first = next((at for at, key in enumerate(names)
+                      if key in KEYS and not isinstance(tree[key], Mapping)), None)
+        if first is None:
+            return set()
+        owner = names[first - 1] if first else None
+        name = "_".join([*chain, str(owner if first else names[0])])
+        self._fault(name, error(
+            "object-indentation", f"'{names[first]}' is not indented below the name of an object",
+            **self._source.where((*path, str(names[first]))),
+            hint=f"indent model, position and orientation below '{owner}:' by two spaces" if first
+            else "write the name of the object and a colon above it, and indent this line"))
+        return {owner, *(key for key in names[first:]
+                         if key in KEYS and not isinstance(tree[key], Mapping))}
 
     def _entry(self, value: Any, path: KeyPath, chain: Tuple[str, ...],
                origin: Vec3, yaw: float) -> None:
