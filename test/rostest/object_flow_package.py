@@ -4,6 +4,7 @@ import tempfile
 import unittest
 
 import object_flow_support as flow
+import rospy
 import support
 
 PACKAGE = "my_gazebo_objects"
@@ -67,6 +68,93 @@ class OtherPackage(flow.ToolCase, unittest.TestCase):
         text = self.run_here("spawn_object.py", "MY_OBJECT", status=1)
         self.assertIn("has no object list in package 'my_simulations'", text)
         self.assertIn("package:=PACKAGE", text)
+
+    def edit_list(self, old, new):
+        """Change the list, and wait until its time shows it."""
+        path = os.path.join(self.package, "config/theirs/object_locations.yaml")
+        with open(path, encoding="utf-8") as file:
+            text = file.read()
+        self.assertIn(old, text)
+        self.write("config/theirs/object_locations.yaml", text.replace(old, new))
+        return path
+
+    def test_a_package_that_does_not_exist_is_an_error(self):
+        self.upload()
+        text = self.run_here("spawn_object.py", "--package", "my_gazebo_objekts", "ball", status=1)
+        self.assertIn("'my_gazebo_objekts' was not found (did you mean my_gazebo_objects?)", text)
+        self.assertEqual(self.gazebo.names(), ["ground_plane"])
+
+    def test_a_list_that_has_changed_is_loaded_again(self):
+        self.upload()
+        self.run_here("spawn_object.py", "ball")
+        path = self.edit_list("position: [2, 0, 0]", "position: [-2.5, 0, 0]")
+        text = self.run_here("spawn_object.py", "ball")
+        self.assertIn(f"{path} has changed and was loaded again", text)
+        self.assertIn("ball replaced at -2.5 0 0", text)
+        self.assertNotIn("has changed", self.run_here("spawn_object.py", "ball"))
+
+    def test_a_list_that_did_not_exist_is_loaded_once_it_does(self):
+        self.run_here("upload_objects.py", "--world", "new", "--package", PACKAGE)
+        text = self.run_here("spawn_object.py", "ball", status=1)
+        self.assertIn("upload_param.launch", text)
+        self.write("config/new/object_locations.yaml", LIST)
+        self.run_here("spawn_object.py", "ball")
+        self.assert_at("ball", 2.0, 0.0, 0.0, delta=0.5)
+
+    def test_objects_that_others_have_set_are_not_replaced_by_a_changed_file(self):
+        self.upload()
+        rospy.set_param("/objects", {"ball": flow.entry("my_simulations/objects/ball.urdf")})
+        self.edit_list("position: [2, 0, 0]", "position: [-2.50, 0, 0]")
+        self.assertIn("ball spawned at 0 0 0", self.run_here("spawn_object.py", "ball"))
+
+    def test_a_mistake_in_a_changed_list_is_one_line_until_it_is_corrected(self):
+        self.upload()
+        path = self.edit_list("position: [2, 0, 0]", "position: [2, 0, 0")
+        for _ in range(2):
+            text = self.run_here("spawn_object.py", "ball", status=1).strip()
+            self.assertIn(f"{path}:3:", text)
+            self.assertEqual(len(text.splitlines()), 1, text)
+        self.edit_list("position: [2, 0, 0", "position: [2, 0, 0]")
+        self.run_here("spawn_object.py", "ball")
+
+    def test_wrong_indentation_is_one_error_with_its_line(self):
+        path = self.write("config/theirs/object_locations.yaml",
+                          "ball:\nmodel: ball\nmodel_type: urdf\nposition: [2, 0, 0]\n"
+                          "orientation: [0, 0, 0]\n")
+        place = f"{path}:2: error: 'model' is not indented"
+        text = self.run_here("upload_objects.py", "--world", "theirs", "--package", PACKAGE,
+                             status=1)
+        self.assertEqual(text.count("error"), 1, text)
+        self.assertIn(place, text)
+        text = self.run_here("spawn_object.py", "ball", status=1).strip()
+        self.assertIn(place, text)
+        self.assertEqual(len(text.splitlines()), 1, text)
+
+    def test_without_a_package_the_list_of_the_worlds_package_is_loaded(self):
+        self.write("config/empty_world/object_locations.yaml", LIST)
+        world = self.write("world/empty_world.world", "<sdf/>")
+        text = self.run_here("upload_objects.py", "--world", world)
+        self.assertIn(os.path.join(self.package, "config/empty_world"), text)
+        other = self.write("world/mud.world", "<sdf/>")  # its package has no list for it
+        text = self.run_here("upload_objects.py", "--world", other)
+        self.assertIn(flow.package_file("config/mud"), text)
+
+    def test_without_a_world_the_running_worlds_package_is_used(self):
+        running = rospy.get_param("/gazebo/my_simulations/world_file")
+        self.addCleanup(rospy.set_param, "/gazebo/my_simulations/world_file", running)
+        self.assertTrue(os.path.samefile(running, flow.package_file("world/worlds/empty.world")))
+        self.assertIn(flow.package_file("config/empty"), self.run_here("upload_objects.py"))
+        world = self.write("world/empty.world", "<sdf/>")
+        self.write("config/empty/object_locations.yaml", LIST)
+        rospy.set_param("/gazebo/my_simulations/world_file", world)
+        text = self.run_here("upload_objects.py")
+        self.assertIn(os.path.join(self.package, "config/empty"), text)
+
+    def test_warnings_of_a_spawn_are_printed(self):
+        self.upload()
+        text = self.run_here("spawn_object.py", "typo")
+        self.assertIn(f" (1 warning: model 'typo', {self.package}/objects/typo.urdf:2: element"
+                      " <jiont>", text)
 
     def test_messages_about_a_spawned_file_name_model_file_and_line(self):
         self.upload()

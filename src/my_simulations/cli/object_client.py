@@ -11,14 +11,10 @@ import functools
 import signal
 import sys
 import time
-from typing import Any, Callable, Dict, Iterator, List, Mapping, Optional, Sequence, Tuple
+from typing import Any, Callable, Dict, Iterator, List, Optional, Sequence, Tuple
 
 from ..errors import InputError, Issue, Severity, SimulationError
 from ..geometry import Pose, Vec3, quat_from_rpy
-from ..objects.object_list import ObjectList, parse_objects
-from ..objects.selection import parse_groups
-from ..objects.yaml_source import Source
-from ..resources.package_files import PACKAGE
 from ..ros.arguments import number
 from ..ros.call_deadline import CallTimeoutError, within
 from ..ros.lifecycle import master_api
@@ -33,8 +29,6 @@ LIST_SECONDS = 10.0
 
 OBJECTS = "/objects"
 GROUPS = "/object_groups"
-LIST_MARK = "/my_simulations/object_list"
-"""Parameter with world, file and package of the loaded list; written last by the upload."""
 
 _ENDING = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 
@@ -312,48 +306,3 @@ def pose_message(pose: Pose) -> Any:
     from geometry_msgs.msg import Pose as PoseMessage
 
     return PoseMessage(position=Point(*pose.position), orientation=Quaternion(*pose.orientation))
-
-
-def read_list(parameters: Parameters, package: str, wait: float
-              ) -> Tuple[Optional[ObjectList], Mapping[str, List[str]], List[Issue]]:
-    """Read the object list and the groups from the parameter server.
-
-    Args:
-        parameters: the parameter server.
-        package: package for the files of 2012-style entries; "" for the package of the list.
-        wait: wall seconds to wait for a list that is not loaded yet.
-
-    Returns:
-        The list (None if none is loaded), the members by group name, issues of the groups.
-    """
-    until = time.monotonic() + wait
-    tree = parameters.get(OBJECTS)
-    while tree is None and parameters.get(LIST_MARK) is None and time.monotonic() < until:
-        time.sleep(POLL_SECONDS)
-        tree = parameters.get(OBJECTS)
-    if tree is None:
-        # The mark is written after the list: read once more.
-        tree = parameters.get(OBJECTS)
-    listing = None if tree is None else parse_objects(
-        tree, Source(OBJECTS), package or _package_of_list(parameters))
-    groups, issues = parse_groups(parameters.get(GROUPS), Source(GROUPS))
-    return listing, groups, issues
-
-
-def _package_of_list(parameters: Parameters) -> str:
-    mark = parameters.get(LIST_MARK)
-    found = mark.get("package") if isinstance(mark, Mapping) else None
-    return found if isinstance(found, str) and found else PACKAGE
-
-
-def missing_list_message(parameters: Parameters) -> str:
-    """Why no object list is loaded, and what to do."""
-    mark = parameters.get(LIST_MARK)
-    if isinstance(mark, Mapping) and mark.get("world"):
-        return (f"world '{mark['world']}' has no object list in package "
-                f"'{mark.get('package') or PACKAGE}'; create "
-                f"config/{mark['world']}/object_locations.yaml there and run "
-                "roslaunch my_simulations upload_param.launch, with package:=PACKAGE for another "
-                "package")
-    return (f"parameter {OBJECTS} is not set; load an object list with "
-            "roslaunch my_simulations upload_param.launch")

@@ -11,6 +11,7 @@ from ..objects.selection import ALL, select, unknown_name
 from ..program_end import program
 from ..ros.arguments import Parser
 from . import object_client as client
+from .loaded_list import missing_list_message, read_list
 from .progress import MANY, Progress
 
 NAME = "remove_object.py"
@@ -72,12 +73,15 @@ def _remove_all(options: argparse.Namespace, remappings: Sequence[str]) -> int:
     parameters = client.Parameters(remappings)
     simulator = client.SimulatorClient(
         parameters, client.full_name(options.gazebo_namespace, remappings), options.timeout)
-    listing, groups, issues = client.read_list(parameters, "", 0.0)
-    if listing is None and ALL in options.names:
-        raise client.ToolError(client.missing_list_message(parameters))
+    loaded = read_list(parameters, "", 0.0)
+    if loaded.objects is None and ALL in options.names:
+        if not client.has_errors(loaded.issues):
+            raise client.ToolError(missing_list_message(parameters))
+        client.show(loaded.issues)
+        return client.FAILED
     names, unknown = chosen_models(options.names, simulator.model_names(),
-                                   listing or ObjectList(), groups)
-    issues = [*issues, *unknown]
+                                   loaded.objects or ObjectList(), loaded.groups)
+    issues = [*loaded.issues, *unknown]
     client.show(issues)
     if not names and not unknown:
         print(f"{NAME}: nothing to remove: none of these objects exists")

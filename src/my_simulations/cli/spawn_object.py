@@ -13,9 +13,12 @@ from ..program_end import program
 from ..ros.arguments import Parser
 from ..ros.lifecycle.launch_info import Launch
 from . import object_client as client
+from .loaded_list import missing_list_message, package_folder, read_list
 from .progress import MANY, Progress
 
 NAME = "spawn_object.py"
+SPAWNED = "Successfully spawned entity"
+"""Gazebo's status message; our server adds the warnings."""
 
 
 def parser() -> argparse.ArgumentParser:
@@ -52,12 +55,16 @@ def _spawn_all(options: argparse.Namespace, remappings: Sequence[str], launch: L
     parameters = client.Parameters(remappings)
     simulator = client.SimulatorClient(
         parameters, client.full_name(options.gazebo_namespace, remappings), options.timeout)
-    listing, groups, issues = client.read_list(
-        parameters, options.package, min(options.timeout, client.LIST_SECONDS))
-    if listing is None:
-        raise client.ToolError(client.missing_list_message(parameters))
-    selection = select(options.names, listing, groups)
-    issues = [*issues, *selection.issues]
+    if options.package:
+        package_folder(options.package)
+    loaded = read_list(parameters, options.package, min(options.timeout, client.LIST_SECONDS))
+    if loaded.objects is None:
+        if not client.has_errors(loaded.issues):
+            raise client.ToolError(missing_list_message(parameters))
+        client.show(loaded.issues)
+        return client.FAILED
+    selection = select(options.names, loaded.objects, loaded.groups)
+    issues = [*loaded.issues, *selection.issues]
     client.show(issues)
     failed = client.has_errors(issues)
     if not selection.objects:
@@ -97,14 +104,16 @@ def _spawn_one(placed: PlacedObject, document: Document, simulator: client.Simul
                there: Set[str], launch: Launch) -> str:
     replaced = placed.name in there
     if simulator.replaces:
-        simulator.spawn_object(placed.name, document.xml, placed.position, placed.rpy,
-                               replace=replaced, file=document.origin, launch_pid=launch.pid)
+        said = simulator.spawn_object(placed.name, document.xml, placed.position, placed.rpy,
+                                      replace=replaced, file=document.origin,
+                                      launch_pid=launch.pid)
     else:
         if replaced:
             simulator.delete(placed.name)
-        simulator.spawn(placed.name, document.xml, document.sdf, placed.position, placed.rpy)
+        said = simulator.spawn(placed.name, document.xml, document.sdf, placed.position,
+                               placed.rpy)
     there.add(placed.name)
     x, y, z = placed.position
     also = f" (not {document.other})" if document.other else ""
     return (f"{placed.name} {'replaced' if replaced else 'spawned'} at {x:g} {y:g} {z:g} from "
-            f"{document.path}{also}")
+            f"{document.path}{also}{said.partition(SPAWNED)[2]}")

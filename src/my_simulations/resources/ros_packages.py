@@ -77,6 +77,22 @@ def is_in_workspace(path: str) -> bool:
                for entry in entries if entry)
 
 
+def package_above(path: str) -> str:
+    """The nearest folder above a path that has a package.xml; "" if there is none."""
+    folder = os.path.dirname(path)
+    while os.path.dirname(folder) != folder:
+        if os.path.isfile(os.path.join(folder, "package.xml")):
+            return folder
+        folder = os.path.dirname(folder)
+    return ""
+
+
+def package_of(path: str) -> str:
+    """Name of the ROS package that contains a file; "" for none."""
+    folder = package_above(path)
+    return package_name(folder) if folder else ""
+
+
 def package_name(folder: str) -> str:
     """The `<name>` in a folder's package.xml; "" if there is none."""
     try:

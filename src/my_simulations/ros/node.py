@@ -102,7 +102,9 @@ class Node:
         return _flag(self._parameters, name, False)
 
     def _set_world_parameters(self) -> None:
-        rospy.set_param("~world_base_name", base_name(self._simulator.world.file))
+        world = self._simulator.world.file
+        rospy.set_param("~my_simulations/world_file", os.path.abspath(world) if world else "")
+        rospy.set_param("~world_base_name", base_name(world))
         self._keep_engine_pid()
         if not rospy.has_param("/use_sim_time"):
             rospy.set_param("/use_sim_time", True)

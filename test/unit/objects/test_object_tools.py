@@ -7,10 +7,10 @@ import os
 import pytest
 
 from my_simulations.cli import move_object, spawn_object
+from my_simulations.cli.loaded_list import transferable
 from my_simulations.cli.object_client import full_name, plain_words
 from my_simulations.cli.progress import Progress, bar
 from my_simulations.cli.remove_object import chosen_models
-from my_simulations.cli.upload_objects import transferable
 from my_simulations.errors import InputError
 from my_simulations.objects.list_files import world_name
 from my_simulations.objects.motion_path import Circle, Polygon
@@ -120,11 +120,15 @@ def test_a_worlds_name_is_the_base_name_of_its_file(world, name):
     assert world_name(world) == name
 
 
-@pytest.mark.parametrize("value", [None, {1: 2}, 2 ** 40, {"a": [None]}])
+@pytest.mark.parametrize("value", [{1: 2}, 2 ** 40, {"a": [None]}])
 def test_an_entry_that_no_parameter_can_hold_is_an_error_and_the_rest_is_kept(value):
     kept, issues = transferable({"bad": value, "good": entry()}, SOURCE.where)
     assert kept == {"good": entry()}
     assert [(i.code, i.xpath) for i in issues] == [("not-a-parameter", "/objects/bad")]
+
+
+def test_an_entry_without_a_value_is_left_to_the_reader_of_the_list():
+    assert transferable({"bad": None, "good": entry()}, SOURCE.where) == ({"good": entry()}, [])
 
 
 def options(*words):

@@ -15,6 +15,7 @@ from urllib.parse import quote
 
 from ...appearance.textures import existing, places_of_mesh, places_of_script
 from ...resources.resolver import Resolver, ResourceNotFoundError
+from ...resources.ros_packages import package_above
 from .content_types import MESHES, PICTURES, extension
 
 SERVED = MESHES | PICTURES
@@ -121,7 +122,7 @@ class ServedFiles:
         fitting = [root for root in map(os.path.realpath, folders) if _is_below(real, root)]
         if fitting:
             return max(fitting, key=len)
-        package = _package_above(real)
+        package = package_above(real)
         return package if package and self._resolver.knows_package(package) else None
 
     def _id(self, root: str) -> str:
@@ -137,13 +138,3 @@ def _id_of(root: str) -> str:
 
 def _is_below(path: str, root: str) -> bool:
     return root not in ("", os.sep) and path.startswith(root.rstrip(os.sep) + os.sep)
-
-
-def _package_above(path: str) -> str:
-    """The nearest folder above that holds a package.xml, or ""."""
-    folder = os.path.dirname(path)
-    while os.path.dirname(folder) != folder:
-        if os.path.isfile(os.path.join(folder, "package.xml")):
-            return folder
-        folder = os.path.dirname(folder)
-    return ""

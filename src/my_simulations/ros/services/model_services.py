@@ -157,9 +157,7 @@ class ModelServices:
         self._changed()
         self._report(arrival_advice(self._simulator, model.name, meshes,
                                     document.written(entity.name)))
-        warned = sum(issue.severity is not Severity.NOTE for issue in issues)
-        counted = "1 warning" if warned == 1 else f"{warned} warnings"
-        return "Successfully spawned entity" + (f" ({counted}, see log)" if warned else "")
+        return "Successfully spawned entity" + _warnings_in_status(issues)
 
     def _is_the_worlds(self, name: str) -> bool:
         """Whether the world file contains a model of that name that still exists."""
@@ -197,6 +195,17 @@ class ModelServices:
             self._simulator.models.delete(request.model_name)
         self._changed()
         return "successfully deleted model"
+
+
+def _warnings_in_status(issues: List[Issue]) -> str:
+    """The first warning and the number of all, for a status message; "" for none."""
+    warned = [issue for issue in issues if issue.severity is not Severity.NOTE]
+    if not warned:
+        return ""
+    many = f"{len(warned)} warnings, see log; the first" if len(warned) > 1 else "1 warning"
+    first = warned[0]
+    where, what = f"{first.location}: " if first.location else "", first.message
+    return f" ({many}: {where}{what}" + (f"; {first.hint})" if first.hint else ")")
 
 
 def _label(request: Any, file: str) -> str:
