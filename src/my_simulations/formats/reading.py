@@ -107,11 +107,12 @@ def parse_world(text: Text, resolver: Resolver, file: str = "<world>", *, seed: 
 def _world_in(root: Any, source: Source, seed: int, profile: str) -> World:
     if root.tag not in _SDF_ROOTS:
         raise _unusable(source, "root-unknown", f"expected <sdf>, found <{root.tag}>", root,
-                        _suggestion(root, ("sdf", "gazebo", "world")))
+                        _hint_for_world(root, source.file))
     element = root.find("world")
     if element is None:
         raise _unusable(source, "world-missing", "the file contains no <world>", root,
-                        _child_suggestion(root, ("world",)))
+                        _spawn_hint(root.find("model"), "sdf", source.file)
+                        or _child_suggestion(root, ("world",)))
     world = read_world_element(element, source, seed, profile)
     if len(root.findall("world")) > 1:
         source.warn("world-many", "the file contains several worlds; the first is used", root)
@@ -270,6 +271,23 @@ def _first_entity(root: Any, source: Source) -> Entity:
                 return found.light
     raise _unusable(source, "model-missing", "the document contains no world, model or light",
                     root, _child_suggestion(root, ("world", "model", "light", "include", "actor")))
+
+
+def _hint_for_world(root: Any, file: str) -> str:
+    """Hint for a file that was given as a world and is something else."""
+    if root.tag == "launch":
+        return f"this is a launch file; run roslaunch {file}"
+    return (_spawn_hint(root, "urdf", file) if root.tag == "robot"
+            else _suggestion(root, ("sdf", "gazebo", "world")))
+
+
+def _spawn_hint(element: Any, kind: str, file: str) -> str:
+    """How to spawn the model of an element; "" for None."""
+    if element is None:
+        return ""
+    name = (element.get("name") or "").strip() or "NAME"
+    return (f"this is a model; start another world and run rosrun gazebo_ros spawn_model -{kind}"
+            f" -file {file} -model {name}")
 
 
 def _suggestion(element: Any, known: Sequence[str]) -> str:

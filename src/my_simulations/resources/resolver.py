@@ -16,9 +16,11 @@ from .model_config import description_in
 from .model_provider import DATABASE, ModelNotProvidedError, Progress
 from .package_files import PACKAGE, package_directories
 from .ros_packages import ExportedPaths, FindPackage, PackageIndex, package_name
-from .suggestions import suggestion
+from .suggestions import NO_PACKAGE, same_file_elsewhere, suggestion
 
 _MEDIA_SUFFIXES = ("", "models", "media/models", "Media/models")
+_MOST_PLACES = 3
+"""Most searched places in a message; `ResourceNotFoundError.tried` has all."""
 
 
 class ResourceNotFoundError(ResourceError):
@@ -34,9 +36,8 @@ class ResourceNotFoundError(ResourceError):
         self.uri = uri
         self.tried: List[str] = list(tried)
         self.reason = reason
-        places = ", ".join(self.tried)
-        why = reason or (f"searched {places}" if places else "no search path is set")
-        super().__init__(f"{uri!r} was not found: {why}")
+        why = reason or _searched(uri, self.tried)
+        super().__init__(f"{uri!r} was not found" + (f": {why}" if why else ""))
 
 
 class MissingModels(Protocol):
@@ -150,7 +151,9 @@ class Resolver:
 
     def meant(self, missing: ResourceNotFoundError) -> str:
         """Hint for a missing URI: an existing, similar one; "" if there is none."""
-        found = suggestion(missing.uri, missing.tried, self._packages)
+        found = (suggestion(missing.uri, missing.tried, self._packages)
+                 or same_file_elsewhere(missing.uri, self.model_folders(), self._own,
+                                        self._packages))
         return f"did you mean {found}? Otherwise " if found else ""
 
     def add_model_folder(self, folder: str) -> None:
@@ -277,7 +280,7 @@ class Resolver:
         if not name:
             raise ResourceNotFoundError(uri, reason="the name after :// is missing")
         folder = self._find_package(name)
-        yield os.path.join(folder, inside) if folder else f"ROS package {name}"
+        yield os.path.join(folder, inside) if folder else f"{NO_PACKAGE}{name}"
         for behind in self._own[1:] if name == PACKAGE else ():
             yield os.path.join(behind, inside)
 
@@ -304,6 +307,22 @@ class Resolver:
         if self._late is None:
             self._late = self._exported()
         yield from self._late.models if kind == "models" else self._late.media
+
+
+def _searched(uri: str, tried: Sequence[str]) -> str:
+    """Where a URI was searched, for its message; "" for an absolute path, which says it itself."""
+    if not tried:
+        return "no search path is set"
+    path = uri[len("file://"):] if uri.startswith("file://") else uri
+    if os.path.isabs(path):
+        return ""
+    unknown = [place[len(NO_PACKAGE):] for place in tried if place.startswith(NO_PACKAGE)]
+    places = [place for place in tried if not place.startswith(NO_PACKAGE)]
+    if unknown and uri.startswith("package://"):
+        return f"there is no ROS package {unknown[0]!r}"
+    more = len(places) - _MOST_PLACES
+    return (f"searched {', '.join(places[:_MOST_PLACES])}"
+            + (f" and {more} more places" if more > 1 else f", {places[-1]}" if more == 1 else ""))
 
 
 def _listed(variable: str) -> List[str]:

@@ -6,10 +6,12 @@ import os
 import re
 from typing import Callable, List, Sequence
 
+from .package_files import PACKAGE
+
 _SCHEME = re.compile(r"([A-Za-z]+):/*")
 _SCHEMES = ("model", "package", "file")
 _LIKE = 0.7
-_NO_PACKAGE = "ROS package "
+NO_PACKAGE = "ROS package "
 """Prefix of `ResourceNotFoundError.tried` for an unknown package."""
 
 
@@ -27,8 +29,8 @@ def suggestion(uri: str, tried: Sequence[str], packages: Callable[[], List[str]]
         if scheme.group(1) != scheme.group(1).lower() or scheme.group().count("/") < 2:
             return right
     for place in tried:
-        if place.startswith(_NO_PACKAGE):
-            wrong = place[len(_NO_PACKAGE):]
+        if place.startswith(NO_PACKAGE):
+            wrong = place[len(NO_PACKAGE):]
             names = [os.path.basename(folder) for folder in packages()]
         else:
             folder, wrong = _first_missing(place)
@@ -37,6 +39,39 @@ def suggestion(uri: str, tried: Sequence[str], packages: Callable[[], List[str]]
         if near and wrong and wrong in uri:
             at = uri.rindex(wrong)
             return uri[:at] + near[0] + uri[at + len(wrong):]
+    return ""
+
+
+def same_file_elsewhere(uri: str, model_folders: Sequence[str], own_folders: Sequence[str],
+                        packages: Callable[[], List[str]]) -> str:
+    """A URI of an existing file with the same path in another package or model; "" for none.
+
+    A tutorial's `package://cob_gazebo_objects/Media/models/X` exists in my_simulations; an absolute
+    path of another machine may lead into a model or package that is here, too.
+
+    Args:
+        uri: the missing URI.
+        model_folders: folders whose children are models.
+        own_folders: folders of the package my_simulations.
+        packages: returns the folders of all ROS packages.
+    """
+    scheme, separator, rest = uri.partition("://")
+    if separator and scheme == "package":
+        inside = rest.lstrip("/").partition("/")[2]
+        own = (os.path.join(folder, inside) for folder in own_folders)
+        return f"package://{PACKAGE}/{inside}" if inside and any(map(os.path.isfile, own)) else ""
+    path = rest if scheme == "file" and separator else uri
+    if not os.path.isabs(path):
+        return ""
+    names = path.strip("/").split("/")
+    tails = [(names[at], "/".join(names[at:])) for at in range(len(names) - 1)]
+    for _, tail in tails:
+        if any(os.path.exists(os.path.join(folder, tail)) for folder in model_folders):
+            return f"model://{tail}"
+    known = {os.path.basename(folder): os.path.dirname(folder) for folder in packages()}
+    for name, tail in tails:
+        if name in known and os.path.exists(os.path.join(known[name], tail)):
+            return f"package://{tail}"
     return ""
 
 

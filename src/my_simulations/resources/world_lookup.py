@@ -60,7 +60,7 @@ def find_world(name: str, resolver: Resolver, caller: str = "") -> str:
     """The absolute path of a world.
 
     Relative names are searched in the caller's folder, in `users_folder`, then by the resolver
-    (Gazebo's order).
+    (Gazebo's order). An absolute path is searched nowhere else.
 
     Args:
         name: path, URI, or a name in one of those folders; `~` is the home folder.
@@ -72,7 +72,12 @@ def find_world(name: str, resolver: Resolver, caller: str = "") -> str:
     """
     name = os.path.expanduser(name.strip())
     tried: List[str] = []
-    if name and "://" not in name and not os.path.isabs(name):
+    if os.path.isabs(name):
+        if os.path.isfile(name):
+            return os.path.abspath(name)
+        reason = "this is a folder" if os.path.isdir(name) else ""
+        raise ResourceNotFoundError(name, [name], reason)
+    if name and "://" not in name:
         for folder in (caller or os.getcwd(), users_folder()):
             candidate = os.path.abspath(os.path.join(folder, name))
             if os.path.isfile(candidate):
@@ -88,16 +93,22 @@ def find_world(name: str, resolver: Resolver, caller: str = "") -> str:
 
 def advice_on(name: str, caller: str = "") -> str:
     """Hint for a world that was not found: similar existing files."""
-    known = _known(caller or os.getcwd())
-    base = os.path.basename(name.strip().rstrip("/"))
+    path = os.path.expanduser(name.strip().rstrip("/"))
+    base = os.path.basename(path)
+    beside = _worlds_in(os.path.dirname(path)) if os.path.isabs(path) else []
+    known = beside + _known(caller or os.getcwd())
     same = [os.path.join(folder, file) for folder, file in known
             if os.path.basename(file) == base]
     if same:
         return f"did you mean {same[0]}?"
     stems = {_stem(file): file for _, file in reversed(known)}
+    stems.update((_stem(file), os.path.join(folder, file)) for folder, file in reversed(beside))
     near = difflib.get_close_matches(_stem(base), stems, 1, 0.7)
-    meant = f"did you mean {stems[near[0]]}? Otherwise " if near else ""
-    return f"{meant}give its full path, or add its folder to GAZEBO_RESOURCE_PATH"
+    meant = f"did you mean {stems[near[0]]}?" if near else ""
+    if os.path.isabs(path):
+        return meant or "correct the path"
+    otherwise = "give its full path, or add its folder to GAZEBO_RESOURCE_PATH"
+    return f"{meant} Otherwise {otherwise}" if meant else otherwise
 
 
 def _stem(file: str) -> str:
@@ -109,13 +120,15 @@ def _known(caller: str) -> List[Tuple[str, str]]:
     """Existing world files: (folder, name)."""
     own = own_directory()
     folders = [caller, users_folder(), *([os.path.join(own, "world")] if own else [])]
-    found: List[Tuple[str, str]] = []
-    for folder in folders:
-        for below in ("", "world", "worlds"):
-            try:
-                names = sorted(os.listdir(os.path.join(folder, below)))
-            except OSError:
-                continue
-            found += [(folder, os.path.join(below, name)) for name in names
-                      if name.lower().endswith(ENDINGS)]
-    return found
+    return [world for folder in folders for below in ("", "world", "worlds")
+            for world in _worlds_in(folder, below)]
+
+
+def _worlds_in(folder: str, below: str = "") -> List[Tuple[str, str]]:
+    """The world files of one folder: (folder, path from there)."""
+    try:
+        names = sorted(os.listdir(os.path.join(folder, below)))
+    except OSError:
+        return []
+    return [(folder, os.path.join(below, name)) for name in names
+            if name.lower().endswith(ENDINGS)]

@@ -76,15 +76,54 @@ def test_percent_signs_of_a_file_uri_are_decoded(resolver, tree):
     assert found(resolver, "file://with%20space.dae", tree) == "media/with space.dae"
 
 
-def test_what_is_nowhere_raises_with_every_place_tried(resolver, tree):
+def missing(resolver, uri):
     with pytest.raises(ResourceNotFoundError) as caught:
-        resolver.resolve("model://gone/x.dae")
-    assert caught.value.uri == "model://gone/x.dae"
-    assert caught.value.tried == [
-        str(tree / "first/gone/x.dae"), str(tree / "second/gone/x.dae"),
-        str(tree / "late/gone/x.dae"), "ROS package gone"]
-    for place in caught.value.tried:
-        assert place in str(caught.value)
+        resolver.resolve(uri)
+    return caught.value
+
+
+def test_what_is_nowhere_raises_with_every_place_tried(resolver, tree):
+    fault = missing(resolver, "model://gone/x.dae")
+    assert fault.uri == "model://gone/x.dae"
+    places = [str(tree / place / "gone/x.dae") for place in ("first", "second", "late")]
+    assert fault.tried == [*places, "ROS package gone"]
+    assert str(fault) == f"'model://gone/x.dae' was not found: searched {', '.join(places)}"
+
+
+def test_a_message_names_three_places_and_counts_the_others(tmp_path):
+    resolver = Resolver([str(tmp_path / str(number)) for number in range(40)])
+    text = str(missing(resolver, "model://gone"))
+    assert text.endswith(f"{tmp_path}/2/gone and 37 more places")
+
+
+def test_an_absolute_path_is_not_joined_to_the_folders_in_messages(resolver):
+    for uri in ("/no/such/a.dae", "file:///no/such/a.dae"):
+        assert str(missing(resolver, uri)) == f"{uri!r} was not found"
+
+
+def test_an_unknown_package_is_named(resolver):
+    fault = missing(resolver, "package://gone/a.dae")
+    assert str(fault) == "'package://gone/a.dae' was not found: there is no ROS package 'gone'"
+
+
+def test_the_same_path_in_this_package_is_suggested_for_an_unknown_package(tmp_path):
+    (tmp_path / "Media").mkdir()
+    (tmp_path / "Media" / "x.dae").write_text("")
+    resolver = Resolver(own=[str(tmp_path)])
+    uri = "package://cob_gazebo_objects/Media/x.dae"
+    assert resolver.meant(missing(resolver, uri)).startswith(
+        "did you mean package://my_simulations/Media/x.dae?")
+    assert resolver.meant(missing(resolver, uri + "2")) == ""
+
+
+def test_a_model_or_package_is_suggested_for_an_absolute_path_of_another_machine(tree):
+    resolver = Resolver([str(tree / "first")], packages=lambda: [str(tree / "second")])
+    model = missing(resolver, "/home/other/.gazebo/models/crate/a.dae")
+    assert "did you mean model://crate/a.dae?" in resolver.meant(model)
+    (tree / "second" / "b.dae").write_text("")
+    package = missing(resolver, "file:///home/other/ws/src/second/b.dae")
+    assert "did you mean package://second/b.dae?" in resolver.meant(package)
+    assert resolver.meant(missing(resolver, "/home/other/nothing/x.dae")) == ""
 
 
 @pytest.mark.parametrize("uri", ["", "  ", "__default__", "http://example.invalid/a.dae", "model://",
