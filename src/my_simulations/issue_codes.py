@@ -364,6 +364,8 @@ _TABLE: Tuple[Tuple[str, Tuple[Tuple[str, str, str, str], ...]], ...] = (
          "Agree with them; everything can be undone."),
         ("editor-view", ERROR, "The editor could not read the state of the world.",
          "See the message."),
+        ("editor-port", WARNING, "The default port of the editor is in use; it listens at another.",
+         "Use the printed address, and close browser tabs of the other port."),
         ("editor-address", WARNING, "The address of the editor cannot be kept for gzclient.",
          "Make the cache folder writable, or start with editor_token:=false."),
         ("autosave", WARNING, "Unsaved changes cannot be stored.", "Free disk space and save."),

@@ -27,7 +27,8 @@ class EditorOptions:
 
     Attributes:
         host: address or name to listen at.
-        port: to listen at; 0 takes a free one, and so does `DEFAULT_PORT` when it is taken.
+        port: to listen at; 0 takes a free one. If `DEFAULT_PORT` is in use, the next free one is
+            taken.
         token: what every request must show; None for what the variable `TOKEN_VARIABLE` says, else
             a random one; "" for none, which holds for addresses of this machine only.
         save_roots: folders below which worlds are opened and saved; None for the usual ones.

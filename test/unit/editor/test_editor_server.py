@@ -6,7 +6,10 @@ import asyncio
 import aiohttp
 import pytest
 from editor_case import DEADLINE, Browser, Case, Refused, arm, box, cases, sun
+from free_ports import free_port
 
+from my_simulations.editor.editor_options import EditorOptions
+from my_simulations.editor.transport import listening
 from my_simulations.errors import CommandError, error
 from my_simulations.geometry import STILL, Pose, Twist
 
@@ -290,6 +293,20 @@ def test_a_port_that_is_taken_is_told(case, tmp_path):
     port = int(made.url.rstrip("/").rpartition(":")[2])
     with pytest.raises(CommandError, match=str(port)):
         Case(tmp_path, port=port)
+
+
+def test_a_default_port_that_is_taken_is_named_and_the_next_free_one_used(monkeypatch):
+    taken = free_port()
+    monkeypatch.setattr(listening, "DEFAULT_PORT", taken)
+    issues = []
+    options = EditorOptions(port=taken, log=issues.append)
+    with listening.listening(options) as first, listening.listening(options) as second:
+        assert first.getsockname()[1] == taken
+        port = second.getsockname()[1]
+    assert taken < port < taken + 100
+    assert [issue.code for issue in issues] == ["editor-port"]
+    assert f"port {taken} is in use" in issues[0].message
+    assert f"listens at port {port}" in issues[0].message
 
 
 def test_a_page_that_is_not_installed_is_told(tmp_path):

@@ -9,11 +9,26 @@ from ...errors import CommandError, warning
 from ..editor_options import DEFAULT_PORT, EditorOptions
 from . import address_file
 
+_NEXT_PORTS = 100
+"""How many ports after the default one are tried."""
+
 
 def listening(options: EditorOptions) -> socket.socket:
-    """A listening socket. Raises CommandError."""
+    """A listening socket; logs if the default port is in use. Raises CommandError."""
+    listener = _bound(options)
+    port = int(listener.getsockname()[1])
+    if options.port not in (0, port):
+        options.log(warning(
+            "editor-port", f"port {options.port} is in use, perhaps by another simulator; this"
+            f" editor listens at port {port}", hint="close browser tabs of the other port"))
+    return listener
+
+
+def _bound(options: EditorOptions) -> socket.socket:
+    """A listening socket at the port of the options, or at a free one after a default port that is in use."""
     host = options.host.strip("[]")
-    ports = [options.port] + ([0] if options.port == DEFAULT_PORT else [])
+    after = [*range(options.port + 1, options.port + _NEXT_PORTS), 0]
+    ports = [options.port] + (after if options.port == DEFAULT_PORT else [])
     for port in ports:
         try:
             family, kind, _, _, address = socket.getaddrinfo(
