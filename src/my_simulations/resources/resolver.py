@@ -149,12 +149,21 @@ class Resolver:
         return [*self._all("models"), *self._all("media"), *self._packages(),
                 *self.fuel_folders()]
 
-    def meant(self, missing: ResourceNotFoundError) -> str:
-        """Hint for a missing URI: an existing, similar one; "" if there is none."""
+    def explain(self, missing: ResourceNotFoundError, otherwise: str) -> Tuple[str, str]:
+        """Text and hint of an issue about a missing URI.
+
+        An existing, similar URI comes first in the hint; the text then names no places.
+
+        Args:
+            missing: the fault.
+            otherwise: what to do if no similar URI exists.
+        """
         found = (suggestion(missing.uri, missing.tried, self._packages)
                  or same_file_elsewhere(missing.uri, self.model_folders(), self._own,
                                         self._packages))
-        return f"did you mean {found}? Otherwise " if found else ""
+        if not found:
+            return str(missing), otherwise
+        return f"{missing.uri!r} was not found", f"did you mean {found}? Otherwise {otherwise}"
 
     def add_model_folder(self, folder: str) -> None:
         """Add a model folder, searched after the others."""
@@ -317,12 +326,14 @@ def _searched(uri: str, tried: Sequence[str]) -> str:
     if os.path.isabs(path):
         return ""
     unknown = [place[len(NO_PACKAGE):] for place in tried if place.startswith(NO_PACKAGE)]
-    places = [place for place in tried if not place.startswith(NO_PACKAGE)]
     if unknown and uri.startswith("package://"):
         return f"there is no ROS package {unknown[0]!r}"
+    places = [place for place in tried if os.path.isabs(place)]
+    downloads = [place for place in tried if not os.path.isabs(place)
+                 and not place.startswith(NO_PACKAGE)]
     more = len(places) - _MOST_PLACES
-    return (f"searched {', '.join(places[:_MOST_PLACES])}"
-            + (f" and {more} more places" if more > 1 else f", {places[-1]}" if more == 1 else ""))
+    counted = [f"{more} more places"] if more > 0 else []
+    return "searched " + ", ".join([*places[:_MOST_PLACES], *counted, *downloads])
 
 
 def _listed(variable: str) -> List[str]:

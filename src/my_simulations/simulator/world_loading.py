@@ -72,8 +72,9 @@ def load_world(name: str, resolver: Resolver, log: Log, *, seed: int = 0, profil
     try:
         path = find_world(name, resolver, caller)
     except ResourceNotFoundError as missing:
-        raise InputError([error("world-not-found", f"world file {missing}",
-                                hint=advice_on(name, caller))]) from missing
+        advice = advice_on(name, caller)
+        text = f"{name!r} was not found" if advice.startswith("did you mean") else str(missing)
+        raise InputError([error("world-not-found", f"world file {text}", hint=advice)]) from missing
     title = f"Reading {os.path.basename(path)}"
     progress(title, "", 0, 0)
 

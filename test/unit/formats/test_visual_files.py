@@ -7,9 +7,10 @@ import pytest
 from reading import URDF_INERTIAL, codes, model_of, robot_of, sdf
 
 from my_simulations.cli.check_model_command import check
-from my_simulations.errors import Severity
+from my_simulations.description.shapes import Mesh
+from my_simulations.errors import InputError, Severity
 from my_simulations.formats.mesh import loading, named_files
-from my_simulations.formats.reading import read_world_text
+from my_simulations.formats.reading import read_file, read_world_text
 from my_simulations.resources.package_files import own_directory
 from my_simulations.resources.resolver import Resolver
 
@@ -240,6 +241,18 @@ def test_an_image_that_is_a_git_lfs_pointer_is_told(carton):
     (carton.parent / IMAGE).write_text(POINTER)
     issue = only(shown(carton), "image-unreadable")
     assert "Git LFS pointer" in issue.message and "git lfs pull" in issue.hint
+
+
+def test_a_document_or_collision_mesh_that_is_a_git_lfs_pointer_is_told(tmp_path):
+    path = tmp_path / "thing.sdf"
+    path.write_text(POINTER)
+    with pytest.raises(InputError) as refused:
+        read_file(str(path), Resolver())
+    assert codes(refused.value.issues) == ["git-lfs-pointer"]
+    (tmp_path / "thing.stl").write_text(POINTER)
+    with pytest.raises(InputError) as refused:
+        loading.load_mesh(Mesh("thing.stl", str(tmp_path / "thing.stl")))
+    assert "git lfs pull" in refused.value.issues[0].hint
 
 
 def test_a_script_that_does_not_exist_is_told_with_its_line(materials):

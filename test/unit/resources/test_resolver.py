@@ -93,7 +93,7 @@ def test_what_is_nowhere_raises_with_every_place_tried(resolver, tree):
 def test_a_message_names_three_places_and_counts_the_others(tmp_path):
     resolver = Resolver([str(tmp_path / str(number)) for number in range(40)])
     text = str(missing(resolver, "model://gone"))
-    assert text.endswith(f"{tmp_path}/2/gone and 37 more places")
+    assert text.endswith(f"{tmp_path}/2/gone, 37 more places")
 
 
 def test_an_absolute_path_is_not_joined_to_the_folders_in_messages(resolver):
@@ -111,19 +111,21 @@ def test_the_same_path_in_this_package_is_suggested_for_an_unknown_package(tmp_p
     (tmp_path / "Media" / "x.dae").write_text("")
     resolver = Resolver(own=[str(tmp_path)])
     uri = "package://cob_gazebo_objects/Media/x.dae"
-    assert resolver.meant(missing(resolver, uri)).startswith(
-        "did you mean package://my_simulations/Media/x.dae?")
-    assert resolver.meant(missing(resolver, uri + "2")) == ""
+    assert resolver.explain(missing(resolver, uri), "give up") == (
+        f"{uri!r} was not found",
+        "did you mean package://my_simulations/Media/x.dae? Otherwise give up")
+    fault = missing(resolver, uri + "2")
+    assert resolver.explain(fault, "give up") == (str(fault), "give up")
 
 
 def test_a_model_or_package_is_suggested_for_an_absolute_path_of_another_machine(tree):
     resolver = Resolver([str(tree / "first")], packages=lambda: [str(tree / "second")])
     model = missing(resolver, "/home/other/.gazebo/models/crate/a.dae")
-    assert "did you mean model://crate/a.dae?" in resolver.meant(model)
+    assert "did you mean model://crate/a.dae?" in resolver.explain(model, "")[1]
     (tree / "second" / "b.dae").write_text("")
     package = missing(resolver, "file:///home/other/ws/src/second/b.dae")
-    assert "did you mean package://second/b.dae?" in resolver.meant(package)
-    assert resolver.meant(missing(resolver, "/home/other/nothing/x.dae")) == ""
+    assert "did you mean package://second/b.dae?" in resolver.explain(package, "")[1]
+    assert resolver.explain(missing(resolver, "/home/other/nothing/x.dae"), "")[1] == ""
 
 
 @pytest.mark.parametrize("uri", ["", "  ", "__default__", "http://example.invalid/a.dae", "model://",

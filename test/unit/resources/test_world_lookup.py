@@ -61,6 +61,34 @@ def test_a_world_that_is_not_found_is_told_with_the_one_it_may_have_meant(places
     with pytest.raises(InputError) as refused:
         load_world("lab_cuorse.world", Resolver(), lambda issue: None, caller=str(typed))
     assert "lab_course.world" in refused.value.issues[0].hint
+    assert refused.value.issues[0].message == "world file 'lab_cuorse.world' was not found"
+
+
+def test_an_absolute_name_is_searched_nowhere_else(places):
+    typed, _, _ = places
+    (typed / "maze.world").write_text("<sdf/>")
+    wrong = str(typed / "mase.world")
+    os.makedirs(f"{typed}/models{typed}")
+    (typed / "models" / wrong.lstrip("/")).write_text("<sdf/>")
+    with pytest.raises(ResourceNotFoundError) as missing:
+        find_world(wrong, Resolver([str(typed / "models")]), str(typed))
+    assert missing.value.tried == [wrong]
+    assert str(missing.value) == f"{wrong!r} was not found"
+    assert advice_on(wrong, "/") == f"did you mean {typed / 'maze.world'}?"
+
+
+@pytest.mark.parametrize(("name", "text", "parts"), [
+    ("arm.urdf", "<robot name='arm'/>", ("spawn_model -urdf -file ", "-model arm")),
+    ("box.sdf", "<sdf version='1.6'><model name='box'/></sdf>",
+     ("spawn_model -sdf -file ", "-model box")),
+    ("lab.launch", "<launch/>", ("run roslaunch ",)),
+])
+def test_another_kind_of_file_is_answered_with_its_command(tmp_path, name, text, parts):
+    (tmp_path / name).write_text(text)
+    with pytest.raises(InputError) as refused:
+        load_world(str(tmp_path / name), Resolver(), lambda issue: None)
+    for part in (*parts, str(tmp_path / name)):
+        assert part in refused.value.issues[0].hint
 
 
 def test_the_worlds_that_ship_are_listed_and_none_has_a_name_of_the_lab_sheet():

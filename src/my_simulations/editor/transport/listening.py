@@ -25,7 +25,7 @@ def listening(options: EditorOptions) -> socket.socket:
 
 
 def _bound(options: EditorOptions) -> socket.socket:
-    """A listening socket at the port of the options, or at a free one after a default port that is in use."""
+    """A socket at the port of the options, or at the next free one if that is the default port."""
     host = options.host.strip("[]")
     after = [*range(options.port + 1, options.port + _NEXT_PORTS), 0]
     ports = [options.port] + (after if options.port == DEFAULT_PORT else [])

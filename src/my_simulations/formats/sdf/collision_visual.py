@@ -185,8 +185,8 @@ def find_mesh(mesh: Union[Mesh, Heightmap, ImageMap], element: Any, source: Sour
         kind = "mesh" if isinstance(mesh, Mesh) else "image"
         say = source.tolerate if collides else source.warn
         without = "; this collision is skipped" if collides else ""
-        say(f"{kind}-not-found", f"the {kind} of this {owner} {missing}{without}", element,
-            hint=source.resolver.meant(missing) + "check the path, GAZEBO_MODEL_PATH and"
-                 " ROS_PACKAGE_PATH")
+        text, hint = source.resolver.explain(
+            missing, "check the path, GAZEBO_MODEL_PATH and ROS_PACKAGE_PATH")
+        say(f"{kind}-not-found", f"the {kind} of this {owner} {text}{without}", element, hint=hint)
         return not collides
     return True

@@ -65,13 +65,14 @@ def read_include(element: Any, source: Source, read_model: ModelReader, static: 
     try:
         path = source.resolver.model_file(probe.uri, source.base_dir)
     except ResourceNotFoundError as missing:
-        hint = (source.resolver.meant(missing) + "install it in ~/.gazebo/models or a folder of"
-                " GAZEBO_MODEL_PATH, or name a model database in GAZEBO_MODEL_DATABASE_URI")
+        text, hint = source.resolver.explain(
+            missing, "install it in ~/.gazebo/models or a folder of GAZEBO_MODEL_PATH, or name a"
+            " model database in GAZEBO_MODEL_DATABASE_URI")
         if outer:
-            source.tolerate("model-not-found", f"the included model {missing}; model {outer[-1]!r}"
+            source.tolerate("model-not-found", f"the included model {text}; model {outer[-1]!r}"
                             " is loaded without it", element, hint)
         else:
-            source.report(FaultLevel.ERROR, "model-not-found", f"the included model {missing}",
+            source.report(FaultLevel.ERROR, "model-not-found", f"the included model {text}",
                           element, hint)
         return None
     return _read_file(path, element, source, changes, read, probe.uri)

@@ -51,12 +51,11 @@ def _read_scripts(uris: List[str], element: Any, source: Source
                              for name, found in materials_of(script).items())
         except (ResourceNotFoundError, OSError) as fault:
             complete = False
-            missing = isinstance(fault, ResourceNotFoundError)
-            reason = str(fault) if missing else f"{uri!r} cannot be read: {fault}"
-            source.warn("material-script-not-found", f"the material script {reason}; it is left"
-                        " out", written[number] if len(written) == len(uris) else element,
-                        hint=source.resolver.meant(fault)
-                        if isinstance(fault, ResourceNotFoundError) else "")
+            text, hint = (source.resolver.explain(fault, "check the path and GAZEBO_MODEL_PATH")
+                          if isinstance(fault, ResourceNotFoundError)
+                          else (f"{uri!r} cannot be read: {fault.strerror}", ""))
+            source.warn("material-script-not-found", f"the material script {text}; it is left"
+                        " out", written[number] if len(written) == len(uris) else element, hint)
     return known, folders, complete
 
 
@@ -90,6 +89,6 @@ def check_texture_uri(uri: str, element: Any, source: Source) -> None:
     try:
         source.resolver.resolve(uri)
     except ResourceNotFoundError as missing:
-        source.warn("image-not-found", f"the texture {missing}; the visual is shown without it",
-                    element, hint=source.resolver.meant(missing) + "check the path and"
-                    " ROS_PACKAGE_PATH")
+        text, hint = source.resolver.explain(missing, "check the path and ROS_PACKAGE_PATH")
+        source.warn("image-not-found", f"the texture {text}; the visual is shown without it",
+                    element, hint)

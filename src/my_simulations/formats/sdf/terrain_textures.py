@@ -46,8 +46,9 @@ def _found(uri: str, what: str, element: Any, source: Source) -> str:
     except ResourceNotFoundError as missing:
         if stand_in(uri) is None:
             without = "grey is shown instead" if what == "texture" else "it is left out"
-            source.warn("image-not-found", f"the {what} of this heightmap {missing}; {without}",
-                        element, hint=source.resolver.meant(missing)
-                        + "check the path, GAZEBO_MODEL_PATH and GAZEBO_RESOURCE_PATH")
+            text, hint = source.resolver.explain(
+                missing, "check the path, GAZEBO_MODEL_PATH and GAZEBO_RESOURCE_PATH")
+            source.warn("image-not-found", f"the {what} of this heightmap {text}; {without}",
+                        element, hint)
         return uri
     return uri if "://" in uri else path
