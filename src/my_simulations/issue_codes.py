@@ -365,7 +365,7 @@ _TABLE: Tuple[Tuple[str, Tuple[Tuple[str, str, str, str], ...]], ...] = (
         ("editor-view", ERROR, "The editor could not read the state of the world.",
          "See the message."),
         ("editor-port", WARNING, "The default port of the editor is in use; it listens at another.",
-         "Use the printed address, and close browser tabs of the other port."),
+         "Use the printed address; browser tabs at the default port do not show this world."),
         ("editor-address", WARNING, "The address of the editor cannot be kept for gzclient.",
          "Make the cache folder writable, or start with editor_token:=false."),
         ("autosave", WARNING, "Unsaved changes cannot be stored.", "Free disk space and save."),

@@ -33,7 +33,7 @@ def materials_of(script: str) -> Dict[str, ScriptMaterial]:
         OSError: it cannot be read.
     """
     status = os.stat(script)
-    if not os.path.isfile(script):  # nobody may ever write to a named pipe
+    if not os.path.isfile(script):  # a named pipe may never have a writer
         return {}
     return _read(script, status.st_mtime_ns, status.st_size)
 

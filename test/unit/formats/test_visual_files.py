@@ -281,6 +281,14 @@ def test_a_texture_of_a_script_is_told_with_its_line(materials):
     assert issue.line == 9 and issue.hint == f"copy it to {materials / 'textures'}"
 
 
+def test_the_line_of_a_texture_is_found_in_a_script_of_few_lines(materials):
+    script = materials / "scripts" / "thing.material"
+    script.write_text("material Thing/Wood\n{ technique { pass { texture_unit {"
+                      ' texture "wood.png" } } } }\n')
+    (materials / "textures" / "wood.png").unlink()
+    assert only(scripted(materials), "image-not-found").line == 2
+
+
 def test_a_texture_of_a_urdf_material_is_told():
     _, issues = robot_of(f'<link name="l">{URDF_INERTIAL}<visual><geometry><box size="1 1 1"/>'
                          '</geometry><material name="wood">\n<texture filename="'

@@ -20,7 +20,8 @@ def listening(options: EditorOptions) -> socket.socket:
     if options.port not in (0, port):
         options.log(warning(
             "editor-port", f"port {options.port} is in use, perhaps by another simulator; this"
-            f" editor listens at port {port}", hint="close browser tabs of the other port"))
+            f" editor listens at port {port}", hint="browser tabs at the"
+            " other port do not show this world"))
     return listener
 
 

@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import os
+import re
 from typing import Any, Dict, List, Tuple
 
 from ...appearance.gazebo_materials import BUILT_IN
@@ -73,9 +74,9 @@ def _check_texture(material: ScriptMaterial, script: str, folders: List[str],
 
 def _line_of(texture: str, script: str) -> int:
     """The first line of a script that names a texture, from 1; 0 if there is none."""
+    named = re.compile(rf'(?:^|\s)texture\s+"?{re.escape(texture)}(?!\S*[^\s"])')
     with open(script, encoding="utf-8", errors="replace") as stream:
-        return next((number for number, line in enumerate(stream, 1)
-                     if line.split()[:1] == ["texture"] and texture in line), 0)
+        return next((number for number, line in enumerate(stream, 1) if named.search(line)), 0)
 
 
 def check_texture_uri(uri: str, element: Any, source: Source) -> None:
