@@ -1,6 +1,8 @@
 """The spawn services on an engine without physics: options of requests, and what is logged."""
 from __future__ import annotations
 
+import os
+import shutil
 from types import SimpleNamespace
 
 import pytest
@@ -10,6 +12,7 @@ from my_simulations.description.world import World
 from my_simulations.engine.inline_engine import InlineEngine
 from my_simulations.engine.kinematic_backend import KinematicBackend
 from my_simulations.errors import CommandError, InputError
+from my_simulations.resources.package_files import own_directory
 from my_simulations.resources.resolver import Resolver
 from my_simulations.ros.services.model_services import ModelServices
 from my_simulations.simulator.simulator import Simulator
@@ -48,6 +51,26 @@ def test_messages_name_the_file_of_the_request(services):
     with pytest.raises(InputError) as refused:
         services.spawn.spawn_object(request(xml="<robot name='r'/>", file="/tmp/arm.urdf"), None)
     assert refused.value.first.file == "model 'a', /tmp/arm.urdf"
+
+
+def test_a_missing_texture_is_in_the_reply_and_in_the_log(services, tmp_path):
+    mesh = tmp_path / "carton.dae"
+    shutil.copy(os.path.join(own_directory(), "Media", "models", "my_object.dae"), mesh)
+    visual = (f"<visual name='v'><geometry><mesh><uri>{mesh}</uri></mesh></geometry></visual>"
+              "</link>")
+    reply = services.spawn.spawn_sdf(request(xml=BOX.replace("</link>", visual)), None)
+    assert reply.startswith(f"Successfully spawned entity (1 warning: {mesh}:9: the image"
+                            " 'my_object/carton.png' was not found;")
+    assert [(issue.code, issue.file) for issue in services.issues] == [
+        ("image-not-found", str(mesh))]
+
+
+def test_a_reply_has_the_first_of_several_warnings(services):
+    text = BOX.replace("</link>", "<wrong/></link><wrogn/>")
+    reply = services.spawn.spawn_sdf(request(xml=text), None)
+    assert reply.startswith("Successfully spawned entity (2 warnings, see log; the first: model"
+                            " 'a', model_xml:1: element <w")
+    assert services.spawn.spawn_sdf(request("b"), None) == "Successfully spawned entity"
 
 
 def test_a_model_of_the_simulators_own_launch_is_known_as_such(services):
