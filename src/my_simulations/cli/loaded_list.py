@@ -23,8 +23,9 @@ LIST_MARK = "/my_simulations/object_list"
 """Parameter that describes the loaded list; written last by the upload.
 
 `world`, `package`, `file` ("" for none), `place` (path of the list, whether it exists or not),
-`host` (machine with that path), `state` (times and sizes of the files) and `content` (a digest of
-the parameters, which shows whether others have changed them)."""
+`host` (machine with that path), `state` (times and sizes of the files), `content` (a digest of the
+parameters, which shows whether others have changed them) and `faulty` (whether the files have
+errors)."""
 
 
 class Upload(NamedTuple):
@@ -50,27 +51,25 @@ class Loaded(NamedTuple):
         objects: the list; None if none is loaded.
         groups: the members by group name.
         issues: faults of the groups, and of a file that has changed.
-        file: file of the list; "" if it is unknown.
     """
 
     objects: Optional[ObjectList]
     groups: Mapping[str, List[str]]
     issues: List[Issue]
-    file: str
 
 
-def package_folder(package: str, option: str = "--package") -> str:
+def package_folder(package: str) -> str:
     """The folder of a ROS package.
 
     Raises:
-        ToolError: it is unknown; the text names similar packages and the `option`.
+        ToolError: it is unknown; the text names a similar package.
     """
     folder = package_finder()(package)
     if folder is None:
         near = closest(package, package_names(), 1)
         raise client.ToolError(f"ROS package '{package}' was not found"
                                f"{f' (did you mean {near[0]}?)' if near else ''}; source its "
-                               f"workspace, or correct {option}")
+                               "workspace, or correct --package")
     return folder
 
 
@@ -94,7 +93,8 @@ def upload(parameters: client.Parameters, world: str, package: str) -> Upload:
                  " package:=PACKAGE (launch file) or --package PACKAGE"))
     parameters.set(LIST_MARK, {
         "world": world, "file": found.file, "package": package, "place": place,
-        "host": socket.gethostname(), "state": state, "content": _digest(parameters)})
+        "host": socket.gethostname(), "state": state, "faulty": client.has_errors(found.issues),
+        "content": _digest(parameters.get(client.OBJECTS), parameters.get(client.GROUPS))})
     return found
 
 
@@ -125,25 +125,26 @@ def read_list(parameters: client.Parameters, package: str, wait: float) -> Loade
         ToolError: its package does not exist any more.
     """
     mark = _await_mark(parameters, wait)
+    tree, groups = parameters.get(client.OBJECTS), parameters.get(client.GROUPS)
     ours = (_text(mark, "host") == socket.gethostname()
-            and _text(mark, "content") == _digest(parameters))
+            and _text(mark, "content") == _digest(tree, groups))
     faults: List[Issue] = []
-    if ours and _is_outdated(mark, parameters):
+    if ours and _is_outdated(mark, tree):
         # Faults of entries are found again below.
         faults = [issue for issue in upload(parameters, mark["world"], mark["package"]).issues
                   if issue.code.startswith("list-")]
         if not faults:
             print(f"{mark['place']} has changed and was loaded again", file=sys.stderr, flush=True)
         mark = parameters.get(LIST_MARK)
-    file = _text(mark, "file") if ours else ""
-    tree, source = parameters.get(client.OBJECTS), Source(client.OBJECTS)
-    if file and not faults and os.path.isfile(file):
+        tree, groups = parameters.get(client.OBJECTS), parameters.get(client.GROUPS)
+    source, file = Source(client.OBJECTS), _text(mark, "file") if ours else ""
+    if file and mark.get("faulty") and not faults and os.path.isfile(file):
         # The file has the lines, and entries that the parameter server cannot hold.
         tree, source, _ = read_yaml(file, client.OBJECTS, angles=True)
     listing = None if tree is None else parse_objects(
         tree, source, package or _text(mark, "package") or PACKAGE)
-    groups, issues = parse_groups(parameters.get(client.GROUPS), Source(client.GROUPS))
-    return Loaded(listing, groups, [*faults, *issues], file)
+    members, issues = parse_groups(groups, Source(client.GROUPS))
+    return Loaded(listing, members, [*faults, *issues])
 
 
 def missing_list_message(parameters: client.Parameters) -> str:
@@ -170,11 +171,11 @@ def _await_mark(parameters: client.Parameters, wait: float) -> Any:
         time.sleep(client.POLL_SECONDS)
 
 
-def _is_outdated(mark: Mapping[str, Any], parameters: client.Parameters) -> bool:
+def _is_outdated(mark: Mapping[str, Any], tree: Any) -> bool:
     """Whether the files have changed since the upload, or could not be read then."""
     place = _text(mark, "place")
     return os.path.isfile(place) and (_state(place) != _text(mark, "state")
-                                      or parameters.get(client.OBJECTS) is None)
+                                      or tree is None)
 
 
 def _state(file: str) -> str:
@@ -190,9 +191,10 @@ def _state(file: str) -> str:
     return "; ".join(found)
 
 
-def _digest(parameters: client.Parameters) -> str:
-    both = [parameters.get(client.OBJECTS), parameters.get(client.GROUPS)]
-    return hashlib.sha256(json.dumps(both, sort_keys=True, default=str).encode()).hexdigest()
+def _digest(objects: Any, groups: Any) -> str:
+    """A digest of the values of both parameters, None for one that is not set."""
+    text = json.dumps([objects, groups], sort_keys=True, default=str)
+    return hashlib.sha256(text.encode()).hexdigest()
 
 
 def _text(mark: Any, key: str) -> str:
