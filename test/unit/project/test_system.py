@@ -13,7 +13,6 @@ from pathlib import Path
 
 import pytest
 import test_setup_shell as shells
-import yaml
 
 REPOSITORY = Path(__file__).resolve().parents[3]
 
@@ -266,45 +265,18 @@ def test_archive_for_another_python_is_refused(classroom):
 
 # -- the release ----------------------------------------------------------------------------------
 
-def manifests():
-    return [REPOSITORY / "package.xml", *sorted((REPOSITORY / "compat").glob("*/package.xml"))]
-
-
-def test_version_is_the_same_in_the_manifest_the_module_and_the_page():
+def test_version_is_the_same_wherever_it_is_stated():
     version = ElementTree.parse(REPOSITORY / "package.xml").getroot().findtext("version")
     module = (REPOSITORY / "src" / "my_simulations" / "__init__.py").read_text()
     assert re.search(r'^__version__ = "(.*)"$', module, re.MULTILINE).group(1) == version
+    citation = (REPOSITORY / "CITATION.cff").read_text()
+    assert re.search(r"^version: (.*)$", citation, re.MULTILINE).group(1) == version
+    for name in ("my_simulations_msgs", "my_simulations_underlay"):
+        path = REPOSITORY / "compat" / name / "package.xml"
+        assert ElementTree.parse(path).getroot().findtext("version") == version
     sections = re.findall(r"^(\d+\.\d+\.\d+) \(", (REPOSITORY / "CHANGELOG.rst").read_text(),
                           re.MULTILINE)
     assert sections[:1] in ([], [version])
-
-
-def test_manifests_name_keys_that_rosdep_resolves():
-    rules = yaml.safe_load((REPOSITORY / "rosdep.yaml").read_text())
-    for manifest in manifests():
-        for entry in ElementTree.parse(manifest).getroot():
-            if entry.tag.endswith("depend") and entry.text.startswith("python3-"):
-                assert entry.text in KEYS | set(rules), f"{manifest}: {entry.text}"
-
-
-KEYS = {f"python3-{name}" for name in (
-    "aiohttp", "catkin-pkg", "collada", "lxml", "numpy", "pil", "pybullet-pip", "pytest", "rospkg",
-    "scipy", "setuptools", "shapely", "trimesh-pip", "yaml")}
-"""Keys of rosdistro's rosdep/python.yaml for Debian and Ubuntu, read in August 2026."""
-
-
-def test_local_rules_name_packages_for_debian_and_ubuntu():
-    rules = yaml.safe_load((REPOSITORY / "rosdep.yaml").read_text())
-    listed = {line for path in (REPOSITORY / "tools").glob("apt-packages*.txt")
-              for line in path.read_text().splitlines()}
-    required = (REPOSITORY / "requirements.txt").read_text()
-    for key, rule in rules.items():
-        for system in ("debian", "ubuntu"):
-            what = rule[system]
-            if isinstance(what, list):
-                assert set(what) <= listed, key
-            else:
-                assert all(f"\n{name}==" in required for name in what["pip"]["packages"]), key
 
 
 def test_lock_file_of_the_page_can_be_read():
