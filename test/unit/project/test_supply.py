@@ -16,7 +16,7 @@ PINNED = re.compile(r"[A-Za-z0-9._\[\]-]+==[0-9][0-9A-Za-z.]*(; .*)?")
 
 
 @pytest.mark.parametrize("name", ["requirements.txt", "requirements-test.txt",
-                                  "requirements-oldest.txt"])
+                                  "requirements-oldest.txt", "requirements-release.txt"])
 def test_every_python_package_is_pinned(name):
     lines = (line.partition("#")[0].strip()
              for line in (REPOSITORY / name).read_text().splitlines())

@@ -291,31 +291,48 @@ def test_library_of_the_system_casts_rays_where_no_wheel_does(monkeypatch):
     assert embree.library_path() == "libembree4.so.4"
 
 
+FAKE_PYTHON = """#!/bin/bash
+# Makes environments of copies of this file, and builds nothing: it keeps package.xml.
+case "$*" in
+  "-m venv "*) mkdir -p "$3/bin"; cp "$0" "$3/bin/python"
+    for name in pip twine; do printf '#!/bin/bash\necho "$0 $*"' >"$3/bin/$name"; done
+    chmod +x "$3"/bin/* ;;
+  "-m build --outdir "*)
+    for end in .tar.gz -py3-none-any.whl; do
+      cp "$5/package.xml" "$4/my_simulations-0.1.0$end"
+    done ;;
+  *) echo "python $*" ;;
+esac
+"""
+
+
 def test_release_is_made_of_what_is_committed_without_ros(tmp_path):
     def run(*words):
         return subprocess.run(words, cwd=clone, check=False, capture_output=True, text=True,
                               timeout=60, env={**os.environ, "PATH": f"{tmp_path}:/usr/bin:/bin",
                                                "PYTHON": str(tmp_path / "python")})
 
-    clone = tmp_path / "clone"
+    clone, address = tmp_path / "clone", "https://host.example/it"
     (clone / "tools").mkdir(parents=True)
     shutil.copy(REPOSITORY / "tools" / "release", clone / "tools" / "release")
     shutil.copy(REPOSITORY / "package.xml", clone)
-    # A pip that builds nothing: it notes what it is asked for.
-    (tmp_path / "python").write_text(
-        '#!/bin/bash\nfor word; do [ "$last" != --wheel-dir ] || out=$word; last=$word; done\n'
-        'cp "$last/package.xml" $out/my_simulations-0.1.0-py3-none-any.whl\n')
+    (tmp_path / "python").write_text(FAKE_PYTHON)
     (tmp_path / "python").chmod(0o755)
     for words in (("init", "-q"), ("add", "-A"), ("-c", "user.name=a", "-c", "user.email=a@b",
                                                   "commit", "-qm", "all")):
         assert run("git", *words).returncode == 0
-    done = run("tools/release", str(tmp_path / "out"))
+    done = run("tools/release", str(tmp_path / "out"), f"{address}.git")
     assert done.returncode == 0, done.stderr
     (archive,) = (tmp_path / "out").glob("my_simulations-*.tar.gz")
     (wheel,) = (tmp_path / "out").glob("my_simulations-*.whl")
-    assert archive.stat().st_size and "<version>" in wheel.read_text()
-    assert "git tag -a" in done.stdout
+    for made in (archive, wheel):
+        manifest = ElementTree.parse(made).getroot()
+        assert manifest.find("url").attrib == {"type": "repository"}
+        assert manifest.findtext("url") == address
+        assert f"twine check --strict {archive} {wheel}" in done.stdout
+    assert f"pip install --quiet {wheel}[editor]" in done.stdout
+    assert "check_installation.py" in done.stdout and "git tag -a" in done.stdout
     (clone / "new").touch()
-    done = run("tools/release", str(tmp_path / "again"))
+    done = run("tools/release", str(tmp_path / "again"), address)
     assert done.returncode == 1
     assert "changes that no commit has" in done.stderr
