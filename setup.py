@@ -72,7 +72,7 @@ class BuildWithPage(build):
 
 
 class SourceWithPage(sdist):
-    """Packs the sources with the editor's page, so that nobody else needs Node.js."""
+    """Packs the sources with the editor's page, so that installing it needs no Node.js."""
 
     def make_release_tree(self, base_dir: str, files: Any) -> None:
         super().make_release_tree(base_dir, files)

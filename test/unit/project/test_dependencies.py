@@ -17,12 +17,13 @@ COMPANIONS = sorted((REPOSITORY / "compat").iterdir())
 RULES = yaml.safe_load((REPOSITORY / "rosdep.yaml").read_text())
 STANDARD = sysconfig.get_paths()["stdlib"]
 
-PYTHON = {"aiohttp": "python3-aiohttp", "collada": "python3-collada",
-          "embreex": "python3-embreex-pip", "glcontext": "python3-glcontext-pip",
-          "lxml": "python3-lxml", "moderngl": "python3-moderngl-pip", "numpy": "python3-numpy", "PIL": "python3-pil",
-          "pybullet": "python3-pybullet-pip", "rospkg": "python3-rospkg", "scipy": "python3-scipy",
-          "setuptools": "python3-setuptools", "shapely": "python3-shapely",
-          "trimesh": "python3-trimesh-pip", "yaml": "python3-yaml"}
+PYTHON = {
+    "aiohttp": "python3-aiohttp", "collada": "python3-collada", "embreex": "python3-embreex-pip",
+    "glcontext": "python3-glcontext-pip", "lxml": "python3-lxml",
+    "moderngl": "python3-moderngl-pip", "numpy": "python3-numpy", "PIL": "python3-pil",
+    "pybullet": "python3-pybullet-pip", "rospkg": "python3-rospkg", "scipy": "python3-scipy",
+    "setuptools": "python3-setuptools", "shapely": "python3-shapely",
+    "trimesh": "python3-trimesh-pip", "yaml": "python3-yaml"}
 """Modules whose keys of rosdep have other names."""
 
 OPTIONAL = {"distributed", "gymnasium"}
