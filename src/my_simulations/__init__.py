@@ -18,7 +18,11 @@ __all__ = ["OpenWorld", "__version__", "open_world"]
 def __getattr__(name: str) -> Any:
     # The node imports this package and must not pay for NumPy and the readers.
     if name in ("OpenWorld", "open_world"):
-        from . import python_api
+        try:
+            from . import python_api
+        except ModuleNotFoundError as missing:
+            from .workspace_python import advice
 
+            raise ImportError(advice(missing.name or "")) from missing
         return getattr(python_api, name)
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

@@ -12,6 +12,8 @@ if TYPE_CHECKING:
     from ..ros.lifecycle.server_options import Recording
     from ..simulator.simulator import Simulator
 
+_MISSING = "{}; install it by tools/run, or by pip install 'my_simulations[editor]'"
+
 
 class FrontEnds:
     """Starts editor and recorder; imports them on first use."""
@@ -31,8 +33,7 @@ class FrontEnds:
 
             return editor.start_loading(editor.EditorOptions(**settings))
         except ImportError as missing:
-            raise CommandError(
-                f"{missing}; run tools/run to install the dependencies of the editor") from missing
+            raise CommandError(_MISSING.format(missing)) from missing
 
     def edit(self, simulator: "Simulator", resolver: "Resolver", settings: Dict[str, Any],
              loading: "Optional[LoadingServer]" = None) -> "EditorServer":
@@ -48,8 +49,7 @@ class FrontEnds:
             options = editor.EditorOptions(**settings, more_logs=tuple(self._logs))
             return editor.start(simulator, resolver, options, loading)
         except ImportError as missing:
-            raise CommandError(
-                f"{missing}; run tools/run to install the dependencies of the editor") from missing
+            raise CommandError(_MISSING.format(missing)) from missing
 
     def record(self, simulator: "Simulator", resolver: "Resolver", wanted: "Recording",
                tell: "Callable[[Issue], None]") -> "Recorder":
@@ -66,6 +66,6 @@ class FrontEnds:
             path = path_of(wanted.path, EditorOptions().data_dir)
             recorder = Recorder(simulator, resolver, path, wanted.period, tell)
         except ImportError as missing:
-            raise CommandError(f"{missing}; run tools/run to install it") from missing
+            raise CommandError(_MISSING.format(missing)) from missing
         self._logs.append(recorder.path)
         return recorder

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import ctypes
 import mmap
-from typing import Callable, List, Tuple, TypeVar
+from typing import Any, Callable, List, Tuple, TypeVar
 
 import numpy as np
 
@@ -18,19 +18,23 @@ Made = TypeVar("Made")
 _Range = Tuple[int, int]
 _LEAST = 1 << 20
 _MADV_DONTNEED = 4
+_IS_MMAPPED = 2
 
 
 def made_sparingly(make: Callable[[], Made]) -> Made:
     """What `make` makes; whole pages of zeros in the large blocks it allocates are given back.
 
-    Call it while the process has one thread: nobody else may write to these blocks.
+    Call it while the process has one thread: no other thread may write to these blocks. Other
+    mappings are left alone, even those that the kernel lists as one range with such a block: Python
+    writes to the arenas of its objects at any time.
     """
     child_process.place_large_blocks_apart(_LEAST)
     before = _anonymous()
     made = make()
-    for block in _without(_anonymous(), before):
-        if block[1] - block[0] >= _LEAST:
-            _give_back(block)
+    for found in _without(_anonymous(), before):
+        if found[1] - found[0] >= _LEAST:
+            for block in _allocated_in(found):
+                _give_back(block)
     return made
 
 
@@ -60,13 +64,39 @@ def _without(ranges: List[_Range], others: List[_Range]) -> List[_Range]:
     return found
 
 
-def _give_back(block: _Range) -> None:
+def _allocated_in(found: _Range) -> List[_Range]:
+    """The blocks of the C library in a range of whole pages.
+
+    Before each is a header of two words: zero, and the size with the bit that says that the block
+    has a mapping of its own (glibc, malloc/malloc.c, IS_MMAPPED).
+    """
+    first, end = found
+    headers = _pages(found)[:, :2]
+    sizes = headers[:, 1] - np.uint64(_IS_MMAPPED)
+    begins = (headers[:, 0] == 0) & (sizes % mmap.PAGESIZE == 0) & (sizes >= _LEAST)
+    blocks: List[_Range] = []
+    for page in np.flatnonzero(begins).tolist():
+        at = first + page * mmap.PAGESIZE
+        until = at + int(sizes[page])
+        # What looks like a header inside of a block is the block's content.
+        if until <= end and (not blocks or at >= blocks[-1][1]):
+            blocks.append((at, until))
+    return blocks
+
+
+def _pages(block: _Range) -> "np.ndarray[Any, Any]":
+    """The memory of a range, a row of 8-byte words for each page."""
     first, end = block
     memory = (ctypes.c_char * (end - first)).from_address(first)
-    pages = np.frombuffer(memoryview(memory).cast("B"), np.uint64).reshape(-1, mmap.PAGESIZE // 8)
-    used = np.concatenate(([True], np.bitwise_or.reduce(pages, axis=1) != 0, [True]))
+    words = np.frombuffer(memoryview(memory).cast("B"), np.uint64)
+    return words.reshape(-1, mmap.PAGESIZE // 8)
+
+
+def _give_back(block: _Range) -> None:
+    used = np.concatenate(
+        ([True], np.bitwise_or.reduce(_pages(block), axis=1) != 0, [True]))
     edges = np.flatnonzero(used[1:] != used[:-1]).tolist()
     madvise = ctypes.CDLL(None).madvise
     madvise.argtypes = (ctypes.c_void_p, ctypes.c_size_t, ctypes.c_int)
     for at, until in zip(edges[::2], edges[1::2]):
-        madvise(first + at * mmap.PAGESIZE, (until - at) * mmap.PAGESIZE, _MADV_DONTNEED)
+        madvise(block[0] + at * mmap.PAGESIZE, (until - at) * mmap.PAGESIZE, _MADV_DONTNEED)

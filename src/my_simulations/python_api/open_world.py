@@ -18,6 +18,7 @@ from ..sensing.api import CameraSpec
 from ..simulator.saving import save_world
 from ..simulator.scene_sensing import SceneSensing
 from ..simulator.simulator import Simulator
+from ..workspace_python import require
 from .furnishing import Furnisher
 from .kept_files import KeptFiles
 from .plain_values import nanoseconds_of, pose_of, twist_of, vector_of, whole_number
@@ -94,6 +95,8 @@ class OpenWorld:
         self._files = files or KeptFiles(resolver or Resolver.from_environment())
         self._furnisher = Furnisher(self._files, self._log)
         self._new_engine = engine
+        if engine is ProcessEngine:
+            require("pybullet")
         self._start(self._furnisher.load(choice))
 
     def __enter__(self) -> OpenWorld:

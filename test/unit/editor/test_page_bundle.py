@@ -12,7 +12,6 @@ import pytest
 from editor_case import cases
 from test_editor_http import request
 
-from my_simulations.editor.transport import page_files
 from my_simulations.editor.transport.page_bundle import FOLDER, PageBundle, sources_of
 from my_simulations.editor.transport.page_files import PageFiles
 
@@ -113,8 +112,10 @@ def test_a_page_without_npm_packages_is_served_as_it_is(page):
     assert PageBundle(str(page), "").html(HTML) == HTML
 
 
-def test_packed_modules_are_served_until_a_module_is_edited(case, page, monkeypatch):
-    monkeypatch.setattr(page_files, "node_modules", lambda _: str(modules_of(page)))
+def test_packed_modules_beside_the_page_are_served_until_a_module_is_edited(
+        case, page, monkeypatch):
+    monkeypatch.delenv("MY_SIMULATIONS_NODE_MODULES", raising=False)
+    monkeypatch.setenv("CMAKE_PREFIX_PATH", "")
     made = case(web=str(page))
     _, _, html = request(made.url)
     address = re.search(rb'src="/(.*?)"', html)[1].decode()

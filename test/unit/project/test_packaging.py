@@ -91,7 +91,7 @@ def test_both_names_of_xacro_are_the_same_program():
 
 
 @pytest.mark.parametrize("name", ["requirements.txt", "requirements-test.txt",
-                                  "requirements-oldest.txt"])
+                                  "requirements-oldest.txt", "requirements-release.txt"])
 def test_pip_requirements_are_pinned(name):
     lines = [line for line in (REPOSITORY / name).read_text().splitlines()
              if line and not line.startswith("#")]

@@ -13,7 +13,6 @@ from pathlib import Path
 
 import pytest
 import test_setup_shell as shells
-import yaml
 
 REPOSITORY = Path(__file__).resolve().parents[3]
 
@@ -266,45 +265,18 @@ def test_archive_for_another_python_is_refused(classroom):
 
 # -- the release ----------------------------------------------------------------------------------
 
-def manifests():
-    return [REPOSITORY / "package.xml", *sorted((REPOSITORY / "compat").glob("*/package.xml"))]
-
-
-def test_version_is_the_same_in_the_manifest_the_module_and_the_page():
+def test_version_is_the_same_wherever_it_is_stated():
     version = ElementTree.parse(REPOSITORY / "package.xml").getroot().findtext("version")
     module = (REPOSITORY / "src" / "my_simulations" / "__init__.py").read_text()
     assert re.search(r'^__version__ = "(.*)"$', module, re.MULTILINE).group(1) == version
+    citation = (REPOSITORY / "CITATION.cff").read_text()
+    assert re.search(r"^version: (.*)$", citation, re.MULTILINE).group(1) == version
+    for name in ("my_simulations_msgs", "my_simulations_underlay"):
+        path = REPOSITORY / "compat" / name / "package.xml"
+        assert ElementTree.parse(path).getroot().findtext("version") == version
     sections = re.findall(r"^(\d+\.\d+\.\d+) \(", (REPOSITORY / "CHANGELOG.rst").read_text(),
                           re.MULTILINE)
     assert sections[:1] in ([], [version])
-
-
-def test_manifests_name_keys_that_rosdep_resolves():
-    rules = yaml.safe_load((REPOSITORY / "rosdep.yaml").read_text())
-    for manifest in manifests():
-        for entry in ElementTree.parse(manifest).getroot():
-            if entry.tag.endswith("depend") and entry.text.startswith("python3-"):
-                assert entry.text in KEYS | set(rules), f"{manifest}: {entry.text}"
-
-
-KEYS = {f"python3-{name}" for name in (
-    "aiohttp", "catkin-pkg", "collada", "lxml", "numpy", "pil", "pybullet-pip", "pytest", "rospkg",
-    "scipy", "setuptools", "shapely", "trimesh-pip", "yaml")}
-"""Keys of rosdistro's rosdep/python.yaml for Debian and Ubuntu, read in August 2026."""
-
-
-def test_local_rules_name_packages_for_debian_and_ubuntu():
-    rules = yaml.safe_load((REPOSITORY / "rosdep.yaml").read_text())
-    listed = {line for path in (REPOSITORY / "tools").glob("apt-packages*.txt")
-              for line in path.read_text().splitlines()}
-    required = (REPOSITORY / "requirements.txt").read_text()
-    for key, rule in rules.items():
-        for system in ("debian", "ubuntu"):
-            what = rule[system]
-            if isinstance(what, list):
-                assert set(what) <= listed, key
-            else:
-                assert all(f"\n{name}==" in required for name in what["pip"]["packages"]), key
 
 
 def test_lock_file_of_the_page_can_be_read():
@@ -319,31 +291,48 @@ def test_library_of_the_system_casts_rays_where_no_wheel_does(monkeypatch):
     assert embree.library_path() == "libembree4.so.4"
 
 
+FAKE_PYTHON = """#!/bin/bash
+# Makes environments of copies of this file, and builds nothing: it keeps package.xml.
+case "$*" in
+  "-m venv "*) mkdir -p "$3/bin"; cp "$0" "$3/bin/python"
+    for name in pip twine; do printf '#!/bin/bash\necho "$0 $*"' >"$3/bin/$name"; done
+    chmod +x "$3"/bin/* ;;
+  "-m build --outdir "*)
+    for end in .tar.gz -py3-none-any.whl; do
+      cp "$5/package.xml" "$4/my_simulations-0.1.0$end"
+    done ;;
+  *) echo "python $*" ;;
+esac
+"""
+
+
 def test_release_is_made_of_what_is_committed_without_ros(tmp_path):
     def run(*words):
         return subprocess.run(words, cwd=clone, check=False, capture_output=True, text=True,
                               timeout=60, env={**os.environ, "PATH": f"{tmp_path}:/usr/bin:/bin",
                                                "PYTHON": str(tmp_path / "python")})
 
-    clone = tmp_path / "clone"
+    clone, address = tmp_path / "clone", "https://host.example/it"
     (clone / "tools").mkdir(parents=True)
     shutil.copy(REPOSITORY / "tools" / "release", clone / "tools" / "release")
     shutil.copy(REPOSITORY / "package.xml", clone)
-    # A pip that builds nothing: it notes what it is asked for.
-    (tmp_path / "python").write_text(
-        '#!/bin/bash\nfor word; do [ "$last" != --wheel-dir ] || out=$word; last=$word; done\n'
-        'cp "$last/package.xml" $out/my_simulations-0.1.0-py3-none-any.whl\n')
+    (tmp_path / "python").write_text(FAKE_PYTHON)
     (tmp_path / "python").chmod(0o755)
     for words in (("init", "-q"), ("add", "-A"), ("-c", "user.name=a", "-c", "user.email=a@b",
                                                   "commit", "-qm", "all")):
         assert run("git", *words).returncode == 0
-    done = run("tools/release", str(tmp_path / "out"))
+    done = run("tools/release", str(tmp_path / "out"), f"{address}.git")
     assert done.returncode == 0, done.stderr
     (archive,) = (tmp_path / "out").glob("my_simulations-*.tar.gz")
     (wheel,) = (tmp_path / "out").glob("my_simulations-*.whl")
-    assert archive.stat().st_size and "<version>" in wheel.read_text()
-    assert "git tag -a" in done.stdout
+    for made in (archive, wheel):
+        manifest = ElementTree.parse(made).getroot()
+        assert manifest.find("url").attrib == {"type": "repository"}
+        assert manifest.findtext("url") == address
+        assert f"twine check --strict {archive} {wheel}" in done.stdout
+    assert f"pip install --quiet {wheel}[editor]" in done.stdout
+    assert "check_installation.py" in done.stdout and "git tag -a" in done.stdout
     (clone / "new").touch()
-    done = run("tools/release", str(tmp_path / "again"))
+    done = run("tools/release", str(tmp_path / "again"), address)
     assert done.returncode == 1
     assert "changes that no commit has" in done.stderr

@@ -125,9 +125,13 @@ class PageFiles:
 
 
 def node_modules(page: str) -> str:
-    """The folder that holds `three`; "" where it is not installed."""
+    """The folder that holds `three`; "" where it is not installed.
+
+    An installation has it beside the page, a workspace in its folder `.my_simulations`.
+    """
     places = [os.environ.get("MY_SIMULATIONS_NODE_MODULES", ""),
-              os.path.join(page, "node_modules")]
+              os.path.join(page, "node_modules"),
+              os.path.join(os.path.dirname(page), "node_modules")]
     for prefix in os.environ.get("CMAKE_PREFIX_PATH", "").split(os.pathsep):
         places.append(os.path.join(prefix, "share", "my_simulations", "node_modules"))
         places.append(os.path.join(os.path.dirname(prefix), ".my_simulations", "node_modules"))

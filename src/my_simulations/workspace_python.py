@@ -1,0 +1,25 @@
+"""Names the Python to use where the running one lacks a package."""
+from __future__ import annotations
+
+import importlib.util
+import os
+import sys
+
+from .errors import CommandError
+
+
+def require(module: str) -> None:
+    """Check that a module is installed. Raises CommandError, which says how to get it."""
+    if importlib.util.find_spec(module) is None:
+        raise CommandError(advice(module))
+
+
+def advice(module: str) -> str:
+    """A sentence for a program whose Python lacks `module`."""
+    for prefix in os.environ.get("CMAKE_PREFIX_PATH", "").split(os.pathsep):
+        python = os.path.join(os.path.dirname(prefix), ".my_simulations", "venv", "bin", "python3")
+        if prefix and os.path.exists(python) and os.path.realpath(sys.prefix) != os.path.realpath(
+                os.path.dirname(os.path.dirname(python))):
+            return (f"{sys.executable} has no module {module!r}; run the program with the Python "
+                    f"of this workspace: {python} {sys.argv[0]}")
+    return f"{sys.executable} has no module {module!r}; pip install my_simulations brings it"

@@ -1,0 +1,62 @@
+"""A program whose Python lacks a package is told which Python has it."""
+from __future__ import annotations
+
+import importlib.util
+import sys
+
+import pytest
+
+import my_simulations
+from my_simulations.errors import CommandError
+from my_simulations.workspace_python import require
+
+
+@pytest.fixture
+def workspace(tmp_path, monkeypatch):
+    """A sourced workspace, whose Python is not the one of this test."""
+    python = tmp_path / ".my_simulations" / "venv" / "bin" / "python3"
+    python.parent.mkdir(parents=True)
+    python.write_text("")
+    monkeypatch.setenv("CMAKE_PREFIX_PATH", f"{tmp_path}/devel:/usr")
+    monkeypatch.setattr(sys, "argv", ["examples/drop_test.py"])
+    return python
+
+
+def lack(monkeypatch, module):
+    real = importlib.util.find_spec
+    monkeypatch.setattr(importlib.util, "find_spec",
+                        lambda name, *more: None if name == module else real(name, *more))
+
+
+def test_a_workspace_that_is_sourced_names_its_python(workspace, monkeypatch):
+    lack(monkeypatch, "pybullet")
+    with pytest.raises(CommandError) as told:
+        my_simulations.open_world()
+    assert str(told.value) == (
+        f"{sys.executable} has no module 'pybullet'; run the program with the Python of this "
+        f"workspace: {workspace} examples/drop_test.py")
+
+
+def test_pip_is_named_where_no_workspace_is_sourced(monkeypatch):
+    monkeypatch.setenv("CMAKE_PREFIX_PATH", "")
+    lack(monkeypatch, "pybullet")
+    with pytest.raises(CommandError, match="no module 'pybullet'; pip install my_simulations"):
+        require("pybullet")
+
+
+def test_the_python_of_the_workspace_is_not_told_to_use_itself(workspace, monkeypatch):
+    monkeypatch.setattr(sys, "prefix", str(workspace.parent.parent))
+    lack(monkeypatch, "pybullet")
+    with pytest.raises(CommandError, match="pip install my_simulations"):
+        require("pybullet")
+
+
+def test_a_module_that_is_there_is_enough(workspace):
+    require("json")
+
+
+def test_an_import_that_fails_names_the_python_too(workspace, monkeypatch):
+    monkeypatch.delattr(my_simulations, "python_api", raising=False)
+    monkeypatch.setitem(sys.modules, "my_simulations.python_api", None)
+    with pytest.raises(ImportError, match=f"with the Python of this workspace: {workspace}"):
+        my_simulations.open_world
