@@ -1,9 +1,13 @@
 """Collision shapes of a link, in PyBullet's terms."""
 from __future__ import annotations
 
+import contextlib
 import functools
+import hashlib
+import io
 import os
-from dataclasses import dataclass, replace
+import weakref
+from dataclasses import dataclass, field, replace
 from typing import Any, Dict, List, Optional, Sequence, TextIO, Tuple
 
 import numpy as np
@@ -46,6 +50,21 @@ class ShapeError(SimulationError):
     """A collision that PyBullet refuses; the message is one sentence for the user."""
 
 
+class HullFile:
+    """A file of convex parts that is removed with the last recipe that names it."""
+
+    def __init__(self, path: str, text: str) -> None:
+        self.path = path
+        with open(path, "w", encoding="ascii") as stream:
+            stream.write(text)
+        weakref.finalize(self, _remove, path)
+
+
+def _remove(path: str) -> None:
+    with contextlib.suppress(FileNotFoundError):  # the folder was removed before
+        os.remove(path)
+
+
 @dataclass(frozen=True)
 class Recipe:
     """A compound as PyBullet is asked for it, as often as wanted: the file's names, arguments.
@@ -55,6 +74,7 @@ class Recipe:
             the flat faces of meshes, or "" (see `collision_groups`).
         is_hull: it is one convex hull of points.
         frame: where its body stands, seen from that of the link.
+        hulls: the file of the arguments that is for this recipe and equal ones only.
     """
 
     names: str
@@ -62,6 +82,7 @@ class Recipe:
     role: str = ""
     is_hull: bool = False
     frame: Pose = IDENTITY
+    hulls: Optional[HullFile] = field(default=None, compare=False)
 
     @functools.cached_property
     def key(self) -> str:
@@ -82,6 +103,8 @@ class ShapeFactory:
     def __init__(self) -> None:
         self._scratch = Scratch()
         self._files: Dict[str, str] = {}
+        self._hull_files: "weakref.WeakValueDictionary[str, HullFile]" = (
+            weakref.WeakValueDictionary())
         self._faces = FaceBoxes()
         self._count = 0
         self._unseen = -1
@@ -172,13 +195,13 @@ class ShapeFactory:
                        frame=compose(frame, below))
 
     def _recipe(self, collisions: Sequence[Collision], meshes: MeshTable, frame: Pose,
-                static: bool, more: Optional[Dict[str, Any]] = None) -> Recipe:
-        is_hull = (len(collisions) == 1 and more is None
+                static: bool, hulls: Optional[HullFile] = None) -> Recipe:
+        is_hull = (len(collisions) == 1 and hulls is None
                    and _is_hull(collisions[0], meshes, static))
         margin = 0.0 if is_hull or static else _MARGIN
         columns = [self._column(c, meshes, frame, static, margin) for c in collisions]
-        if more is not None:
-            columns.append(more)
+        if hulls is not None:
+            columns.append({"type": pybullet.GEOM_MESH, "file": hulls.path, "pose": IDENTITY})
         return Recipe(", ".join(c.name for c in collisions), {
             "shapeTypes": [c["type"] for c in columns],
             "halfExtents": [c.get("half", (0, 0, 0)) for c in columns],
@@ -190,7 +213,7 @@ class ShapeFactory:
             "flags": [c.get("flags", 0) for c in columns],
             "collisionFramePositions": [c["pose"].position for c in columns],
             "collisionFrameOrientations": [c["pose"].orientation for c in columns],
-        }, is_hull=is_hull)
+        }, is_hull=is_hull, hulls=hulls)
 
     def _column(self, collision: Collision, meshes: MeshTable, frame: Pose,
                 static: bool, margin: float) -> Dict[str, Any]:
@@ -226,22 +249,28 @@ class ShapeFactory:
                     "file": self._file(key, meshes[key], static, margin)}
         raise ShapeError(f"no collision shape for {type(geometry).__name__}")
 
-    def _hulls(self, collisions: Sequence[Collision], meshes: MeshTable,
-               frame: Pose) -> Dict[str, Any]:
-        """Several collisions as one file of convex parts, in the body's frame."""
-        self._count += 1
-        path = os.path.join(self._scratch.path, f"{self._count}.obj")
-        with open(path, "w", encoding="ascii") as stream:
-            first = 1
-            for collision in collisions:
-                pose = compose(frame, collision.pose)
-                for points, triangles in _pieces(collision, meshes):
-                    rows: Any = points.tolist()
-                    corners: Any = triangles.tolist()
-                    moved = [transform(pose, (p[0], p[1], p[2])) for p in rows]
-                    _write_part(stream, moved, corners, first)
-                    first += len(moved)
-        return {"type": pybullet.GEOM_MESH, "file": path, "pose": IDENTITY}
+    def _hulls(self, collisions: Sequence[Collision], meshes: MeshTable, frame: Pose) -> HullFile:
+        """Several collisions as one file of convex parts, in the body's frame.
+
+        The path depends on the content only, so that equal links have equal recipes, and take the
+        shapes that an earlier one has left.
+        """
+        stream, first = io.StringIO(), 1
+        for collision in collisions:
+            pose = compose(frame, collision.pose)
+            for points, triangles in _pieces(collision, meshes):
+                rows: Any = points.tolist()
+                corners: Any = triangles.tolist()
+                moved = [transform(pose, (p[0], p[1], p[2])) for p in rows]
+                _write_part(stream, moved, corners, first)
+                first += len(moved)
+        text = stream.getvalue()
+        name = hashlib.sha256(text.encode("ascii")).hexdigest()
+        file = self._hull_files.get(name)
+        if file is None:
+            file = HullFile(os.path.join(self._scratch.path, f"{name}.obj"), text)
+            self._hull_files[name] = file
+        return file
 
     def _hull(self, geometry: Geometry) -> str:
         """A curved shape that Bullet does not have, as a hull of points."""
