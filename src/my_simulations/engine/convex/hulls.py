@@ -156,10 +156,10 @@ def _covers(mesh: Any, hull: Hull) -> bool:
     if len(planes) * len(mesh.faces) > _MOST_PAIRS:
         return False
     hull_areas = np.bincount(face_of.reshape(-1), _areas(hull.vertices[hull.faces]), len(planes))
-    corners = mesh.vertices[mesh.faces]
     reach = float(np.ptp(mesh.vertices, axis=0).max())
-    off = np.abs(corners @ planes[:, :3].T + planes[:, 3]).max(axis=1)
-    covered = (off <= _ON_HULL * reach).T @ _areas(corners)
+    is_on = np.abs(mesh.vertices @ planes[:, :3].T + planes[:, 3]) <= _ON_HULL * reach
+    faces = mesh.faces[is_on.any(axis=1)[mesh.faces].all(axis=1)]
+    covered = is_on[faces].all(axis=1).T @ _areas(mesh.vertices[faces])
     open_area = np.maximum(hull_areas - covered, 0.0).sum()
     return bool(open_area <= _SAME_AREA * hull_areas.sum())
 
@@ -181,12 +181,14 @@ def convex_pieces(mesh: Any) -> Optional[List[Hull]]:
     from trimesh.graph import connected_components
 
     groups = connected_components(mesh.face_adjacency, nodes=np.arange(len(mesh.faces)))
-    if not 0 < len(groups) <= _MOST_PIECES:
+    if not 1 < len(groups) <= _MOST_PIECES:
         return None
-    pieces = [cleaned(mesh.vertices, mesh.faces[group]) for group in groups]
-    if not all(map(is_convex, pieces)):
-        return None
-    outer = _not_inside([full_hull(piece.vertices) for piece in pieces])
+    found = {}
+    for n in sorted(range(len(groups)), key=lambda n: len(groups[n])):  # cheap tests come first
+        found[n] = cleaned(mesh.vertices, mesh.faces[groups[n]])
+        if not is_convex(found[n]):
+            return None
+    outer = _not_inside([full_hull(found[n].vertices) for n in sorted(found)])
     most = max(PART_VERTICES, MOST_VERTICES // len(outer))
     return [hull_of(hull.vertices, most) for hull in outer]
 
