@@ -25,7 +25,7 @@ MODEL = """<model name="angle_{0}"><pose>{0} 0 0.5 0 0 0</pose><link name="link"
 """
 
 
-DIVIDER = b"my_simulations.engine.convex.decomposition"
+DIVIDER = b"my_simulations.engine.convex.worker"
 
 
 OUTLINE = ((0.0, 0.0), (1.0, 0.0), (1.0, 0.2), (0.2, 0.2), (0.2, 1.0), (0.0, 1.0))

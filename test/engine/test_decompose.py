@@ -375,6 +375,54 @@ def test_a_mesh_that_takes_too_much_processor_time_keeps_its_hull_at_once_the_ne
         assert [one.code for one in notices(made)] == ["mesh-not-decomposed"]
 
 
+def arrays(made):
+    return [(part.vertices.tolist(), part.triangles.tolist()) for part in made.parts]
+
+
+def test_a_worker_divides_one_mesh_after_the_other_and_none_depends_on_those_before(tmp_path):
+    wide = MeshData(angle().vertices * (1.0, 1.0, 2.0), angle().triangles)
+    with decomposition.Divider(cache_dir=str(tmp_path / "one")) as divider:
+        for mesh in (wide, angle()):
+            last = divider.divide(mesh)
+    alone = decomposition.divided(angle(), cache_dir=str(tmp_path / "other"))
+    assert len(last.parts) > 1 and arrays(last) == arrays(alone)
+
+
+def test_a_mesh_that_ends_a_worker_leaves_the_next_one_as_it_would_be_alone(tmp_path, monkeypatch):
+    """The fake V-HACD writes two tetrahedra, and crashes for the first mesh."""
+    marks = str(tmp_path / "marks")
+    with_vhacd(monkeypatch, tmp_path / "fake",
+               f"open({marks!r}, 'a').write('.'); os.path.getsize({marks!r}) < 2 and os.abort(); "
+               "open(a[1], 'w').write(''.join(f'o {n}\\nv {n} 0 0\\nv {n} 1 0\\nv {n} 0 1\\n"
+               "v {n + 1} 0 0\\n' for n in range(2)))")
+    with decomposition.Divider(cache_dir=str(tmp_path / "cache")) as divider:
+        first, second = divider.divide(angle()), divider.divide(angle())
+    assert [one.code for one in notices(first)] == ["mesh-not-decomposed"]
+    assert len(second.parts) == 2 and notices(second) == []
+
+
+def test_a_thin_plate_gets_no_finer_voxels_than_a_block(tmp_path, monkeypatch):
+    """V-HACD lays 64 voxels along the shortest edge of its vertices' bounding box."""
+    seen = str(tmp_path / "seen.obj")
+    with_vhacd(monkeypatch, tmp_path / "fake",
+               f"import shutil; shutil.copy(a[0], {seen!r}); os.abort()")
+    plate = MeshData(angle().vertices * (1.0, 1.0, 0.01), angle().triangles)
+    decomposition.divided(plate, cache_dir=str(tmp_path / "cache"))
+    lines = Path(seen).read_text().splitlines()
+    points = np.array([line.split()[1:] for line in lines if line.startswith("v ")], float)
+    used = {int(n) for line in lines if line.startswith("f ") for n in line.split()[1:]}
+    assert len(points) == 14 and used == set(range(1, 13))
+    assert np.ptp(points[:12], axis=0) == pytest.approx([2 / 3, 1.0, 0.01 / 3], abs=1e-6)
+    assert np.ptp(points, axis=0) == pytest.approx([2 / 3, 1.0, 0.5], abs=1e-6)
+
+
+def test_a_mesh_of_one_part_becomes_its_hull_and_not_that_of_its_voxels(tmp_path, monkeypatch):
+    with_vhacd(monkeypatch, tmp_path / "fake",
+               "open(a[1], 'w').write('o a\\nv 0 0 0\\nv 0.1 0 0\\nv 0 0.1 0\\nv 0 0 0.1\\n')")
+    parts, codes, _ = divided(angle(), tmp_path / "cache")
+    assert len(parts) == 1 and volume(parts) == pytest.approx(5.0) and codes == []
+
+
 def test_several_meshes_are_divided_two_at_a_time_with_a_word_for_each(tmp_path, monkeypatch):
     marks = tmp_path / "marks"
     marks.mkdir()
@@ -384,7 +432,7 @@ def test_several_meshes_are_divided_two_at_a_time_with_a_word_for_each(tmp_path,
                f"[time.sleep(0.01) for _ in iter(lambda: len(os.listdir({str(marks)!r})) > 1, 1)];"
                " os.abort()")
     monkeypatch.setattr(batch, "WORD_EVERY_S", 0.2)
-    monkeypatch.setattr(os, "cpu_count", lambda: 2)
+    monkeypatch.setattr(os, "sched_getaffinity", lambda _: {0, 1})
     second = MeshData(angle().vertices * 2.0, angle().triangles)
     told = []
     meshes = [("a::l", angle()), ("b::l", mesh_of(box())), ("c::l", second), ("d::l", angle())]

@@ -1,4 +1,4 @@
-"""Decomposes the meshes of a world into convex parts, a few at a time, and reports progress."""
+"""Decomposes the meshes of a world into convex parts, one a processor, and reports progress."""
 from __future__ import annotations
 
 import functools
@@ -10,10 +10,10 @@ from typing import Callable, Dict, List, Optional, Sequence, Tuple
 
 from ...description.shapes import MeshData
 from .cache import Decomposition, content_key
-from .decomposition import divided, kept_in, ready_parts, undivided
+from .decomposition import Divider, kept_in, ready_parts, undivided
 
-AT_A_TIME = 2
-WORD_EVERY_S = 5.0
+_MOST_WORKERS = 4  # each takes about 80 MB
+WORD_EVERY_S = 2.0
 """Longest time between two progress messages, s."""
 
 Progress = Callable[[str], None]
@@ -72,28 +72,33 @@ class _Work:
         several = f"{count} meshes are" if count > 1 else "a mesh is"
         self._progress(f"{several} divided into convex parts before the world goes on; the parts "
                        f"are kept in {kept_in(self._cache_dir)}")
-        for n in range(count):
-            self._waiting.put(n)
-        for _ in range(min(count, AT_A_TIME, os.cpu_count() or 1)):
-            threading.Thread(target=self._divide, name="convex parts", daemon=True).start()
+        for n in sorted(range(count), key=lambda n: -len(self._meshes[n][1].triangles)):
+            self._waiting.put(n)  # the longest work first, so that all workers end together
+        threads = [threading.Thread(target=self._divide, name="convex parts", daemon=True)
+                   for _ in range(min(count, _MOST_WORKERS, len(os.sched_getaffinity(0))))]
+        for thread in threads:
+            thread.start()
         while len(self._made) < count:
             self._hear()
+        for thread in threads:  # until their workers have ended
+            thread.join()
         self._progress(f"convex parts are ready after {self._seconds(self._began)}")
         return [self._made[n] for n in range(count)]
 
     def _divide(self) -> None:
-        while True:
-            try:
-                n = self._waiting.get_nowait()
-            except queue.Empty:
-                return
-            self._told.put((n, None))
-            made = undivided(self._meshes[n][1])
-            try:
-                made = divided(self._meshes[n][1], cache_dir=self._cache_dir, gently=self._gently,
-                               progress=functools.partial(self._percent.__setitem__, n))
-            finally:  # any exception must reach the waiting thread
-                self._told.put((n, made))
+        with Divider(cache_dir=self._cache_dir, gently=self._gently) as divider:
+            while True:
+                try:
+                    n = self._waiting.get_nowait()
+                except queue.Empty:
+                    return
+                self._told.put((n, None))
+                made = undivided(self._meshes[n][1])
+                try:
+                    made = divider.divide(self._meshes[n][1],
+                                          functools.partial(self._percent.__setitem__, n))
+                finally:  # any exception must reach the waiting thread
+                    self._told.put((n, made))
 
     def _hear(self) -> None:
         try:
