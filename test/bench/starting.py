@@ -1,9 +1,15 @@
-"""How long starts take: of the node to its first message, of short commands to the next prompt."""
+"""How long starts take: of the node to its first message, of short commands to the next prompt.
+
+A first start of a world with concave meshes that move is one without cached convex parts.
+"""
 from __future__ import annotations
 
+import math
+import os
 import statistics
 import subprocess
 import sys
+import tempfile
 import time
 from typing import List, Tuple
 
@@ -11,6 +17,7 @@ from clock import Clock
 from server import Server, end, wait
 
 PAIRS = 7
+WHEELS = 8   # cog wheels of 5, 6, ... teeth, none of them equal
 OBJECT = "MY_OBJECT"
 Pairs = List[Tuple[float, float]]
 
@@ -59,6 +66,58 @@ def prompts(world: str) -> Pairs:
                           _seconds([sys.executable, "-c", "import rospy"])))
             delete(OBJECT)
     return found
+
+
+def divisions() -> Tuple[Pairs, float]:
+    """First starts beside starts with known parts, s, and processor seconds of a mesh's division.
+
+    The world has `WHEELS` concave meshes that move.
+    """
+    found, processor = [], []
+    for _ in range(3):
+        with tempfile.TemporaryDirectory() as folder:
+            world = _cog_wheels(folder)
+            starts = []
+            for _ in range(2):
+                clock = Clock()
+                with Server(world, environment={"XDG_CACHE_HOME": folder}) as server:
+                    wait(lambda c=clock: c.first, 300, "/clock")
+                    starts.append(clock.first - server.started)
+                    processor.append(_of_ended_children(server.process.pid))
+                clock.close()
+            found.append((starts[0], starts[1]))
+    return found, (statistics.median(processor[::2]) - statistics.median(processor[1::2])) / WHEELS
+
+
+def _of_ended_children(pid: int) -> float:
+    """Processor seconds of the children of a process that have ended."""
+    with open(f"/proc/{pid}/stat", encoding="ascii", errors="replace") as stream:
+        fields = stream.read().rpartition(")")[2].split()
+    return (int(fields[13]) + int(fields[14])) / os.sysconf("SC_CLK_TCK")
+
+
+def _cog_wheels(folder: str) -> str:
+    """A world of cog wheels, whose meshes are written to the folder."""
+    models = ""
+    for n in range(WHEELS):
+        count = 4 * (n + 5)  # corners of the outline: two far, two near, and so on
+        outline = [((0.5, 0.5, 0.35, 0.35)[k % 4], 2.0 * math.pi * k / count)
+                   for k in range(count)]
+        rows = [f"v 0 0 {z}" for z in (0, 0.2)]
+        rows += [f"v {r * math.cos(turn)} {r * math.sin(turn)} {z}"
+                 for r, turn in outline for z in (0, 0.2)]
+        for k in range(count):
+            a, b = 2 * k + 3, 2 * ((k + 1) % count) + 3
+            rows += [f"f 1 {b} {a}", f"f 2 {a + 1} {b + 1}", f"f {a} {b} {b + 1}",
+                     f"f {a} {b + 1} {a + 1}"]
+        path = os.path.join(folder, f"wheel_{n}.obj")
+        with open(path, "w", encoding="ascii") as stream:
+            stream.write("\n".join(rows) + "\n")
+        models += f"""<model name='wheel_{n}'><pose>{2 * n} 0 0.01 0 0 0</pose><link name='link'>
+          <collision name='c'><geometry><mesh><uri>file://{path}</uri></mesh></geometry>
+          </collision></link></model>"""
+    return f"""<?xml version='1.0'?><sdf version='1.6'><world name='default'>
+      <include><uri>model://ground_plane</uri></include>{models}</world></sdf>"""
 
 
 def _seconds(command: List[str]) -> float:
