@@ -134,6 +134,16 @@ class KinematicBackend:
         """Whether something may have changed; the next `read` reports it again."""
         return self._dirty
 
+    def read_rows(self, link_rows: Tuple[int, ...]) -> bytes:
+        """The states of some links; zeros where there is none."""
+        links = self.tables()[0]
+        return b"".join(bytes(links[row * _LINK.size:(row + 1) * _LINK.size]).ljust(_LINK.size, b"\0")
+                        for row in link_rows)
+
+    def read_axes(self, joint_rows: Tuple[int, ...]) -> List[float]:
+        """Position and rate of some joint axes; zeros where there is none."""
+        return [value for row in joint_rows for value in self.joints.get(row, (0.0, 0.0))]
+
     def tables(self) -> Tuple[memoryview, memoryview]:
         """The used rows."""
         links = bytearray(_LINK.size * (max(self.links, default=-1) + 1))

@@ -4,7 +4,8 @@ from __future__ import annotations
 import heapq
 from typing import Any, Callable, List, Optional, Tuple
 
-from ..simulator.appointments import Moment, Rate
+from ..engine.rates import Rate
+from ..simulator.sync_points import Moment
 from ..simulator.wrenches import first_step
 
 

@@ -72,10 +72,13 @@ class SensingRequests:
     # -- rays ------------------------------------------------------------------------------------
 
     def scan(self, mount: Mount, fan: RayFan, visuals: bool,
-             call: Callable[[RayReturns, int], None], ns: int) -> None:
-        """Cast rays, after the answer to those before has been handed over."""
+             call: Callable[[RayReturns, int], None], ns: int, rows: bytes) -> None:
+        """Cast rays, after the answer to those before has been handed over.
+
+        `rows`: of all links, as of `ns`.
+        """
         self._end_scan(self._scan)
-        scan = self._scan = _Scan(self._scene.cast(mount, fan, visuals, ns), call, ns)
+        scan = self._scan = _Scan(self._scene.cast(mount, fan, visuals, ns, rows), call, ns)
         scan.future.add_done_callback(lambda _: self._hear(lambda: self._end_scan(scan)))
 
     def _hear(self, call: Callable[[], None]) -> None:
@@ -98,7 +101,7 @@ class SensingRequests:
     # -- pictures --------------------------------------------------------------------------------
 
     def photograph(self, views: Sequence[Tuple[Mount, View]],
-                   call: Callable[[List[Pictures], int], None], ns: int, wait: bool,
+                   call: Callable[[List[Pictures], int], None], ns: int, rows: bytes, wait: bool,
                    again: Callable[[], object], stream: str = "", queue: bool = False) -> bool:
         """Ask for pictures, unless those before of the same stream are late.
 
@@ -110,6 +113,7 @@ class SensingRequests:
             views: where each camera is, and what it is to give.
             call: gets the pictures, and `ns`.
             ns: sim time, now.
+            rows: of all links, as of `ns`.
             wait: for those before, however late they are.
             again: has this asked anew, as of then.
             stream: its name.
@@ -128,7 +132,7 @@ class SensingRequests:
                 self._leave_out()
             return False
         futures = self._scene.render(
-            [(mount, view.camera, view.outputs) for mount, view in views], ns)
+            [(mount, view.camera, view.outputs) for mount, view in views], ns, rows)
         first = not (wait or stream in self._warm)
         shot = self._shots[stream] = _Shot(futures, _ignore if first else call, ns, stream, first)
 

@@ -10,18 +10,20 @@ from ..description.model import Mimic, Model
 from ..description.sensor import Sensor
 from ..description.surroundings import SphericalCoordinates
 from ..description.transmission import Transmission
-from ..engine.commands import JointWrench
-from ..engine.drive_commands import PlanarVelocity, WheelSlip
+from ..engine.commands import Command, JointWrench, ReadContacts, ReadJointWrenches
+from ..engine.drive_commands import PlanarVelocity, ReadEfforts, WheelSlip
+from ..engine.rates import Rate
 from ..errors import CommandError, InputError, Issue, Severity
 from ..geometry import IDENTITY, STILL, Pose, Twist, Vec3, compose
 from ..sensing.api import Mount, Pictures, RayFan, RayReturns
 from ..simulator.entity import Entity
 from ..simulator.scene_sensing import SceneSensing
 from ..simulator.simulator import Simulator
-from .context import PluginError, View
+from .context import PluginError, Publication, View
 from .found_plugins import Found
 from .graph import Graph, TopicUse
 from .model_rows import ModelRows
+from .observations import Observation, Observations, Reads, StepView
 from .parameters import Parameters
 from .schedule import Appointment, Schedule
 from .sensing_requests import SensingRequests
@@ -31,7 +33,13 @@ from .step_readings import StepReadings
 
 
 class Shared(NamedTuple):
-    """What the contexts of all plugins share; `report` tells the user."""
+    """What the contexts of all plugins share.
+
+    Attributes:
+        report: tells the user.
+        view: where links and joints are.
+        subscribers_changed: called, in any thread, when subscribers of a topic come or go.
+    """
 
     simulator: Simulator
     graph: Graph
@@ -39,6 +47,9 @@ class Shared(NamedTuple):
     scene: SceneSensing
     schedule: Schedule
     readings: StepReadings
+    observations: Observations
+    view: StepView
+    subscribers_changed: Callable[[], None]
 
 
 class SimulatedContext:
@@ -55,6 +66,7 @@ class SimulatedContext:
                  wake: Callable[[], None]) -> None:
         self.simulator, self._report, self._schedule, self._readings = (
             shared.simulator, shared.report, shared.schedule, shared.readings)
+        self.observations, self._view = shared.observations, shared.view
         self.model = entity.model.name
         self.sensor, self.sensor_link, self.sensor_joint = found.sensor, found.link, found.joint
         self.spec, self._scope = found.spec, found.scope
@@ -70,7 +82,8 @@ class SimulatedContext:
         self._attached: List[str] = []
         self._held = False
         self.sensing = SensingRequests(shared.scene, self.inbox, wake, self.warn)
-        self.graph = PluginGraph(shared.graph, self.inbox, wake, lambda: self.sensing.unsent)
+        self.graph = PluginGraph(shared.graph, self.inbox, wake, lambda: self.sensing.unsent,
+                                 shared.subscribers_changed)
 
     # -- for the host ----------------------------------------------------------------------------
 
@@ -86,11 +99,13 @@ class SimulatedContext:
             joint.moved_to(self._rows.axis(joint.spec_name))
         if self._level is not None:
             self.drive_level(self._level.x, self._level.y, self._level.yaw_rate)
+        self.observations.changed = True
 
     def close(self) -> None:
         """Take everything off the graph, and call the plugin no more."""
         self.graph.close()
         self._schedule.end_all(self)
+        self.observations.end_all(self)
 
     def stop(self) -> None:
         """Switch off what the plugin drives, in a world that still has the model."""
@@ -138,6 +153,36 @@ class SimulatedContext:
         """Be called at a rate."""
         return self._schedule.every(self, hertz, call)
 
+    def observe(self, hertz: float, call: Callable[[], None],
+                topics: Sequence[Publication] = (), *, lead: float = 0.0,
+                resume: Optional[Callable[[], None]] = None, transforms: bool = False,
+                remembers: bool = False,
+                contacts: bool = False, efforts: Sequence[str] = (),
+                wrenches: Sequence[str] = (), world: bool = False) -> Observation:
+        """Follow the world at a rate."""
+        if transforms:
+            self.graph.offer_transforms()
+        return self.observations.add(
+            self, Rate(hertz, lead), call, resume, topics, transforms, remembers,
+            Reads(contacts, tuple(efforts), tuple(wrenches), world))
+
+    def observed(self, reads: Reads) -> Tuple[Tuple[int, ...], Tuple[int, ...],
+                                              Tuple[Command, ...]]:
+        """Rows of links and joint axes that observations record, and their queries."""
+        links = {link.row for link in self._links.values()}
+        if self.entity.link_names:
+            links.add(self.entity.canonical_row)
+        queries: List[Command] = []
+        if reads.contacts:
+            queries.append(ReadContacts())
+        if reads.efforts:
+            queries.append(ReadEfforts(tuple(self.joint(name).row for name in reads.efforts)))
+        if reads.wrenches:
+            queries.append(ReadJointWrenches(tuple(
+                (self.entity.model_id, self._rows.joint(name).name) for name in reads.wrenches)))
+        return (tuple(sorted(links)), tuple(sorted(joint.row for joint in self._joints.values())),
+                tuple(queries))
+
     def once(self, ns: int, call: Callable[[], None]) -> Appointment:
         """Be called once."""
         return self._schedule.once(self, ns, call)
@@ -149,14 +194,14 @@ class SimulatedContext:
         """World pose of the model frame."""
         if not self.entity.link_names:
             return self.entity.pose
-        pose = self.simulator.states.link_at(self.entity.canonical_row)[0]
+        pose = self._view.link_at(self.entity.canonical_row)[0]
         offset = self.entity.link_from_model
         return pose if offset == IDENTITY else compose(pose, offset)
 
     @property
     def twist(self) -> Twist:
         """Twist of the canonical link."""
-        return self.simulator.states.link_at(self.entity.canonical_row)[1]
+        return self._view.link_at(self.entity.canonical_row)[1]
 
     @property
     def gravity(self) -> Vec3:
@@ -188,7 +233,7 @@ class SimulatedContext:
         if not name and self.entity.link_names:
             name = self.entity.link_names[self.entity.canonical]
         if name not in self._links:
-            link = SimulatedLink(self.simulator.states, name)
+            link = SimulatedLink(self._view, name)
             self._find(link)
             self._links[name] = link
         return self._links[name]
@@ -201,7 +246,7 @@ class SimulatedContext:
         """A joint of the model that moves."""
         if name not in self._joints:
             spec = self._rows.joint(name)
-            joint = SimulatedJoint(self.simulator.states, self.orders, spec, name)
+            joint = SimulatedJoint(self._view, self.orders, spec, name)
             joint.row = self._rows.axis(spec.name)
             self._joints[name] = joint
         return self._joints[name]
@@ -209,7 +254,18 @@ class SimulatedContext:
     def joint_wrench(self, name: str) -> Optional[JointWrench]:
         """What a joint transmitted in the last step."""
         spec = self._rows.joint(name)
-        return self.simulator.joints.wrenches([f"{self.model}::{spec.name}"])[0]
+        if not self._view.is_record:
+            return self.simulator.joints.wrenches([f"{self.model}::{spec.name}"])[0]
+        wrench: Optional[JointWrench] = self._recorded(
+            ReadJointWrenches, (self.entity.model_id, spec.name), lambda query: query.joints)
+        return wrench
+
+    def _recorded(self, kind: type, key: Any, keys: Callable[[Any], Sequence[Any]]) -> Any:
+        """One of the values that a query of a record was answered with."""
+        query, values = self._view.answer(kind)
+        if key not in keys(query):
+            raise PluginError(f"an observation must name what it asks for ({key})")
+        return values[keys(query).index(key)]
 
     def drive_level(self, x: float, y: float, yaw_rate: float) -> None:
         """Move level from now on."""
@@ -281,7 +337,7 @@ class SimulatedContext:
         found = self.simulator.models.link_place(scoped)
         if found is None:
             raise PluginError(f"there is no link '{scoped}'")
-        link = SimulatedLink(self.simulator.states, scoped)
+        link = SimulatedLink(self._view, scoped)
         link.row, link.inertial = found
         return link
 
@@ -306,7 +362,10 @@ class SimulatedContext:
 
     def efforts(self, joints: Sequence[str]) -> List[float]:
         """What was spent on joints in the last step."""
-        return self._readings.efforts([self.joint(name).row for name in joints])
+        rows = [self.joint(name).row for name in joints]
+        if not self._view.is_record:
+            return self._readings.efforts(rows)
+        return [self._recorded(ReadEfforts, row, lambda query: query.rows) for row in rows]
 
     def set_joint_positions(self, positions: Dict[str, float]) -> None:
         """Move joints at once."""
@@ -321,7 +380,7 @@ class SimulatedContext:
             assert self.sensor is not None
             place = (self.sensor_link, self.sensor.pose)
         self.sensing.scan(Mount(self._rows.link(place[0]), place[1]), fan, visuals, call,
-                          self.now_ns)
+                          self.now_ns, self._view.world_rows())
 
     def photograph(self, views: Sequence[View], call: Callable[[List[Pictures], int], None],
                    stream: str = "", queue: bool = False) -> bool:
@@ -332,8 +391,8 @@ class SimulatedContext:
             self.photograph(views, call, stream, queue)
 
         # Anew at a step: a message says which one its picture shows.
-        return self.sensing.photograph(mounted, call, self.now_ns, self.by_hand,
-                                       lambda: self.once(0, again), stream, queue)
+        return self.sensing.photograph(mounted, call, self.now_ns, self._view.world_rows(),
+                                       self.by_hand, lambda: self.once(0, again), stream, queue)
 
     def sensors(self) -> List[Tuple[str, Sensor]]:
         """The sensors of the model's links."""
@@ -345,7 +404,9 @@ class SimulatedContext:
 
     def contacts(self) -> List[Any]:
         """The contacts of the last step."""
-        return self._readings.contacts()
+        if not self._view.is_record:
+            return self._readings.contacts()
+        return self.simulator.states.named_contacts(self._view.answer(ReadContacts)[1])
 
     # -- topics, services, parameters --------------------------------------------------------------
 
@@ -395,7 +456,7 @@ class SimulatedContext:
 
     def transform(self, parent: str, child: str, pose: Pose) -> None:
         """Broadcast to tf."""
-        self.graph.transform(parent, child, pose)
+        self.graph.transform(parent, child, pose, self.now_ns)
 
     # -- log -------------------------------------------------------------------------------------
 

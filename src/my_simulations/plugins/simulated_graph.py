@@ -75,14 +75,15 @@ class PluginGraph:
         graph: ROS.
         inbox: as above; `wake` has the host look at it.
         unsent: gives the list that a message which is being made leaves a mark in.
+        changed: called, in any thread, when subscribers of a topic come or go.
     """
 
     def __init__(self, graph: Graph, inbox: Deque[Callable[[], None]], wake: Callable[[], None],
-                 unsent: Callable[[], Deque[None]]) -> None:
-        self._graph, self._wake = graph, wake
+                 unsent: Callable[[], Deque[None]], changed: Callable[[], None]) -> None:
+        self._graph, self._wake, self._changed = graph, wake, changed
         self.inbox, self.unsent = inbox, unsent
         self.outbox: List[Tuple[Topic, Any]] = []
-        self.transforms: List[TransformOf] = []
+        self.transforms: List[Tuple[int, TransformOf]] = []
         self._opened: List[Closing] = []
         self._uses: Dict[int, Tuple[str, str, bool]] = {}
         self._namespace = ""
@@ -146,7 +147,8 @@ class PluginGraph:
         if not name:
             return Offer(self, _Nowhere())
         return Offer(self, self._open(
-            lambda full: self._graph.publish(full, kind, queue, latch), name, kind, False))
+            lambda full: self._graph.publish(full, kind, queue, latch, self._changed), name, kind,
+            False))
 
     def subscribe(self, name: str, kind: str, call: Callable[[Any], None], queue: int) -> OpenEnd:
         """Hear a topic."""
@@ -207,6 +209,10 @@ class PluginGraph:
         """A parameter of the namespace or above."""
         return self._graph.search_parameter(self._namespace, name, default)
 
-    def transform(self, parent: str, child: str, pose: Pose) -> None:
-        """Broadcast to tf."""
-        self.transforms.append((parent, child, pose))
+    def offer_transforms(self) -> None:
+        """Offer tf."""
+        self._graph.offer_transforms(self._changed)
+
+    def transform(self, parent: str, child: str, pose: Pose, ns: int) -> None:
+        """Broadcast to tf, as of a sim time."""
+        self.transforms.append((ns, (parent, child, pose)))

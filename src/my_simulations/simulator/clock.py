@@ -91,6 +91,7 @@ class SimClock:
 
         It returns early when `end_advance` or another world ends it.
         """
+        self._session.before_advance()
         return self._session.call(Advance(steps)).step
 
     def end_advance(self) -> int:

@@ -8,7 +8,7 @@ import pytest
 from my_simulations.engine.ring import Clock
 from my_simulations.plugins.schedule import Schedule
 from my_simulations.plugins.step_readings import StepReadings
-from my_simulations.simulator.appointments import Moment
+from my_simulations.simulator.sync_points import Moment
 
 
 class Engine:

@@ -8,7 +8,7 @@ margin, so that the question is repeated only after the mover has gone that far.
 from __future__ import annotations
 
 import struct
-from typing import Callable, Dict, List, Sequence, Set, Tuple
+from typing import Callable, Dict, List, Optional, Sequence, Set, Tuple
 
 import numpy as np
 import pybullet
@@ -326,6 +326,18 @@ class StateReadout:
             self._answer = (np.array(rows), np.array([each.position for each in offsets]),
                             np.array([each.orientation for each in offsets]))
         return self._answer
+
+    def may_have_moved(self, body: Body) -> bool:
+        """Whether a body may be elsewhere than its rows say."""
+        return body.uid in self._awake or body.uid in self._trees
+
+    def offset(self, row: int) -> Optional[Pose]:
+        """The link frame of a row in its centre of mass; None if they are the same."""
+        return self._offsets.get(row)
+
+    def row(self, row: int) -> bytes:
+        """A link row as it was read last, as raw doubles."""
+        return bytes(self._link_bytes[row * _ROW_BYTES:(row + 1) * _ROW_BYTES])
 
     def tables(self) -> Tuple[memoryview, memoryview]:
         """The used rows as raw bytes, for the ring."""
