@@ -139,7 +139,7 @@ LARGE_TOPICS: Kinds = [
     ("drive/odom", "nav_msgs", "Odometry"), ("imu/data", "sensor_msgs", "Imu"),
     ("navsat/fix", "sensor_msgs", "NavSatFix"),
     ("navsat/vel", "geometry_msgs", "Vector3Stamped"),
-    ("joint_states", "sensor_msgs", "JointState"), ("/tf", "tf2_msgs", "TFMessage")]
+    ("joint_states", "sensor_msgs", "JointState")]
 
 LARGE_CONTROLLERS = {
     "joints": {"type": "joint_state_controller/JointStateController", "publish_rate": 50},

@@ -137,7 +137,8 @@ class KinematicBackend:
     def read_rows(self, link_rows: Tuple[int, ...]) -> bytes:
         """The states of some links; zeros where there is none."""
         links = self.tables()[0]
-        return b"".join(bytes(links[row * _LINK.size:(row + 1) * _LINK.size]).ljust(_LINK.size, b"\0")
+        size = _LINK.size
+        return b"".join(bytes(links[row * size:(row + 1) * size]).ljust(size, b"\0")
                         for row in link_rows)
 
     def read_axes(self, joint_rows: Tuple[int, ...]) -> List[float]:

@@ -3,7 +3,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from typing import Dict, List, Optional, Sequence, Set, Tuple
+from typing import Dict, List, Optional, Sequence, Tuple
 
 from ..description.model import Joint
 from ..engine.commands import Command, JointWrench, ReadJointWrenches, SetAxes, SetJoints
