@@ -20,7 +20,7 @@ from mobile_robots import (
 from server import Server, processor, wait
 
 Row = Tuple[str, str, str, bool]
-TURNS, SETTLE_S, MEASURE_S = 3, 1.0, 4.0
+TURNS, SETTLE_S, MEASURE_S = 5, 1.0, 2.5
 MOST_IDLE, MOST_SUBSCRIBED = 1.2, 2.0   # times the processor time of the robot without plugins
 BUSY = 15
 
