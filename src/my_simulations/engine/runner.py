@@ -221,6 +221,7 @@ class Runner:
             if error:
                 break
             self._applied = number
+        self._limit = self._sync.limit()   # some commands change it
         sequence = self._write(force=True)
         answers[:0] = [(number, self._step, "") for number in self._ended]
         self._ended.clear()
@@ -311,7 +312,6 @@ class Runner:
     def _change_clock(self) -> None:
         """The clock is another: the host must give a new budget before the next step."""
         self._clock_sets += 1
-        self._limit = self._step
         self._sync.change_settings(self._step)
         self._sync.records.set_clock(self._step, self._clock)
 
@@ -333,14 +333,33 @@ class Runner:
             now = time.perf_counter()
         if self._step >= self._limit:
             return
-        self._sync.go_on()
-        self._backend.step(self._step, 1)
-        self._step += 1
-        self._step_cost += 0.1 * (time.perf_counter() - now - self._step_cost)
-        self._words[STATUS] = STATUS_RUNNING
-        self._due = max(self._due + 1.0 / self._settings.rate, now - _MAX_DEBT_S)
+        made = self._make_steps(self._late_steps(now))
+        if not made:
+            return   # a record waits for room
+        self._step_cost += 0.1 * ((time.perf_counter() - now) / made - self._step_cost)
+        self._due = max(self._due + made / self._settings.rate, now - _MAX_DEBT_S)
         late = self._due < time.perf_counter()
         self._after_steps(_SHARE_LATE if late else _SHARE_ON_TIME)
+
+    def _late_steps(self, now: float) -> int:
+        """How many steps are due; a row of them costs much less than each by itself."""
+        late = int((now - self._due) * self._settings.rate)
+        return max(1, min(1 + late, int(_BURST_S / max(self._step_cost, 1e-6)),
+                          self._horizon - self._step, self._limit - self._step))
+
+    def _make_steps(self, count: int) -> int:
+        """Make steps and write the records that are due; returns how many there was room for."""
+        self._sync.go_on()
+        self._words[STATUS] = STATUS_RUNNING
+        left, records = count, self._sync.records
+        while left > 0 and self._step < records.next_step:
+            row = min(left, records.next_step - self._step)
+            self._backend.step(self._step, row)
+            self._step += row
+            left -= row
+            if records.next_step <= self._step:
+                self._sync.record(self._step, self._clock_sets, self._clock)
+        return count - left
 
     def _linger(self) -> None:
         """While steps are heavy, serve a row of commands without a step between each two.
@@ -367,8 +386,7 @@ class Runner:
         self._patient_at = time.perf_counter()
 
     def _free_burst(self) -> None:
-        count = min(self._burst, min(self._horizon, self._limit, self._sync.records.next_step)
-                    - self._step)
+        count = min(self._burst, min(self._horizon, self._limit) - self._step)
         if count <= 0:
             return
         self._burst_of(count)
@@ -378,8 +396,7 @@ class Runner:
         if self._advance is None:
             return
         number, last = self._advance
-        count = min(self._burst, min(last, self._limit, self._sync.records.next_step)
-                    - self._step)
+        count = min(self._burst, min(last, self._limit) - self._step)
         if count > 0:
             self._burst_of(count)
         # The host acts at the last step, and that step is recorded, before the answer.
@@ -395,12 +412,9 @@ class Runner:
 
     def _burst_of(self, count: int) -> None:
         started = time.perf_counter()
-        self._sync.go_on()
-        self._backend.step(self._step, count)
-        self._step += count
-        self._words[STATUS] = STATUS_RUNNING
+        made = self._make_steps(count)
         took = time.perf_counter() - started
-        if count == self._burst:
+        if made == self._burst:
             fit = int(count * _BURST_S / max(took, 1e-9))
             self._burst = max(1, min(fit, self._burst * 2, 1000))
 
