@@ -125,7 +125,7 @@ class Odometer:
         `yaw_variance`: of the yaw and of its rate in this message, rad^2 and rad^2/s^2; None for
         those of the diagonals.
         """
-        if self._topic is None:
+        if self._topic is None or not self._topic.wanted:
             return
         message = stamped(self._context, "nav_msgs/Odometry")
         message.header.frame_id, message.child_frame_id = self.frame, self.base

@@ -73,6 +73,8 @@ class WheelStates:
 
     def send(self) -> None:
         """As of now."""
+        if not self._topic.wanted:
+            return
         message = stamped(self._context, "sensor_msgs/JointState", self._frame)
         message.name = [joint.name for joint in self._joints]
         message.position = [joint.position for joint in self._joints]
