@@ -55,6 +55,8 @@ class RecordRule:
         all_links: the states of all links of the world, too.
         queries: commands that only read, such as `ReadContacts`; their reply values are recorded.
         urgent: the reader is notified soon, and else when many records have come.
+        single: one step is recorded, and the next one when the rule is set with another number
+            here; 0 for all steps.
     """
 
     number: int
@@ -64,6 +66,7 @@ class RecordRule:
     all_links: bool = False
     queries: Tuple[Command, ...] = ()
     urgent: bool = True
+    single: int = 0
 
 
 @dataclass(frozen=True)
@@ -112,9 +115,9 @@ class RecordWriter:
 
     def set_rules(self, rules: Tuple[RecordRule, ...], step: int, clock: Clock) -> None:
         """Record by these rules after a step; those that are known already are due as before."""
-        due = {(rule.number, rule.rate): when for when, rule in self._rules}
-        self._rules = [(due.get((rule.number, rule.rate)) or rule.rate.after(step, clock), rule)
-                       for rule in rules]
+        due = {(rule.number, rule.rate, rule.single): when for when, rule in self._rules}
+        self._rules = [(due.get((rule.number, rule.rate, rule.single))
+                        or rule.rate.after(step, clock), rule) for rule in rules]
         self._find_next()
 
     def set_clock(self, step: int, clock: Clock) -> None:
@@ -179,8 +182,8 @@ class RecordWriter:
         self.is_urgent = waiting >= _MANY or self.is_urgent and waiting > 1 or any(
             rule.urgent for rule in due)
         self._end = place + size
-        self._rules = [(rule.rate.after(step, clock) if when <= step else when, rule)
-                       for when, rule in self._rules]
+        self._rules = [(when if when > step else NEVER if rule.single
+                        else rule.rate.after(step, clock), rule) for when, rule in self._rules]
         self._find_next()
         return True
 

@@ -71,6 +71,7 @@ class PluginHost:
         self._simulation_resets = simulator.resets.simulation_resets
         self._settled = threading.Condition()
         self._stop = threading.Event()
+        self._by_hand = simulator.clock.by_hand
         self._attached = False       # the engine keeps to the step budget
         self._delivering = False     # what has come is taken, and its effect not yet ordered
         self._settings: Optional[int] = None
@@ -124,6 +125,8 @@ class PluginHost:
 
     def _deliver_all(self) -> None:
         """Wait until all that has come is handed over, and its effect is ordered."""
+        if self._by_hand != self._simulator.clock.by_hand:
+            self._look_at_subscribers()
         with self._settled:
             self._settled.wait_for(lambda: not self.unheard or self._stop.is_set(), _SETTLE_S)
 
@@ -173,6 +176,9 @@ class PluginHost:
         while self._overdue:
             running, why = self._overdue.popleft()
             self._switch_off(running, f"{why}; its thread was left behind")
+        if self._by_hand != self._simulator.clock.by_hand:   # observations may depend on it
+            self._by_hand = not self._by_hand
+            self._observations.changed = True
         settings, moment = self._sync.settings, self._sync.now()
         self._records.hand_over(self._hand_over)
         if settings != self._settings:

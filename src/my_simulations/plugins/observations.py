@@ -65,6 +65,7 @@ class Observation:
         self.ended = False
         self._was_idle = False
         self.rule: Optional[RecordRule] = None
+        self._asked = 1   # of single steps
         self._links: Dict[int, int] = {}
         self._axes: Dict[int, int] = {}
 
@@ -80,6 +81,17 @@ class Observation:
         return self._transforms and transforms_wanted or any(
             topic.wanted for topic in self._topics)
 
+    @property
+    def is_single(self) -> bool:
+        """Whether it takes as many steps as it can: rays at every step hold no world."""
+        return self.reads.world and self._rate.hertz <= 0.0 and not self.owner.by_hand
+
+    def ask_again(self) -> None:
+        """Record another step, for one that takes as many as it can."""
+        if self.is_single:
+            self._asked += 1
+            self.owner.observations.changed = True
+
     def become(self, wanted: bool) -> None:
         """Note whether anybody listens; the rule is made anew."""
         if not wanted and not self._remembers:
@@ -88,7 +100,7 @@ class Observation:
             return
         links, axes, queries = self.owner.observed(self.reads)
         self.rule = RecordRule(self.number, self._rate, links, axes, self.reads.world, queries,
-                               urgent=wanted)
+                               wanted, self._asked if self.is_single else 0)
         self._links = {row: n for n, row in enumerate(links)}
         self._axes = {row: n for n, row in enumerate(axes)}
 
@@ -134,6 +146,12 @@ class Observations:
         for one in self._all.values():
             if one.owner is owner:
                 one.end()
+
+    def ask_again(self, owner: Any) -> None:
+        """The requests of a plugin are answered; see `Observation.ask_again`."""
+        for one in self._all.values():
+            if one.owner is owner:
+                one.ask_again()
 
     def find(self, number: int) -> Optional[Observation]:
         """The observation of a part of a record; None once it has ended."""

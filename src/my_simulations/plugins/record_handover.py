@@ -54,3 +54,5 @@ class RecordHandover:
             if observation is not None and not observation.ended:
                 self._view.show(record, part, observation)
                 call(observation)
+                if not observation.owner.sensing.is_busy:
+                    observation.ask_again()

@@ -45,11 +45,14 @@ class SensingRequests:
         inbox: of the plugin; functions that hand answers over are put there.
         wake: have somebody look into the inbox.
         warn: tells the user.
+        answered: called when a scan or pictures are there, or have failed.
     """
 
     def __init__(self, scene: SceneSensing, inbox: Deque[Callable[[], None]],
-                 wake: Callable[[], None], warn: Callable[[str], None]) -> None:
+                 wake: Callable[[], None], warn: Callable[[str], None],
+                 answered: Callable[[], None] = lambda: None) -> None:
         self._scene, self._inbox, self._wake, self._warn = scene, inbox, wake, warn
+        self._answered = answered
         self._scan: Optional[_Scan] = None
         self._shots: Dict[str, _Shot] = {}
         self._unsent: Dict[str, Deque[None]] = {}
@@ -63,6 +66,11 @@ class SensingRequests:
         """What is on its way belongs to a time that has been set back."""
         self._scan = None
         self._shots.clear()
+
+    @property
+    def is_busy(self) -> bool:
+        """Whether a scan or pictures are on their way."""
+        return self._scan is not None or bool(self._shots)
 
     @property
     def unsent(self) -> "Deque[None]":
@@ -89,6 +97,7 @@ class SensingRequests:
         if scan is None or scan is not self._scan:
             return
         self._scan = None
+        self._answered()
         if not scan.future.done():
             self._scene.send()
         try:
@@ -149,6 +158,7 @@ class SensingRequests:
         if shot is not self._shots.get(shot.stream) or not (timeout or shot.done):
             return False
         del self._shots[shot.stream]
+        self._answered()
         deadline = time.monotonic() + timeout
         try:
             found = [future.result(max(0.0, deadline - time.monotonic()))

@@ -81,7 +81,8 @@ class SimulatedContext:
         self.push_ids: Dict[str, int] = {}
         self._attached: List[str] = []
         self._held = False
-        self.sensing = SensingRequests(shared.scene, self.inbox, wake, self.warn)
+        self.sensing = SensingRequests(shared.scene, self.inbox, wake, self.warn,
+                                       lambda: self.observations.ask_again(self))
         self.graph = PluginGraph(shared.graph, self.inbox, wake, lambda: self.sensing.unsent,
                                  shared.subscribers_changed)
 
