@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 """Prints what robots cost. Run it in a shell that has sourced the workspace, on a quiet machine.
 
-usage: robots.py [ROW …]   rows: drive ten closed_loop small large large_steps many busy (default: all)
+usage: robots.py [ROW …]   rows: drive ten closed_loop small large large_steps many busy
+(default: all)
 
 The robots are lab robots with a laser of 360 rays at 10 Hz, a differential drive and joint states
 at 50 Hz; all their topics have a subscriber in this process. Shares are of one core, by processor

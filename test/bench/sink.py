@@ -1,9 +1,10 @@
 """Receives topics and does nothing with them: `sink.py TOPIC …`; prints a line once all have come.
 
-Each connection is a socket that is read into one buffer, so that a subscriber costs next to nothing.
+Each connection is a socket that is read into one buffer: a subscriber costs next to nothing.
 """
 from __future__ import annotations
 
+import os
 import select
 import socket
 import struct
@@ -11,8 +12,6 @@ import sys
 import time
 from typing import Dict, List, Tuple
 from xmlrpc.client import ServerProxy
-
-import os
 
 _WAIT_S = 60.0
 _LENGTH = struct.Struct("<I")

@@ -17,7 +17,7 @@ from mobile_robots import (
     large_robot,
     small_robot,
 )
-from server import Server, processor, wait
+from server import Server, processor
 
 Row = Tuple[str, str, str, bool]
 TURNS, SETTLE_S, MEASURE_S = 5, 1.0, 2.5

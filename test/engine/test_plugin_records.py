@@ -26,7 +26,8 @@ SENSORS = {
     "p3d": """<plugin><bodyName>base_footprint</bodyName><topicName>truth</topicName>
         <gaussianNoise>0.01</gaussianNoise><updateRate>30</updateRate></plugin>"""}
 TOPICS = ("felt", "hector", "hector/bias", "truth", "/odom", "/joint_states")
-SILENT = (*TOPICS, "/tf", "/imu", "/camera/camera_info", "/scan", "/camera/image_raw", "/camera/image_raw/compressed")
+SILENT = (*TOPICS, "/tf", "/imu", "/scan", "/camera/camera_info", "/camera/image_raw",
+          "/camera/image_raw/compressed")
 
 
 def library(name):

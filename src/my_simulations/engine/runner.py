@@ -257,9 +257,8 @@ class Runner:
             return None
         if isinstance(command, (EndAdvance, Clear)):
             self._end_advance()
-        if isinstance(command, (EndAdvance, Ping)):
-            return None
-        if self._sync.take(command, self._step, self._clock):
+        if (isinstance(command, (EndAdvance, Ping))
+                or self._sync.take(command, self._step, self._clock)):
             return None
         if isinstance(command, SetPhysics):
             self._configure(command.settings)

@@ -18,7 +18,7 @@ import pickle
 from dataclasses import dataclass
 from typing import Any, Counter, Dict, Iterator, List, Optional, Protocol, Tuple
 
-from .commands import Batch, Command, SetJoints
+from .commands import Command, SetJoints
 from .rates import Rate
 from .ring import (
     FIRST_RECORD,
@@ -132,9 +132,6 @@ class RecordWriter:
         """Count joints that a command puts somewhere."""
         if isinstance(command, SetJoints):
             self._puts.update(row for row, _, _ in command.joints)
-        elif isinstance(command, Batch):
-            for part in command.commands:
-                self.note_puts(part)
 
     def _place(self, size: int) -> Optional[int]:
         """Where a record of `size` words fits, in words from the first one."""

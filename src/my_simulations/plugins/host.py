@@ -11,7 +11,7 @@ import contextlib
 import threading
 import traceback
 from collections import deque
-from typing import Any, Callable, Deque, Dict, Iterable, List, Optional, Tuple
+from typing import Any, Callable, Deque, Dict, List, Optional, Tuple
 
 from ..errors import CommandError, Issue, Severity, warning
 from ..simulator.entity import Entity
@@ -21,10 +21,10 @@ from ..simulator.sync_points import Moment
 from .call_watch import PATIENCE, CallOverdue, CallWatch, Patience
 from .context import PluginError
 from .found_plugins import Found
-from .graph import Graph, Topic, TopicUse, TransformOf
-from .message_maker import Later, MessageMaker
+from .graph import Graph, TopicUse
 from .observations import Observation, Observations, StepView
 from .order_sender import send_orders
+from .outgoing import Outgoing
 from .record_handover import RecordHandover
 from .registry import PluginRegistry, UnknownPluginError, library_name
 from .running import ModelPlugins, Running
@@ -55,10 +55,10 @@ class PluginHost:
         self._sync, self._observations = simulator.sync_points, Observations()
         view = StepView(simulator.states, lambda: simulator.feed.states()[2])
         self._records = RecordHandover(self._sync, self._observations, view, self._schedule)
-        self._shared = Shared(simulator, graph, log, self._scene, self._schedule,
-                              StepReadings(simulator, self._schedule), self._observations, view,
-                              self._look_at_subscribers)
-        self._messages = MessageMaker()
+        readings = StepReadings(simulator, self._schedule, view)
+        self._shared = Shared(simulator, graph, log, self._scene, self._schedule, readings,
+                              self._observations, view, self._look_at_subscribers)
+        self._outgoing = Outgoing(graph)
         self._models = ModelPlugins(simulator, self._rebind)
         self._running: Dict[SimulatedContext, Running] = {}
         # Plugins that something has come for, and those whose orders and messages are to be taken.
@@ -153,7 +153,7 @@ class PluginHost:
         self._stop.set()
         self._watch.stop()
         self._scene.close()
-        self._messages.stop()
+        self._outgoing.stop()
         if self._attached:
             self._sync.detach()
             self._attached = False
@@ -262,17 +262,7 @@ class PluginHost:
 
     def _publish(self) -> None:
         touched, self._touched = self._touched, {}
-        transforms: Dict[int, List[TransformOf]] = {}
-        for context, running in touched.items():
-            graph = context.graph
-            if graph.outbox:
-                outbox, graph.outbox = graph.outbox, []
-                self._guarded(running, self._send, running, outbox)
-            for ns, transform in graph.transforms:
-                transforms.setdefault(ns, []).append(transform)
-            graph.transforms = []
-        for ns in sorted(transforms):
-            self._graph.send_transforms(transforms[ns], ns)
+        self._outgoing.send(touched, self._guarded, self._failing)
 
     def _ring(self, running: Running) -> None:
         """Have the thread look into a plugin's inbox."""
@@ -288,13 +278,6 @@ class PluginHost:
             running.context.inbox.append(again)
             self._ring(running)
         return fail
-
-    def _send(self, running: Running, messages: Iterable[Tuple[Topic, Any]]) -> None:
-        for topic, message in messages:
-            if isinstance(message, Later):
-                self._messages.put(topic, message, self._failing(running))
-            else:
-                topic.send(message)
 
     def _deliver(self, running: Running) -> None:
         inbox = running.context.inbox

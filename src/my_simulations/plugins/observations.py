@@ -9,13 +9,15 @@ from __future__ import annotations
 import struct
 from typing import Any, Callable, Dict, List, NamedTuple, Optional, Sequence, Tuple
 
-from ..engine.commands import Command
+from ..engine.commands import Command, ReadContacts, ReadJointWrenches
+from ..engine.drive_commands import ReadEfforts
 from ..engine.rates import Rate
 from ..engine.ring import LINK_WIDTH
 from ..engine.step_records import AXIS_WIDTH, Part, RecordRule, StepRecord
 from ..geometry import Pose, Twist
 from ..simulator.states import States
 from .context import PluginError, Publication
+from .model_rows import ModelRows
 
 _LINK = struct.Struct(f"={LINK_WIDTH}d")
 _AXIS = struct.Struct(f"={AXIS_WIDTH}d")
@@ -35,6 +37,20 @@ class Reads(NamedTuple):
     efforts: Tuple[str, ...] = ()
     wrenches: Tuple[str, ...] = ()
     world: bool = False
+
+
+def queries_of(reads: Reads, rows: ModelRows) -> Tuple[Command, ...]:
+    """The commands that read what links and joints do not tell. Raises PluginError."""
+    queries: List[Command] = []
+    if reads.contacts:
+        queries.append(ReadContacts())
+    if reads.efforts:
+        queries.append(ReadEfforts(tuple(
+            rows.axis(rows.joint(name).name) for name in reads.efforts)))
+    if reads.wrenches:
+        queries.append(ReadJointWrenches(tuple(
+            (rows.entity.model_id, rows.joint(name).name) for name in reads.wrenches)))
+    return tuple(queries)
 
 
 class Observation:

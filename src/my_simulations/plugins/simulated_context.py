@@ -10,10 +10,10 @@ from ..description.model import Mimic, Model
 from ..description.sensor import Sensor
 from ..description.surroundings import SphericalCoordinates
 from ..description.transmission import Transmission
-from ..engine.commands import Command, JointWrench, ReadContacts, ReadJointWrenches
-from ..engine.drive_commands import PlanarVelocity, ReadEfforts, WheelSlip
+from ..engine.commands import Command, JointWrench
+from ..engine.drive_commands import PlanarVelocity, WheelSlip
 from ..engine.rates import Rate
-from ..errors import CommandError, InputError, Issue, Severity
+from ..errors import CommandError, Issue, Severity
 from ..geometry import IDENTITY, STILL, Pose, Twist, Vec3, compose
 from ..sensing.api import Mount, Pictures, RayFan, RayReturns
 from ..simulator.entity import Entity
@@ -22,12 +22,12 @@ from ..simulator.simulator import Simulator
 from .context import PluginError, Publication, View
 from .found_plugins import Found
 from .graph import Graph, TopicUse
-from .model_rows import ModelRows
-from .observations import Observation, Observations, Reads, StepView
+from .model_rows import ModelRows, transmissions_of
+from .observations import Observation, Observations, Reads, StepView, queries_of
 from .parameters import Parameters
 from .schedule import Appointment, Schedule
 from .sensing_requests import SensingRequests
-from .simulated_graph import Offer, OpenEnd, PluginGraph
+from .simulated_graph import GraphUser, PluginGraph
 from .simulated_handles import Orders, SimulatedJoint, SimulatedLink
 from .step_readings import StepReadings
 
@@ -52,7 +52,7 @@ class Shared(NamedTuple):
     subscribers_changed: Callable[[], None]
 
 
-class SimulatedContext:
+class SimulatedContext(GraphUser):
     """One plugin's view of one model; see `context.Context`. For the thread of the host.
 
     Attributes:
@@ -173,16 +173,8 @@ class SimulatedContext:
         links = {link.row for link in self._links.values()}
         if self.entity.link_names:
             links.add(self.entity.canonical_row)
-        queries: List[Command] = []
-        if reads.contacts:
-            queries.append(ReadContacts())
-        if reads.efforts:
-            queries.append(ReadEfforts(tuple(self.joint(name).row for name in reads.efforts)))
-        if reads.wrenches:
-            queries.append(ReadJointWrenches(tuple(
-                (self.entity.model_id, self._rows.joint(name).name) for name in reads.wrenches)))
         return (tuple(sorted(links)), tuple(sorted(joint.row for joint in self._joints.values())),
-                tuple(queries))
+                queries_of(reads, self._rows))
 
     def once(self, ns: int, call: Callable[[], None]) -> Appointment:
         """Be called once."""
@@ -254,19 +246,7 @@ class SimulatedContext:
 
     def joint_wrench(self, name: str) -> Optional[JointWrench]:
         """What a joint transmitted in the last step."""
-        spec = self._rows.joint(name)
-        if not self._view.is_record:
-            return self.simulator.joints.wrenches([f"{self.model}::{spec.name}"])[0]
-        wrench: Optional[JointWrench] = self._recorded(
-            ReadJointWrenches, (self.entity.model_id, spec.name), lambda query: query.joints)
-        return wrench
-
-    def _recorded(self, kind: type, key: Any, keys: Callable[[Any], Sequence[Any]]) -> Any:
-        """One of the values that a query of a record was answered with."""
-        query, values = self._view.answer(kind)
-        if key not in keys(query):
-            raise PluginError(f"an observation must name what it asks for ({key})")
-        return values[keys(query).index(key)]
+        return self._readings.wrench(self.entity, self._rows.joint(name).name)
 
     def drive_level(self, x: float, y: float, yaw_rate: float) -> None:
         """Move level from now on."""
@@ -279,16 +259,8 @@ class SimulatedContext:
 
     def transmissions(self, parameter: str) -> List[Transmission]:
         """Those of the description, else of a parameter."""
-        own = self.entity.model.transmissions
-        text = "" if own else self.search_parameter(parameter, "")
-        if not isinstance(text, str) or not text.strip():
-            return own
-        from ..formats.urdf.transmission import transmissions_of
-
-        try:
-            return transmissions_of(text, f"parameter {parameter}")
-        except InputError as fault:
-            raise PluginError(str(fault)) from fault
+        return transmissions_of(self.entity.model, parameter,
+                                lambda: self.search_parameter(parameter, ""))
 
     def push(self, link: str, force: Vec3, torque: Vec3) -> None:
         """A wrench from now on."""
@@ -363,10 +335,7 @@ class SimulatedContext:
 
     def efforts(self, joints: Sequence[str]) -> List[float]:
         """What was spent on joints in the last step."""
-        rows = [self.joint(name).row for name in joints]
-        if not self._view.is_record:
-            return self._readings.efforts(rows)
-        return [self._recorded(ReadEfforts, row, lambda query: query.rows) for row in rows]
+        return self._readings.efforts([self.joint(name).row for name in joints])
 
     def set_joint_positions(self, positions: Dict[str, float]) -> None:
         """Move joints at once."""
@@ -405,32 +374,7 @@ class SimulatedContext:
 
     def contacts(self) -> List[Any]:
         """The contacts of the last step."""
-        if not self._view.is_record:
-            return self._readings.contacts()
-        return self.simulator.states.named_contacts(self._view.answer(ReadContacts)[1])
-
-    # -- topics, services, parameters --------------------------------------------------------------
-
-    def use_namespace(self, namespace: str) -> None:
-        """What names are relative to."""
-        self.graph.use_namespace(namespace)
-
-    def message(self, kind: str) -> Any:
-        """A new message."""
-        return self.graph.message(kind)
-
-    def stamp(self, ns: Optional[int] = None) -> Any:
-        """A time as messages have it."""
-        return self.graph.stamp(self.now_ns if ns is None else ns)
-
-    def publish(self, name: str, kind: str, queue: int = 1, latch: bool = False) -> Offer:
-        """Offer a topic."""
-        return self.graph.publish(name, kind, queue, latch)
-
-    def subscribe(self, name: str, kind: str, call: Callable[[Any], None],
-                  queue: int = 1) -> OpenEnd:
-        """Hear a topic."""
-        return self.graph.subscribe(name, kind, call, queue)
+        return self._readings.contacts()
 
     def topic_uses(self) -> List[TopicUse]:
         """The topics it offers and hears; from any thread."""
@@ -442,22 +386,6 @@ class SimulatedContext:
         kind = self.sensor.type if self.sensor is not None else ""
         return [TopicUse(name, message, heard, self.model, link, kind, pose)
                 for name, message, heard in self.graph.uses()]
-
-    def serve(self, name: str, kind: str, call: Callable[[Any, Any], None]) -> OpenEnd:
-        """Offer a service."""
-        return self.graph.serve(name, kind, call, self.warn)
-
-    def parameter(self, name: str, default: Any) -> Any:
-        """A parameter of the namespace."""
-        return self.graph.parameter(name, default)
-
-    def search_parameter(self, name: str, default: Any) -> Any:
-        """A parameter of the namespace or above."""
-        return self.graph.search_parameter(name, default)
-
-    def transform(self, parent: str, child: str, pose: Pose) -> None:
-        """Broadcast to tf."""
-        self.graph.transform(parent, child, pose, self.now_ns)
 
     # -- log -------------------------------------------------------------------------------------
 

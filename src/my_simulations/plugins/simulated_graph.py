@@ -216,3 +216,59 @@ class PluginGraph:
     def transform(self, parent: str, child: str, pose: Pose, ns: int) -> None:
         """Broadcast to tf, as of a sim time."""
         self.transforms.append((ns, (parent, child, pose)))
+
+
+class GraphUser:
+    """The part of a context that is about topics, services and parameters.
+
+    Attributes:
+        graph: what the plugin has on the graph.
+    """
+
+    graph: PluginGraph
+
+    @property
+    def now_ns(self) -> int:
+        """Sim time of this step."""
+        raise NotImplementedError
+
+    def warn(self, text: str) -> None:
+        """Warn the user."""
+        raise NotImplementedError
+
+    def use_namespace(self, namespace: str) -> None:
+        """What names are relative to."""
+        self.graph.use_namespace(namespace)
+
+    def message(self, kind: str) -> Any:
+        """A new message."""
+        return self.graph.message(kind)
+
+    def stamp(self, ns: Optional[int] = None) -> Any:
+        """A time as messages have it."""
+        return self.graph.stamp(self.now_ns if ns is None else ns)
+
+    def publish(self, name: str, kind: str, queue: int = 1, latch: bool = False) -> Offer:
+        """Offer a topic."""
+        return self.graph.publish(name, kind, queue, latch)
+
+    def subscribe(self, name: str, kind: str, call: Callable[[Any], None],
+                  queue: int = 1) -> OpenEnd:
+        """Hear a topic."""
+        return self.graph.subscribe(name, kind, call, queue)
+
+    def serve(self, name: str, kind: str, call: Callable[[Any, Any], None]) -> OpenEnd:
+        """Offer a service."""
+        return self.graph.serve(name, kind, call, self.warn)
+
+    def parameter(self, name: str, default: Any) -> Any:
+        """A parameter of the namespace."""
+        return self.graph.parameter(name, default)
+
+    def search_parameter(self, name: str, default: Any) -> Any:
+        """A parameter of the namespace or above."""
+        return self.graph.search_parameter(name, default)
+
+    def transform(self, parent: str, child: str, pose: Pose) -> None:
+        """Broadcast to tf."""
+        self.graph.transform(parent, child, pose, self.now_ns)
