@@ -5,7 +5,7 @@ import time
 from typing import Callable
 
 from .commands import Clear, Command, LoadModel, RemoveModel, Restart, Synchronize
-from .ring import SETTINGS, WAITS_AT, WAITS_FOR_ROOM, Clock, RingWriter
+from .ring import SETTINGS, STEP_BUDGET, WAITS_AT, WAITS_FOR_ROOM, Clock, RingWriter
 from .step_records import RecordSource, RecordWriter, SetRecordRules
 
 _NOTIFY_S = 0.002   # between two notifications about records
@@ -74,7 +74,13 @@ class HostSync:
         self._words[WAITS_AT] = 0
 
     def record(self, step: int, clock_sets: int, clock: Clock) -> bool:
-        """Write the record of a step at which one is due; False while the ring is full."""
+        """Write the record of a step at which one is due; False while the ring is full.
+
+        A host that has left is not recorded for.
+        """
+        if not self._words[STEP_BUDGET]:
+            self.records.set_rules((), step, clock)
+            return True
         if not self.records.write(step, clock_sets, clock):
             self._words[WAITS_FOR_ROOM] = 1
             self._notify_now()
