@@ -1,4 +1,4 @@
-"""Plugins that only read change nothing, and read the same whoever listens, to the bit."""
+"""Plugins that only read change nothing; messages have the same bits with any subscribers."""
 from __future__ import annotations
 
 import contextlib
@@ -35,7 +35,7 @@ def library(name):
 
 
 class Case(PluginCase):
-    """The lab robot with more sensors; nobody listens to the topics in `silent`."""
+    """The lab robot with more sensors; the topics in `silent` have no subscribers."""
 
     def __init__(self, silent=SILENT):
         robot, _ = read_file(str(ROBOT), Resolver())
@@ -95,7 +95,7 @@ def states(silent):
 
 
 def messages(at_once=600):
-    """All messages of a drive, of a world that is listened to."""
+    """All messages of a drive with subscribers of all topics."""
     with running(()) as one:
         one.drive(at_once=at_once)
         return {topic: one.told(topic, count) for topic, count in COUNTS.items()}
@@ -103,15 +103,15 @@ def messages(at_once=600):
 
 @pytest.fixture(scope="module")
 def always():
-    """What one who always listens is told."""
+    """The messages that an early subscriber receives."""
     return messages()
 
 
-def test_the_world_is_the_same_whoever_listens():
+def test_the_world_is_the_same_with_and_without_subscribers():
     assert states(()) == states(SILENT)
 
 
-def test_without_listeners_nothing_is_published_and_the_host_is_not_woken():
+def test_without_subscribers_nothing_is_published_and_the_host_is_not_woken():
     with running(SILENT) as one:
         one.drive()
         assert not [topic for topic, message in one.graph.sent if message is not None
@@ -125,7 +125,7 @@ def test_messages_do_not_depend_on_how_many_steps_are_made_at_once(always):
 
 
 @pytest.mark.parametrize("topic", TOPICS)
-def test_who_listens_late_is_told_what_one_who_always_listened_was(always, topic):
+def test_a_late_subscriber_receives_what_an_early_one_does(always, topic):
     with running(SILENT) as late:
         late.drive(steps=250, at_once=250)
         late.graph.listen(topic)

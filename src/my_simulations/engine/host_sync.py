@@ -16,7 +16,7 @@ class HostSync:
     """Limits the steps of an engine to the host's budget, and writes the host's records.
 
     Attributes:
-        records: what is recorded.
+        records: writes the records.
 
     Args:
         writer: of the ring.
@@ -64,7 +64,7 @@ class HostSync:
         self._settings, self._since = self._settings + 1, step
 
     def wait_at(self, step: int) -> None:
-        """Tell the host that the newest snapshot shows `step`, where the engine waits for it."""
+        """Notify the host that the newest snapshot shows `step`, where the engine waits for it."""
         self._words[SETTINGS] = self._settings
         self._words[WAITS_AT] = step + 1
         self._notify_now()

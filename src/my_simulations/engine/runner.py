@@ -159,7 +159,7 @@ class Runner:
         return False
 
     def _synchronize(self) -> bool:
-        """Tell the host, once, that the engine waits for it; wait if steps are wanted.
+        """Notify the host, once, that the engine waits for it; wait if steps are wanted.
 
         False while paused: then there is nothing to wait for.
         """

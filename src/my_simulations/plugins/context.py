@@ -176,14 +176,14 @@ class Context(Protocol):
 
         Args:
             hertz: 0 or less is every step.
-            call: what is called.
-            topics: what it publishes. While nobody listens to any of them, it is not called; the
-                steps stay those of the rate. Without any it is always called.
+            call: the function.
+            topics: the topics that it publishes. While none of them has a subscriber, it is not
+                called; the steps stay those of the rate. Without topics it is always called.
             lead: s by which each step of the rate is earlier.
             resume: called instead of `call` at the first step after a time without subscribers.
-            transforms: it broadcasts to tf, and is also called while somebody listens to that.
-            remembers: what it publishes depends on earlier calls: it is called without listeners,
-                too, though later and in larger groups.
+            transforms: it broadcasts to tf, and is also called while tf has a subscriber.
+            remembers: what it publishes depends on earlier calls: it is called without
+                subscribers, too, though later and in larger groups.
             contacts: it reads `contacts`.
             efforts: joints that it reads `efforts` of.
             wrenches: joints that it reads `joint_wrench` of.

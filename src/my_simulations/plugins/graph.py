@@ -99,7 +99,7 @@ class Graph(Protocol):
 
     @property
     def transforms_wanted(self) -> bool:
-        """Whether anybody listens to tf."""
+        """Whether tf has a subscriber."""
 
     def send_transforms(self, transforms: List[TransformOf], ns: int) -> None:
         """Broadcast to tf, as of a sim time."""

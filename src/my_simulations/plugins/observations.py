@@ -63,7 +63,7 @@ class Observation:
     Args:
         number: identifies it in records.
         rate: the steps.
-        call: gets the world as it was at the step, by its context.
+        call: the function; its context shows the step.
         resume: called at the first step after a time without subscribers, instead of `call`.
         topics: those that it publishes; without any it is always due.
         transforms: it broadcasts to tf.
@@ -91,7 +91,7 @@ class Observation:
         self.owner.observations.changed = True
 
     def is_wanted(self, transforms_wanted: bool) -> bool:
-        """Whether anybody listens to what it publishes."""
+        """Whether one of its topics, or tf, has a subscriber."""
         if not self._topics and not self._transforms:
             return True
         return self._transforms and transforms_wanted or any(
@@ -109,7 +109,7 @@ class Observation:
             self.owner.observations.changed = True
 
     def become(self, wanted: bool) -> None:
-        """Note whether anybody listens; the rule is made anew."""
+        """Note whether it is wanted, and make its rule again."""
         if not wanted and not self._remembers:
             self._was_idle = True
             self.rule = None
@@ -173,15 +173,15 @@ class Observations:
         """The observation of a part of a record; None once it has ended."""
         return self._all.get(number)
 
-    def new_rules(self, transforms_wanted: bool, anew: bool) -> Optional[Tuple[RecordRule, ...]]:
-        """What the engine must record, if it is to be told: something has changed, or `anew`."""
+    def new_rules(self, transforms_wanted: bool, again: bool) -> Optional[Tuple[RecordRule, ...]]:
+        """What the engine must record, if that must be sent: it has changed, or `again`."""
         self.changed = False
         self._all = {number: one for number, one in self._all.items() if not one.ended}
         for one in self._all.values():
             one.become(one.is_wanted(transforms_wanted))
         before, self._rules = self._rules, tuple(
             one.rule for one in self._all.values() if one.rule is not None)
-        return self._rules if before != self._rules or anew and self._rules else None
+        return self._rules if before != self._rules or again and self._rules else None
 
 
 class StepView:
@@ -239,7 +239,7 @@ class StepView:
         return position, rate
 
     def puts(self, row: int) -> float:
-        """How often the joint axis was put somewhere; -1 for now, which nobody counts."""
+        """How often the joint axis was put somewhere; -1 for the present, which has no count."""
         return -1.0 if self._part is None else self._recorded_axis(row)[2]
 
     def _recorded_axis(self, row: int) -> Tuple[float, float, float]:

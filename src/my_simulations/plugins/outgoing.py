@@ -30,7 +30,7 @@ class Outgoing:
         Args:
             plugins: by their contexts.
             guarded: calls a function for a plugin, which is switched off if that fails.
-            failing: what is told of a fault of a plugin in another thread.
+            failing: makes the function that receives a plugin's fault in another thread.
         """
         transforms: Dict[int, List[TransformOf]] = {}
         for context, running in plugins.items():

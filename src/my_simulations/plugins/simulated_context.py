@@ -36,7 +36,7 @@ class Shared(NamedTuple):
     """What the contexts of all plugins share.
 
     Attributes:
-        report: tells the user.
+        report: reports an issue to the user.
         view: where links and joints are.
         subscribers_changed: called, in any thread, when subscribers of a topic come or go.
     """

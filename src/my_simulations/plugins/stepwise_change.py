@@ -47,7 +47,7 @@ class StepwiseChange:
         return self._context.once(due, self._begin_here)
 
     def end(self) -> None:
-        """Call it no more."""
+        """Stop the calls."""
         if self._timer is not None:
             self._timer.end()
             self._timer = None

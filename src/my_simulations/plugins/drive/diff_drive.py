@@ -48,7 +48,7 @@ class DiffDrive(OdometryDrive):
         self._command = VelocityCommand(context, p.text("commandTopic", "cmd_vel"),
                                         changed=self._change.begin)
         self.reset()
-        # Encoders count at all updates, whether anybody listens or not.
+        # Encoders count at all updates, with and without subscribers.
         topics = [*self._odometer.topics, *(self._states.topics if self._states else [])]
         transforms = self._publishes and self._broadcasts or self._frames is not None
         if topics or transforms:

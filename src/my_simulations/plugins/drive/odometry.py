@@ -53,7 +53,7 @@ class WheelTurns:
         turns = []
         for joint, (position, puts) in zip(self._joints, before):
             began, now = joint.puts, joint.position
-            steady = puts in (began, -1.0)   # nobody counts outside of observations
+            steady = puts in (began, -1.0)   # there is no count outside of observations
             self._last.append((now, began))
             turns.append(now - position if steady else joint.velocity * dt)
         return turns

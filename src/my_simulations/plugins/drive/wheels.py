@@ -20,7 +20,7 @@ class VelocityCommand:
 
     def __init__(self, context: Context, topic: str, timeout: Optional[float] = None,
                  changed: Callable[[], None] = lambda: None) -> None:
-        """`timeout`: s of sim time after which a command counts no more; None for never.
+        """`timeout`: s of sim time after which a command expires; None for never.
 
         `changed` is called when a command has come.
         """

@@ -75,7 +75,7 @@ class ImagerRate:
         names: of the cameras; "" is one that nobody can change (gazebo_plugins).
         call: takes a picture.
         wanted: whether somebody listens.
-        topics: what is published, `CameraInfo` too.
+        topics: all topics of the camera, `CameraInfo` too.
     """
 
     def __init__(self, context: Context, names: Sequence[str], call: Callable[[], None],

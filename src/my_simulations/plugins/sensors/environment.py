@@ -41,7 +41,7 @@ class _OfSensor(Plugin):
         self._noises: List[SampledNoise] = []
 
     def _follow(self, *topics: Publication) -> None:
-        """Measure at the sensor's rate while somebody listens."""
+        """Measure at the sensor's rate while there are subscribers."""
         context = self.context
         assert context.sensor is not None
         context.observe(context.sensor.update_rate, self.update, topics)

@@ -38,20 +38,20 @@ class Imu(Plugin):
         self.begin_motion()
 
     def begin_motion(self) -> None:
-        """Accelerations are of what comes."""
+        """Accelerations are over the time from now on."""
         self._last_ns = self.context.now_ns
         self._before = self._velocity()
 
     def reset(self) -> None:
-        """Accelerations are of what comes."""
+        """Accelerations are over the time from now on."""
         self.begin_motion()
 
     clock_set = reset
 
     def follow(self, hertz: float) -> None:
-        """Measure at a rate while somebody listens.
+        """Measure at a rate while there are subscribers.
 
-        The first sample after a time without listeners is left out: the velocity before it is too
+        The first sample after a time without subscribers is left out: the velocity before it is too
         old for an acceleration.
         """
         self.context.observe(hertz, self.update, [self._topic], resume=self.begin_motion)

@@ -47,11 +47,11 @@ class RayPlugin(Plugin):
         self._fan = fan_of(self._ray, self._visuals)
 
     def follow(self, hertz: float) -> None:
-        """Look at a rate while somebody listens."""
+        """Cast the rays at a rate while there are subscribers."""
         self.context.observe(hertz, self.update, [self._topic], world=True)
 
     def update(self) -> None:
-        """Look."""
+        """Cast the rays."""
         self.context.scan(self._fan, self._visuals, self._publish)
 
     def _publish(self, returns: RayReturns, ns: int) -> None:

@@ -144,7 +144,7 @@ class RosGraph:
 
     @property
     def transforms_wanted(self) -> bool:
-        """Whether anybody listens to /tf."""
+        """Whether /tf has a subscriber."""
         return self._tf is not None and self._tf.wanted
 
     def send_transforms(self, transforms: List[TransformOf], ns: int) -> None:
