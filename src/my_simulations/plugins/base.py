@@ -1,7 +1,7 @@
 """The base class of plugins.
 
 A plugin is made once for each `<plugin>` element of a model or sensor. It reads its parameters and
-makes its appointments, topics and handles in `load`; what it does later happens in the functions
+schedules its calls, and makes its topics and handles in `load`; what it does later happens in the functions
 that it handed to the context.
 """
 from __future__ import annotations
@@ -21,14 +21,14 @@ class Plugin:
         self.context = context
 
     def load(self) -> None:
-        """Read parameters, find joints, offer topics, make appointments."""
+        """Read parameters, find joints, offer topics, schedule calls."""
         raise NotImplementedError
 
     def reset(self) -> None:
         """The world was reset: models are where they began, at rest, and motors are off."""
 
     def clock_set(self) -> None:
-        """Sim time was set, to an earlier one perhaps; appointments have been made anew."""
+        """Sim time was set, to an earlier one perhaps; calls are scheduled again."""
 
     def close(self) -> None:
         """The model is being deleted, or the program ends. Topics are closed afterwards."""

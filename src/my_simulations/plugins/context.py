@@ -158,7 +158,7 @@ class Context(Protocol):
     def every(self, hertz: float, call: Callable[[], None]) -> "Ending":
         """Be called at a rate in Hz of sim time, the first time one period from now.
 
-        0 or less is every step. The appointments are exact to the step and never drift. `end` of
+        0 or less is every step. The calls are exact to the step and never drift. `end` of
         what is returned ends them.
         """
 

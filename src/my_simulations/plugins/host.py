@@ -28,7 +28,7 @@ from .outgoing import Outgoing
 from .record_handover import RecordHandover
 from .registry import PluginRegistry, UnknownPluginError, library_name
 from .running import ModelPlugins, Running
-from .schedule import Appointment, Schedule
+from .schedule import ScheduledCall, Schedule
 from .simulated_context import Shared, SimulatedContext
 from .step_readings import StepReadings
 
@@ -64,7 +64,7 @@ class PluginHost:
         # Plugins that something has come for, and those whose orders and messages are to be taken.
         self._rung: Deque[Running] = deque()
         self._touched: Dict[SimulatedContext, Running] = {}
-        self._due: Deque[Appointment] = deque()
+        self._due: Deque[ScheduledCall] = deque()
         self._told: Dict[str, bool] = {}
         self._revision = -1
         self._world_resets = simulator.resets.world_resets
@@ -215,15 +215,15 @@ class PluginHost:
         return [one for one in self._models.all() if one.plugin is not None]
 
     def _serve(self) -> None:
-        """Call whose appointment it is."""
+        """Make the calls that are due."""
         self._due += self._schedule.take_due()
         while self._due:
-            appointment = self._due.popleft()
-            running = self._running.get(appointment.owner)
-            if running is not None and running.plugin is not None and not appointment.ended:
-                if appointment.single:
-                    appointment.end()
-                self._guarded(running, appointment.call)
+            scheduled = self._due.popleft()
+            running = self._running.get(scheduled.owner)
+            if running is not None and running.plugin is not None and not scheduled.ended:
+                if scheduled.single:
+                    scheduled.end()
+                self._guarded(running, scheduled.call)
 
     def _give_orders(self) -> None:
         """What plugins have ordered, in one command, for the models that there are now."""

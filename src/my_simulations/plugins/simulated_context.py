@@ -25,7 +25,7 @@ from .graph import Graph, TopicUse
 from .model_rows import ModelRows, transmissions_of
 from .observations import Observation, Observations, Reads, StepView, queries_of
 from .parameters import Parameters
-from .schedule import Appointment, Schedule
+from .schedule import ScheduledCall, Schedule
 from .sensing_requests import SensingRequests
 from .simulated_graph import GraphUser, PluginGraph
 from .simulated_handles import Orders, SimulatedJoint, SimulatedLink
@@ -150,7 +150,7 @@ class SimulatedContext(GraphUser):
         moment = self._schedule.moment
         return moment.step if moment is not None else self.simulator.clock.step
 
-    def every(self, hertz: float, call: Callable[[], None]) -> Appointment:
+    def every(self, hertz: float, call: Callable[[], None]) -> ScheduledCall:
         """Be called at a rate."""
         return self._schedule.every(self, hertz, call)
 
@@ -176,7 +176,7 @@ class SimulatedContext(GraphUser):
         return (tuple(sorted(links)), tuple(sorted(joint.row for joint in self._joints.values())),
                 queries_of(reads, self._rows))
 
-    def once(self, ns: int, call: Callable[[], None]) -> Appointment:
+    def once(self, ns: int, call: Callable[[], None]) -> ScheduledCall:
         """Be called once."""
         return self._schedule.once(self, ns, call)
 
