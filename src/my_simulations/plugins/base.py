@@ -1,8 +1,8 @@
 """The base class of plugins.
 
-A plugin is made once for each `<plugin>` element of a model or sensor. It reads its parameters and
-schedules its calls, and makes its topics and handles in `load`; what it does later happens in the functions
-that it handed to the context.
+A plugin is made once for each `<plugin>` element of a model or sensor. In `load` it reads its
+parameters, schedules calls, and makes topics and handles. Later the functions run that it handed to
+the context.
 """
 from __future__ import annotations
 

@@ -28,7 +28,7 @@ from .outgoing import Outgoing
 from .record_handover import RecordHandover
 from .registry import PluginRegistry, UnknownPluginError, library_name
 from .running import ModelPlugins, Running
-from .schedule import ScheduledCall, Schedule
+from .schedule import Schedule, ScheduledCall
 from .simulated_context import Shared, SimulatedContext
 from .step_readings import StepReadings
 

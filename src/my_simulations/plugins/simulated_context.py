@@ -25,7 +25,7 @@ from .graph import Graph, TopicUse
 from .model_rows import ModelRows, transmissions_of
 from .observations import Observation, Observations, Reads, StepView, queries_of
 from .parameters import Parameters
-from .schedule import ScheduledCall, Schedule
+from .schedule import Schedule, ScheduledCall
 from .sensing_requests import SensingRequests
 from .simulated_graph import GraphUser, PluginGraph
 from .simulated_handles import Orders, SimulatedJoint, SimulatedLink
