@@ -140,6 +140,9 @@ class Backend(Protocol):
     def read_rows(self, link_rows: Tuple[int, ...]) -> bytes:
         """The current states of some links as raw doubles, `LINK_WIDTH` each."""
 
+    def read_world(self) -> memoryview:
+        """The current states of all links as raw doubles; the next `read` reports changes again."""
+
     def read_axes(self, joint_rows: Tuple[int, ...]) -> List[float]:
         """Position and rate of some joint axes, one after the other."""
 

@@ -141,6 +141,10 @@ class KinematicBackend:
         return b"".join(bytes(links[row * size:(row + 1) * size]).ljust(size, b"\0")
                         for row in link_rows)
 
+    def read_world(self) -> memoryview:
+        """The states of all links."""
+        return self.tables()[0]
+
     def read_axes(self, joint_rows: Tuple[int, ...]) -> List[float]:
         """Position and rate of some joint axes; zeros where there is none."""
         return [value for row in joint_rows for value in self.joints.get(row, (0.0, 0.0))]

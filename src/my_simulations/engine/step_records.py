@@ -88,11 +88,8 @@ class RecordSource(Protocol):
     def read_axes(self, joint_rows: Tuple[int, ...]) -> List[float]:
         """Position and rate of some joint axes, one after the other."""
 
-    def read(self) -> bool:
-        """Update the tables."""
-
-    def tables(self) -> Tuple[memoryview, memoryview]:
-        """The used link and joint rows."""
+    def read_world(self) -> memoryview:
+        """The current states of all links as raw doubles."""
 
 
 class RecordWriter:
@@ -156,7 +153,7 @@ class RecordWriter:
         due = [rule for when, rule in self._rules if when <= step]
         self._answers.clear()
         parts = [self._part(rule) for rule in due]
-        world: Buffer = self._world() if any(rule.all_links for rule in due) else b""
+        world: Buffer = self._source.read_world() if any(rule.all_links for rule in due) else b""
         part_words = sum(2 + len(part) // 8 for part in parts)
         size = _HEAD_WORDS + part_words + len(world) // 8
         place = self._place(size)
@@ -183,10 +180,6 @@ class RecordWriter:
                         else rule.rate.after(step, clock), rule) for when, rule in self._rules]
         self._find_next()
         return True
-
-    def _world(self) -> memoryview:
-        self._source.read()
-        return self._source.tables()[0]
 
     def _part(self, rule: RecordRule) -> bytes:
         source = self._source

@@ -138,6 +138,12 @@ class BulletBackend:
         self._settle()
         return self._row_reader.read_links(link_rows)
 
+    def read_world(self) -> memoryview:
+        """The current states of all links."""
+        self._settle()
+        self._readout.update()
+        return self._readout.tables()[0]
+
     def read_axes(self, joint_rows: Tuple[int, ...]) -> List[float]:
         """Position and rate of some joint axes."""
         self._settle()

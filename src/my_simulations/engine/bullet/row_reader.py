@@ -45,7 +45,7 @@ class RowReader:
                 if total - total == 0.0:
                     found += self._packed(row, now)
                     continue
-                readout.read()   # which puts the body back
+                readout.update()   # which puts the body back
             found += readout.row(row)
         return found
 
@@ -72,15 +72,14 @@ class RowReader:
 
     def read_axes(self, rows: Tuple[int, ...]) -> List[float]:
         """Position and rate of joint axes, one after the other; zeros where there is none."""
-        readout = self._readout
-        found: List[float] = []
-        for row in rows:
-            body, axis = self._axes.get(row, (None, None))
-            if body is not None and axis is not None and readout.may_have_moved(body):
-                position, rate = pybullet.getJointState(body.uid, axis.index)[:2]
-                if position - position == 0.0 == rate - rate:
-                    found += (position, rate)
-                    continue
-                readout.read()
-            found += readout.joints[row].tolist()
-        return found
+        known = [self._axes[row] for row in rows if row in self._axes]
+        if len(known) == len(rows):
+            body = known[0][0]
+            if self._readout.may_have_moved(body) and all(one is body for one, _ in known):
+                states = pybullet.getJointStates(body.uid, [axis.index for _, axis in known])
+                found = [value for state in states for value in state[:2]]
+                total = sum(found)
+                if total - total == 0.0:
+                    return found
+        self._readout.update()   # the robot is at rest, in several parts, or to be put back
+        return [value for row in rows for value in self._readout.joints[row].tolist()]

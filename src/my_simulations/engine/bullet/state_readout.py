@@ -64,6 +64,7 @@ class StateReadout:
         self._patrol: List[int] = []
         self._touched: Dict[int, Body] = {}
         self._stepped = False
+        self._changed = False   # by `update`, since the last `read`
         self._closing: Dict[int, ClosingJoint] = {}
 
     def add_joints(self, rows: slice, closing: Sequence[ClosingJoint]) -> None:
@@ -125,7 +126,16 @@ class StateReadout:
         self._stepped = True
 
     def read(self) -> bool:
-        """Bring the tables up to date. Returns False when nothing can have changed.
+        """Bring the tables up to date. Returns False when nothing can have changed since then.
+
+        What `update` has found is included.
+        """
+        self.update()
+        changed, self._changed = self._changed, False
+        return changed
+
+    def update(self) -> None:
+        """Bring the tables up to date; the next `read` returns whether anything can have changed.
 
         Without a step since the last read-out only what was touched is read. Standing still counts
         only over a step.
@@ -137,14 +147,14 @@ class StateReadout:
             trees = {uid: body for uid, body in touched.items() if not body.rigid}
         if not rigid and not trees:
             self._stepped = False
-            return False
+            return
+        self._changed = True
         offset_rows: List[int] = []
         self._read_all(list(rigid.values()), offset_rows)
         self._read_rest(trees, offset_rows)
         for one in self._closing.values():
             one.read(self.links, self.joints)
         self._stepped = False
-        return True
 
     def _read_rest(self, trees: Dict[int, Body], offset_rows: List[int]) -> None:
         """Trees, and what they and the rigid bodies may have woken; all rows to link frames."""
@@ -161,7 +171,7 @@ class StateReadout:
         What `read` would find, it still finds afterwards.
         """
         if not self._stepped and not self._touched:
-            return False
+            return self._changed
         places: List[int] = []
         self._read_places(list(self._awake.values()), places)
         if places:

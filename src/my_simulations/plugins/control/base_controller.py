@@ -2,7 +2,7 @@
 
 Parameters, topics and limits are those of ros_controllers. While the velocity changes, updates
 come 100 times a second of sim time, or as often as `controlPeriod` says; ramps are exact to that.
-Odometry is integrated exactly along arcs, as often as that.
+Odometry is integrated exactly along arcs, as often as it is published.
 """
 from __future__ import annotations
 
@@ -85,7 +85,8 @@ class BaseController(Controller):
         self._hertz = 1.0 / self.period if self.period else max(_UPDATE_HZ, self._publish_hz)
         self._change = StepwiseChange(self.context, self._hertz, self._update)
         self._end: Optional[Ending] = None   # of the last command
-        window = s.number("velocity_rolling_window_size", 10.0) * self._hertz / _ORIGINAL_HZ
+        self._count_hz = self._hertz if self.period else self._publish_hz or _UPDATE_HZ
+        window = s.number("velocity_rolling_window_size", 10.0) * self._count_hz / _ORIGINAL_HZ
         self.window = max(1, round(window))
         self._frames = (s.text("odom_frame_id", "odom"), s.text("base_frame_id", "base_link"))
         self._broadcasts = s.flag("enable_odom_tf", True)
@@ -107,7 +108,7 @@ class BaseController(Controller):
         self._now_ns = self.context.now_ns
         self.drive(STANDING)
         topics = [self._odom, *self.more_topics()]
-        self.observe(self._hertz, self._count, topics, transforms=self._broadcasts,
+        self.observe(self._count_hz, self._count, topics, transforms=self._broadcasts,
                      remembers=True)
         if self._limited is not None:
             self.observe(self._hertz, self._tell_command, [self._limited])
