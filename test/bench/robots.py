@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 """Prints what robots cost. Run it in a shell that has sourced the workspace, on a quiet machine.
 
-usage: robots.py [ROW …]   rows: drive ten closed_loop (default: all)
+usage: robots.py [ROW …]   rows: drive ten closed_loop small large large_steps many busy
+(default: all)
 
 The robots are lab robots with a laser of 360 rays at 10 Hz, a differential drive and joint states
 at 50 Hz; all their topics have a subscriber in this process. Shares are of one core, by processor
@@ -22,6 +23,7 @@ from typing import Callable, Dict, List, Sequence, Tuple
 
 sys.path.insert(0, __file__.rsplit("/", 1)[0])
 import scenes
+import stock_robots
 from server import Server, children, master, processor, wait
 
 Row = Tuple[str, str, str, bool]
@@ -214,7 +216,12 @@ def closed_loop() -> List[Row]:
              f"{100 * node:.0f} %, {100 * engine:.0f} % of a core", "", True)]
 
 
-ROWS: Dict[str, Callable[[], List[Row]]] = {"drive": drive, "ten": ten, "closed_loop": closed_loop}
+ROWS: Dict[str, Callable[[], List[Row]]] = {
+    "drive": drive, "ten": ten, "closed_loop": closed_loop,
+    "small": lambda: stock_robots.stock(stock_robots.SMALL),
+    "large": lambda: stock_robots.stock(stock_robots.LARGE),
+    "large_steps": lambda: stock_robots.stock(stock_robots.LARGE_STEPS),
+    "many": stock_robots.many, "busy": stock_robots.busy}
 
 
 def main() -> None:

@@ -135,8 +135,8 @@ def test_a_killed_sensing_process_costs_what_was_asked_and_nothing_else(case):
 def test_nobody_who_looks_is_no_process(case):
     one = case(CAMERA.format(rate=10) + LASER)
     for name in ("image_raw", "image_raw/compressed", "depth/image_raw", "points"):
-        one.graph.ignored.add(f"cam/{name}")
-    one.graph.ignored.add("scan")
+        one.graph.listen(f"cam/{name}", wanted=False)
+    one.graph.listen("scan", wanted=False)
     one.after(300, "cam/camera_info", 3)
     assert one.sensing is None
 

@@ -9,6 +9,7 @@ from conftest import Lab, arm, ball, box, ground, inertial_of_box
 from my_simulations.description.model import JointAxis, Link, Model
 from my_simulations.engine.commands import Restart
 from my_simulations.engine.drive_commands import JointMotor, SetMotors
+from my_simulations.engine.ring import LINK_WIDTH
 from my_simulations.geometry import Pose
 
 
@@ -95,3 +96,28 @@ def test_a_pose_that_is_no_number_is_put_back_also_when_only_poses_are_read(lab)
     assert lab.pose(number).position == pybullet.getBasePositionAndOrientation(0)[0]
     assert lab.pose(number).position[2] > 4.9
     assert [event.kind for event in lab.backend.events()] == ["diverged"]
+
+
+def test_rows_for_records_are_those_of_a_whole_read_out_to_the_bit(lab):
+    uneven = lab.load(_uneven(), (0, 0, 9))
+    lab.load(arm("revolute", JointAxis((0, 1, 0))), (5, 0, 9))
+    lab.push(uneven, (1, 2, 3), (4, 5, 6))
+    lab.steps(10)
+    lab.backend.step(10, 10)
+    links, axes = lab.backend.tables()
+    rows = tuple(range(len(links) // (8 * LINK_WIDTH)))
+    recorded = lab.backend.read_rows(rows), lab.backend.read_axes((0,))
+    before = bytes(links)
+    assert lab.backend.read()   # the rows were read, and their change is still reported
+    links, axes = lab.backend.tables()
+    assert recorded == (bytes(links), axes.cast("d").tolist()[:2]) and bytes(links) != before
+
+
+def test_what_a_record_of_the_world_has_read_is_still_a_change_for_snapshots(lab):
+    lab.load(_uneven(), (0, 0, 9))
+    lab.steps(1)
+    lab.backend.step(1, 1)
+    recorded = bytes(lab.backend.read_world())
+    assert lab.backend.read_poses() and lab.backend.read()
+    assert bytes(lab.backend.tables()[0]) == recorded
+    assert not lab.backend.read()

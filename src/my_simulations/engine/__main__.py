@@ -1,4 +1,4 @@
-"""The engine process: `python -m my_simulations.engine COMMANDS RING BELL` (descriptors)."""
+"""The engine process: `python -m my_simulations.engine COMMANDS RING BELL NOTICES`, descriptors."""
 from __future__ import annotations
 
 import contextlib
@@ -14,14 +14,15 @@ from .commands import Command
 from .message_pipe import Wire
 from .ring import RingWriter
 from .runner import Runner
+from .wake_pipe import ring
 
 
 class _Pipes:
-    """The channel of a child: a socket for commands, a pipe for the bell."""
+    """The channel of a child: a socket for commands, pipes for the bell and for the host."""
 
-    def __init__(self, wire: Wire, bell: int) -> None:
+    def __init__(self, wire: Wire, bell: int, notices: int) -> None:
         self._wire = wire
-        self._bell = bell
+        self._bell, self._notices = bell, notices
 
     def receive(self, timeout: float) -> List[Tuple[int, Command]]:
         return self._wire.receive(timeout)
@@ -33,10 +34,10 @@ class _Pipes:
         self._send((-1, event))
 
     def bell(self) -> None:
-        try:
-            os.write(self._bell, b"\0")
-        except BlockingIOError:
-            return  # the pipe is full: the reader is awake already
+        ring(self._bell)
+
+    def notify(self) -> None:
+        ring(self._notices)
 
     def _send(self, message: object) -> None:
         try:
@@ -65,8 +66,7 @@ def main(argv: List[str]) -> int:
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     signal.signal(signal.SIGTERM, signal.SIG_IGN)
     die_with_parent()
-    commands, ring, bell = (int(word) for word in argv[1:4])
-    os.set_blocking(bell, False)
+    commands, states, bell, notices = (int(word) for word in argv[1:5])
     with _silent_stderr():
         from .bullet.backend import BulletBackend
         from .spare_memory import made_sparingly
@@ -75,7 +75,7 @@ def main(argv: List[str]) -> int:
     keep_freed_memory()
     wire = Wire(socket.socket(fileno=commands))
     try:
-        Runner(backend, RingWriter(ring), _Pipes(wire, bell)).run()
+        Runner(backend, RingWriter(states), _Pipes(wire, bell, notices)).run()
     finally:
         backend.close()
     return 0

@@ -38,9 +38,8 @@ class Reply:
 class Event:
     """Something the engine reports by itself.
 
-    `kind`: `meeting` (the engine waits at a consumer's credit), `diverged` (a model's state became
-    non-finite; it was restored to its last finite pose, at rest) or `log` (a setting is simulated
-    approximately).
+    `kind`: `diverged` (a model's state became non-finite; it was restored to its last finite pose,
+    at rest) or `log` (a setting is simulated approximately).
     """
 
     kind: str
@@ -59,8 +58,17 @@ class Engine(Protocol):
     def submit(self, command: Command) -> "Future[Reply]":
         """Queue a command. The future fails with `EngineDiedError` if the engine dies before."""
 
-    def nudge(self) -> None:
-        """Notify an engine that waits at a credit that credits were raised."""
+    def notify(self) -> None:
+        """Notify an engine that waits for the host that the step budget is another."""
+
+    def notify_host(self) -> None:
+        """End a `wait_for_notice`, from any thread."""
+
+    def wait_for_notice(self, timeout: float) -> bool:
+        """Wait until the engine waits for the host, records are there, or `notify_host` is called.
+
+        False after `timeout` s. For the host's thread.
+        """
 
     def on_event(self, listener: Callable[[Event], None]) -> None:
         """Set the listener of events, called from the engine's reader thread."""
@@ -128,6 +136,15 @@ class Backend(Protocol):
 
     def read_poses(self) -> bool:
         """Update the poses in the link table; twists and joints may be old."""
+
+    def read_rows(self, link_rows: Tuple[int, ...]) -> bytes:
+        """The current states of some links as raw doubles, `LINK_WIDTH` each."""
+
+    def read_world(self) -> memoryview:
+        """The current states of all links as raw doubles; the next `read` reports changes again."""
+
+    def read_axes(self, joint_rows: Tuple[int, ...]) -> List[float]:
+        """Position and rate of some joint axes, one after the other."""
 
     def tables(self) -> Tuple[memoryview, memoryview]:
         """The used link and joint rows as raw doubles, for the ring."""

@@ -331,8 +331,8 @@ class EndAdvance(Command):
 
 
 @dataclass(frozen=True)
-class Nudge(Command):
-    """Check the credits again; has no reply."""
+class Synchronize(Command):
+    """Wait for a new step budget before the next step, because the world was put elsewhere."""
 
 
 @dataclass(frozen=True)

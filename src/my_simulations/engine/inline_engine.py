@@ -7,7 +7,7 @@ from concurrent.futures import Future
 from typing import Callable, Dict, List, Tuple
 
 from .api import Backend, EngineDiedError, EngineNotRunningError, Event, Reply
-from .commands import Command, Nudge
+from .commands import Command, Ping
 from .ring import Memory, RingReader, RingWriter
 from .runner import Runner
 
@@ -41,6 +41,9 @@ class _Queues:
     def bell(self) -> None:
         self._engine.rung.set()
 
+    def notify(self) -> None:
+        self._engine.notices.set()
+
 
 class InlineEngine:
     """Runs `backend_factory`'s backend. `kill` drops it and every unanswered command."""
@@ -49,7 +52,7 @@ class InlineEngine:
         self._factory = backend_factory
         self._memory = Memory(None)
         self._ring = RingReader(memory=self._memory)
-        self.rung = threading.Event()
+        self.rung, self.notices = threading.Event(), threading.Event()
         self._lock = threading.Lock()
         self._waiting: Dict[int, Tuple[Command, Future[Reply]]] = {}
         self._numbers = 0
@@ -97,9 +100,19 @@ class InlineEngine:
             self._channel.commands.put((self._numbers, command))
         return future
 
-    def nudge(self) -> None:
-        """Notify the thread that credits were raised."""
-        self._channel.commands.put((0, Nudge()))
+    def notify(self) -> None:
+        """Notify the thread that the step budget is another."""
+        self._channel.commands.put((0, Ping()))
+
+    def notify_host(self) -> None:
+        """End a `wait_for_notice`."""
+        self.notices.set()
+
+    def wait_for_notice(self, timeout: float) -> bool:
+        """Wait for the engine or `notify_host`; False after `timeout` s."""
+        noticed = self.notices.wait(timeout)
+        self.notices.clear()
+        return noticed
 
     def answer(self, number: int, reply: Reply) -> None:
         """Called by the engine: a command is done."""

@@ -134,6 +134,21 @@ class KinematicBackend:
         """Whether something may have changed; the next `read` reports it again."""
         return self._dirty
 
+    def read_rows(self, link_rows: Tuple[int, ...]) -> bytes:
+        """The states of some links; zeros where there is none."""
+        links = self.tables()[0]
+        size = _LINK.size
+        return b"".join(bytes(links[row * size:(row + 1) * size]).ljust(size, b"\0")
+                        for row in link_rows)
+
+    def read_world(self) -> memoryview:
+        """The states of all links."""
+        return self.tables()[0]
+
+    def read_axes(self, joint_rows: Tuple[int, ...]) -> List[float]:
+        """Position and rate of some joint axes; zeros where there is none."""
+        return [value for row in joint_rows for value in self.joints.get(row, (0.0, 0.0))]
+
     def tables(self) -> Tuple[memoryview, memoryview]:
         """The used rows."""
         links = bytearray(_LINK.size * (max(self.links, default=-1) + 1))

@@ -10,6 +10,7 @@ from typing import Any, List
 
 _LENGTH = struct.Struct("=Q")
 _CHUNK = 1 << 18
+_NOTICE = _LENGTH.pack(0)
 
 
 class Wire:
@@ -31,6 +32,13 @@ class Wire:
         except OSError:
             self.hang_up()  # a part may have left: nothing that follows could be read
             raise
+
+    def notify(self) -> None:
+        """Wake the other side without a message; its `receive` returns number 0.
+
+        Raises OSError if the other side is closed.
+        """
+        self.sock.sendall(_NOTICE)
 
     def hang_up(self) -> None:
         """Let both sides see the end."""
@@ -64,6 +72,10 @@ class Wire:
             end = at + _LENGTH.size + length
             if len(self._pending) < end:
                 break
+            if not length:
+                found.append((0, None))
+                at = end
+                continue
             try:
                 found.append(pickle.loads(memoryview(self._pending)[at + _LENGTH.size:end]))
             except Exception as fault:  # pickle raises what the bytes make it

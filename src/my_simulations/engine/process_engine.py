@@ -3,7 +3,6 @@ from __future__ import annotations
 
 import logging
 import os
-import select
 import socket
 import subprocess
 import threading
@@ -21,10 +20,11 @@ from ..child_process import (
 )
 from . import ring as ring_module
 from .api import EngineDiedError, EngineNotRunningError, Event, Reply
-from .commands import Command, Nudge, SetJoints, SetLinkState, SetModelState
+from .commands import Command, SetJoints, SetLinkState, SetModelState
 from .message_pipe import Wire
 from .ring import RingReader
 from .scratch_folder import sweep
+from .wake_pipe import WakePipe
 
 _log = logging.getLogger(__name__)
 _END_S = 3.0  # how long a child may take to end by itself
@@ -40,13 +40,11 @@ class ProcessEngine:
     def __init__(self) -> None:
         self._ring_fd = ring_module.create()
         self._ring = RingReader(self._ring_fd)
-        self._bell_out, self._bell_in = os.pipe()
-        os.set_blocking(self._bell_out, False)
+        self._bell, self._notices = WakePipe(), WakePipe()
         # A sender may block until the child reads, which may wait for the reader thread to take its
         # replies: what that thread needs is never held over a send.
         self._lock = threading.Lock()
         self._send_lock = threading.Lock()  # taken before the other: numbers leave in order
-        self._bell_lock = threading.Lock()
         self._waiting: "OrderedDict[int, Tuple[Command, Future[Reply]]]" = OrderedDict()
         self._numbers = 0
         self._closing = False
@@ -93,7 +91,7 @@ class ProcessEngine:
         The kernel kills the child when the thread that started it ends (PR_SET_PDEATHSIG).
         """
         ours, theirs = socket.socketpair()
-        descriptors = (theirs.fileno(), self._ring_fd, self._bell_in)
+        descriptors = (theirs.fileno(), self._ring_fd, self._bell.input, self._notices.input)
         with self._lock, shielded():
             self._child = subprocess.Popen(
                 child_command("engine", *map(str, descriptors)),
@@ -126,26 +124,27 @@ class ProcessEngine:
                 _log.debug("the engine does not listen: %s", fault)
         return future
 
-    def nudge(self) -> None:
-        """Notify the child that credits were raised."""
+    def notify(self) -> None:
+        """Notify the child that the step budget is another."""
         with self._send_lock:
             wire = self._wire
             if wire is not None:
                 try:
-                    wire.send((0, Nudge()))
+                    wire.notify()
                 except OSError as fault:
                     _log.debug("the engine does not listen: %s", fault)
 
+    def notify_host(self) -> None:
+        """End a `wait_for_notice`."""
+        self._notices.ring()
+
+    def wait_for_notice(self, timeout: float) -> bool:
+        """Wait for the child or `notify_host`; False after `timeout` s."""
+        return self._notices.wait(timeout)
+
     def wait_bell(self, timeout: float) -> bool:
         """Wait for the bell and empty it; False after `timeout` s."""
-        with self._bell_lock:  # close() must not take the descriptor from under it
-            if self._bell_out < 0 or not select.select([self._bell_out], [], [], timeout)[0]:
-                return False
-            try:
-                os.read(self._bell_out, 4096)
-            except BlockingIOError:
-                return False
-            return True
+        return self._bell.wait(timeout)
 
     def kill(self, reason: str = "") -> None:
         """Kill the child; `reason` is reported instead of the signal."""
@@ -170,13 +169,11 @@ class ProcessEngine:
         self._close_descriptors()
 
     def _close_descriptors(self) -> None:
-        if self._bell_out < 0:
-            return
-        os.write(self._bell_in, b"\0")  # wakes a thread that waits for the bell
-        with self._bell_lock:
-            for descriptor in (self._ring_fd, self._bell_out, self._bell_in):
-                os.close(descriptor)
-            self._ring_fd = self._bell_out = self._bell_in = -1
+        self._bell.close()
+        self._notices.close()
+        if self._ring_fd >= 0:
+            os.close(self._ring_fd)
+            self._ring_fd = -1
 
     def _read(self, process: "subprocess.Popen[bytes]", wire: Wire) -> None:
         while True:

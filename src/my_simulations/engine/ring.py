@@ -9,9 +9,10 @@ newer than the latest slot while nothing has moved, or if not every step is read
 Who only wants to see where everything is, is served from a second, smaller ring: its slots hold
 link rows whose poses are new and whose twists may be older. To read twists costs as much again.
 
-Whoever must act at an exact step has a credit word in the control page: the step at which the
-engine stops until the word is raised. A credit counts for one setting of the clock only: once the
-clock is set, or the step size changes, the engine stands until every consumer gave a new one.
+A program that acts at exact steps has a step budget in the control page: the step at which the
+engine stops until the budget is raised. A budget is valid for one setting of the world only: after
+the clock, the step size or the models change, the engine waits for a new budget. Records of exact
+steps for programs that only read are behind the slots (`engine/step_records.py`).
 
 The memory is sparse (memfd): capacity costs nothing until rows are used.
 """
@@ -40,19 +41,24 @@ _JOINT_WORDS = JOINTS * JOINT_WIDTH
 _SLOT_WORDS = -(-(HEAD_WORDS + _LINK_WORDS + _JOINT_WORDS) * 8 // _PAGE) * _PAGE // 8
 _FIRST_SLOT = _PAGE // 8
 _FIRST_JOINT = HEAD_WORDS + _LINK_WORDS
-SIZE = _PAGE + (SLOTS + POSE_SLOTS) * _SLOT_WORDS * 8
+FIRST_RECORD = _FIRST_SLOT + (SLOTS + POSE_SLOTS) * _SLOT_WORDS
+RECORDS, RECORD_WORDS = 256, 1 << 19   # most records, and words for all of them
+SIZE = (FIRST_RECORD + RECORD_WORDS) * 8
 
 # Words of the control page. The first group is the engine's, the second the simulator's.
 (STEP, LATEST, HEARTBEAT, STATUS, LATEST_POSES, POSES_ARE_NEWER, PROGRESS, CLOCK_SETS) = range(8)
 DEMAND_NS, BELL, POSE_DEMAND_NS = 8, 9, 10
 HELD_STEP = 11   # the engine's: the step at which nothing had moved since the newest slot; or 0
-CREDITS, CONSUMERS = 16, 8   # the first credit word, and how many there are
+# The engine's: settings of the world, the step + 1 at which it waits (0: it does not), records, and
+# whether it waits for room for one.
+SETTINGS, WAITS_AT, RECORDS_WRITTEN, WAITS_FOR_ROOM = 12, 13, 14, 15
+STEP_BUDGET, RECORDS_READ = 16, 17   # the simulator's
+RECORD_PLACES = 256   # the first of RECORDS words: where each record begins
 
 NO_LIMIT = 1 << 62
-"""The step at which an engine without consumers stops."""
+"""The step at which an engine without a budget stops."""
 
-_CREDIT_STEP_BITS = 46
-_NO_CREDITS = memoryview(bytes(8 * CONSUMERS)).cast("q")
+_BUDGET_STEP_BITS = 46
 
 # Words of a slot's head.
 (SEQ_BEGIN, SEQ_END, SLOT_STEP, EPOCH_STEP, EPOCH_NS, STEP_PS, USED_LINKS, USED_JOINTS,
@@ -84,9 +90,9 @@ class Clock(NamedTuple):
         return self.epoch_ns + (step - self.epoch_step) * self.step_ps // 1000
 
 
-def credit_word(clock_sets: int, step: int) -> int:
-    """The credit up to `step`, for the clock that was set for the `clock_sets`-th time."""
-    return (clock_sets & 0x7FFF) << _CREDIT_STEP_BITS | (step + 1)
+def budget_word(settings: int, step: int) -> int:
+    """The budget up to `step`, for one setting of the world."""
+    return (settings & 0x7FFF) << _BUDGET_STEP_BITS | (step + 1)
 
 
 def picoseconds(step_size: float) -> int:
@@ -166,27 +172,22 @@ class RingWriter:
     def __init__(self, fd: Optional[int] = None, memory: Optional[Memory] = None) -> None:
         self.memory = memory or Memory(fd)
         self.words = self.memory.words
-        self._credits = self.words[CREDITS:CREDITS + CONSUMERS]
 
     def set_step(self, step: int) -> None:
         """The world is `step` steps old; the latest slot still holds unless a new one follows."""
         self.words[STEP] = step
 
-    def credit_limit(self, clock_sets: int, since: int) -> int:
-        """The smallest step that the consumers allow; NO_LIMIT without consumers.
+    def step_limit(self, settings: int, since: int) -> int:
+        """The step that the budget allows; NO_LIMIT without a budget.
 
-        A credit that was given for an earlier setting of the clock allows no step after `since`,
-        the step at which the clock was set.
+        A budget for an earlier setting allows no step after `since`, the step of the last setting.
         """
-        limit = NO_LIMIT
-        if self._credits == _NO_CREDITS:
-            return limit
-        for word in self._credits:
-            if word:
-                valid = word >> _CREDIT_STEP_BITS == clock_sets & 0x7FFF
-                allowed = (word & (1 << _CREDIT_STEP_BITS) - 1) - 1 if valid else since
-                limit = min(limit, allowed)
-        return limit
+        word = self.words[STEP_BUDGET]
+        if not word:
+            return NO_LIMIT
+        if word >> _BUDGET_STEP_BITS != settings & 0x7FFF:
+            return since
+        return (word & (1 << _BUDGET_STEP_BITS) - 1) - 1
 
     def write(self, step: int, clock: Clock, links: Buffer, joints: Buffer,
               applied: int = 0) -> int:

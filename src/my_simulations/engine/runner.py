@@ -24,7 +24,6 @@ from .commands import (
     Clear,
     Command,
     EndAdvance,
-    Nudge,
     Pause,
     PhysicsSettings,
     Ping,
@@ -32,6 +31,7 @@ from .commands import (
     SetClock,
     SetPhysics,
 )
+from .host_sync import HostSync
 from .ring import (
     BELL,
     CLOCK_SETS,
@@ -53,7 +53,7 @@ from .timed_forces import AddTimedForces
 _BURST_S = 0.0008        # bursts between two looks at the commands
 _MAX_DEBT_S = 0.2        # a world that is later than this has given up the rest
 _IDLE_S = 2.0            # heartbeat while paused
-_MEETING_S = 0.02        # between two looks at credits while a consumer works; nudges come earlier
+_SYNC_S = 0.02           # between two looks at the budget while the host works; it notifies earlier
 _MAKE_UP_S = 0.05        # of read-outs that somebody waits for, after a delay
 _SHARE_ON_TIME = 0.25    # of the wall time for read-outs nobody waits for, while on schedule
 _SHARE_LATE = 0.02       # the same while late or unthrottled
@@ -80,6 +80,9 @@ class CommandChannel(Protocol):
     def bell(self) -> None:
         """Wake whoever waits for the next step."""
 
+    def notify(self) -> None:
+        """Wake the host of plugins."""
+
 
 class Runner:
     """The engine's loop."""
@@ -96,14 +99,15 @@ class Runner:
         self._running = False
         self._horizon = 0
         self._horizon_written = -1
-        self._clock_sets = self._words[CLOCK_SETS] + 1  # a new engine: old credits do not count
-        self._clock_set_at = 0
+        self._clock_sets = self._words[CLOCK_SETS] + 1  # in a new engine it is another clock
+        self._sync = HostSync(writer, backend, channel.notify)
         self._limit = NO_LIMIT
-        # Setting of the clock and step of the last meeting: none before the clock is set, since the
-        # last states must stay readable for who puts them back.
-        self._met = (self._clock_sets, self._step)
-        # The same of the newest snapshot: that of an earlier engine is the one to restore.
-        self._shown = self._met
+        # The settings and step that the host was notified of: none before the clock is set, since
+        # the last states must stay readable for who puts them back.
+        self._synchronized = (self._sync.settings, self._step)
+        # Setting of the clock and step of the newest snapshot: that of an earlier engine is the one
+        # to restore.
+        self._shown = (self._clock_sets, self._step)
         self._advance: Optional[Tuple[int, int]] = None  # (command number, last step)
         self._ended: List[int] = []  # numbers of advances that were ended early, to be answered
         self._due = 0.0
@@ -125,14 +129,18 @@ class Runner:
         try:
             while True:
                 self._words[HEARTBEAT] += 1
-                self._limit = self._writer.credit_limit(self._clock_sets, self._clock_set_at)
-                if self._step >= self._limit and self._meet():
+                if self._sync.records.next_step <= self._step and not self._record():
+                    continue
+                self._sync.report_records(at_once=False)
+                self._limit = self._sync.limit()
+                if self._step >= self._limit and self._synchronize():
                     continue
                 if self._advance is not None:
                     self._serve(0.0)
                     self._advance_burst()
                 elif not self._running or self._step >= self._horizon:
                     self._write_at_horizon()
+                    self._sync.report_records()
                     self._serve(_IDLE_S)
                 elif self._settings.rate > 0.0:
                     self._paced_step()
@@ -143,19 +151,26 @@ class Runner:
         except EOFError:
             return
 
-    def _meet(self) -> bool:
-        """Tell the consumers, once, that the engine stands at a credit; wait if steps are wanted.
+    def _record(self) -> bool:
+        """Write the record of this step; False if that must wait for the host."""
+        if self._sync.record(self._step, self._clock_sets, self._clock):
+            return True
+        self._serve(_SYNC_S)
+        return False
+
+    def _synchronize(self) -> bool:
+        """Notify the host, once, that the engine waits for it; wait if steps are wanted.
 
         False while paused: then there is nothing to wait for.
         """
-        here = (self._clock_sets, self._step)
-        if self._met != here:
-            self._met = here
+        here = (self._sync.settings, self._step)
+        if self._synchronized != here:
+            self._synchronized = here
             self._write(force=True)
-            self._channel.event(Event("meeting", "", step=self._step))
+            self._sync.wait_at(self._step)
         if self._advance is None and not (self._running and self._step < self._horizon):
             return False
-        self._serve(_MEETING_S)
+        self._serve(_SYNC_S)
         return True
 
     # -- commands --------------------------------------------------------------------------------
@@ -165,9 +180,9 @@ class Runner:
         received = self._channel.receive(timeout)
         if not received:
             return False
-        commands = [pair for pair in received if not isinstance(pair[1], Nudge)]
+        commands = [pair for pair in received if pair[0] > 0]
         if not commands:
-            return True
+            return True   # only a notification
         answers: List[Tuple[int, object, str]] = []
         for number, command in commands:
             if isinstance(command, Batch):
@@ -206,6 +221,7 @@ class Runner:
             if error:
                 break
             self._applied = number
+        self._limit = self._sync.limit()   # some commands change it
         sequence = self._write(force=True)
         answers[:0] = [(number, self._step, "") for number in self._ended]
         self._ended.clear()
@@ -241,7 +257,8 @@ class Runner:
             return None
         if isinstance(command, (EndAdvance, Clear)):
             self._end_advance()
-        if isinstance(command, (EndAdvance, Ping)):
+        if (isinstance(command, (EndAdvance, Ping))
+                or self._sync.take(command, self._step, self._clock)):
             return None
         if isinstance(command, SetPhysics):
             self._configure(command.settings)
@@ -251,7 +268,9 @@ class Runner:
             return None
         if isinstance(command, AddTimedForces) and command.whole:
             command = AddTimedForces(tuple(force.begun(self._step) for force in command.forces))
-        return self._backend.apply(command)
+        value = self._backend.apply(command)
+        self._sync.note(command, self._step)
+        return value
 
     def _apply_batch(self, number: int, batch: Batch) -> List[object]:
         values: List[object] = []
@@ -275,7 +294,7 @@ class Runner:
             self._advance = (number, command.step + last - self._step)
         self._step = command.step
         self._clock = Clock(command.step, command.sim_ns, picoseconds(self._settings.step_size))
-        self._end_credits()
+        self._change_clock()
 
     def _configure(self, settings: PhysicsSettings) -> None:
         if not 0.0 < settings.step_size <= 10.0:
@@ -283,16 +302,17 @@ class Runner:
         if settings.step_size != self._settings.step_size:
             now = self._clock.sim_ns(self._step)
             self._clock = Clock(self._step, now, picoseconds(settings.step_size))
-            self._end_credits()
+            self._change_clock()
         if settings.rate != self._settings.rate:
             self._due = time.perf_counter()
         self._settings = settings
         self._backend.configure(settings)
 
-    def _end_credits(self) -> None:
-        """The clock is another: appointments must be made anew before the next step."""
+    def _change_clock(self) -> None:
+        """The clock is another: the host must give a new budget before the next step."""
         self._clock_sets += 1
-        self._clock_set_at = self._limit = self._step
+        self._sync.change_settings(self._step)
+        self._sync.records.set_clock(self._step, self._clock)
 
     # -- stepping --------------------------------------------------------------------------------
 
@@ -312,13 +332,33 @@ class Runner:
             now = time.perf_counter()
         if self._step >= self._limit:
             return
-        self._backend.step(self._step, 1)
-        self._step += 1
-        self._step_cost += 0.1 * (time.perf_counter() - now - self._step_cost)
-        self._words[STATUS] = STATUS_RUNNING
-        self._due = max(self._due + 1.0 / self._settings.rate, now - _MAX_DEBT_S)
+        made = self._make_steps(self._late_steps(now))
+        if not made:
+            return   # a record waits for room
+        self._step_cost += 0.1 * ((time.perf_counter() - now) / made - self._step_cost)
+        self._due = max(self._due + made / self._settings.rate, now - _MAX_DEBT_S)
         late = self._due < time.perf_counter()
         self._after_steps(_SHARE_LATE if late else _SHARE_ON_TIME)
+
+    def _late_steps(self, now: float) -> int:
+        """How many steps are due; a row of them costs much less than each by itself."""
+        late = int((now - self._due) * self._settings.rate)
+        return max(1, min(1 + late, int(_BURST_S / max(self._step_cost, 1e-6)),
+                          self._horizon - self._step, self._limit - self._step))
+
+    def _make_steps(self, count: int) -> int:
+        """Make steps and write the records that are due; returns how many there was room for."""
+        self._sync.go_on()
+        self._words[STATUS] = STATUS_RUNNING
+        left, records = count, self._sync.records
+        while left > 0 and self._step < records.next_step:
+            row = min(left, records.next_step - self._step)
+            self._backend.step(self._step, row)
+            self._step += row
+            left -= row
+            if records.next_step <= self._step:
+                self._sync.record(self._step, self._clock_sets, self._clock)
+        return count - left
 
     def _linger(self) -> None:
         """While steps are heavy, serve a row of commands without a step between each two.
@@ -358,22 +398,22 @@ class Runner:
         count = min(self._burst, min(last, self._limit) - self._step)
         if count > 0:
             self._burst_of(count)
-        # Who has an appointment at the last step acts before the answer.
-        if self._step < last or self._step >= self._limit:
+        # The host acts at the last step, and that step is recorded, before the answer.
+        if (self._step < last or self._step >= self._limit
+                or self._sync.records.next_step <= self._step):
             self._after_steps(_SHARE_LATE)
             return
         self._advance = None
+        self._sync.report_records()
         sequence = self._write(force=True)
         self._channel.reply(number, Reply(self._step, sequence, self._step))
         self._report_events()
 
     def _burst_of(self, count: int) -> None:
         started = time.perf_counter()
-        self._backend.step(self._step, count)
-        self._step += count
-        self._words[STATUS] = STATUS_RUNNING
+        made = self._make_steps(count)
         took = time.perf_counter() - started
-        if count == self._burst:
+        if made == self._burst:
             fit = int(count * _BURST_S / max(took, 1e-9))
             self._burst = max(1, min(fit, self._burst * 2, 1000))
 

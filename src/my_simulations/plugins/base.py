@@ -1,8 +1,8 @@
 """The base class of plugins.
 
-A plugin is made once for each `<plugin>` element of a model or sensor. It reads its parameters and
-makes its appointments, topics and handles in `load`; what it does later happens in the functions
-that it handed to the context.
+A plugin is made once for each `<plugin>` element of a model or sensor. In `load` it reads its
+parameters, schedules calls, and makes topics and handles. Later the functions run that it handed to
+the context.
 """
 from __future__ import annotations
 
@@ -21,14 +21,14 @@ class Plugin:
         self.context = context
 
     def load(self) -> None:
-        """Read parameters, find joints, offer topics, make appointments."""
+        """Read parameters, find joints, offer topics, schedule calls."""
         raise NotImplementedError
 
     def reset(self) -> None:
         """The world was reset: models are where they began, at rest, and motors are off."""
 
     def clock_set(self) -> None:
-        """Sim time was set, to an earlier one perhaps; appointments have been made anew."""
+        """Sim time was set, to an earlier one perhaps; calls are scheduled again."""
 
     def close(self) -> None:
         """The model is being deleted, or the program ends. Topics are closed afterwards."""

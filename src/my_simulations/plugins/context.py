@@ -2,7 +2,7 @@
 
 Poses and twists are in the world frame; twists are at the link's (or model's) origin, in world
 axes. Lengths in m, angles in rad, times in s of sim time. All calls of a plugin come from one
-thread, with the world standing still at the step they belong to.
+thread, and see the world as it is at the step they belong to.
 """
 from __future__ import annotations
 
@@ -71,8 +71,8 @@ class Joint(Protocol):
         """rad/s or m/s."""
 
     @property
-    def puts(self) -> int:
-        """Changes where somebody puts the joint somewhere: before it is there, and after that."""
+    def puts(self) -> float:
+        """How often the joint was put somewhere; -1 outside of an observation."""
 
     def drive(self, rate: float, effort: float) -> None:
         """Turn the motor: to `rate` with `effort` at most; 0 effort turns it off."""
@@ -158,8 +158,36 @@ class Context(Protocol):
     def every(self, hertz: float, call: Callable[[], None]) -> "Ending":
         """Be called at a rate in Hz of sim time, the first time one period from now.
 
-        0 or less is every step. The appointments are exact to the step and never drift. `end` of
+        0 or less is every step. The calls are exact to the step and never drift. `end` of
         what is returned ends them.
+        """
+
+    def observe(self, hertz: float, call: Callable[[], None],
+                topics: "Sequence[Publication]" = (), *, lead: float = 0.0,
+                resume: Optional[Callable[[], None]] = None, transforms: bool = False,
+                remembers: bool = False,
+                contacts: bool = False, efforts: Sequence[str] = (),
+                wrenches: Sequence[str] = (), world: bool = False) -> "Ending":
+        """Follow the world at a rate in Hz of sim time, without stopping it.
+
+        As `every`, but `call` comes some milliseconds after the step, while the world goes on. The
+        context then shows that step: its time, the model's pose, and the links and joints that the
+        plugin has looked up before. `call` can publish, but not act.
+
+        Args:
+            hertz: 0 or less is every step.
+            call: the function.
+            topics: the topics that it publishes. While none of them has a subscriber, it is not
+                called; the steps stay those of the rate. Without topics it is always called.
+            lead: s by which each step of the rate is earlier.
+            resume: called instead of `call` at the first step after a time without subscribers.
+            transforms: it broadcasts to tf, and is also called while tf has a subscriber.
+            remembers: what it publishes depends on earlier calls: it is called without
+                subscribers, too, though later and in larger groups.
+            contacts: it reads `contacts`.
+            efforts: joints that it reads `efforts` of.
+            wrenches: joints that it reads `joint_wrench` of.
+            world: it scans or photographs the world.
         """
 
     def once(self, ns: int, call: Callable[[], None]) -> "Ending":

@@ -72,8 +72,12 @@ class Graph(Protocol):
     def stamp(self, ns: int) -> Any:
         """A time as messages have it."""
 
-    def publish(self, name: str, kind: str, queue: int, latch: bool) -> Topic:
-        """Offer a topic. Raises MissingTypeError."""
+    def publish(self, name: str, kind: str, queue: int, latch: bool,
+                changed: Callable[[], None]) -> Topic:
+        """Offer a topic; `changed` is called, in any thread, when subscribers come or go.
+
+        Raises MissingTypeError.
+        """
 
     def subscribe(self, name: str, kind: str, call: Callable[[Any], None], queue: int) -> Closing:
         """Hear a topic; `call` comes from another thread. Raises MissingTypeError."""
@@ -89,6 +93,13 @@ class Graph(Protocol):
 
     def search_parameter(self, namespace: str, name: str, default: Any) -> Any:
         """A parameter of a namespace or of the next one above that has it."""
+
+    def offer_transforms(self, changed: Callable[[], None]) -> None:
+        """Offer tf; `changed` as for `publish`. Does nothing if it is offered already."""
+
+    @property
+    def transforms_wanted(self) -> bool:
+        """Whether tf has a subscriber."""
 
     def send_transforms(self, transforms: List[TransformOf], ns: int) -> None:
         """Broadcast to tf, as of a sim time."""

@@ -1,8 +1,9 @@
 """Runs the plugins of all models of a simulator, in one thread.
 
-The host has appointments with the engine: while it works, the world stands at a step. What plugins
-order (motors, velocities) is sent to the engine in one command; then the engine goes on, and only
-then messages are published, so that publishing costs no sim time.
+Plugins that only read follow the engine by its records (`observations.py`). For plugins that act
+the engine waits at exact steps: what they order (motors, velocities) is sent to the engine in one
+command; then the engine goes on, and only then messages are published, so that publishing costs no
+sim time.
 """
 from __future__ import annotations
 
@@ -10,22 +11,24 @@ import contextlib
 import threading
 import traceback
 from collections import deque
-from typing import Any, Callable, Deque, Dict, Iterable, List, Optional, Tuple
+from typing import Any, Callable, Deque, Dict, List, Optional, Tuple
 
 from ..errors import CommandError, Issue, Severity, warning
-from ..simulator.appointments import Consumer, Moment
 from ..simulator.entity import Entity
 from ..simulator.scene_sensing import SceneSensing
 from ..simulator.simulator import Simulator
+from ..simulator.sync_points import Moment
 from .call_watch import PATIENCE, CallOverdue, CallWatch, Patience
 from .context import PluginError
 from .found_plugins import Found
-from .graph import Graph, Topic, TopicUse
-from .message_maker import Later, MessageMaker
+from .graph import Graph, TopicUse
+from .observations import Observation, Observations, StepView
 from .order_sender import send_orders
+from .outgoing import Outgoing
+from .record_handover import RecordHandover
 from .registry import PluginRegistry, UnknownPluginError, library_name
 from .running import ModelPlugins, Running
-from .schedule import Appointment, Schedule
+from .schedule import Schedule, ScheduledCall
 from .simulated_context import Shared, SimulatedContext
 from .step_readings import StepReadings
 
@@ -49,23 +52,29 @@ class PluginHost:
                  log: Callable[[Issue], None], patience: Patience = PATIENCE) -> None:
         self._simulator, self._graph, self._registry, self._log = simulator, graph, registry, log
         self._scene, self._schedule = SceneSensing(simulator, log), Schedule()
-        self._shared = Shared(simulator, graph, log, self._scene, self._schedule,
-                              StepReadings(simulator, self._schedule))
-        self._messages = MessageMaker()
+        self._sync, self._observations = simulator.sync_points, Observations()
+        view = StepView(simulator.states, lambda: simulator.feed.states()[2])
+        self._records = RecordHandover(self._sync, self._observations, view, self._schedule)
+        readings = StepReadings(simulator, self._schedule, view)
+        self._shared = Shared(simulator, graph, log, self._scene, self._schedule, readings,
+                              self._observations, view, self._look_at_subscribers)
+        self._outgoing = Outgoing(graph)
         self._models = ModelPlugins(simulator, self._rebind)
         self._running: Dict[SimulatedContext, Running] = {}
         # Plugins that something has come for, and those whose orders and messages are to be taken.
         self._rung: Deque[Running] = deque()
         self._touched: Dict[SimulatedContext, Running] = {}
-        self._due: Deque[Appointment] = deque()
+        self._due: Deque[ScheduledCall] = deque()
         self._told: Dict[str, bool] = {}
         self._revision = -1
         self._world_resets = simulator.resets.world_resets
         self._simulation_resets = simulator.resets.simulation_resets
         self._settled = threading.Condition()
         self._stop = threading.Event()
-        self._consumer: Optional[Consumer] = None
-        self._wake = threading.Event()
+        self._by_hand = simulator.clock.by_hand
+        self._attached = False       # the engine keeps to the step budget
+        self._delivering = False     # what has come is taken, and its effect not yet ordered
+        self._settings: Optional[int] = None
         self._moment: Optional[Moment] = None
         self._patience = patience
         self._watch = CallWatch(self._go_on_without)
@@ -90,10 +99,12 @@ class PluginHost:
 
     def wake(self) -> None:
         """Have the thread look at what has changed."""
-        consumer = self._consumer
-        if consumer is not None:
-            consumer.rung.set()
-        self._wake.set()
+        self._sync.notify()
+
+    def _look_at_subscribers(self) -> None:
+        """Have the thread find out which topics are wanted; from any thread."""
+        self._observations.changed = True
+        self.wake()
 
     def stop(self) -> None:
         """End all plugins."""
@@ -108,8 +119,16 @@ class PluginHost:
 
     @property
     def unheard(self) -> bool:
-        """Whether something has come for a plugin that was not handed over yet."""
-        return any(running.context.inbox for running in self._models.all())
+        """Whether something has come whose effect is not ordered yet."""
+        return self._delivering or self._observations.changed or any(
+            running.context.inbox for running in self._models.all())
+
+    def _deliver_all(self) -> None:
+        """Wait until all that has come is handed over, and its effect is ordered."""
+        if self._by_hand != self._simulator.clock.by_hand:
+            self._look_at_subscribers()
+        with self._settled:
+            self._settled.wait_for(lambda: not self.unheard or self._stop.is_set(), _SETTLE_S)
 
     # -- the thread --------------------------------------------------------------------------------
 
@@ -120,6 +139,7 @@ class PluginHost:
                     self._turn()
                 except CommandError as fault:  # the engine is being replaced, or the world ends
                     self._log(warning("plugin-turn", f"plugins missed their turn: {fault}"))
+                    self._end_deliveries(settled=False)
                 self._rest()
             self._models.end_all()
             self._end_leaving()
@@ -133,10 +153,10 @@ class PluginHost:
         self._stop.set()
         self._watch.stop()
         self._scene.close()
-        self._messages.stop()
-        if self._consumer is not None:
-            self._consumer.leave()
-            self._consumer = None
+        self._outgoing.stop()
+        if self._attached:
+            self._sync.detach()
+            self._attached = False
         with self._settled:
             self._settled.notify_all()
 
@@ -148,48 +168,62 @@ class PluginHost:
         self._thread.start()
 
     def _rest(self) -> None:
-        if self._consumer is not None:
-            self._consumer.wait(_LOOK_S)
-        else:
-            self._wake.wait(_LOOK_S)
-            self._wake.clear()
+        if not self._sync.wait(_LOOK_S):
+            self._observations.changed = True   # graphs need not report subscribers
 
     def _turn(self) -> None:
         """Look at the world once, and do what is due."""
         while self._overdue:
             running, why = self._overdue.popleft()
             self._switch_off(running, f"{why}; its thread was left behind")
+        if self._by_hand != self._simulator.clock.by_hand:   # observations may depend on it
+            self._by_hand = not self._by_hand
+            self._observations.changed = True
+        settings, moment = self._sync.settings, self._sync.now()
+        self._records.hand_over(self._hand_over)
+        if settings != self._settings:
+            self._sync.finish_changes()
         self._follow_models()
-        moment = self._simulator.appointments.now()
         self._schedule.set_moment(moment)
         self._notice_resets(moment)
         while self._rung:
+            self._delivering = True
             self._deliver(self._rung.popleft())
-        self._serve()
+        if self._sync.waits_at(moment):
+            self._serve()
         self._scene.send()
         if self._touched:
             self._give_orders()
-        self._go_on(moment)
+        settled = self._go_on(settings, moment)
+        self._end_deliveries(settled)
         if self._touched:
             self._publish()
-        if self._revision != self._models.revision:
-            with self._settled:
+
+    def _end_deliveries(self, settled: bool) -> None:
+        with self._settled:
+            self._delivering = False
+            if settled:
                 self._revision = self._models.revision
-                self._settled.notify_all()
+            self._settled.notify_all()
+
+    def _hand_over(self, observation: Observation) -> None:
+        running = self._running.get(observation.owner)
+        if running is not None and running.plugin is not None:
+            self._guarded(running, observation.call)
 
     def _at_work(self) -> List[Running]:
         return [one for one in self._models.all() if one.plugin is not None]
 
     def _serve(self) -> None:
-        """Call whose appointment it is."""
+        """Make the calls that are due."""
         self._due += self._schedule.take_due()
         while self._due:
-            appointment = self._due.popleft()
-            running = self._running.get(appointment.owner)
-            if running is not None and running.plugin is not None and not appointment.ended:
-                if appointment.single:
-                    appointment.end()
-                self._guarded(running, appointment.call)
+            scheduled = self._due.popleft()
+            running = self._running.get(scheduled.owner)
+            if running is not None and running.plugin is not None and not scheduled.ended:
+                if scheduled.single:
+                    scheduled.end()
+                self._guarded(running, scheduled.call)
 
     def _give_orders(self) -> None:
         """What plugins have ordered, in one command, for the models that there are now."""
@@ -197,38 +231,38 @@ class PluginHost:
                 self._simulator, list(self._touched), self._models.revision):
             self._follow_models()
 
-    def _go_on(self, moment: Moment) -> None:
-        """Let the engine run to the next appointment of anybody."""
-        step = self._schedule.next_step
-        if step is not None and self._consumer is None:
-            self._consumer = self._simulator.appointments.join()
-            moment = self._consumer.now()
-            self._schedule.set_moment(moment)
+    def _go_on(self, settings: int, moment: Moment) -> bool:
+        """Let the engine run to the next step at which a plugin acts.
+
+        False if that must wait until the engine stops for the first time.
+        """
+        if not self._running:
+            if self._attached:
+                self._sync.detach()
+                self._attached = False
+            return True
+        if not self._attached:
+            self._sync.attach(self._deliver_all)
+            self._attached, self._settings = True, None
+        if self._settings is None:
+            if not self._sync.waits_at(moment):
+                return False
             self._schedule.make_anew(self._clock_was_set(moment))
-            step = self._schedule.next_step
-        if self._consumer is not None and step is not None:
-            self._consumer.allow(moment, step)
-        elif self._consumer is not None:
-            self._consumer.leave()
-            self._consumer = None
-        self._moment = moment
+        if settings != self._settings or self._observations.changed:
+            rules = self._observations.new_rules(self._graph.transforms_wanted,
+                                                 settings != self._settings)
+            if rules is not None:
+                self._sync.set_rules(rules)
+        self._sync.allow(settings, self._schedule.next_step)
+        self._moment, self._settings = moment, settings
+        return True
 
     def _clock_was_set(self, moment: Moment) -> bool:
         return self._moment is not None and moment.clock_sets != self._moment.clock_sets
 
     def _publish(self) -> None:
         touched, self._touched = self._touched, {}
-        transforms = []
-        for context, running in touched.items():
-            graph = context.graph
-            if graph.outbox:
-                outbox, graph.outbox = graph.outbox, []
-                self._guarded(running, self._send, running, outbox)
-            if graph.transforms:
-                transforms += graph.transforms
-                graph.transforms = []
-        if transforms:
-            self._graph.send_transforms(transforms, self._schedule.sim_ns)
+        self._outgoing.send(touched, self._guarded, self._failing)
 
     def _ring(self, running: Running) -> None:
         """Have the thread look into a plugin's inbox."""
@@ -244,13 +278,6 @@ class PluginHost:
             running.context.inbox.append(again)
             self._ring(running)
         return fail
-
-    def _send(self, running: Running, messages: Iterable[Tuple[Topic, Any]]) -> None:
-        for topic, message in messages:
-            if isinstance(message, Later):
-                self._messages.put(topic, message, self._failing(running))
-            else:
-                topic.send(message)
 
     def _deliver(self, running: Running) -> None:
         inbox = running.context.inbox
@@ -306,7 +333,7 @@ class PluginHost:
         except UnknownPluginError as unknown:
             self._tell_unknown(found, entity, str(unknown))
             return
-        self._schedule.set_moment(self._simulator.appointments.now())
+        self._schedule.set_moment(self._sync.now())
         self._guarded(running, running.plugin.load, patience=self._patience.longer())
 
     def _tell_unknown(self, found: Found, entity: Entity, text: str) -> None:

@@ -1,9 +1,12 @@
 """Finds the links and joints of a model by the names that a plugin uses."""
 from __future__ import annotations
 
-from typing import Container, Iterable, Optional
+from typing import Callable, Container, Iterable, List, Optional
 
 from ..description.model import Joint as JointSpec
+from ..description.model import Model
+from ..description.transmission import Transmission
+from ..errors import InputError
 from ..simulator.entity import Entity
 from .context import PluginError
 
@@ -58,6 +61,23 @@ class ModelRows:
         if row is None:
             raise PluginError(f"joint '{joint}' of model '{self.entity.model.name}' does not move")
         return row
+
+
+def transmissions_of(model: Model, parameter: str,
+                     read: Callable[[], object]) -> List[Transmission]:
+    """The transmissions of a model, else of the URDF in a parameter that `read` returns.
+
+    Raises PluginError for URDF that cannot be read.
+    """
+    text = "" if model.transmissions else read()
+    if not isinstance(text, str) or not text.strip():
+        return model.transmissions
+    from ..formats.urdf import transmission
+
+    try:
+        return transmission.transmissions_of(text, f"parameter {parameter}")
+    except InputError as fault:
+        raise PluginError(str(fault)) from fault
 
 
 def _list(names: Iterable[str]) -> str:

@@ -1,4 +1,4 @@
-"""Noise that a run repeats: drawn from a counter, keyed by seed and by who draws."""
+"""Noise that a run repeats: drawn by sim time, keyed by seed and by the plugin that draws."""
 from __future__ import annotations
 
 import hashlib
@@ -8,7 +8,8 @@ from typing import List
 
 
 class WhiteNoise:
-    """Gaussian noise without a mean. The n-th draw is the same in every run with the same seed.
+    """Gaussian noise without a mean. The draw at a sim time is the same in every run with the same
+    seed, whatever was drawn before.
 
     Args:
         seed: of the world.
@@ -19,21 +20,15 @@ class WhiteNoise:
     def __init__(self, seed: int, who: str, stddev: float) -> None:
         self._key = f"{seed}\0{who}".encode()
         self._stddev = stddev
-        self._drawn = 0
 
-    def reset(self) -> None:
-        """The draws begin anew, so that a run after a reset repeats the one before."""
-        self._drawn = 0
-
-    def draw(self, count: int) -> List[float]:
-        """Some numbers, by Box and Muller."""
+    def draw(self, count: int, ns: int) -> List[float]:
+        """Some numbers for a sim time (ns), by Box and Muller."""
         if self._stddev <= 0.0:
             return [0.0] * count
-        self._drawn += 1
         found: List[float] = []
         while len(found) < count:
             digest = hashlib.blake2b(self._key, digest_size=16, salt=struct.pack(
-                "=QQ", self._drawn, len(found))).digest()
+                "=qQ", ns, len(found))).digest()
             one, other = (word / 2.0 ** 64 for word in struct.unpack("=QQ", digest))
             radius = self._stddev * math.sqrt(-2.0 * math.log(1.0 - one))
             found += [radius * math.cos(2.0 * math.pi * other),

@@ -4,11 +4,12 @@ from __future__ import annotations
 import heapq
 from typing import Any, Callable, List, Optional, Tuple
 
-from ..simulator.appointments import Moment, Rate
+from ..engine.rates import Rate
+from ..simulator.sync_points import Moment
 from ..simulator.wrenches import first_step
 
 
-class Appointment:
+class ScheduledCall:
     """Something that is called at a rate, or once.
 
     Attributes:
@@ -37,7 +38,7 @@ class Appointment:
 
 
 class Schedule:
-    """All appointments, the next first; of those at one step the one that was made first.
+    """All calls to come, the next first; of those at one step the one that was made first.
 
     Attributes:
         moment: where the world stands; None before the first look at it.
@@ -47,42 +48,42 @@ class Schedule:
     def __init__(self) -> None:
         self.moment: Optional[Moment] = None
         self.sim_ns = 0
-        self._heap: List[Tuple[int, int, Appointment]] = []
+        self._heap: List[Tuple[int, int, ScheduledCall]] = []
         self._made = 0
 
     def set_moment(self, moment: Moment) -> None:
         """The world stands there now."""
         self.moment, self.sim_ns = moment, moment.sim_ns
 
-    def every(self, owner: Any, hertz: float, call: Callable[[], None]) -> Appointment:
+    def every(self, owner: Any, hertz: float, call: Callable[[], None]) -> ScheduledCall:
         """A call at a rate in Hz; 0 or less is every step."""
-        return self._add(Appointment(owner, Rate(hertz), call))
+        return self._add(ScheduledCall(owner, Rate(hertz), call))
 
-    def once(self, owner: Any, ns: int, call: Callable[[], None]) -> Appointment:
+    def once(self, owner: Any, ns: int, call: Callable[[], None]) -> ScheduledCall:
         """One call, in the first step from now on that does not begin before a sim time."""
-        return self._add(Appointment(owner, None, call, ns))
+        return self._add(ScheduledCall(owner, None, call, ns))
 
-    def _add(self, made: Appointment) -> Appointment:
+    def _add(self, made: ScheduledCall) -> ScheduledCall:
         self._made += 1
         self._put(self._made, made)
         return made
 
-    def _put(self, number: int, appointment: Appointment) -> None:
-        due = appointment.next(self.moment) if self.moment is not None else 0
-        heapq.heappush(self._heap, (due, number, appointment))
+    def _put(self, number: int, scheduled: ScheduledCall) -> None:
+        due = scheduled.next(self.moment) if self.moment is not None else 0
+        heapq.heappush(self._heap, (due, number, scheduled))
 
-    def take_due(self) -> List[Appointment]:
+    def take_due(self) -> List[ScheduledCall]:
         """Those that are due now; those of a rate are due again when that says so."""
         assert self.moment is not None
-        found: List[Tuple[int, Appointment]] = []
+        found: List[Tuple[int, ScheduledCall]] = []
         while self._heap and self._heap[0][0] <= self.moment.step:
-            _, number, appointment = heapq.heappop(self._heap)
-            if not appointment.ended:
-                found.append((number, appointment))
-        for number, appointment in found:
-            if not appointment.single:
-                self._put(number, appointment)
-        return [appointment for _, appointment in sorted(found, key=lambda one: one[0])]
+            _, number, scheduled = heapq.heappop(self._heap)
+            if not scheduled.ended:
+                found.append((number, scheduled))
+        for number, scheduled in found:
+            if not scheduled.single:
+                self._put(number, scheduled)
+        return [scheduled for _, scheduled in sorted(found, key=lambda one: one[0])]
 
     @property
     def next_step(self) -> Optional[int]:
@@ -94,14 +95,14 @@ class Schedule:
     def make_anew(self, clock_was_set: bool) -> None:
         """Count from `moment` on; with another clock, what was to be done once is over."""
         before, self._heap = self._heap, []
-        for _, number, appointment in before:
-            if appointment.single and clock_was_set:
-                appointment.end()
-            if not appointment.ended:
-                self._put(number, appointment)
+        for _, number, scheduled in before:
+            if scheduled.single and clock_was_set:
+                scheduled.end()
+            if not scheduled.ended:
+                self._put(number, scheduled)
 
     def end_all(self, owner: Any) -> None:
-        """End the appointments of one owner."""
-        for _, _, appointment in self._heap:
-            if appointment.owner is owner:
-                appointment.end()
+        """End the calls of one owner."""
+        for _, _, scheduled in self._heap:
+            if scheduled.owner is owner:
+                scheduled.end()

@@ -45,11 +45,14 @@ class SensingRequests:
         inbox: of the plugin; functions that hand answers over are put there.
         wake: have somebody look into the inbox.
         warn: tells the user.
+        answered: called when a scan or pictures are there, or have failed.
     """
 
     def __init__(self, scene: SceneSensing, inbox: Deque[Callable[[], None]],
-                 wake: Callable[[], None], warn: Callable[[str], None]) -> None:
+                 wake: Callable[[], None], warn: Callable[[str], None],
+                 answered: Callable[[], None] = lambda: None) -> None:
         self._scene, self._inbox, self._wake, self._warn = scene, inbox, wake, warn
+        self._answered = answered
         self._scan: Optional[_Scan] = None
         self._shots: Dict[str, _Shot] = {}
         self._unsent: Dict[str, Deque[None]] = {}
@@ -65,6 +68,11 @@ class SensingRequests:
         self._shots.clear()
 
     @property
+    def is_busy(self) -> bool:
+        """Whether a scan or pictures are on their way."""
+        return self._scan is not None or bool(self._shots)
+
+    @property
     def unsent(self) -> "Deque[None]":
         """A mark for each message that is being made of the stream that is handed over now."""
         return self._unsent.setdefault(self._stream, deque())
@@ -72,10 +80,13 @@ class SensingRequests:
     # -- rays ------------------------------------------------------------------------------------
 
     def scan(self, mount: Mount, fan: RayFan, visuals: bool,
-             call: Callable[[RayReturns, int], None], ns: int) -> None:
-        """Cast rays, after the answer to those before has been handed over."""
+             call: Callable[[RayReturns, int], None], ns: int, rows: bytes) -> None:
+        """Cast rays, after the answer to those before has been handed over.
+
+        `rows`: of all links, as of `ns`.
+        """
         self._end_scan(self._scan)
-        scan = self._scan = _Scan(self._scene.cast(mount, fan, visuals, ns), call, ns)
+        scan = self._scan = _Scan(self._scene.cast(mount, fan, visuals, ns, rows), call, ns)
         scan.future.add_done_callback(lambda _: self._hear(lambda: self._end_scan(scan)))
 
     def _hear(self, call: Callable[[], None]) -> None:
@@ -86,6 +97,7 @@ class SensingRequests:
         if scan is None or scan is not self._scan:
             return
         self._scan = None
+        self._answered()
         if not scan.future.done():
             self._scene.send()
         try:
@@ -98,7 +110,7 @@ class SensingRequests:
     # -- pictures --------------------------------------------------------------------------------
 
     def photograph(self, views: Sequence[Tuple[Mount, View]],
-                   call: Callable[[List[Pictures], int], None], ns: int, wait: bool,
+                   call: Callable[[List[Pictures], int], None], ns: int, rows: bytes, wait: bool,
                    again: Callable[[], object], stream: str = "", queue: bool = False) -> bool:
         """Ask for pictures, unless those before of the same stream are late.
 
@@ -110,6 +122,7 @@ class SensingRequests:
             views: where each camera is, and what it is to give.
             call: gets the pictures, and `ns`.
             ns: sim time, now.
+            rows: of all links, as of `ns`.
             wait: for those before, however late they are.
             again: has this asked anew, as of then.
             stream: its name.
@@ -128,7 +141,7 @@ class SensingRequests:
                 self._leave_out()
             return False
         futures = self._scene.render(
-            [(mount, view.camera, view.outputs) for mount, view in views], ns)
+            [(mount, view.camera, view.outputs) for mount, view in views], ns, rows)
         first = not (wait or stream in self._warm)
         shot = self._shots[stream] = _Shot(futures, _ignore if first else call, ns, stream, first)
 
@@ -145,6 +158,7 @@ class SensingRequests:
         if shot is not self._shots.get(shot.stream) or not (timeout or shot.done):
             return False
         del self._shots[shot.stream]
+        self._answered()
         deadline = time.monotonic() + timeout
         try:
             found = [future.result(max(0.0, deadline - time.monotonic()))

@@ -10,28 +10,36 @@ from ..description.model import Mimic, Model
 from ..description.sensor import Sensor
 from ..description.surroundings import SphericalCoordinates
 from ..description.transmission import Transmission
-from ..engine.commands import JointWrench
+from ..engine.commands import Command, JointWrench
 from ..engine.drive_commands import PlanarVelocity, WheelSlip
-from ..errors import CommandError, InputError, Issue, Severity
+from ..engine.rates import Rate
+from ..errors import CommandError, Issue, Severity
 from ..geometry import IDENTITY, STILL, Pose, Twist, Vec3, compose
 from ..sensing.api import Mount, Pictures, RayFan, RayReturns
 from ..simulator.entity import Entity
 from ..simulator.scene_sensing import SceneSensing
 from ..simulator.simulator import Simulator
-from .context import PluginError, View
+from .context import PluginError, Publication, View
 from .found_plugins import Found
 from .graph import Graph, TopicUse
-from .model_rows import ModelRows
+from .model_rows import ModelRows, transmissions_of
+from .observations import Observation, Observations, Reads, StepView, queries_of
 from .parameters import Parameters
-from .schedule import Appointment, Schedule
+from .schedule import Schedule, ScheduledCall
 from .sensing_requests import SensingRequests
-from .simulated_graph import Offer, OpenEnd, PluginGraph
+from .simulated_graph import GraphUser, PluginGraph
 from .simulated_handles import Orders, SimulatedJoint, SimulatedLink
 from .step_readings import StepReadings
 
 
 class Shared(NamedTuple):
-    """What the contexts of all plugins share; `report` tells the user."""
+    """What the contexts of all plugins share.
+
+    Attributes:
+        report: reports an issue to the user.
+        view: where links and joints are.
+        subscribers_changed: called, in any thread, when subscribers of a topic come or go.
+    """
 
     simulator: Simulator
     graph: Graph
@@ -39,9 +47,12 @@ class Shared(NamedTuple):
     scene: SceneSensing
     schedule: Schedule
     readings: StepReadings
+    observations: Observations
+    view: StepView
+    subscribers_changed: Callable[[], None]
 
 
-class SimulatedContext:
+class SimulatedContext(GraphUser):
     """One plugin's view of one model; see `context.Context`. For the thread of the host.
 
     Attributes:
@@ -55,6 +66,7 @@ class SimulatedContext:
                  wake: Callable[[], None]) -> None:
         self.simulator, self._report, self._schedule, self._readings = (
             shared.simulator, shared.report, shared.schedule, shared.readings)
+        self.observations, self._view = shared.observations, shared.view
         self.model = entity.model.name
         self.sensor, self.sensor_link, self.sensor_joint = found.sensor, found.link, found.joint
         self.spec, self._scope = found.spec, found.scope
@@ -69,8 +81,10 @@ class SimulatedContext:
         self.push_ids: Dict[str, int] = {}
         self._attached: List[str] = []
         self._held = False
-        self.sensing = SensingRequests(shared.scene, self.inbox, wake, self.warn)
-        self.graph = PluginGraph(shared.graph, self.inbox, wake, lambda: self.sensing.unsent)
+        self.sensing = SensingRequests(shared.scene, self.inbox, wake, self.warn,
+                                       lambda: self.observations.ask_again(self))
+        self.graph = PluginGraph(shared.graph, self.inbox, wake, lambda: self.sensing.unsent,
+                                 shared.subscribers_changed)
 
     # -- for the host ----------------------------------------------------------------------------
 
@@ -86,11 +100,13 @@ class SimulatedContext:
             joint.moved_to(self._rows.axis(joint.spec_name))
         if self._level is not None:
             self.drive_level(self._level.x, self._level.y, self._level.yaw_rate)
+        self.observations.changed = True
 
     def close(self) -> None:
         """Take everything off the graph, and call the plugin no more."""
         self.graph.close()
         self._schedule.end_all(self)
+        self.observations.end_all(self)
 
     def stop(self) -> None:
         """Switch off what the plugin drives, in a world that still has the model."""
@@ -134,11 +150,33 @@ class SimulatedContext:
         moment = self._schedule.moment
         return moment.step if moment is not None else self.simulator.clock.step
 
-    def every(self, hertz: float, call: Callable[[], None]) -> Appointment:
+    def every(self, hertz: float, call: Callable[[], None]) -> ScheduledCall:
         """Be called at a rate."""
         return self._schedule.every(self, hertz, call)
 
-    def once(self, ns: int, call: Callable[[], None]) -> Appointment:
+    def observe(self, hertz: float, call: Callable[[], None],
+                topics: Sequence[Publication] = (), *, lead: float = 0.0,
+                resume: Optional[Callable[[], None]] = None, transforms: bool = False,
+                remembers: bool = False,
+                contacts: bool = False, efforts: Sequence[str] = (),
+                wrenches: Sequence[str] = (), world: bool = False) -> Observation:
+        """Follow the world at a rate."""
+        if transforms:
+            self.graph.offer_transforms()
+        return self.observations.add(
+            self, Rate(hertz, lead), call, resume, topics, transforms, remembers,
+            Reads(contacts, tuple(efforts), tuple(wrenches), world))
+
+    def observed(self, reads: Reads) -> Tuple[Tuple[int, ...], Tuple[int, ...],
+                                              Tuple[Command, ...]]:
+        """Rows of links and joint axes that observations record, and their queries."""
+        links = {link.row for link in self._links.values()}
+        if self.entity.link_names:
+            links.add(self.entity.canonical_row)
+        return (tuple(sorted(links)), tuple(sorted(joint.row for joint in self._joints.values())),
+                queries_of(reads, self._rows))
+
+    def once(self, ns: int, call: Callable[[], None]) -> ScheduledCall:
         """Be called once."""
         return self._schedule.once(self, ns, call)
 
@@ -149,14 +187,14 @@ class SimulatedContext:
         """World pose of the model frame."""
         if not self.entity.link_names:
             return self.entity.pose
-        pose = self.simulator.states.link_at(self.entity.canonical_row)[0]
+        pose = self._view.link_at(self.entity.canonical_row)[0]
         offset = self.entity.link_from_model
         return pose if offset == IDENTITY else compose(pose, offset)
 
     @property
     def twist(self) -> Twist:
         """Twist of the canonical link."""
-        return self.simulator.states.link_at(self.entity.canonical_row)[1]
+        return self._view.link_at(self.entity.canonical_row)[1]
 
     @property
     def gravity(self) -> Vec3:
@@ -188,7 +226,7 @@ class SimulatedContext:
         if not name and self.entity.link_names:
             name = self.entity.link_names[self.entity.canonical]
         if name not in self._links:
-            link = SimulatedLink(self.simulator.states, name)
+            link = SimulatedLink(self._view, name)
             self._find(link)
             self._links[name] = link
         return self._links[name]
@@ -201,15 +239,14 @@ class SimulatedContext:
         """A joint of the model that moves."""
         if name not in self._joints:
             spec = self._rows.joint(name)
-            joint = SimulatedJoint(self.simulator.states, self.orders, spec, name)
+            joint = SimulatedJoint(self._view, self.orders, spec, name)
             joint.row = self._rows.axis(spec.name)
             self._joints[name] = joint
         return self._joints[name]
 
     def joint_wrench(self, name: str) -> Optional[JointWrench]:
         """What a joint transmitted in the last step."""
-        spec = self._rows.joint(name)
-        return self.simulator.joints.wrenches([f"{self.model}::{spec.name}"])[0]
+        return self._readings.wrench(self.entity, self._rows.joint(name).name)
 
     def drive_level(self, x: float, y: float, yaw_rate: float) -> None:
         """Move level from now on."""
@@ -222,16 +259,8 @@ class SimulatedContext:
 
     def transmissions(self, parameter: str) -> List[Transmission]:
         """Those of the description, else of a parameter."""
-        own = self.entity.model.transmissions
-        text = "" if own else self.search_parameter(parameter, "")
-        if not isinstance(text, str) or not text.strip():
-            return own
-        from ..formats.urdf.transmission import transmissions_of
-
-        try:
-            return transmissions_of(text, f"parameter {parameter}")
-        except InputError as fault:
-            raise PluginError(str(fault)) from fault
+        return transmissions_of(self.entity.model, parameter,
+                                lambda: self.search_parameter(parameter, ""))
 
     def push(self, link: str, force: Vec3, torque: Vec3) -> None:
         """A wrench from now on."""
@@ -281,7 +310,7 @@ class SimulatedContext:
         found = self.simulator.models.link_place(scoped)
         if found is None:
             raise PluginError(f"there is no link '{scoped}'")
-        link = SimulatedLink(self.simulator.states, scoped)
+        link = SimulatedLink(self._view, scoped)
         link.row, link.inertial = found
         return link
 
@@ -321,7 +350,7 @@ class SimulatedContext:
             assert self.sensor is not None
             place = (self.sensor_link, self.sensor.pose)
         self.sensing.scan(Mount(self._rows.link(place[0]), place[1]), fan, visuals, call,
-                          self.now_ns)
+                          self.now_ns, self._view.world_rows())
 
     def photograph(self, views: Sequence[View], call: Callable[[List[Pictures], int], None],
                    stream: str = "", queue: bool = False) -> bool:
@@ -332,8 +361,8 @@ class SimulatedContext:
             self.photograph(views, call, stream, queue)
 
         # Anew at a step: a message says which one its picture shows.
-        return self.sensing.photograph(mounted, call, self.now_ns, self.by_hand,
-                                       lambda: self.once(0, again), stream, queue)
+        return self.sensing.photograph(mounted, call, self.now_ns, self._view.world_rows(),
+                                       self.by_hand, lambda: self.once(0, again), stream, queue)
 
     def sensors(self) -> List[Tuple[str, Sensor]]:
         """The sensors of the model's links."""
@@ -347,29 +376,6 @@ class SimulatedContext:
         """The contacts of the last step."""
         return self._readings.contacts()
 
-    # -- topics, services, parameters --------------------------------------------------------------
-
-    def use_namespace(self, namespace: str) -> None:
-        """What names are relative to."""
-        self.graph.use_namespace(namespace)
-
-    def message(self, kind: str) -> Any:
-        """A new message."""
-        return self.graph.message(kind)
-
-    def stamp(self, ns: Optional[int] = None) -> Any:
-        """A time as messages have it."""
-        return self.graph.stamp(self.now_ns if ns is None else ns)
-
-    def publish(self, name: str, kind: str, queue: int = 1, latch: bool = False) -> Offer:
-        """Offer a topic."""
-        return self.graph.publish(name, kind, queue, latch)
-
-    def subscribe(self, name: str, kind: str, call: Callable[[Any], None],
-                  queue: int = 1) -> OpenEnd:
-        """Hear a topic."""
-        return self.graph.subscribe(name, kind, call, queue)
-
     def topic_uses(self) -> List[TopicUse]:
         """The topics it offers and hears; from any thread."""
         link, pose = "", IDENTITY
@@ -380,22 +386,6 @@ class SimulatedContext:
         kind = self.sensor.type if self.sensor is not None else ""
         return [TopicUse(name, message, heard, self.model, link, kind, pose)
                 for name, message, heard in self.graph.uses()]
-
-    def serve(self, name: str, kind: str, call: Callable[[Any, Any], None]) -> OpenEnd:
-        """Offer a service."""
-        return self.graph.serve(name, kind, call, self.warn)
-
-    def parameter(self, name: str, default: Any) -> Any:
-        """A parameter of the namespace."""
-        return self.graph.parameter(name, default)
-
-    def search_parameter(self, name: str, default: Any) -> Any:
-        """A parameter of the namespace or above."""
-        return self.graph.search_parameter(name, default)
-
-    def transform(self, parent: str, child: str, pose: Pose) -> None:
-        """Broadcast to tf."""
-        self.graph.transform(parent, child, pose)
 
     # -- log -------------------------------------------------------------------------------------
 

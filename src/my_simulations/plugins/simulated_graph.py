@@ -75,14 +75,15 @@ class PluginGraph:
         graph: ROS.
         inbox: as above; `wake` has the host look at it.
         unsent: gives the list that a message which is being made leaves a mark in.
+        changed: called, in any thread, when subscribers of a topic come or go.
     """
 
     def __init__(self, graph: Graph, inbox: Deque[Callable[[], None]], wake: Callable[[], None],
-                 unsent: Callable[[], Deque[None]]) -> None:
-        self._graph, self._wake = graph, wake
+                 unsent: Callable[[], Deque[None]], changed: Callable[[], None]) -> None:
+        self._graph, self._wake, self._changed = graph, wake, changed
         self.inbox, self.unsent = inbox, unsent
         self.outbox: List[Tuple[Topic, Any]] = []
-        self.transforms: List[TransformOf] = []
+        self.transforms: List[Tuple[int, TransformOf]] = []
         self._opened: List[Closing] = []
         self._uses: Dict[int, Tuple[str, str, bool]] = {}
         self._namespace = ""
@@ -146,7 +147,8 @@ class PluginGraph:
         if not name:
             return Offer(self, _Nowhere())
         return Offer(self, self._open(
-            lambda full: self._graph.publish(full, kind, queue, latch), name, kind, False))
+            lambda full: self._graph.publish(full, kind, queue, latch, self._changed), name, kind,
+            False))
 
     def subscribe(self, name: str, kind: str, call: Callable[[Any], None], queue: int) -> OpenEnd:
         """Hear a topic."""
@@ -207,6 +209,66 @@ class PluginGraph:
         """A parameter of the namespace or above."""
         return self._graph.search_parameter(self._namespace, name, default)
 
+    def offer_transforms(self) -> None:
+        """Offer tf."""
+        self._graph.offer_transforms(self._changed)
+
+    def transform(self, parent: str, child: str, pose: Pose, ns: int) -> None:
+        """Broadcast to tf, as of a sim time."""
+        self.transforms.append((ns, (parent, child, pose)))
+
+
+class GraphUser:
+    """The part of a context that is about topics, services and parameters.
+
+    Attributes:
+        graph: what the plugin has on the graph.
+    """
+
+    graph: PluginGraph
+
+    @property
+    def now_ns(self) -> int:
+        """Sim time of this step."""
+        raise NotImplementedError
+
+    def warn(self, text: str) -> None:
+        """Warn the user."""
+        raise NotImplementedError
+
+    def use_namespace(self, namespace: str) -> None:
+        """What names are relative to."""
+        self.graph.use_namespace(namespace)
+
+    def message(self, kind: str) -> Any:
+        """A new message."""
+        return self.graph.message(kind)
+
+    def stamp(self, ns: Optional[int] = None) -> Any:
+        """A time as messages have it."""
+        return self.graph.stamp(self.now_ns if ns is None else ns)
+
+    def publish(self, name: str, kind: str, queue: int = 1, latch: bool = False) -> Offer:
+        """Offer a topic."""
+        return self.graph.publish(name, kind, queue, latch)
+
+    def subscribe(self, name: str, kind: str, call: Callable[[Any], None],
+                  queue: int = 1) -> OpenEnd:
+        """Hear a topic."""
+        return self.graph.subscribe(name, kind, call, queue)
+
+    def serve(self, name: str, kind: str, call: Callable[[Any, Any], None]) -> OpenEnd:
+        """Offer a service."""
+        return self.graph.serve(name, kind, call, self.warn)
+
+    def parameter(self, name: str, default: Any) -> Any:
+        """A parameter of the namespace."""
+        return self.graph.parameter(name, default)
+
+    def search_parameter(self, name: str, default: Any) -> Any:
+        """A parameter of the namespace or above."""
+        return self.graph.search_parameter(name, default)
+
     def transform(self, parent: str, child: str, pose: Pose) -> None:
         """Broadcast to tf."""
-        self.transforms.append((parent, child, pose))
+        self.graph.transform(parent, child, pose, self.now_ns)

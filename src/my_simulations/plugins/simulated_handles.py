@@ -8,7 +8,7 @@ from ..description.model import Inertial
 from ..description.model import Joint as JointSpec
 from ..engine.drive_commands import JointMotor, JointServo, PlanarVelocity
 from ..geometry import Pose, Twist, Vec3
-from ..simulator.states import States
+from .observations import StepView
 
 
 @dataclass
@@ -30,30 +30,30 @@ class Orders:
 class SimulatedLink:
     """A link, by the row it has now."""
 
-    def __init__(self, states: States, name: str) -> None:
+    def __init__(self, view: StepView, name: str) -> None:
         self.name = name
-        self._states = states
+        self._view = view
         self.row = -1
         self.inertial = Inertial()
 
     @property
     def pose(self) -> Pose:
         """World pose of the link frame."""
-        return self._states.link_at(self.row)[0]
+        return self._view.link_at(self.row)[0]
 
     @property
     def twist(self) -> Twist:
         """Twist at the link's origin, world axes."""
-        return self._states.link_at(self.row)[1]
+        return self._view.link_at(self.row)[1]
 
 
 class SimulatedJoint:
     """A joint axis, by the row it has now."""
 
-    def __init__(self, states: States, orders: Orders, spec: JointSpec, name: str) -> None:
+    def __init__(self, view: StepView, orders: Orders, spec: JointSpec, name: str) -> None:
         self.name, self.spec_name = name, spec.name
         self.parent, self.child = spec.parent, spec.child
-        self._states, self._orders = states, orders
+        self._view, self._orders = view, orders
         self.row = -1
         self.motor: Optional[JointMotor] = None
         self.servo: Optional[JointServo] = None
@@ -62,17 +62,17 @@ class SimulatedJoint:
     @property
     def position(self) -> float:
         """rad or m."""
-        return self._states.axis_at(self.row)[0]
+        return self._view.axis_at(self.row)[0]
 
     @property
     def velocity(self) -> float:
         """rad/s or m/s."""
-        return self._states.axis_at(self.row)[1]
+        return self._view.axis_at(self.row)[1]
 
     @property
-    def puts(self) -> int:
-        """Beginnings and ends of being put somewhere."""
-        return self._states.axis_puts(self.row)
+    def puts(self) -> float:
+        """How often it was put somewhere."""
+        return self._view.puts(self.row)
 
     def drive(self, rate: float, effort: float) -> None:
         """Turn the motor."""

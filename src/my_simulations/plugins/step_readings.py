@@ -1,35 +1,45 @@
-"""What plugins learn of a step from the engine by commands, read once for all of them."""
+"""Efforts, contacts and joint wrenches of a step: of the engine's last one, or of a record."""
 from __future__ import annotations
 
 from typing import Any, Dict, List, Optional, Sequence, Set, Tuple
 
+from ..engine.commands import JointWrench, ReadContacts, ReadJointWrenches
+from ..engine.drive_commands import ReadEfforts
+from ..simulator.entity import Entity
 from ..simulator.simulator import Simulator
+from .context import PluginError
+from .observations import StepView
 from .schedule import Schedule
 
 
 class StepReadings:
-    """Efforts and contacts of the last step. For the thread of the host.
+    """For the thread of the host.
 
-    A request makes the engine write its states and the node wait for a reply; ten robots that
-    publish their joints at 50 Hz would make 500 of them a second.
+    While a record is handed over, they are in it. For the last step the engine is asked, once for
+    all plugins: a request makes it write its states and the node wait for a reply.
 
     Args:
         simulator: the world.
         schedule: says where the world stands.
+        view: shows records.
     """
 
-    def __init__(self, simulator: Simulator, schedule: Schedule) -> None:
-        self._simulator, self._schedule = simulator, schedule
+    def __init__(self, simulator: Simulator, schedule: Schedule, view: StepView) -> None:
+        self._simulator, self._schedule, self._view = simulator, schedule, view
         self._step: Optional[Tuple[int, int]] = None
         self._asked: Set[int] = set()            # rows, since efforts were read last
         self._efforts: Dict[int, float] = {}
         self._contacts: Optional[List[Any]] = None
 
     def efforts(self, rows: Sequence[int]) -> List[float]:
-        """What servos and motors spent on joint axes in the last step, N m or N.
+        """What servos and motors spent on joint axes, N m or N.
 
-        Those that others asked for at earlier steps are read along. Raises CommandError.
+        Those that others asked for at earlier steps are read along. Raises CommandError,
+        PluginError.
         """
+        if self._view.is_record:
+            query, values = self._view.answer(ReadEfforts)
+            return [_value(query.rows, values, row) for row in rows]
         self._look()
         if not self._efforts.keys() >= set(rows):
             wanted = sorted(self._asked.union(rows))
@@ -39,14 +49,33 @@ class StepReadings:
         return [self._efforts[row] for row in rows]
 
     def contacts(self) -> List[Any]:
-        """The contacts of the last step, with the scoped names of both links."""
+        """The contacts, with the scoped names of both links. Raises CommandError, PluginError."""
+        if self._view.is_record:
+            return self._simulator.states.named_contacts(self._view.answer(ReadContacts)[1])
         self._look()
         if self._contacts is None:
             self._contacts = self._simulator.states.contacts()
         return self._contacts
+
+    def wrench(self, entity: Entity, joint: str) -> Optional[JointWrench]:
+        """What a joint transmitted. Raises CommandError, PluginError."""
+        found: Optional[JointWrench]
+        if self._view.is_record:
+            query, values = self._view.answer(ReadJointWrenches)
+            found = _value(query.joints, values, (entity.model_id, joint))
+        else:
+            found = self._simulator.joints.wrenches([f"{entity.model.name}::{joint}"])[0]
+        return found
 
     def _look(self) -> None:
         moment = self._schedule.moment
         step = None if moment is None else (moment.clock_sets, moment.step)
         if step is None or step != self._step:
             self._step, self._efforts, self._contacts = step, {}, None
+
+
+def _value(keys: Sequence[Any], values: Sequence[Any], key: Any) -> Any:
+    """The value of one of the things that an observation has named."""
+    if key not in keys:
+        raise PluginError(f"an observation must name what it reads ({key})")
+    return values[keys.index(key)]

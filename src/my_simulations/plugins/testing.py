@@ -17,9 +17,9 @@ from ..description.sensor import Sensor
 from ..description.surroundings import SphericalCoordinates
 from ..description.transmission import Transmission
 from ..engine.commands import JointWrench
+from ..engine.rates import Rate
 from ..engine.ring import Clock
 from ..geometry import IDENTITY, STILL, Pose, Twist, Vec3
-from ..simulator.appointments import Rate
 from .context import PluginError
 from .parameters import Parameters
 from .testing_joints import FakeJoint, FakeLink
@@ -183,6 +183,24 @@ class FakeContext:
     def every(self, hertz: float, call: Callable[[], None]) -> Any:
         """Be called at a rate."""
         self._calls.append(_Call(self._calls, call, Rate(hertz)))
+        return self._calls[-1]
+
+    def observe(self, hertz: float, call: Callable[[], None], topics: Sequence[Any] = (), *,
+                lead: float = 0.0, resume: Optional[Callable[[], None]] = None,
+                transforms: bool = False, remembers: bool = False, contacts: bool = False,
+                efforts: Sequence[str] = (), wrenches: Sequence[str] = (),
+                world: bool = False) -> Any:
+        """Be called at a rate while a topic is wanted."""
+        idle = False
+
+        def follow() -> None:
+            nonlocal idle
+            was_idle, idle = idle, not remembers and not transforms and not any(
+                topic.wanted for topic in topics) and bool(topics)
+            if not idle:
+                (resume if was_idle and resume is not None else call)()
+
+        self._calls.append(_Call(self._calls, follow, Rate(hertz, lead)))
         return self._calls[-1]
 
     def once(self, ns: int, call: Callable[[], None]) -> Any:

@@ -9,6 +9,9 @@ _NEVER_S = 1e9  # so long that nobody waits for it, and a number of nanoseconds 
 class TimeOut:
     """Counts from its last `begin`, to the nanosecond; a clock that is set back begins anew.
 
+    Attributes:
+        ns: the time that must have passed and more.
+
     Args:
         context: tells the sim time.
         seconds: that must have passed and more; negative is over at once.
@@ -17,7 +20,7 @@ class TimeOut:
     def __init__(self, context: Context, seconds: float) -> None:
         self._context = context
         # Rounded: 300000000e-9 is above 0.3, and 1.001e9 below 1001000000.
-        self._ns = round(max(-_NEVER_S, min(_NEVER_S, seconds)) * 1e9)
+        self.ns = round(max(-_NEVER_S, min(_NEVER_S, seconds)) * 1e9)
         self.begin()
 
     def begin(self) -> None:
@@ -29,4 +32,4 @@ class TimeOut:
         """Whether more than that time has passed."""
         now = self._context.now_ns
         self._since_ns = min(self._since_ns, now)
-        return now - self._since_ns > self._ns
+        return now - self._since_ns > self.ns

@@ -99,7 +99,8 @@ class Photographer:
         row, offset = self._simulator.states.mounting(frame)
         mount = Mount(row, compose(offset, pose))
         ns = self._simulator.clock.sim_ns
-        (future,) = self._scene.render([(mount, camera, tuple(outputs))], ns)
+        (future,) = self._scene.render([(mount, camera, tuple(outputs))], ns,
+                                       self._simulator.feed.states()[2])
         try:
             found = future.result(_PATIENCE_S)
         except SensingError as fault:

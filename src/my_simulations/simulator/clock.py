@@ -75,15 +75,17 @@ class SimClock:
 
     def unpause(self) -> None:
         """Resume, unless the world is stepped manually."""
+        self._paused = False
+        self._session.before_advance()   # not with the lock, which the host may need
         with self._session.structure_lock:
-            self._paused = False
             for command in self.resume_commands():
                 self._session.call(command)
 
     def set_manual_stepping(self, manual: bool) -> None:
         """Turn manual stepping on or off: the world then advances by `advance` alone."""
+        self._manual_stepping = manual
+        self._session.before_advance()
         with self._session.structure_lock:
-            self._manual_stepping = manual
             self._session.call((self.resume_commands() or [Pause()])[0])
 
     def advance(self, steps: int) -> int:
@@ -91,6 +93,7 @@ class SimClock:
 
         It returns early when `end_advance` or another world ends it.
         """
+        self._session.before_advance()
         return self._session.call(Advance(steps)).step
 
     def end_advance(self) -> int:

@@ -3,7 +3,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from typing import Dict, List, Optional, Sequence, Set, Tuple
+from typing import Dict, List, Optional, Sequence, Tuple
 
 from ..description.model import Joint
 from ..engine.commands import Command, JointWrench, ReadJointWrenches, SetAxes, SetJoints
@@ -58,28 +58,19 @@ class Joints:
     def set_positions(self, positions: Dict[str, float]) -> None:
         """Move joint axes to positions (rad or m), at rest; within their limits, as Gazebo does.
 
-        The beginning and the end are counted, see `States.axis_puts`.
-
         Raises:
             UnknownEntityError: a joint does not exist.
             CommandError: the engine rejected a position.
         """
         session = self._session
-        rows: Set[int] = set()
 
         def look_up() -> Command:
             found = [session.registry.movable_joint(name) for name in positions]
-            rows.update(row for _, row in found)
-            session.axis_puts.update(rows)
             return SetJoints(tuple((row, _within_limits(entity, row, value), 0.0)
                                    for (entity, row), value in zip(found, positions.values())),
                              tuple(sorted({entity.model_id for entity, _ in found})))
 
-        try:
-            session.move(look_up)
-        finally:
-            with session.registry_lock:
-                session.axis_puts.update(rows)
+        session.move(look_up)
 
     def edit(self, name: str, joint: Joint) -> None:
         """Change the axes (limits, friction, damping, spring, motor) or the type of a joint.

@@ -3,7 +3,15 @@ from __future__ import annotations
 
 from typing import List
 
-from ..engine.commands import Batch, Command, Pause, Restart, SetClock, SetModelState
+from ..engine.commands import (
+    Batch,
+    Command,
+    Pause,
+    Restart,
+    SetClock,
+    SetModelState,
+    Synchronize,
+)
 from ..engine.timed_forces import AddTimedForces, ClearTimedForces
 from ..errors import CommandError
 from ..geometry import STILL
@@ -47,7 +55,7 @@ class Resets:
             entities = session.registry.entities()
             session.call(Batch((*self._models.detach_commands(), *(
                 SetModelState(entity.model_id, entity.initial_pose, STILL)
-                for entity in entities if entity.link_names))))
+                for entity in entities if entity.link_names), Synchronize())))
             self._models.forget_attached()
             self._move_linkless_models(entities)
             self.world_resets += 1

@@ -52,8 +52,9 @@ class SceneSensing:
         self._scenery: Tuple[List[Any], List[Any]] = ([], [])
         self._resolver: Any = None
 
-    def cast(self, mount: Mount, fan: RayFan, visuals: bool, ns: int) -> "Future[RayReturns]":
-        """Ranges as of now, once `send` is called.
+    def cast(self, mount: Mount, fan: RayFan, visuals: bool, ns: int,
+             rows: bytes) -> "Future[RayReturns]":
+        """Ranges, once `send` is called.
 
         What several sensors ask for in one moment travels as one request.
 
@@ -61,16 +62,16 @@ class SceneSensing:
             mount: where the sensor is.
             fan: its rays.
             visuals: they see what is drawn, else what collides.
-            ns: sim time, now.
+            ns: sim time of the rows.
+            rows: of all links, as in the ring.
         """
         self._running()
         if visuals:
             self._tell_scenery()
-        now = self._now()
         future: "Future[RayReturns]" = Future()
-        if now != self._cast_at:
+        if rows != self._cast_at:
             self.send()
-            self._cast_at = now
+            self._cast_at = rows
         self._casts.append((CastRays(mount, fan, VISUALS if visuals else COLLISIONS, ns=ns),
                             future))
         return future
@@ -84,16 +85,13 @@ class SceneSensing:
         batch = CastBatch(tuple(cast for cast, _ in casts), self._cast_at)
         self._running().cast_all(batch).add_done_callback(lambda done: _hand_out(done, futures))
 
-    def render(self, shots: Sequence[Shot], ns: int) -> "List[Future[Pictures]]":
-        """Pictures as of now, one of each shot; `ns`: sim time, now."""
-        process, now = self._running(), self._now()
+    def render(self, shots: Sequence[Shot], ns: int, rows: bytes) -> "List[Future[Pictures]]":
+        """Pictures, one of each shot; of the rows of all links, as of a sim time (ns)."""
+        process = self._running()
         self._tell_surroundings()
         self._tell_scenery()
-        return [process.render(RenderCamera(mount, camera, outputs, now, ns))
+        return [process.render(RenderCamera(mount, camera, outputs, rows, ns))
                 for mount, camera, outputs in shots]
-
-    def _now(self) -> bytes:
-        return self._simulator.feed.states()[2]
 
     def close(self) -> None:
         """End the process, if there is one."""

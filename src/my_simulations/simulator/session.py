@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import threading
 from dataclasses import replace
-from typing import Any, Callable, Counter, List, Optional
+from typing import Any, Callable, List, Optional
 
 from ..description.model import Model
 from ..description.shapes import MeshTable
@@ -40,13 +40,14 @@ class Session:
         world: the description, with lights and scene as last set; models as they were loaded.
         registry: the entities in the world. Read and changed with `registry_lock` held.
         log: receives issues that no caller waits for.
-        axis_puts: see `States.axis_puts`; by joint row. Changed with `registry_lock` held.
+        before_advance: called before an advance; see `SyncPoints.attach`.
     """
 
     def __init__(self, world: World, supervisor: Supervisor, log: Callable[[Issue], None]) -> None:
         self.supervisor = supervisor
         self.world = world
         self.log = log
+        self.before_advance: Callable[[], None] = do_nothing
         self.structure_lock = threading.RLock()
         self.registry_lock = threading.RLock()
         self.registry = Registry(lambda: self.world.lights,
@@ -54,7 +55,6 @@ class Session:
         self._link_rows = RowAllocator(LINKS)
         self._joint_rows = RowAllocator(JOINTS)
         self._last_id = 0
-        self.axis_puts: Counter[int] = Counter()
 
     def call(self, command: Command) -> Reply:
         """Send an engine command and wait for its reply; see `Supervisor.call` for errors."""
@@ -163,6 +163,10 @@ class Session:
         if row is None:
             raise CommandError(f"joint '{joint}' of type {found.type} has no axis")
         return row
+
+
+def do_nothing() -> None:
+    """For `Session.before_advance`."""
 
 
 def check_name(name: str, kind: str) -> None:

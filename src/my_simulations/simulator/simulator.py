@@ -14,7 +14,6 @@ from ..engine.api import Engine, Event, Reply
 from ..engine.commands import FOREVER, Batch, Clear, Command, Pause, SetClock
 from ..engine.timed_forces import AddTimedForces, ClearTimedForces
 from ..errors import CommandError, Issue, Severity, error, warning
-from .appointments import Appointments
 from .clock import SimClock
 from .convex_meshes import ConvexParts
 from .drives import Drives
@@ -28,6 +27,7 @@ from .scene import SceneSettings
 from .session import Session
 from .states import States
 from .supervisor import Supervisor
+from .sync_points import SyncPoints
 from .wrenches import Wrenches
 
 
@@ -39,7 +39,7 @@ class Simulator:
         joints: find, read, set and edit joints.
         states: poses, twists and contacts; capture and restore.
         drives: motors of joints, planar velocities of models.
-        appointments: steps at which plugins and sensors act.
+        sync_points: exact steps for plugins and sensors.
         wrenches: timed wrenches on links, timed efforts and PID controllers on joints.
         lights: the lights.
         scene: scene, camera, wind, atmosphere, place on Earth.
@@ -68,7 +68,7 @@ class Simulator:
         self.wrenches = Wrenches(session)
         self.physics = WorldPhysics(session, self.clock, self.wrenches)
         self.drives = Drives(session)
-        self.appointments = Appointments(session)
+        self.sync_points = SyncPoints(session)
         self.models = Models(session, self.wrenches, self.drives, ConvexParts(
             log, lambda text: log(Issue(Severity.NOTE, "meshes", text))))
         self.joints = Joints(session, self.models)
@@ -153,9 +153,7 @@ class Simulator:
             self.models.load_all(self._world_meshes)
 
     def _on_event(self, event: Event) -> None:
-        if event.kind == "meeting":
-            self.appointments.ring_all()
-        elif event.kind == "diverged":
+        if event.kind == "diverged":
             self._session.log(error("state-diverged", event.message))
         elif event.kind == "log":
             self._session.log(warning("physics-approximate", event.message))

@@ -85,13 +85,6 @@ class States:
         """Position (rad or m) and rate (rad/s or m/s) of the joint axis in a row."""
         return self._session.ring.joint(row)
 
-    def axis_puts(self, row: int) -> int:
-        """How many times putting the joint axis in a row somewhere has begun or ended.
-
-        Who finds the same count before and after it read positions has seen none of it.
-        """
-        return self._session.axis_puts[row]
-
     def latest(self) -> Tuple[List[Entity], Snapshot]:
         """All entities in load order, and the newest snapshot (an old one if nothing moves)."""
         session = self._session
@@ -120,7 +113,10 @@ class States:
 
     def contacts(self) -> List[Tuple[str, str, Contact]]:
         """The contacts of the last step, with the scoped names of both links."""
-        found = self._session.call(ReadContacts()).value
+        return self.named_contacts(self._session.call(ReadContacts()).value)
+
+    def named_contacts(self, found: object) -> List[Tuple[str, str, Contact]]:
+        """The reply value of `ReadContacts` with the scoped names of both links."""
         names = self.link_names()
         return [(names[contact.row_a], names[contact.row_b], contact)
                 for contact in (found if isinstance(found, tuple) else ())

@@ -64,7 +64,7 @@ def test_replies_are_taken_while_a_large_command_is_being_sent(engine):
 
 
 def test_a_closed_engine_leaves_no_descriptors_and_wakes_who_waits_for_the_bell(engine):
-    descriptors = (engine._ring_fd, engine._bell_out, engine._bell_in)
+    descriptors = (engine._ring_fd, engine._bell.input, engine._bell.output, engine._notices.input)
     waiting = threading.Thread(target=engine.wait_bell, args=(WAIT,))
     waiting.start()
     engine.close()

@@ -2,6 +2,8 @@
 from __future__ import annotations
 
 import threading
+from concurrent.futures import Future
+from dataclasses import replace
 
 import pytest
 from plugin_case import PluginCase, kept, until
@@ -9,10 +11,11 @@ from plugin_graph import Graph
 
 from my_simulations.description.model import Inertial, Joint, JointAxis, Link, Model
 from my_simulations.description.plugin import PluginSpec
-from my_simulations.description.sensor import Sensor
+from my_simulations.description.sensor import Ray, ScanAngles, Sensor
 from my_simulations.description.shapes import Collision, Sphere
 from my_simulations.description.world import World
 from my_simulations.engine.kinematic_backend import KinematicBackend
+from my_simulations.engine.ring import RECORDS
 from my_simulations.errors import Severity
 from my_simulations.geometry import Pose
 from my_simulations.plugins.base import Plugin
@@ -21,6 +24,7 @@ from my_simulations.plugins.context import PluginError, RequestError
 from my_simulations.plugins.graph import TopicUse
 from my_simulations.plugins.registry import PluginRegistry, exports, library_name
 from my_simulations.plugins.testing import Message
+from my_simulations.sensing.api import RayReturns
 
 DRIVE = """<plugin name="drive" filename="libgazebo_ros_diff_drive.so">
 <leftJoint>left</leftJoint><rightJoint>right</rightJoint><wheelDiameter>0.2</wheelDiameter>
@@ -197,7 +201,7 @@ def test_an_edited_robot_keeps_its_plugin(case):
 def test_ending_leaves_no_thread_and_holds_nobody_up(case):
     one = case(robot())
     one.host.stop()
-    assert one.sim.clock.advance(30) == 30
+    assert one.sim.clock.advance(100 * RECORDS) == 100 * RECORDS
     assert not any(thread.name == "plugins" for thread in threading.enumerate())
 
 
@@ -535,3 +539,61 @@ def test_plugins_of_a_nested_model_find_its_links_and_joints_by_their_plain_name
     assert one.issues == []
     assert len(one.backend().wheel_slips) == 1
     until(lambda: any(message.data for message in one.graph.on("holds")))
+
+
+FAST_LASER = """<plugin name="laser" filename="libgazebo_ros_laser.so"><topicName>scan</topicName>
+</plugin>"""
+
+
+class Rays:
+    """Stands for the sensing process; answers when it is told to."""
+
+    def __init__(self, host):
+        self.waiting, self.rows = [], []
+        host._scene.cast = self.cast
+
+    def cast(self, mount, fan, visuals, ns, rows):
+        self.waiting.append(Future())
+        self.rows.append(rows)
+        return self.waiting[-1]
+
+    def answer(self):
+        import numpy as np
+
+        self.waiting.pop().set_result(RayReturns(0, np.ones(3), np.zeros(3), np.zeros(3, int)))
+
+
+def fast_laser():
+    model = robot()
+    sensor = Sensor("laser", "ray", update_rate=0.0, ray=Ray(ScanAngles(3, 1.0, -1.0, 1.0)),
+                    plugins=[PluginSpec("laser", "libgazebo_ros_laser.so", FAST_LASER, "", 1)])
+    return replace(model, plugins=[], links=[replace(model.links[0], sensors=[sensor]),
+                                             *model.links[1:]])
+
+
+def test_rays_at_every_step_do_not_hold_a_world_that_runs(case):
+    one = case(fast_laser())
+    rays = Rays(one.host)
+    one.sim.clock.unpause()
+    until(lambda: rays.waiting)
+    before = one.sim.clock.step
+    until(lambda: one.sim.clock.step > before + 2 * RECORDS)
+    assert len(rays.waiting) == 1
+    rays.answer()
+    until(lambda: rays.waiting and len(one.graph.on("scan")) == 1)
+    rays.answer()
+    until(lambda: len(one.graph.on("scan")) == 2)
+    first, second = (message.header.stamp for message in one.graph.on("scan"))
+    assert second - first > RECORDS * 10 ** 6
+
+
+def test_rays_at_every_step_see_each_step_of_a_world_that_is_stepped(case):
+    one = case(fast_laser())
+    rays = Rays(one.host)
+    for step in range(1, 4):
+        one.sim.clock.advance(1)
+        until(lambda: rays.waiting)
+        rays.answer()
+        until(lambda step=step: len(one.graph.on("scan")) == step)
+    assert [message.header.stamp for message in one.graph.on("scan")] == [
+        10 ** 6, 2 * 10 ** 6, 3 * 10 ** 6]

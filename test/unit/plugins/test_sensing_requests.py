@@ -18,7 +18,7 @@ class Sensing:
     def __init__(self):
         self.asked = []
 
-    def render(self, views, ns):
+    def render(self, views, ns, rows):
         self.at = ns
         self.asked.append([Future() for _ in views])
         return self.asked[-1]
@@ -26,7 +26,7 @@ class Sensing:
     def send(self):
         self.sent = True
 
-    def cast(self, mount, fan, visuals, ns):
+    def cast(self, mount, fan, visuals, ns, rows):
         self.asked.append(Future())
         return self.asked[-1]
 
@@ -52,7 +52,7 @@ class Case:
 
     def shoot(self, ns, wait=False, views=1):
         return self.requests.photograph([VIEW] * views, lambda got, at: self.seen.append((got, at)),
-                                        ns, wait, self.ask_again)
+                                        ns, b"", wait, self.ask_again)
 
     def deliver(self):
         while self.inbox:
@@ -193,7 +193,7 @@ def test_a_message_that_cannot_be_made_is_told_and_the_next_is_sent():
 
 def test_streams_do_not_wait_for_each_other():
     case = Case()
-    assert case.shoot(1) and case.requests.photograph([VIEW], lambda *_: None, 1, False,
+    assert case.shoot(1) and case.requests.photograph([VIEW], lambda *_: None, 1, b"", False,
                                                       case.ask_again, "depth")
     assert not case.said
 
@@ -205,4 +205,5 @@ def test_who_asks_one_by_one_does_not_wait_for_messages_that_are_being_made():
     case.deliver()
     case.requests.unsent.append(None)   # its message is not made yet
     assert not case.shoot(2) and len(case.said) == 1   # a stream leaves out
-    assert case.requests.photograph([VIEW], lambda *_: None, 2, False, case.ask_again, queue=True)
+    assert case.requests.photograph([VIEW], lambda *_: None, 2, b"", False, case.ask_again,
+                                    queue=True)

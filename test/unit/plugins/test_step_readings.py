@@ -6,9 +6,10 @@ from types import SimpleNamespace
 import pytest
 
 from my_simulations.engine.ring import Clock
+from my_simulations.plugins.observations import StepView
 from my_simulations.plugins.schedule import Schedule
 from my_simulations.plugins.step_readings import StepReadings
-from my_simulations.simulator.appointments import Moment
+from my_simulations.simulator.sync_points import Moment
 
 
 class Engine:
@@ -41,7 +42,7 @@ def stand_at(schedule, step, clock_sets=0):
 
 def test_rows_that_two_robots_ask_for_are_read_together_from_the_second_step_on(schedule):
     engine = Engine(schedule)
-    readings = StepReadings(engine, schedule)
+    readings = StepReadings(engine, schedule, StepView(None, bytes))
     for step in (1, 2, 3):
         stand_at(schedule, step)
         assert readings.efforts([4, 5]) == [10.0 * step + 4, 10.0 * step + 5]
@@ -51,7 +52,7 @@ def test_rows_that_two_robots_ask_for_are_read_together_from_the_second_step_on(
 
 def test_rows_that_nobody_asks_for_any_more_are_not_read(schedule):
     engine = Engine(schedule)
-    readings = StepReadings(engine, schedule)
+    readings = StepReadings(engine, schedule, StepView(None, bytes))
     readings.efforts([4])
     readings.efforts([7])
     for step in (2, 3, 4):
@@ -62,7 +63,7 @@ def test_rows_that_nobody_asks_for_any_more_are_not_read(schedule):
 
 def test_a_clock_that_is_set_to_the_same_step_has_other_readings(schedule):
     engine = Engine(schedule)
-    readings = StepReadings(engine, schedule)
+    readings = StepReadings(engine, schedule, StepView(None, bytes))
     readings.efforts([4])
     readings.contacts()
     stand_at(schedule, 1, clock_sets=1)
@@ -73,7 +74,7 @@ def test_a_clock_that_is_set_to_the_same_step_has_other_readings(schedule):
 
 def test_contacts_are_read_once_a_step(schedule):
     engine = Engine(schedule)
-    readings = StepReadings(engine, schedule)
+    readings = StepReadings(engine, schedule, StepView(None, bytes))
     assert [readings.contacts(), readings.contacts()] == [[1], [1]]
     stand_at(schedule, 2)
     assert readings.contacts() == [2]

@@ -14,7 +14,7 @@ class Graph:
     def __init__(self, parameters=None):
         self.parameters = parameters or {}
         self.sent, self.heard, self.transforms = [], {}, []
-        self.ignored = set()
+        self.ignored, self._listeners = set(), []
 
     def message(self, kind):
         return Message()
@@ -22,8 +22,9 @@ class Graph:
     def stamp(self, ns):
         return ns
 
-    def publish(self, name, kind, queue, latch):
+    def publish(self, name, kind, queue, latch, changed):
         graph = self
+        self._listeners.append(changed)
 
         class Topic:
             @property
@@ -61,6 +62,19 @@ class Graph:
 
     def search_parameter(self, namespace, name, default):
         return default
+
+    def listen(self, name, wanted=True):
+        """Subscribe to a topic, or no longer."""
+        (self.ignored.discard if wanted else self.ignored.add)(name)
+        for changed in self._listeners:
+            changed()
+
+    def offer_transforms(self, changed):
+        self._listeners.append(changed)
+
+    @property
+    def transforms_wanted(self):
+        return "/tf" not in self.ignored
 
     def send_transforms(self, transforms, ns):
         self.transforms += [(ns, *one) for one in transforms]

@@ -40,6 +40,7 @@ from .contact_readout import read_contacts
 from .helper_set import HelperSet
 from .initial_state_cache import InitialStateCache, Start
 from .joint_constraints import Constraints
+from .row_reader import RowReader
 from .state_restore import Entry, inherited, restore
 
 
@@ -57,6 +58,7 @@ class BulletBackend:
         self._loop, self._readout = self._helpers.loop, self._helpers.readout
         self._waker, self._forces = self._helpers.waker, self._helpers.forces
         self._mover, self._notices = self._helpers.mover, self._helpers.notices
+        self._row_reader = RowReader(self._readout, self._rows, self._axes)
         self._starts = InitialStateCache(self._readout)
         self._put_off: Optional[List[Start]] = None
         self._is_fresh = True   # nothing has moved since the world began
@@ -130,6 +132,22 @@ class BulletBackend:
     def read_poses(self) -> bool:
         """Bring the poses in the link table up to date."""
         return self._put_off is not None or self._readout.read_poses()
+
+    def read_rows(self, link_rows: Tuple[int, ...]) -> bytes:
+        """The current states of some links."""
+        self._settle()
+        return self._row_reader.read_links(link_rows)
+
+    def read_world(self) -> memoryview:
+        """The current states of all links."""
+        self._settle()
+        self._readout.update()
+        return self._readout.tables()[0]
+
+    def read_axes(self, joint_rows: Tuple[int, ...]) -> List[float]:
+        """Position and rate of some joint axes."""
+        self._settle()
+        return self._row_reader.read_axes(joint_rows)
 
     def tables(self) -> Tuple[memoryview, memoryview]:
         """The used rows."""

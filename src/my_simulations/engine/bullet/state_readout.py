@@ -8,7 +8,7 @@ margin, so that the question is repeated only after the mover has gone that far.
 from __future__ import annotations
 
 import struct
-from typing import Callable, Dict, List, Sequence, Set, Tuple
+from typing import Callable, Dict, List, Optional, Sequence, Set, Tuple
 
 import numpy as np
 import pybullet
@@ -64,6 +64,7 @@ class StateReadout:
         self._patrol: List[int] = []
         self._touched: Dict[int, Body] = {}
         self._stepped = False
+        self._changed = False   # by `update`, since the last `read`
         self._closing: Dict[int, ClosingJoint] = {}
 
     def add_joints(self, rows: slice, closing: Sequence[ClosingJoint]) -> None:
@@ -125,7 +126,16 @@ class StateReadout:
         self._stepped = True
 
     def read(self) -> bool:
-        """Bring the tables up to date. Returns False when nothing can have changed.
+        """Bring the tables up to date. Returns False when nothing can have changed since then.
+
+        What `update` has found is included.
+        """
+        self.update()
+        changed, self._changed = self._changed, False
+        return changed
+
+    def update(self) -> None:
+        """Bring the tables up to date; the next `read` returns whether anything can have changed.
 
         Without a step since the last read-out only what was touched is read. Standing still counts
         only over a step.
@@ -137,14 +147,14 @@ class StateReadout:
             trees = {uid: body for uid, body in touched.items() if not body.rigid}
         if not rigid and not trees:
             self._stepped = False
-            return False
+            return
+        self._changed = True
         offset_rows: List[int] = []
         self._read_all(list(rigid.values()), offset_rows)
         self._read_rest(trees, offset_rows)
         for one in self._closing.values():
             one.read(self.links, self.joints)
         self._stepped = False
-        return True
 
     def _read_rest(self, trees: Dict[int, Body], offset_rows: List[int]) -> None:
         """Trees, and what they and the rigid bodies may have woken; all rows to link frames."""
@@ -161,7 +171,7 @@ class StateReadout:
         What `read` would find, it still finds afterwards.
         """
         if not self._stepped and not self._touched:
-            return False
+            return self._changed
         places: List[int] = []
         self._read_places(list(self._awake.values()), places)
         if places:
@@ -326,6 +336,18 @@ class StateReadout:
             self._answer = (np.array(rows), np.array([each.position for each in offsets]),
                             np.array([each.orientation for each in offsets]))
         return self._answer
+
+    def may_have_moved(self, body: Body) -> bool:
+        """Whether a body may be elsewhere than its rows say."""
+        return body.uid in self._awake or body.uid in self._trees
+
+    def offset(self, row: int) -> Optional[Pose]:
+        """The link frame of a row in its centre of mass; None if they are the same."""
+        return self._offsets.get(row)
+
+    def row(self, row: int) -> bytes:
+        """A link row as it was read last, as raw doubles."""
+        return bytes(self._link_bytes[row * _ROW_BYTES:(row + 1) * _ROW_BYTES])
 
     def tables(self) -> Tuple[memoryview, memoryview]:
         """The used rows as raw bytes, for the ring."""

@@ -1,21 +1,22 @@
 """What controllers of wheeled bases share: commands that grow old, limits, odometry, tf.
 
-Parameters, topics and limits are those of ros_controllers. Updates come 100 times a second of sim
-time, or as often as `controlPeriod` says; ramps are exact to that. Odometry is integrated exactly
-along arcs.
+Parameters, topics and limits are those of ros_controllers. While the velocity changes, updates
+come 100 times a second of sim time, or as often as `controlPeriod` says; ramps are exact to that.
+Odometry is integrated exactly along arcs, as often as it is published.
 """
 from __future__ import annotations
 
 import math
 from collections import deque
-from typing import Any, Deque, Tuple
+from typing import Any, Deque, List, Optional, Tuple
 
 from ...description.model import Joint as JointSpec
 from ...description.shapes import Cylinder, Sphere
 from ...geometry import Vec3, transform
-from ..context import PluginError
+from ..context import Ending, PluginError, Publication
 from ..drive.odometry import diagonal, fill_pose, planar
 from ..frames import stamped
+from ..stepwise_change import StepwiseChange
 from ..time_out import TimeOut
 from .controller import Controller
 from .speed_limits import speed_limits
@@ -67,6 +68,10 @@ class BaseController(Controller):
     def tell_more(self) -> None:
         """Publish what goes with the odometry."""
 
+    def more_topics(self) -> List[Publication]:
+        """The topics of `tell_more`."""
+        return []
+
     # -- Controller --------------------------------------------------------------------------------
 
     def load(self) -> None:
@@ -78,7 +83,10 @@ class BaseController(Controller):
         self._time_out = TimeOut(self.context, s.number("cmd_vel_timeout", 0.5))
         self.limits = tuple(speed_limits(s, path) for path in ("linear/x", "linear/y", "angular/z"))
         self._hertz = 1.0 / self.period if self.period else max(_UPDATE_HZ, self._publish_hz)
-        window = s.number("velocity_rolling_window_size", 10.0) * self._hertz / _ORIGINAL_HZ
+        self._change = StepwiseChange(self.context, self._hertz, self._update)
+        self._end: Optional[Ending] = None   # of the last command
+        self._count_hz = self._hertz if self.period else self._publish_hz or _UPDATE_HZ
+        window = s.number("velocity_rolling_window_size", 10.0) * self._count_hz / _ORIGINAL_HZ
         self.window = max(1, round(window))
         self._frames = (s.text("odom_frame_id", "odom"), s.text("base_frame_id", "base_link"))
         self._broadcasts = s.flag("enable_odom_tf", True)
@@ -99,13 +107,24 @@ class BaseController(Controller):
         self.begin_count()
         self._now_ns = self.context.now_ns
         self.drive(STANDING)
-        self.every(self._hertz, self._update)
+        topics = [self._odom, *self.more_topics()]
+        self.observe(self._count_hz, self._count, topics, transforms=self._broadcasts,
+                     remembers=True)
+        if self._limited is not None:
+            self.observe(self._hertz, self._tell_command, [self._limited])
         if self._publish_hz > 0.0:
-            self.every(self._publish_hz, self._tell)
+            self.observe(self._publish_hz, self._tell, topics, transforms=self._broadcasts)
 
     def stop(self) -> None:
         """Stand."""
+        self._end_command()
+        self._change.end()
         self.drive(STANDING)
+
+    def _end_command(self) -> None:
+        if self._end is not None:
+            self._end.end()
+            self._end = None
 
     def _hear(self, message: Any) -> None:
         self.obey_twist(message)
@@ -122,30 +141,37 @@ class BaseController(Controller):
         if finite:
             self.command = command
             self._time_out.begin()
+            self._end_command()
+            self._end = self._change.begin_after(self.context.now_ns + self._time_out.ns)
+            self._change.begin()
         elif not self._told_of_numbers:
             self._told_of_numbers = True
             self.context.warn(f"controller '{self.name}' ignores commands that are not finite")
         return finite
 
-    def _update(self) -> None:
-        """Odometry first, then the command, as the original."""
+    def _update(self, dt: float) -> bool:
+        """Follow the command; whether the base is told the whole of it."""
+        wanted = STANDING if self._time_out.is_over else self.command
+        limited = self.limited(wanted, dt)
+        done = self.before == self.last == limited
+        self.before, self.last = self.last, limited
+        self.drive(limited)
+        return done
+
+    def _tell_command(self) -> None:
+        """Publish what is commanded since the last update."""
+        assert self._limited is not None
+        message = stamped(self.context, "geometry_msgs/TwistStamped")
+        message.twist.linear.x, message.twist.linear.y, message.twist.angular.z = self.last
+        self._limited.publish(message)
+
+    def _count(self) -> None:
+        """Integrate an arc, exactly."""
         now = self.context.now_ns
         dt = (now - self._now_ns) * 1e-9
         self._now_ns = now
         if dt <= 0.0:
             return
-        self._count(dt)
-        wanted = STANDING if self._time_out.is_over else self.command
-        limited = self.limited(wanted, dt)
-        self.before, self.last = self.last, limited
-        self.drive(limited)
-        if self._limited is not None:
-            message = stamped(self.context, "geometry_msgs/TwistStamped")
-            message.twist.linear.x, message.twist.linear.y, message.twist.angular.z = limited
-            self._limited.publish(message)
-
-    def _count(self, dt: float) -> None:
-        """Integrate an arc, exactly."""
         forward, sideways, turn = self.way(dt)
         x, y, yaw = self._pose
         half = turn / 2.0

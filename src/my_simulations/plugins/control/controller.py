@@ -1,7 +1,7 @@
 """The base class of controllers, and what they see."""
 from __future__ import annotations
 
-from typing import Any, Callable, Dict, List
+from typing import Any, Callable, Dict, List, Sequence
 
 from ...engine.drive_commands import PidGains
 from ..context import Context, Ending, Handle, Publication
@@ -101,6 +101,11 @@ class Controller:
     def every(self, hertz: float, call: Callable[[], None]) -> None:
         """Be called at a rate in Hz of sim time while it runs."""
         self._timers.append(self.context.every(hertz, call))
+
+    def observe(self, hertz: float, call: Callable[[], None],
+                topics: Sequence[Publication] = (), **reads: Any) -> None:
+        """Follow the world at a rate while it runs; see `Context.observe`."""
+        self._timers.append(self.context.observe(hertz, call, topics, **reads))
 
     # -- for the manager ---------------------------------------------------------------------------
 

@@ -11,7 +11,7 @@ from collections import deque
 from typing import Any, Deque, List, NamedTuple, Sequence, Tuple
 
 from ...geometry import Vec3
-from ..context import PluginError
+from ..context import PluginError, Publication
 from .base_controller import BaseController, Planar
 from .hardware import POSITION, VELOCITY, HardwareJoint
 from .speed_limits import clamped
@@ -186,6 +186,10 @@ class FourWheelSteeringController(BaseController):
         jerk = (changes[0] - self._changes[-1][0]) / dt if self._changes else 0.0
         self._changes.append((changes[0], jerk, changes[1], changes[2]))
         self._state = state
+
+    def more_topics(self) -> List[Publication]:
+        """Of the steering."""
+        return [] if self._odom_steer is None else [self._odom_steer]
 
     def tell_more(self) -> None:
         """Speed and steering of the axles."""

@@ -38,15 +38,14 @@ class JointLoop(Controller):
     def start(self) -> None:
         """Stay, or stand."""
         self._go(0.0 if self.of_rate else self._joint.position)
-        self.every(min(_STATE_HZ, 1.0 / self.period) if self.period else _STATE_HZ, self._tell)
+        self.observe(min(_STATE_HZ, 1.0 / self.period) if self.period else _STATE_HZ, self._tell,
+                     [self._state], efforts=[self._joint.name])
 
     def _go(self, wanted: float) -> None:
         self._wanted = wanted if self.of_rate else within(self._joint, wanted)
         self._joint.follow(self._wanted, gains=self._gains, of_rate=self.of_rate)
 
     def _tell(self) -> None:
-        if not self._state.wanted:
-            return
         joint, gains = self._joint, self._gains
         message = stamped(self.context, "control_msgs/JointControllerState")
         message.set_point = self._wanted

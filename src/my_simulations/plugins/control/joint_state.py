@@ -28,7 +28,8 @@ class JointStateController(Controller):
     def start(self) -> None:
         """Publish from now on."""
         if self._rate > 0.0:
-            self.every(self._rate, self._tell)
+            self.observe(self._rate, self._tell, [self._topic],
+                         efforts=[joint.name for joint in self._joints])
 
     def _extras(self, known: List[str]) -> List[Tuple[str, float, float, float]]:
         found: List[Tuple[str, float, float, float]] = []
@@ -47,7 +48,7 @@ class JointStateController(Controller):
         message = stamped(self.context, "sensor_msgs/JointState")
         names = [joint.name for joint in self._joints]
         extra = self._extra
-        efforts = self.hardware.efforts(names) if self._topic.wanted else [0.0] * len(names)
+        efforts = self.hardware.efforts(names)
         message.name = names + [one[0] for one in extra]
         message.position = [joint.position for joint in self._joints] + [one[1] for one in extra]
         message.velocity = [joint.velocity for joint in self._joints] + [one[2] for one in extra]

@@ -78,7 +78,7 @@ class JointTrajectory(Controller):
                          for joint in self._joints]
         self._send()
         if self._state_hz > 0.0:
-            self.every(self._state_hz, self._tell)
+            self.observe(self._state_hz, self._tell, [self._state])
 
     def stop(self) -> None:
         """The goal ends."""
@@ -239,9 +239,8 @@ class JointTrajectory(Controller):
             following.goal.feedback(self._filled(self.context.message(f"{_ACTION}Feedback")))
 
     def _tell(self) -> None:
-        if self._state.wanted:
-            self._state.publish(self._filled(
-                self.context.message("control_msgs/JointTrajectoryControllerState")))
+        self._state.publish(self._filled(
+            self.context.message("control_msgs/JointTrajectoryControllerState")))
 
     def _filled(self, message: Any) -> Any:
         message.header.stamp = self.context.stamp()

@@ -6,9 +6,9 @@ on `odom`, and on `odomTopic` as in the original.
 from __future__ import annotations
 
 import math
-from typing import Tuple
+from typing import List, Tuple
 
-from ..context import PluginError
+from ..context import PluginError, Publication
 from .base_controller import BaseController, Planar
 from .hardware import VELOCITY
 
@@ -74,6 +74,10 @@ class MecanumDriveController(BaseController):
         x, y = x - oy * yaw, y + ox * yaw
         cosine, sine = math.cos(turn), math.sin(turn)
         return cosine * x + sine * y, -sine * x + cosine * y, yaw
+
+    def more_topics(self) -> List[Publication]:
+        """The other name of the odometry."""
+        return [self._more]
 
     def tell_more(self) -> None:
         """The same odometry under its other name."""

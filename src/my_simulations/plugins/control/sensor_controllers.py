@@ -52,7 +52,12 @@ class ImuSensorController(_SensorController):
         """Publish from now on."""
         self._before: Dict[str, Any] = {}
         if self._hertz > 0.0:
-            self.every(self._hertz, self._tell)
+            self.observe(self._hertz, self._tell, [topic for _, _, topic in self._sensors],
+                         resume=self._resume)
+
+    def _resume(self) -> None:
+        self._before = {}
+        self._tell()
 
     def _tell(self) -> None:
         for sensor, link, topic in self._sensors:
@@ -79,6 +84,7 @@ class ForceTorqueSensorController(_SensorController):
         """Find the sensors."""
         self._hertz = self._rate()
         self._looks: List[Callable[[], None]] = []
+        self._topics: List[Publication] = []
         for joint in self.context.description.joints:
             for sensor in joint.sensors:
                 if sensor.type == "force_torque":
@@ -89,6 +95,7 @@ class ForceTorqueSensorController(_SensorController):
 
     def _look(self, joint: Joint, sensor: Sensor) -> Callable[[], None]:
         topic = self._offer(sensor.name, "geometry_msgs/WrenchStamped")
+        self._topics.append(topic)
         block: Optional[ForceTorque] = sensor.force_torque
         frame, direction = (block.frame, block.measure_direction) if block is not None else (
             "child", "child_to_parent")
@@ -111,7 +118,9 @@ class ForceTorqueSensorController(_SensorController):
     def start(self) -> None:
         """Publish from now on."""
         if self._hertz > 0.0:
-            self.every(self._hertz, self._tell)
+            self.observe(self._hertz, self._tell, self._topics, wrenches=[
+                joint.name for joint in self.context.description.joints
+                if any(sensor.type == "force_torque" for sensor in joint.sensors)])
 
     def _tell(self) -> None:
         for look in self._looks:

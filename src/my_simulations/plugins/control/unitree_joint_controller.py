@@ -35,7 +35,8 @@ class UnitreeJointController(Controller):
     def start(self) -> None:
         """Brake until a command comes."""
         self._brake()
-        self.every(min(self._hertz, 1.0 / self.period) if self.period else self._hertz, self._tell)
+        self.observe(min(self._hertz, 1.0 / self.period) if self.period else self._hertz,
+                     self._tell, [self._state], efforts=[self._joint.name])
 
     def _hear(self, message: Any) -> None:
         """A command in another mode leaves the motor as it is."""
@@ -70,8 +71,6 @@ class UnitreeJointController(Controller):
                            target_rate=rate, by_rates=True)
 
     def _tell(self) -> None:
-        if not self._state.wanted:
-            return
         message = self.context.message("unitree_legged_msgs/MotorState")
         message.mode = self._mode
         message.q, message.dq = self._joint.position, self._joint.velocity

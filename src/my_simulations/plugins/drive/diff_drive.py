@@ -9,6 +9,7 @@ from __future__ import annotations
 from typing import Tuple
 
 from ..parameters import namespace_or
+from ..stepwise_change import StepwiseChange
 from .odometry import Odometer, WheelCounter
 from .odometry_drive import OdometryDrive
 from .wheels import VelocityCommand, WheelFrames, WheelStates
@@ -42,24 +43,31 @@ class DiffDrive(OdometryDrive):
             else None
         self._states = WheelStates(context, self._joints) \
             if p.flag("publishWheelJointState", False) else None
-        self._command = VelocityCommand(context, p.text("commandTopic", "cmd_vel"))
         hertz = p.number("updateRate", 100.0)
+        self._change = StepwiseChange(context, hertz, self._accelerate)
+        self._command = VelocityCommand(context, p.text("commandTopic", "cmd_vel"),
+                                        changed=self._change.begin)
         self.reset()
-        context.every(hertz, self.update)
+        # Encoders count at all updates, with and without subscribers.
+        topics = [*self._odometer.topics, *(self._states.topics if self._states else [])]
+        transforms = self._publishes and self._broadcasts or self._frames is not None
+        if topics or transforms:
+            context.observe(hertz, self.tell, topics, transforms=transforms,
+                            remembers=self._encoder and self._publishes)
 
     def reset(self) -> None:
         """Stand, and count from here."""
         self._command.stop()
+        self._change.end()
         self._counter.reset()
         self._instructed = [0.0, 0.0]
         self.clock_set()
         self._drive((0.0, 0.0))
 
-    def update(self) -> None:
-        """Odometry first, then the command (as the original)."""
-        dt = self.elapsed()
+    def tell(self) -> None:
+        """Odometry, as it is before the command of the same update (as the original)."""
         if self._publishes:
-            pose, velocity = self.motion(dt)
+            pose, velocity = self.motion()
             if self._broadcasts:
                 self._odometer.transform(pose)
             self._odometer.publish(pose, velocity)
@@ -67,7 +75,12 @@ class DiffDrive(OdometryDrive):
             self._frames.send()
         if self._states is not None:
             self._states.send()
-        self._drive(self._speeds(dt))
+
+    def _accelerate(self, dt: float) -> bool:
+        """Follow the command; whether the wheels are told the whole of it."""
+        speeds, turn = self._speeds(dt), self._command.yaw * self._separation / 2.0
+        self._drive(speeds)
+        return speeds == (self._command.x - turn, self._command.x + turn)
 
     def _speeds(self, dt: float) -> Tuple[float, float]:
         """Of the rims, m/s, within the acceleration."""

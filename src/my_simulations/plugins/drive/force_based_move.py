@@ -56,7 +56,8 @@ class ForceBasedMove(Plugin):
         context.every(0.0, self.push)
         hertz = p.number("odometryRate", 20.0)
         if hertz > 0.0:
-            context.every(hertz, self.tell)
+            context.observe(hertz, self.tell, self._odometer.topics,
+                            transforms=self._broadcasts)
 
     def reset(self) -> None:
         """Stand."""

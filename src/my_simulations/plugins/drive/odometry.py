@@ -5,7 +5,7 @@ import math
 from typing import Any, List, Optional, Sequence, Tuple
 
 from ...geometry import Pose, Twist, quat_from_rpy, rpy_from_quat
-from ..context import Context, Joint
+from ..context import Context, Joint, Publication
 from ..frames import prefixed, stamped
 
 _NO_IDEA = 1e12  # of what a wheeled robot does not measure
@@ -53,8 +53,7 @@ class WheelTurns:
         turns = []
         for joint, (position, puts) in zip(self._joints, before):
             began, now = joint.puts, joint.position
-            # Another thread puts joints: a count that is the same on both sides of the reading.
-            steady = puts == began == joint.puts
+            steady = puts in (began, -1.0)   # there is no count outside of observations
             self._last.append((now, began))
             turns.append(now - position if steady else joint.velocity * dt)
         return turns
@@ -112,6 +111,7 @@ class Odometer:
         self._context = context
         self.frame, self.base = prefixed(context, frame), prefixed(context, base)
         self._topic = context.publish(topic, "nav_msgs/Odometry") if topic else None
+        self.topics: List[Publication] = [self._topic] if self._topic is not None else []
         self._covariance, self._twist_covariance = diagonal(covariance), diagonal(twist_covariance)
 
     def transform(self, pose: Pose) -> None:
@@ -125,7 +125,7 @@ class Odometer:
         `yaw_variance`: of the yaw and of its rate in this message, rad^2 and rad^2/s^2; None for
         those of the diagonals.
         """
-        if self._topic is None:
+        if self._topic is None or not self._topic.wanted:
             return
         message = stamped(self._context, "nav_msgs/Odometry")
         message.header.frame_id, message.child_frame_id = self.frame, self.base

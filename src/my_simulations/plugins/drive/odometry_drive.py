@@ -24,9 +24,11 @@ class OdometryDrive(Plugin):
         before, self._last_ns = self._last_ns, self.context.now_ns
         return (self._last_ns - before) * 1e-9
 
-    def motion(self, dt: float) -> Tuple[Pose, Tuple[float, float, float]]:
-        """Count the way of the last `dt` s; pose and (forward, sideways, yaw) velocity to tell."""
-        velocity = self._counter.count(dt)
+    def motion(self) -> Tuple[Pose, Tuple[float, float, float]]:
+        """Pose and (forward, sideways, yaw) velocity to tell: of encoders, over the time since the
+        last call.
+        """
         if self._encoder:
+            velocity = self._counter.count(self.elapsed())
             return self._counter.pose, velocity
         return self.context.pose, in_base(self.context.pose, self.context.twist)

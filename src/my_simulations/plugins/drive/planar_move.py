@@ -11,6 +11,7 @@ from typing import Tuple
 from ...geometry import Pose, Twist, rpy_from_quat
 from ..base import Plugin
 from ..parameters import namespace_or
+from ..stepwise_change import StepwiseChange
 from .odometry import Odometer, in_base
 from .wheels import VelocityCommand
 
@@ -26,24 +27,33 @@ class PlanarMove(Plugin):
                                   p.text("odometryFrame", "odom"),
                                   p.text("robotBaseFrame", "base_footprint"))
         timeout = p.number("cmdTimeout", -1.0)
+        self._change = StepwiseChange(context, 100.0, self._follow)
         self._command = VelocityCommand(context, p.text("commandTopic", "cmd_vel"),
-                                        timeout if timeout >= 0.0 else None)
+                                        timeout if timeout >= 0.0 else None,
+                                        self._change.begin if timeout < 0.0 else lambda: None)
         self._last: Tuple[int, Pose] = (context.now_ns, context.pose)
-        context.every(100.0 if timeout < 0.0 else 0.0, self.move)
+        if timeout >= 0.0:
+            context.every(0.0, self.move)
         hertz = p.number("odometryRate", 20.0)
         if hertz > 0.0:
-            context.every(hertz, self.tell)
+            context.observe(hertz, self.tell, self._odometer.topics, transforms=True,
+                            resume=self.clock_set)
         self.move()
 
     def reset(self) -> None:
         """Stand."""
         self._command.stop()
+        self._change.end()
         self.clock_set()
         self.move()
 
     def clock_set(self) -> None:
         """Velocities are of what comes."""
         self._last = (self.context.now_ns, self.context.pose)
+
+    def _follow(self, dt: float) -> bool:
+        self.move()
+        return True
 
     def move(self) -> None:
         """Pass the command on; the engine keeps it up in every step."""

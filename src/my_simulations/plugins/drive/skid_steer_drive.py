@@ -6,6 +6,7 @@ from __future__ import annotations
 
 from ..base import Plugin
 from ..parameters import namespace_or
+from ..stepwise_change import StepwiseChange
 from .odometry import Odometer, in_base
 from .wheels import VelocityCommand
 
@@ -30,24 +31,31 @@ class SkidSteerDrive(Plugin):
                                   p.text("odometryFrame", "odom"),
                                   p.text("robotBaseFrame", "base_footprint"), unsure, unsure)
         self._broadcasts = p.flag("broadcastTF", False)
-        self._command = VelocityCommand(context, p.text("commandTopic", "cmd_vel"))
+        hertz = p.number("updateRate", 100.0)
+        self._change = StepwiseChange(context, hertz, self._follow)
+        self._command = VelocityCommand(context, p.text("commandTopic", "cmd_vel"),
+                                        changed=self._change.begin)
         self.reset()
-        context.every(p.number("updateRate", 100.0), self.update)
+        context.observe(hertz, self.tell, self._odometer.topics, transforms=self._broadcasts)
 
     def reset(self) -> None:
         """Stand."""
         self._command.stop()
+        self._change.end()
         self._drive()
 
-    def update(self) -> None:
-        """Odometry first, then the command."""
+    def tell(self) -> None:
+        """Publish odometry."""
         pose = self.context.pose
         if self._broadcasts:
             self._odometer.transform(pose)
         x, y, _ = pose.position
         self._odometer.publish(pose._replace(position=(x, y, 0.0)),
                                in_base(pose, self.context.twist))
+
+    def _follow(self, dt: float) -> bool:
         self._drive()
+        return True
 
     def _drive(self) -> None:
         turn = self._command.yaw * self._separation / 2.0

@@ -52,7 +52,11 @@ class TricycleDrive(OdometryDrive):
             if p.flag("publishWheelJointState", False) else None
         self._command = VelocityCommand(context, p.text("commandTopic", "cmd_vel"))
         self.reset()
-        context.every(p.number("updateRate", 100.0), self.update)
+        hertz = p.number("updateRate", 100.0)
+        context.observe(hertz, self.tell, transforms=True, remembers=self._encoder, topics=[
+            *self._odometer.topics, *(self._states.topics if self._states else [])])
+        self._last_drive_ns = context.now_ns
+        context.every(hertz, self.update)
 
     def _by_side(self, left: Joint, right: Joint) -> Tuple[Joint, Joint]:
         """The wheel further to the left first."""
@@ -68,18 +72,22 @@ class TricycleDrive(OdometryDrive):
         self.clock_set()
         self._drive(0.0, 0.0)
 
-    def update(self) -> None:
-        """Odometry first, then the command (as the original)."""
-        dt = self.elapsed()
-        if dt <= 0.0:
-            return  # the step in which the world was reset
-        pose, velocity = self.motion(dt)
+    def tell(self) -> None:
+        """Odometry, as it is before the command of the same update (as the original)."""
+        pose, velocity = self.motion()
         self._odometer.transform(pose)
         self._odometer.publish(pose, velocity)
         if self._frames is not None:
             self._frames.send()
         if self._states is not None:
             self._states.send()
+
+    def update(self) -> None:
+        """Follow the command."""
+        dt = (self.context.now_ns - self._last_drive_ns) * 1e-9
+        self._last_drive_ns = self.context.now_ns
+        if dt <= 0.0:
+            return  # time was set back
         self._drive(self._command.x, dt)
         self._steer(max(-_MOST_STEERING, min(_MOST_STEERING, self._command.yaw)), dt)
 

@@ -1,10 +1,10 @@
 """What drives with wheels share: commands, wheel frames, joint states of wheels."""
 from __future__ import annotations
 
-from typing import Any, Optional, Sequence
+from typing import Any, Callable, List, Optional, Sequence
 
 from ...geometry import compose, inverse
-from ..context import Context, Joint
+from ..context import Context, Joint, Publication
 from ..finite_messages import finite_only
 from ..frames import prefixed, stamped
 from ..time_out import TimeOut
@@ -18,8 +18,13 @@ class VelocityCommand:
         yaw: rad/s.
     """
 
-    def __init__(self, context: Context, topic: str, timeout: Optional[float] = None) -> None:
-        """`timeout`: s of sim time after which a command counts no more; None for never."""
+    def __init__(self, context: Context, topic: str, timeout: Optional[float] = None,
+                 changed: Callable[[], None] = lambda: None) -> None:
+        """`timeout`: s of sim time after which a command expires; None for never.
+
+        `changed` is called when a command has come.
+        """
+        self._changed = changed
         self._time_out = TimeOut(context, timeout) if timeout is not None else None
         self.stop()
         context.subscribe(topic, "geometry_msgs/Twist", finite_only(context, topic, self._hear))
@@ -32,6 +37,7 @@ class VelocityCommand:
         self.x, self.y, self.yaw = message.linear.x, message.linear.y, message.angular.z
         if self._time_out is not None:
             self._time_out.begin()
+        self._changed()
 
     def look(self) -> None:
         """Forget a command that is too old."""
@@ -63,9 +69,12 @@ class WheelStates:
         self._context, self._joints, self._motion = context, list(joints), motion
         self._frame = frame
         self._topic = context.publish("joint_states", "sensor_msgs/JointState", 1000)
+        self.topics: List[Publication] = [self._topic]
 
     def send(self) -> None:
         """As of now."""
+        if not self._topic.wanted:
+            return
         message = stamped(self._context, "sensor_msgs/JointState", self._frame)
         message.name = [joint.name for joint in self._joints]
         message.position = [joint.position for joint in self._joints]

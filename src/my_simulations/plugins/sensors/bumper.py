@@ -31,12 +31,10 @@ class Bumper(Plugin):
         self._collision = block.collisions[0] if block is not None and block.collisions else ""
         self._topic = context.publish(p.text("bumperTopicName", "bumper_states"),
                                       "gazebo_msgs/ContactsState")
-        context.every(context.sensor.update_rate, self.update)
+        context.observe(context.sensor.update_rate, self.update, [self._topic], contacts=True)
 
     def update(self) -> None:
         """Look at the contacts of the last step."""
-        if not self._topic.wanted:
-            return
         context = self.context
         mine = f"{context.model}::{context.sensor_link}"
         touching: Dict[str, List[Tuple[Any, float]]] = {}

@@ -28,7 +28,8 @@ class Camera(Plugin):
         self._stream = PictureStream(context, sensor, context.sensor_link, block,
                                      topics_of(context), p.number("hackBaseline", 0.0),
                                      p.flag("borderCrop", True))
-        ImagerRate(context, [self._stream.topics.base], self.update, lambda: self._stream.wanted)
+        ImagerRate(context, [self._stream.topics.base], self.update, lambda: self._stream.wanted,
+                   self._stream.publications)
 
     def update(self) -> None:
         """Take a picture, if somebody wants one."""
@@ -147,7 +148,8 @@ class MultiCamera(Plugin):
                 topics_of(context, f"/{side or block.name}"), baseline,
                 p.flag("borderCrop", True)))
         ImagerRate(context, [stream.topics.base for stream in self._streams], self.update,
-                   lambda: any(stream.wanted for stream in self._streams))
+                   lambda: any(stream.wanted for stream in self._streams),
+                   [one for stream in self._streams for one in stream.publications])
 
     def update(self) -> None:
         """Take pictures with the cameras that are listened to."""

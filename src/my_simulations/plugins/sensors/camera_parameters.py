@@ -13,7 +13,7 @@ from typing import Any, Callable, List, Mapping, Sequence
 
 from ...description.sensor import Camera as CameraBlock
 from ...sensing.api import CameraSpec, Distortion
-from ..context import Context
+from ..context import Context, Publication
 from ..frames import prefixed
 from ..parameters import lowest_rate, namespace_or
 from ..reconfigure import Option, Reconfigure, Value
@@ -75,13 +75,15 @@ class ImagerRate:
         names: of the cameras; "" is one that nobody can change (gazebo_plugins).
         call: takes a picture.
         wanted: whether somebody listens.
+        topics: all topics of the camera, `CameraInfo` too.
     """
 
     def __init__(self, context: Context, names: Sequence[str], call: Callable[[], None],
-                 wanted: Callable[[], bool]) -> None:
+                 wanted: Callable[[], bool], topics: Sequence[Publication]) -> None:
         self._context, self._call, self._wanted = context, call, wanted
+        self._topics = topics
         rate = rate_of(context)
-        self._timer = context.every(rate, call)
+        self._timer = context.observe(rate, call, topics, world=True)
         self._listened = False
         if rate < _LOOK_HZ:
             context.every(_LOOK_HZ, self._look)
@@ -96,7 +98,8 @@ class ImagerRate:
 
     def _change(self, values: Mapping[str, Value]) -> None:
         self._timer.end()
-        self._timer = self._context.every(float(values[_RATE.name]), self._call)
+        self._timer = self._context.observe(float(values[_RATE.name]), self._call, self._topics,
+                                            world=True)
         for offer in self._offers:
             offer.tell(values)
 

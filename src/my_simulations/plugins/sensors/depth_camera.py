@@ -11,7 +11,7 @@ from typing import Any, List, Optional
 
 from ...sensing.api import DEPTH, RGB
 from ..base import Plugin
-from ..context import Context
+from ..context import Context, Publication
 from .camera_parameters import CameraTopics, ImagerRate, enter_namespace, topics_of
 from .image_messages import DepthGeometry, Once, cloud_message, header, image
 from .picture_stream import PictureStream, blocks_of
@@ -49,6 +49,11 @@ class DepthStream:
     def wanted(self) -> bool:
         """Whether anybody wants depth."""
         return self._image.wanted or self.cloud_wanted
+
+    @property
+    def publications(self) -> List[Publication]:
+        """All that it publishes."""
+        return [self._image, self._info, *([self._points] if self._points is not None else [])]
 
     @property
     def cloud_wanted(self) -> bool:
@@ -113,7 +118,8 @@ class DepthCamera(Plugin):
             p.number("pointCloudCutoffMax", self.furthest),
             not p.flag("useDepth16UC1Format", False))
         ImagerRate(context, [topics.base], self.update,
-                   lambda: self._colors.wanted or self._depth.wanted)
+                   lambda: self._colors.wanted or self._depth.wanted,
+                   [*self._colors.publications, *self._depth.publications])
 
     def update(self) -> None:
         """Take a picture of what is wanted."""

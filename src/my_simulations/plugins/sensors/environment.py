@@ -15,7 +15,7 @@ from ...geometry import transform
 from ...sensing.models import altimeter, gps, magnetometer
 from ...sensing.models.motion import velocity_at
 from ..base import Plugin
-from ..context import PluginError
+from ..context import PluginError, Publication
 from ..frames import prefixed
 from ..parameters import namespace_or
 from .hector import vector
@@ -39,7 +39,12 @@ class _OfSensor(Plugin):
         self._frame = prefixed(context, p.text("frameName") or context.sensor_link)
         self.block = getattr(context.sensor, kind)
         self._noises: List[SampledNoise] = []
-        context.every(context.sensor.update_rate, self.update)
+
+    def _follow(self, *topics: Publication) -> None:
+        """Measure at the sensor's rate while there are subscribers."""
+        context = self.context
+        assert context.sensor is not None
+        context.observe(context.sensor.update_rate, self.update, topics)
 
     def _noise(self, noise: Noise, quantity: str) -> SampledNoise:
         made = SampledNoise(self.context, noise, quantity)
@@ -79,6 +84,7 @@ class GpsSensor(_OfSensor):
         fix = context.parameters.text("topicName") or "fix"
         self._fix = context.publish(fix, "sensor_msgs/NavSatFix")
         self._velocity = context.publish(f"{fix}_velocity", "geometry_msgs/Vector3Stamped")
+        self._follow(self._fix, self._velocity)
 
     def update(self) -> None:
         """Measure and publish."""
@@ -114,18 +120,18 @@ class MagnetometerSensor(_OfSensor):
                           block.z.stddev ** 2]
         self._topic = context.publish(context.parameters.text("topicName") or "magnetic_field",
                                       "sensor_msgs/MagneticField")
+        self._follow(self._topic)
 
     def update(self) -> None:
         """Measure and publish."""
         context = self.context
         felt = magnetometer.measure(self._link.pose, self._mount, context.magnetic_field)
         x, y, z = (noise.apply(value, context.now_ns) for noise, value in zip(self._axes, felt))
-        if self._topic.wanted:
-            message = context.message("sensor_msgs/MagneticField")
-            message.header, field = self._header(), message.magnetic_field
-            field.x, field.y, field.z = x, y, z
-            message.magnetic_field_covariance = self._variance
-            self._topic.publish(message)
+        message = context.message("sensor_msgs/MagneticField")
+        message.header, field = self._header(), message.magnetic_field
+        field.x, field.y, field.z = x, y, z
+        message.magnetic_field_covariance = self._variance
+        self._topic.publish(message)
 
 
 class AltimeterSensor(_OfSensor):
@@ -141,6 +147,7 @@ class AltimeterSensor(_OfSensor):
         name = context.parameters.text("topicName") or "altitude"
         self._height = context.publish(name, "geometry_msgs/PointStamped")
         self._velocity = context.publish(f"{name}_velocity", "geometry_msgs/Vector3Stamped")
+        self._follow(self._height, self._velocity)
 
     def update(self) -> None:
         """Measure and publish."""

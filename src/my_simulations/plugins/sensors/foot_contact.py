@@ -22,12 +22,10 @@ class FootContact(Plugin):
         self._link = context.link(context.sensor_link)
         self._topic = context.publish(f"/visual/{context.sensor.name}/the_force",
                                       "geometry_msgs/WrenchStamped", 100)
-        context.every(context.sensor.update_rate, self.update)
+        context.observe(context.sensor.update_rate, self.update, [self._topic], contacts=True)
 
     def update(self) -> None:
         """Look at the contacts of the last step."""
-        if not self._topic.wanted:
-            return
         context, total, count = self.context, (0.0, 0.0, 0.0), 0
         mine = f"{context.model}::{context.sensor_link}"
         for one, other, contact in context.contacts():

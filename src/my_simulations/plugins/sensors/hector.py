@@ -83,7 +83,9 @@ class Gps(_OfLink):
         self._fix = context.publish(fix, "sensor_msgs/NavSatFix", 10)
         self._velocity = context.publish(p.text("velocityTopicName") or "fix_velocity",
                                          "geometry_msgs/Vector3Stamped", 10)
-        context.every(rate_of(p, 4.0), self.update)
+        # An error of the velocity becomes one of the place, sample by sample.
+        context.observe(rate_of(p, 4.0), self.update, [self._fix, self._velocity],
+                        remembers=self._velocity_errors.drifts)
 
     def reset(self) -> None:
         """Errors begin anew."""
@@ -97,7 +99,7 @@ class Gps(_OfLink):
         return c * x + s * y, -s * x + c * y
 
     def update(self) -> None:
-        """Measure always, as errors go on; publish what is wanted."""
+        """Measure, and publish what is wanted."""
         ns = self.context.now_ns
         vx, vy, vz = self._velocity_errors.apply(self._link.twist.linear, ns)
         x, y, z = self._place_errors.apply(self._link.pose.position, ns)
@@ -155,15 +157,13 @@ class Magnetic(_OfLink):
         self._plain = not p.flag("useMagneticFieldMsgs", False)
         kind = "geometry_msgs/Vector3Stamped" if self._plain else "sensor_msgs/MagneticField"
         self._topic = context.publish(p.text("topicName") or "magnetic", kind)
-        context.every(rate_of(p), self.update)
+        context.observe(rate_of(p), self.update, [self._topic])
 
     def update(self) -> None:
         """Measure and publish."""
         context = self.context
         felt = rotate(conjugate(self._link.pose.orientation), self._field)
         x, y, z = self._errors.apply(felt, context.now_ns)
-        if not self._topic.wanted:
-            return
         head = header(context, context.now_ns, self._frame)
         if self._plain:
             self._topic.publish(vector(context, head, (x, y, z)))
@@ -191,7 +191,8 @@ class Baro(_OfLink):
                                               "hector_uav_msgs/Altimeter", 10)
         except PluginError as missing:
             context.info(f"only the height is published: {missing}")
-        context.every(rate_of(p), self.update)
+        context.observe(rate_of(p), self.update, [self._height, *(
+            [self._altimeter] if self._altimeter is not None else [])])
 
     def update(self) -> None:
         """Measure and publish."""
@@ -229,7 +230,7 @@ class Sonar(RayPlugin):
         self._view = min((angle for angle in wide if angle > 0.0), default=0.0)
         self._errors = SensorErrors(context, width=1)
         self._topic = context.publish(p.text("topicName") or "sonar", "sensor_msgs/Range")
-        context.every(rate_of(p, _SONAR_HERTZ), self.update)
+        self.follow(rate_of(p, _SONAR_HERTZ))
 
     def reset(self) -> None:
         """Errors begin anew."""

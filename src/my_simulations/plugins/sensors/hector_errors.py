@@ -1,8 +1,9 @@
 """The error model that hector_gazebo_plugins' sensors share.
 
 value * scaleError + offset + drift + white noise. The drift is a first-order Markov process with
-the standard deviation `drift` and the time constant 1 / `driftFrequency` (1 h); it is stepped
-exactly, whatever the rate (there its size depends on the rate).
+the standard deviation `drift` and the time constant 1 / `driftFrequency` (1 h). It is a function of
+sim time, whatever the rate and whichever samples are taken (there its size depends on the rate): it
+is stepped exactly 50 times in a time constant, and is straight between two steps.
 """
 from __future__ import annotations
 
@@ -15,6 +16,8 @@ from ..parameters import Parameters
 
 _WHITE, _DRIFT, _FIRST_DRIFT = range(3)
 _HOUR_S = 3600.0
+_STRIDES = 50.0          # of the drift, in a time constant
+_LEAST_STRIDE_NS = 10 ** 6
 
 
 class SensorErrors:
@@ -37,13 +40,42 @@ class SensorErrors:
         self._name = (context.seed, f"{context.model}::{context.parameters.text('bodyName')}",
                       f"{prefix or 'value'} {context.parameters.text('topicName')}")
         self._width = width
+        self._stride_ns = max(_LEAST_STRIDE_NS, round(1e9 / (
+            _STRIDES * max(*self._frequency, 1e-9))))
         self.reset(context.now_ns)
 
     def reset(self, ns: int, drift: Optional[Sequence[float]] = None) -> None:
         """Begin anew, with a drift that is drawn, or given."""
         self._last_ns = ns
-        self.current = list(drift) if drift is not None else [
+        begin = list(drift) if drift is not None else [
             size * draw for size, draw in zip(self.drift, self._draw(ns, _FIRST_DRIFT))]
+        self._shifts = [0.0] * self._width
+        number = ns // self._stride_ns
+        self._ends = (number, begin, self._stepped(number + 1, begin))
+        self.current = begin
+
+    @property
+    def drifts(self) -> bool:
+        """Whether there is a drift that goes on."""
+        return any(self.drift)
+
+    def _stepped(self, number: int, before: Sequence[float]) -> List[float]:
+        """The drift a stride after `before`, at the end of stride `number`."""
+        if not self.drifts:
+            return list(before)
+        elapsed = self._stride_ns * 1e-9
+        return [math.exp(-f * elapsed) * now + size * math.sqrt(-math.expm1(-2 * f * elapsed)) * n
+                for f, now, size, n in zip(self._frequency, before, self.drift,
+                                           self._draw(number * self._stride_ns, _DRIFT))]
+
+    def _drift_at(self, ns: int) -> List[float]:
+        number, begin, end = self._ends
+        while number < ns // self._stride_ns:
+            number, begin = number + 1, end
+            end = self._stepped(number + 1, begin)
+        self._ends = (number, begin, end)
+        part = (ns - number * self._stride_ns) / self._stride_ns
+        return [a + part * (b - a) for a, b in zip(begin, end)]
 
     def _draw(self, ns: int, purpose: int) -> List[float]:
         drawn: List[float] = generator(*self._name, ns, purpose).standard_normal(
@@ -56,17 +88,16 @@ class SensorErrors:
         return [offset + drift for offset, drift in zip(self.offset, self.current)]
 
     def shift(self, by: Sequence[float]) -> None:
-        """Add to the drift."""
-        self.current = [now + more for now, more in zip(self.current, by)]
+        """Add to the drift as of the next sample."""
+        self._shifts = [now + more for now, more in zip(self._shifts, by)]
 
     def apply(self, values: Sequence[float], ns: int) -> List[float]:
         """Values of the sample at a sim time, with their errors."""
         elapsed, self._last_ns = max(0.0, (ns - self._last_ns) * 1e-9), ns
-        if any(self.drift) or any(self.current):
-            self.current = [
-                math.exp(-f * elapsed) * now + size * math.sqrt(-math.expm1(-2 * f * elapsed)) * n
-                for f, now, size, n in zip(self._frequency, self.current, self.drift,
-                                           self._draw(ns, _DRIFT))]
+        if any(self._shifts):
+            self._shifts = [math.exp(-f * elapsed) * now
+                            for f, now in zip(self._frequency, self._shifts)]
+        self.current = [drift + shift for drift, shift in zip(self._drift_at(ns), self._shifts)]
         white = self._draw(ns, _WHITE) if any(self.noise) else [0.0] * self._width
         return [value * scale + bias + size * n for value, scale, bias, size, n in zip(
             values, self._scale, self.bias, self.noise, white)]

@@ -37,7 +37,8 @@ class HectorImu(Imu):
         context.serve(p.text("serviceName") or f"{topic}/calibrate", "std_srvs/Empty",
                       lambda request, response: self._rate.reset(context.now_ns, (0.0,) * 3))
         self.begin_motion()
-        context.every(rate_of(p), self.update)
+        context.observe(rate_of(p), self.update, [self._topic, self._bias],
+                        resume=self.begin_motion)
 
     def reset(self) -> None:
         """Errors and accelerations begin anew."""
@@ -48,7 +49,7 @@ class HectorImu(Imu):
     clock_set = reset
 
     def update(self) -> None:
-        """Measure always, publish while somebody listens."""
+        """Measure, and publish what is wanted."""
         context, ns = self.context, self.context.now_ns
         sample = self.measured()
         accel = self._accel.apply(sample.linear_acceleration, ns)

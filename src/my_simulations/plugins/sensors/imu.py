@@ -6,7 +6,6 @@ turns its vectors the wrong way and leaves gravity out.
 """
 from __future__ import annotations
 
-import math
 from typing import Any, Optional
 
 from ...description.sensor import Imu as ImuBlock
@@ -14,7 +13,7 @@ from ...geometry import IDENTITY, IDENTITY_QUAT, Pose, Quat, Vec3, compose, mult
 from ...sensing.models.imu import ImuSample, measure
 from ...sensing.models.motion import acceleration_between, velocity_at
 from ..base import Plugin
-from ..context import Ending, Link, PluginError
+from ..context import Link, PluginError
 from ..frames import stamped
 from ..noise import WhiteNoise
 from ..parameters import lowest_rate, namespace_or
@@ -29,7 +28,6 @@ class Imu(Plugin):
     _offset: Quat = IDENTITY_QUAT
     _reference: Quat = IDENTITY_QUAT
     _before: Vec3
-    _idle = False
 
     def _begin(self, topic: str, frame: str, who: str) -> None:
         context, p = self.context, self.context.parameters
@@ -40,17 +38,23 @@ class Imu(Plugin):
         self.begin_motion()
 
     def begin_motion(self) -> None:
-        """Accelerations are of what comes."""
-        self._idle = False
+        """Accelerations are over the time from now on."""
         self._last_ns = self.context.now_ns
         self._before = self._velocity()
 
     def reset(self) -> None:
-        """Accelerations are of what comes, and noise begins anew."""
-        self._white.reset()
+        """Accelerations are over the time from now on."""
         self.begin_motion()
 
     clock_set = reset
+
+    def follow(self, hertz: float) -> None:
+        """Measure at a rate while there are subscribers.
+
+        The first sample after a time without subscribers is left out: the velocity before it is too
+        old for an acceleration.
+        """
+        self.context.observe(hertz, self.update, [self._topic], resume=self.begin_motion)
 
     def _velocity(self) -> Vec3:
         return velocity_at(self._link.pose, self._link.twist, self._mount)
@@ -65,15 +69,9 @@ class Imu(Plugin):
                        self._mount, self._reference)
 
     def update(self) -> None:
-        """Measure and publish while somebody listens."""
-        if not self._topic.wanted:
-            self._idle = True
-            return
-        if self._idle:  # the velocity before is too old for an acceleration
-            self.begin_motion()
-            return
+        """Measure and publish."""
         sample = self._noisy(self.measured())
-        context, noise = self.context, self._white.draw(6)
+        context, noise = self.context, self._white.draw(6, self.context.now_ns)
         message = stamped(context, "sensor_msgs/Imu", self._frame)
         turn = message.orientation
         turn.x, turn.y, turn.z, turn.w = multiply(self._offset, sample.orientation)
@@ -106,7 +104,7 @@ class ModelImu(Imu):
         self._begin(p.text("topicName", "/default_imu"), p.text("frameName", body), body)
         context.serve(p.text("serviceName", "/default_imu"), "std_srvs/Empty",
                       lambda request, response: None)
-        context.every(p.number("updateRate", 0.0), self.update)
+        self.follow(p.number("updateRate", 0.0))
 
 
 class SensorImu(Imu):
@@ -114,8 +112,6 @@ class SensorImu(Imu):
 
     As in Gazebo accelerations are over one period of the sensor, however seldom the plugin asks.
     """
-
-    _look: Optional[Ending] = None
 
     def load(self) -> None:
         """Read parameters."""
@@ -136,37 +132,18 @@ class SensorImu(Imu):
                       for kind in ("angular_velocity", "linear_acceleration") for axis in "xyz"
                       ] if self._block is not None else []
         self._begin(p.text("topicName", "imu_data"), frame, context.sensor.name)
-        self._hertz = lowest_rate(p.number("updateRateHZ", 1.0), context.sensor.update_rate)
-        context.every(self._hertz, self.update)
-        self._look_ahead()
-
-    def update(self) -> None:
-        """Measure and publish while somebody listens."""
-        super().update()
-        if not self._idle:
-            self._look_ahead()
-
-    def _look_ahead(self) -> None:
-        """Take the velocity anew one period of the sensor before the next sample."""
-        context, hertz = self.context, self._hertz
-        if self._look is not None:
-            self._look.end()
-            self._look = None
-        if context.sensor is None or hertz <= 0.0:
-            return
-        rate = context.sensor.update_rate
-        # As appointments of a rate are: multiples of its period, 1e-6 for what rounding takes.
-        following = (math.floor(context.now_ns * 1e-9 * hertz + 1e-6) + 1) / hertz
-        ns = int((following - (1.0 / rate if rate > 0.0 else context.step_size)) * 1e9)
-        if ns > context.now_ns:
-            self._look = context.once(ns, self.begin_motion)
+        sensor_hertz = context.sensor.update_rate
+        hertz = lowest_rate(p.number("updateRateHZ", 1.0), sensor_hertz)
+        period = 1.0 / sensor_hertz if sensor_hertz > 0.0 else context.step_size
+        self.follow(hertz)
+        if 0.0 < hertz * period < 1.0 - 1e-9:
+            context.observe(hertz, self.begin_motion, [self._topic], lead=period)
 
     def reset(self) -> None:
         """Biases begin anew, too."""
         for noise in self._axes:
             noise.reset(self.context.now_ns)
         super().reset()
-        self._look_ahead()
 
     clock_set = reset
 

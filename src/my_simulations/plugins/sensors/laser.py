@@ -25,7 +25,7 @@ class Laser(RayPlugin):
         self._noise = SampledNoise(context, self._ray.noise, "range")
         self._topic = context.publish(p.text("topicName", "/world"), "sensor_msgs/LaserScan")
         assert context.sensor is not None
-        context.every(context.sensor.update_rate, self.update)
+        self.follow(context.sensor.update_rate)
 
     def reset(self) -> None:
         """Noise begins anew."""

@@ -36,7 +36,7 @@ class _Points(RayPlugin):
         self._topic = context.publish(p.text("topicName") or self.usual_topic, self.message_type)
         self._directions: Optional[Any] = None
         assert context.sensor is not None
-        context.every(context.sensor.update_rate, self.update)
+        self.follow(context.sensor.update_rate)
 
     def _named(self, frame: str) -> str:
         return prefixed(self.context, frame)

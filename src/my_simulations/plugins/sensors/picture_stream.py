@@ -8,7 +8,7 @@ from ...description.sensor import Sensor
 from ...geometry import Pose, compose
 from ...sensing.api import RGB
 from ...sensing.noise import noisy_picture
-from ..context import Context, PluginError, View
+from ..context import Context, PluginError, Publication, View
 from .camera_parameters import Calibration, CameraTopics, spec_of
 from .image_messages import ENCODINGS, Once, compressed, encoded, header, image
 
@@ -73,6 +73,11 @@ class PictureStream:
     def info_wanted(self) -> bool:
         """Whether anybody wants to know of the lens."""
         return self._info.wanted
+
+    @property
+    def publications(self) -> List[Publication]:
+        """All that it publishes."""
+        return [self._image, self._compressed, self._info]
 
     def view(self, *outputs: str) -> View:
         """What is to be drawn; default colours."""

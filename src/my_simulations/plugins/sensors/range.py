@@ -31,20 +31,13 @@ class Range(RayPlugin):
                                  f"{context.sensor.name}::range",
                                  p.number("gaussianNoise", 0.0))
         self._topic = context.publish(p.text("topicName", "/range"), "sensor_msgs/Range")
-        context.every(lowest_rate(p.number("updateRate", 0.0), context.sensor.update_rate),
-                      self.update)
-
-    def reset(self) -> None:
-        """Noise begins anew."""
-        self._noise.reset()
-
-    clock_set = reset
+        self.follow(lowest_rate(p.number("updateRate", 0.0), context.sensor.update_rate))
 
     def _publish(self, returns: Any, ns: int) -> None:
         most = self._ray.max_range
         nearest = min(float(min(returns.ranges)), most)
         if nearest < most:
-            nearest = min(most, nearest + self._noise.draw(1)[0])
+            nearest = min(most, nearest + self._noise.draw(1, ns)[0])
         message = stamped(self.context, "sensor_msgs/Range", self._frame, ns)
         message.radiation_type, message.field_of_view = self._kind, self._view
         message.min_range, message.max_range, message.range = self._ray.min_range, most, nearest

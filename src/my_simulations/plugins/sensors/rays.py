@@ -46,10 +46,13 @@ class RayPlugin(Plugin):
         self._ray, self._visuals = ray_of(self.context)
         self._fan = fan_of(self._ray, self._visuals)
 
+    def follow(self, hertz: float) -> None:
+        """Cast the rays at a rate while there are subscribers."""
+        self.context.observe(hertz, self.update, [self._topic], world=True)
+
     def update(self) -> None:
-        """Look, if somebody listens."""
-        if self._topic.wanted:
-            self.context.scan(self._fan, self._visuals, self._publish)
+        """Cast the rays."""
+        self.context.scan(self._fan, self._visuals, self._publish)
 
     def _publish(self, returns: RayReturns, ns: int) -> None:
         """Publish what the rays met at a sim time."""

@@ -34,7 +34,7 @@ class SegmentationCamera(Plugin):
         self._info = context.publish(topics.named(topics.info), "sensor_msgs/CameraInfo", 2)
         self._names = context.publish(topics.named("labels"), "std_msgs/String", 1, latch=True)
         self._numbers: Dict[str, int] = {}
-        context.every(rate_of(context), self.update)
+        context.observe(rate_of(context), self.update, [self._image, self._info], world=True)
 
     def update(self) -> None:
         """Take a picture, if somebody wants one."""

@@ -31,7 +31,7 @@ class F3d(Plugin):
         self._frame = prefixed(context, p.text("frameName", "world"))
         self._topic = context.publish(p.text("topicName"), "geometry_msgs/WrenchStamped")
         self.reset()
-        context.every(0.0, self.update)
+        context.observe(0.0, self.update, [self._topic], resume=self._resume)
 
     def reset(self) -> None:
         """Changes are of what comes."""
@@ -39,11 +39,12 @@ class F3d(Plugin):
 
     clock_set = reset
 
+    def _resume(self) -> None:
+        self.reset()
+        self.update()
+
     def update(self) -> None:
         """Compare the momenta with those before."""
-        if not self._topic.wanted:
-            self._before = None
-            return
         linear, angular = self._momenta()
         before, now = self._before, self.context.now_ns
         self._before = (now, linear, angular)

@@ -42,8 +42,9 @@ class FtSensor(Plugin):
         self._frame = prefixed(context, self._frame_name())
         self._topic = context.publish(p.text("topicName"), "geometry_msgs/WrenchStamped")
         context.joint_wrench(self._name)
-        context.every(p.number("updateRate", 0.0) or (
-            sensor.update_rate if sensor is not None else 0.0), self.update)
+        context.observe(p.number("updateRate", 0.0) or (
+            sensor.update_rate if sensor is not None else 0.0), self.update, [self._topic],
+            wrenches=[self._name])
 
     def _described(self) -> Joint:
         try:
@@ -63,7 +64,6 @@ class FtSensor(Plugin):
 
     def reset(self) -> None:
         """Noise begins anew."""
-        self._white.reset()
         for noise in self._noise:
             noise.reset(self.context.now_ns)
 
@@ -71,8 +71,6 @@ class FtSensor(Plugin):
 
     def update(self) -> None:
         """Publish what was transmitted in the last step."""
-        if not self._topic.wanted:
-            return
         context, block, sensor = self.context, self._block, self.context.sensor
         wrench = context.joint_wrench(self._name)
         if wrench is None:
@@ -80,7 +78,7 @@ class FtSensor(Plugin):
         sample = measure(wrench) if block is None or sensor is None else measure(
             wrench, block.frame, block.measure_direction, self._joint.pose, sensor.pose)
         values = [value + noise for value, noise in zip(
-            (*sample.force, *sample.torque), self._white.draw(6))]
+            (*sample.force, *sample.torque), self._white.draw(6, self.context.now_ns))]
         values = [float(noise.apply(value, context.now_ns))
                   for noise, value in zip(self._noise, values)] or values
         self._topic.publish(self._message(values))

@@ -10,7 +10,7 @@ from ..parameters import namespace_or
 
 
 class JointStatePublisher(Plugin):
-    """Publishes `joint_states` (sensor_msgs/JointState), with or without subscribers."""
+    """Publishes `joint_states` (sensor_msgs/JointState)."""
 
     def load(self) -> None:
         """Find the joints of `<jointName>`, a list with commas."""
@@ -26,7 +26,7 @@ class JointStatePublisher(Plugin):
             except PluginError as fault:
                 context.warn(f"{fault}; its state is not published")
         self._topic = context.publish("joint_states", "sensor_msgs/JointState", 1000)
-        context.every(p.number("updateRate", 100.0), self.update)
+        context.observe(p.number("updateRate", 100.0), self.update, [self._topic])
 
     def update(self) -> None:
         """Publish."""

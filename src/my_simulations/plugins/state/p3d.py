@@ -37,18 +37,10 @@ class P3d(Plugin):
         # The original puts the prefix before the first alone.
         self._frame_id, self._child_id = prefixed(context, frame), name
         self._topic = context.publish(p.text("topicName"), "nav_msgs/Odometry")
-        context.every(p.number("updateRate", 0.0), self.update)
-
-    def reset(self) -> None:
-        """Noise begins anew."""
-        self._noise.reset()
-
-    clock_set = reset
+        context.observe(p.number("updateRate", 0.0), self.update, [self._topic])
 
     def update(self) -> None:
         """Publish."""
-        if not self._topic.wanted:
-            return
         pose, twist = self._link.pose, self._link.twist
         if self._frame is not None:
             at, motion = self._frame.pose, self._frame.twist
@@ -59,7 +51,7 @@ class P3d(Plugin):
         self._topic.publish(self._message(pose, twist))
 
     def _message(self, pose: Pose, twist: Twist) -> Any:
-        context, noise = self.context, self._noise.draw(6)
+        context, noise = self.context, self._noise.draw(6, self.context.now_ns)
         message = stamped(context, "nav_msgs/Odometry")
         message.header.frame_id, message.child_frame_id = self._frame_id, self._child_id
         at, turn = message.pose.pose.position, message.pose.pose.orientation

@@ -62,9 +62,7 @@ class Wind(Plugin):
                     noise.number("mean", 0.0))
 
     def reset(self) -> None:
-        """It is calm, and noise begins anew."""
-        for lag in (self._magnitude, self._direction, self._vertical):
-            lag.noise.reset()
+        """It is calm."""
         self._means = [0.0, 0.0, 0.0]
         self._pushed = []
         self.clock_set()
@@ -118,7 +116,7 @@ class Wind(Plugin):
         return lag.share * math.sin(2.0 * math.pi * self.context.now_ns * 1e-9 / lag.period)
 
     def _noise(self, lag: _Lag) -> float:
-        return lag.mean + lag.noise.draw(1)[0]
+        return lag.mean + lag.noise.draw(1, self.context.now_ns)[0]
 
 
 def catches_wind(model: Model, link: Link) -> bool:

@@ -16,6 +16,10 @@ from .packed_transforms import PackedTransforms
 _TF_QUEUE = 100
 
 
+def _ignore() -> None:
+    """Nothing depends on who subscribes."""
+
+
 class RosTopic:
     """A publisher."""
 
@@ -40,6 +44,22 @@ class RosTopic:
         """Take it off the graph."""
         with contextlib.suppress(OSError):  # the master has gone: nothing is registered any more
             self._publisher.unregister()
+
+
+class _Subscribers(rospy.SubscribeListener):
+    """Reports that subscribers come and go."""
+
+    def __init__(self, changed: Callable[[], None]) -> None:
+        super().__init__()
+        self._changed = changed
+
+    def peer_subscribe(self, topic_name: str, topic_publish: Any, peer_publish: Any) -> None:
+        """One has come."""
+        self._changed()
+
+    def peer_unsubscribe(self, topic_name: str, num_peers: int) -> None:
+        """One has gone."""
+        self._changed()
 
 
 class _Closing:
@@ -69,10 +89,11 @@ class RosGraph:
             self._stamp = (ns, genpy.Time(ns // 10 ** 9, ns % 10 ** 9))
         return self._stamp[1]
 
-    def publish(self, name: str, kind: str, queue: int, latch: bool) -> Topic:
+    def publish(self, name: str, kind: str, queue: int, latch: bool,
+                changed: Callable[[], None] = _ignore) -> Topic:
         """Offer a topic."""
-        return RosTopic(rospy.Publisher(name, self._type(kind, "msg"), queue_size=queue,
-                                        latch=latch, tcp_nodelay=True))
+        return RosTopic(rospy.Publisher(name, self._type(kind, "msg"), _Subscribers(changed),
+                                        queue_size=queue, latch=latch, tcp_nodelay=True))
 
     def subscribe(self, name: str, kind: str, call: Callable[[Any], None], queue: int) -> Closing:
         """Hear a topic."""
@@ -116,10 +137,20 @@ class RosGraph:
                 return default
             at = at.rstrip("/").rpartition("/")[0] or "/"
 
+    def offer_transforms(self, changed: Callable[[], None]) -> None:
+        """Offer /tf."""
+        if self._tf is None:
+            self._tf = self.publish("/tf", "tf2_msgs/TFMessage", _TF_QUEUE, False, changed)
+
+    @property
+    def transforms_wanted(self) -> bool:
+        """Whether /tf has a subscriber."""
+        return self._tf is not None and self._tf.wanted
+
     def send_transforms(self, transforms: List[TransformOf], ns: int) -> None:
         """Broadcast to /tf, all in one message."""
         if self._tf is None:
-            self._tf = self.publish("/tf", "tf2_msgs/TFMessage", _TF_QUEUE, False)
+            self.offer_transforms(_ignore)
         if self._tf.wanted:
             self._tf.send(PackedTransforms(transforms, ns))
 

@@ -1,0 +1,53 @@
+"""Sends what plugins have published since the last time."""
+from __future__ import annotations
+
+from typing import Any, Callable, Dict, List, Mapping, Sequence, Tuple
+
+from .graph import Graph, Topic, TransformOf
+from .message_maker import Later, MessageMaker
+from .running import Running
+from .simulated_context import SimulatedContext
+
+
+class Outgoing:
+    """Messages leave in order; those that take long to make, from another thread.
+
+    Args:
+        graph: how they reach ROS.
+    """
+
+    def __init__(self, graph: Graph) -> None:
+        self._graph, self._maker = graph, MessageMaker()
+
+    def stop(self) -> None:
+        """End, after what is waiting."""
+        self._maker.stop()
+
+    def send(self, plugins: Mapping[SimulatedContext, Running], guarded: Callable[..., bool],
+             failing: Callable[[Running], Callable[[Exception], None]]) -> None:
+        """Send the messages and transforms of some plugins.
+
+        Args:
+            plugins: by their contexts.
+            guarded: calls a function for a plugin, which is switched off if that fails.
+            failing: makes the function that receives a plugin's fault in another thread.
+        """
+        transforms: Dict[int, List[TransformOf]] = {}
+        for context, running in plugins.items():
+            graph = context.graph
+            if graph.outbox:
+                outbox, graph.outbox = graph.outbox, []
+                guarded(running, self._send, outbox, failing(running))
+            for ns, transform in graph.transforms:
+                transforms.setdefault(ns, []).append(transform)
+            graph.transforms = []
+        for ns in sorted(transforms):
+            self._graph.send_transforms(transforms[ns], ns)
+
+    def _send(self, messages: Sequence[Tuple[Topic, Any]],
+              fail: Callable[[Exception], None]) -> None:
+        for topic, message in messages:
+            if isinstance(message, Later):
+                self._maker.put(topic, message, fail)
+            else:
+                topic.send(message)
