@@ -1,4 +1,7 @@
-/** What browsers and newer Node.js have of their own, and Node.js 18 has not. */
+/** Globals of browsers and of Node.js 20 that Node.js 18 lacks. */
+import {File} from 'node:buffer';
+
+globalThis.File ??= File;
 
 globalThis.CustomEvent ??= class CustomEvent extends Event {
   constructor(type, options = {}) {
