@@ -63,9 +63,35 @@ judge() {
   fi
   FAULTS+=("$name: $broken failed, see $LOG")
   finish "FAILED"
-  printf -- '--- the last lines of %s ---\n' "$LOG"
-  tail -n 60 "$LOG"
+  show_failures "$LOG"
+}
+
+# Of one check; a test that compares long texts may write as much as it likes.
+MOST_FAILURE_LINES=400
+
+# show_failures LOG: the failed tests that the log has, and its last lines.
+show_failures() {
+  local blocks
+  blocks=$(failure_blocks "$1")
+  if [ -n "$blocks" ]; then
+    printf -- '--- failed tests in %s ---\n' "$1"
+    head -n "$MOST_FAILURE_LINES" <<<"$blocks"
+  fi
+  printf -- '--- the last lines of %s ---\n' "$1"
+  tail -n "$([ -n "$blocks" ] && printf 15 || printf 60)" "$1"
   printf -- '---\n'
+}
+
+# failure_blocks LOG: what TAP, pytest and rostest write about each test that failed.
+failure_blocks() {
+  # rostest colours some lines.
+  sed 's/\x1b\[[0-9;]*m//g' "$1" | awk '
+    /^ *not ok /                         { tap = 1 }
+    /^=+ (FAILURES|ERRORS) =+$/          { pytest = 1 }
+    /^\[[^]]*\]\[(FAILURE|ERROR)\]-*$/   { rostest = 1 }
+    tap || pytest || rostest
+    /^ *\.\.\.$/                         { tap = 0 }
+    /^-----+$/                           { rostest = 0 }'
 }
 
 # check NAME SECONDS COMMAND...: a check that is right or wrong as a whole, and is no test.

@@ -76,5 +76,5 @@ tests_without_ros() {
 oldest_files() {
   # The paths of ROS lead to packages of another Python.
   PYTHONPATH='' TEST_PYTHON="$OWN/oldest_python/bin/python3" \
-    pytest_files "$(oldest_label)" 1500 "$@"
+    pytest_files "$(oldest_label)" 3600 "$@"
 }

@@ -54,6 +54,48 @@ def test_every_check_is_told_of_in_one_line_and_counted(tmp_path, lanes):
                           "0 passed, 1 failed, 5 steps"]
 
 
+def shown(tmp_path, log):
+    """What is printed of a check that has written `log` and failed."""
+    (tmp_path / "log.txt").write_text(log)
+    script = "MOST_FAILURE_LINES=50\nqueue check broken 20 bash -c 'cat $HOME/log.txt; exit 1'"
+    return "\n".join(output(tmp_path, script))
+
+
+TAP = """TAP version 13
+not ok 1 - a file is read
+  ---
+  error: 'File is not defined'
+  ...
+""" + "".join(f"ok {n} - part {n}\n  ---\n  duration_ms: 1\n  ...\n" for n in range(2, 90)) + (
+    "1..89\n# tests 89\n# fail 1\n")
+PYTEST = "".join(f"test/test_{n}.py ..\n" for n in range(99)) + (
+    "=================================== FAILURES ===================================\n"
+    "____ test_falls ____\nE   assert 1 == 2\n" + "stdout\n" * 200 +
+    "=========================== short test summary info ============================\n"
+    "FAILED test/test_7.py::test_falls\n")
+ROSTEST = ("[ROSTEST]----\n[pkg.rosunit-a/test_stays][passed]\n"
+           "\x1b[1;31m[pkg.rosunit-a/test_falls][FAILURE]-----------\x1b[0m\n"
+           "too low\n" + "-" * 80 + "\n" + "[INFO] left\n" * 90)
+
+
+@pytest.mark.parametrize(("log", "reason", "success"), [
+    (TAP, "  error: 'File is not defined'", "part 3"), (PYTEST, "E   assert 1 == 2", "test_3.py"),
+    (ROSTEST, "too low", "test_stays")])
+def test_failed_tests_are_shown_and_others_are_not(tmp_path, log, reason, success):
+    text = shown(tmp_path, log)
+    assert reason in text.splitlines() and success not in text
+    assert log.splitlines()[-1] in text
+
+
+def test_failure_without_a_known_form_shows_the_last_lines(tmp_path):
+    text = shown(tmp_path, "\n".join(f"line {n}" for n in range(100)))
+    assert "line 99" in text and "line 41" in text and "line 3\n" not in text
+
+
+def test_long_failure_does_not_hide_the_other_checks(tmp_path):
+    assert len(shown(tmp_path, PYTEST).splitlines()) < 90
+
+
 def test_processor_time_of_a_check_and_its_programs_is_added_up(tmp_path):
     # `times` is what the shell itself counts; 0.3 s are used by a program of a program.
     burn = 'import time\nwhile time.process_time() < 0.3: pass'
