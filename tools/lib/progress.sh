@@ -35,14 +35,24 @@ finish() {
   printf '%s(%d s)\n' "${1:+$1 }" "$((SECONDS - STEP_BEGAN))"
 }
 
-# follow LOG: copy the input to a log file; on a terminal, show its latest line below the step.
+# Without a terminal, a part that takes longer shows its latest line after each such time.
+PROGRESS_SECONDS=60
+
+# follow LOG: copy the input to a log file, and show its latest line below the step: on a terminal each
+# line, elsewhere one a minute.
 follow() {
-  local log="$1" line width
+  local log="$1" line width began=$SECONDS shown=$SECONDS
   width=$(( ${COLUMNS:-80} - 4 ))
   while IFS= read -r line || [ -n "$line" ]; do
     printf '%s\n' "$line" >>"$log"
-    [ ! -t 1 ] || printf '\r\033[K    %s' "${line:0:$width}"
+    if [ -t 1 ]; then
+      printf '\r\033[K    %s' "${line:0:$width}"
+    elif [ $((SECONDS - shown)) -ge "$PROGRESS_SECONDS" ]; then
+      printf '\n    %s' "${line:0:$width}"
+      shown=$SECONDS
+    fi
   done
+  [ "$shown" = "$began" ] || printf '\n'
 }
 
 # recorded NAME COMMAND...: run a part of a step; its output goes to the log NAME; the same status.

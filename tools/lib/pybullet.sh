@@ -75,11 +75,12 @@ that, and there is neither root nor sudo." \
   apt_install apt-install-compile "$advice" "${missing[@]}"
 }
 
-# compile_pybullet FOLDER SOURCES: a wheel in FOLDER/wheel; says how many of the SOURCES are done.
+# compile_pybullet FOLDER SOURCES: a wheel in FOLDER/wheel; says how many of the SOURCES are done, and
+# how long the others take at the pace so far.
 compile_pybullet() {
   # No debug information: half of the time and nine tenths of the size. GCC 14 refuses the pointers
   # that pybullet.c hands to NumPy without the other option.
-  local flags="-g0 -Wno-incompatible-pointer-types" line count=0
+  local flags="-g0 -Wno-incompatible-pointer-types" line count=0 began=$SECONDS left
   (
     cd -- "$1/source"
     CFLAGS="$flags" CXXFLAGS=-g0 PYTHONPATH="$1/tools" PYTHONUNBUFFERED=1 \
@@ -89,7 +90,8 @@ compile_pybullet() {
       *' -c '*)
         count=$((count + 1))
         line=${line#* -c }
-        line="compiling $count of about $2: ${line%% *}" ;;
+        left=$((($2 - count) * (SECONDS - began) / count / 60))
+        line="compiling $count of about $2, about $((left > 0 ? left : 0)) min left: ${line%% *}" ;;
     esac
     printf '%s\n' "$line"
   done
