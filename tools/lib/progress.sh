@@ -41,7 +41,7 @@ PROGRESS_SECONDS=60
 # follow LOG: copy the input to a log file, and show its latest line below the step: on a terminal each
 # line, elsewhere one a minute.
 follow() {
-  local log="$1" line width began=$SECONDS shown=$SECONDS
+  local log="$1" line width shown=$SECONDS end=
   width=$(( ${COLUMNS:-80} - 4 ))
   while IFS= read -r line || [ -n "$line" ]; do
     printf '%s\n' "$line" >>"$log"
@@ -49,10 +49,10 @@ follow() {
       printf '\r\033[K    %s' "${line:0:$width}"
     elif [ $((SECONDS - shown)) -ge "$PROGRESS_SECONDS" ]; then
       printf '\n    %s' "${line:0:$width}"
-      shown=$SECONDS
+      shown=$SECONDS end='\n'
     fi
   done
-  [ "$shown" = "$began" ] || printf '\n'
+  printf '%b' "$end"
 }
 
 # recorded NAME COMMAND...: run a part of a step; its output goes to the log NAME; the same status.

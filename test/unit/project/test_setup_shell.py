@@ -3,6 +3,7 @@ from __future__ import annotations
 
 import importlib.util
 import os
+import re
 import shlex
 import shutil
 import subprocess
@@ -338,6 +339,35 @@ def test_failed_part_of_a_step_says_which_why_and_what_to_do(clone, tmp_path):
                  "Try it by daylight.", "logs/fetch.log"):
         assert text in done.stderr
     assert "the disk is full" in (tmp_path / "home" / "logs" / "fetch.log").read_text()
+
+
+def test_part_that_takes_long_shows_its_progress_without_a_terminal(clone, tmp_path):
+    script = "LOGS=$HOME/logs; STEPS=1; begin 'Fetching things'\nlogged fetch '' echo line one\nfinish"
+    assert "line one" not in shell(clone, script, tmp_path / "home").stdout
+    done = shell(clone, "PROGRESS_SECONDS=0\n" + script, tmp_path / "home")
+    # A line of its own, and the end of the step begins another one.
+    assert re.fullmatch(r"\[1/1\] Fetching things \.\.\. \n    line one\n\(\d+ s\)\n", done.stdout)
+
+
+@pytest.mark.parametrize(("words", "advice"), [
+    (["--gui"], "tools/run -- --gui"), (["gui=false"], "Write gui:=false"),
+    (["lab.world"], "tools/run world:=lab.world"), (["gui:=false", "--set-up"], "no option --set-up")])
+def test_wrong_word_is_refused_before_anything_is_set_up(clone, tmp_path, words, advice):
+    home = tmp_path / "home"
+    done = subprocess.run(["tools/run", *words], cwd=clone, text=True, capture_output=True, timeout=60,
+                          check=False, env={"HOME": str(home), "PATH": os.environ["PATH"]})
+    assert done.returncode == 1
+    assert advice in done.stderr and done.stdout == ""
+    assert not home.exists()
+
+
+@pytest.mark.parametrize("name", ["run", "test"])
+def test_command_that_another_shell_starts_goes_on_in_bash(clone, tmp_path, name):
+    done = subprocess.run(["dash", f"tools/{name}", "--help"], cwd=clone, text=True,
+                          capture_output=True, timeout=60, check=False,
+                          env={"HOME": str(tmp_path), "PATH": os.environ["PATH"]})
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.startswith(f"Usage: tools/{name}") and done.stderr == ""
 
 
 def test_missing_system_packages_without_root_are_named(clone, tmp_path):
@@ -699,7 +729,7 @@ def test_pybullet_without_a_wheel_is_compiled_once_for_all_workspaces(clone, bar
         assert wheels_compiled(bare_index) == 1
         assert "minutes" in done.stdout or _workspace
     assert (bare_index / ".cache/my_simulations/wheels/pybullet.whl").exists()
-    assert "compiling 1 of about 1: a.c" in (bare_index / "logs/pybullet-compile.log").read_text()
+    assert "compiling 1 of about 1, about 0 min left: a.c" in (bare_index / "logs/pybullet-compile.log").read_text()
 
 
 def test_compilation_that_fails_is_told_with_the_compilers_words(clone, bare_index):
