@@ -4,9 +4,27 @@
 # keeps "#!/usr/bin/env python3", which outside the devel space finds a Python without PyBullet. So
 # the installed copies get the same path.
 
-# The workspace's own interpreter, also for a catkin_make that was not told of it.
-set(MY_SIMULATIONS_PYTHON "${CMAKE_SOURCE_DIR}/../.my_simulations/venv/bin/python3")
-get_filename_component(MY_SIMULATIONS_PYTHON "${MY_SIMULATIONS_PYTHON}" ABSOLUTE)
+# The folder .my_simulations of the workspace, which tools/run makes: it lies above the sources and above
+# the devel space, whether catkin_make, catkin build or catkin_make_isolated builds.
+function(my_simulations_find_own result)
+  foreach(start "${CMAKE_SOURCE_DIR}" "${CATKIN_DEVEL_PREFIX}")
+    get_filename_component(above "${start}" ABSOLUTE)
+    set(folder "")
+    while(NOT "${above}" STREQUAL "${folder}")
+      set(folder "${above}")
+      if(IS_DIRECTORY "${folder}/.my_simulations/venv")
+        set(${result} "${folder}/.my_simulations" PARENT_SCOPE)
+        return()
+      endif()
+      get_filename_component(above "${folder}" DIRECTORY)
+    endwhile()
+  endforeach()
+  set(${result} "${CMAKE_SOURCE_DIR}/../.my_simulations" PARENT_SCOPE)
+endfunction()
+my_simulations_find_own(MY_SIMULATIONS_OWN)
+
+# The workspace's own interpreter, also for a build that was not told of it.
+set(MY_SIMULATIONS_PYTHON "${MY_SIMULATIONS_OWN}/venv/bin/python3")
 if(NOT EXISTS "${MY_SIMULATIONS_PYTHON}")
   set(MY_SIMULATIONS_PYTHON "${PYTHON_EXECUTABLE}")
 endif()

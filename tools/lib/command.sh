@@ -8,7 +8,7 @@ CLONE_AS_CALLED=$(cd -L -- "$(dirname -- "${BASH_SOURCE[1]}")/.." && pwd -L)
 CLONE=$(realpath -- "$CLONE_AS_CALLED")
 COMMAND="${BASH_SOURCE[1]}"
 
-for part in causes progress workspace system bundle pybullet page setup; do
+for part in causes progress workspace system bundle pybullet page build setup; do
   # shellcheck disable=SC1090
   . "$CLONE/tools/lib/$part.sh"
 done

@@ -47,12 +47,9 @@ find_workspace() {
     stop "there is nothing to overlay: $WORKSPACE/src has no other package my_simulations." \
       "Leave out --overlay."
   fi
-  if [ -e "$WORKSPACE/.catkin_tools" ]; then
-    stop "$WORKSPACE is built with 'catkin build', which catkin_make cannot share." \
-      "Use another workspace: MY_SIMULATIONS_WS=~/another_ws $COMMAND"
-  fi
   mkdir -p -- "$OWN" || stop "$WORKSPACE cannot be written to." \
     "Name another workspace: MY_SIMULATIONS_WS=~/another_ws $COMMAND"
+  choose_builder
   one_at_a_time
   finish "$WORKSPACE"
 }
@@ -290,8 +287,8 @@ prepare_page_checks() {
   begin "Packages of the page's checks"
   PAGE_CHECKS="$OWN/page_checks"
   local source="$CLONE/test/page" stamp
-  stamp=$(cat "$source/package-lock.json" "$source/eslint.config.mjs" "$source/tsconfig.json" |
-    sha256sum)
+  stamp=$(printf '%s' "$CLONE $PAGE_CHECKS" |
+    cat - "$source/package-lock.json" "$source/eslint.config.mjs" "$source/tsconfig.json" | sha256sum)
   if [ "$(cat "$PAGE_CHECKS/.stamp" 2>/dev/null || true)" = "$stamp" ]; then
     finish "all there"
     return
@@ -314,41 +311,6 @@ prepare_page_checks() {
 JSON
   printf '%s' "$stamp" >"$PAGE_CHECKS/.stamp"
   finish installed
-}
-
-# build_inputs: a text that changes when a new catkin_make is due.
-build_inputs() {
-  local folder
-  printf '%s\n' "$VENV" "$WORKSPACE"
-  # The same from a shell that has sourced this workspace as from one that has not.
-  tr ':' '\n' <<<"${CMAKE_PREFIX_PATH:-}" | sed '/^$/d' | grep -v -F -- "$WORKSPACE/" || true
-  while IFS= read -r folder; do
-    printf '%s\n' "$folder"
-    cat "$folder/package.xml" "$folder/CMakeLists.txt" 2>/dev/null || true
-  done < <(package_folders "$WORKSPACE/src")
-  cat "$CLONE"/cmake/* "$CLONE/setup.py"
-  find "$CLONE/compat" -type f ! -name '*.pyc' -print0 | sort -z | xargs -0 sha256sum
-  find "$CLONE/scripts" "$CLONE/test/rostest" -type f ! -name '*.pyc' \
-    -printf '%P %m\n' 2>/dev/null | sort
-  head -q -c 2 "$CLONE"/test/rostest/*.py 2>/dev/null || true
-}
-
-build_workspace() {
-  begin "Building the workspace"
-  local stamp stamped="$OWN/built" setup="$WORKSPACE/devel/setup.bash"
-  stamp=$(build_inputs | sha256sum)
-  if [ -f "$setup" ] && [ "$(cat "$stamped" 2>/dev/null || true)" = "$stamp" ]; then
-    finish "up to date"
-  else
-    rm -f -- "$stamped"
-    logged catkin_make "Mend what the log names, in the package it names, and run $COMMAND again. \
-'Could not find a package configuration file' names a package that Debian may have: apt-cache search." \
-      catkin_make -C "$WORKSPACE" -j"$(nproc)" -DPYTHON_EXECUTABLE="$VENV/bin/python3"
-    compile_sources
-    printf '%s' "$stamp" >"$stamped"
-    finish
-  fi
-  source_setup "$setup"
 }
 
 # compile_sources: bytecode of our own modules, so that the first start of a node does not

@@ -8,7 +8,7 @@ style_command() {
     commit-subjects) STYLE_COMMAND=("$VENV/bin/python3" tools/lib/commit_subjects.py "$CLONE") ;;
     ruff) STYLE_COMMAND=("$VENV/bin/python3" -m ruff check --no-cache .) ;;
     import-contracts)
-      STYLE_COMMAND=(env PYTHONPATH="$CLONE/src" "$VENV/bin/lint-imports" --no-cache) ;;
+      STYLE_COMMAND=(env PYTHONPATH="$CLONE/src" "$VENV/bin/python3" "$VENV/bin/lint-imports" --no-cache) ;;
     mypy)
       STYLE_COMMAND=("$VENV/bin/python3" -m mypy --cache-dir "$OWN/mypy"
         src compat/gazebo_ros/src compat/controller_manager/src) ;;

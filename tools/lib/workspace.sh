@@ -84,19 +84,6 @@ real_package() {
   ROS_PACKAGE_PATH="$paths" rospack find "$name" 2>/dev/null || true
 }
 
-# forget_build NAME: remove build products of a companion package that is no longer linked.
-forget_build() {
-  local name="$1" devel="${WORKSPACE:?}/devel"
-  # shellcheck disable=SC2115
-  rm -rf -- "$WORKSPACE/build/$name" "$devel/share/$name" "$devel/lib/$name" \
-    "$devel/lib/pkgconfig/$name.pc" "$devel/include/$name" \
-    "$devel/lib/python3/dist-packages/$name" \
-    "$devel/etc/catkin/profile.d/50.my_simulations_$name.sh"
-  [ "$name" != xacro ] || rm -f -- "$devel/bin/xacro" "$devel/bin/xacro.py"
-  [ "$name" != gazebo_ros ] || rm -rf -- "$devel/lib/gazebo_ros_commands"
-  [ "$name" != my_simulations_underlay ] || rm -f -- "$devel/bin/roslaunch"
-}
-
 # spoken_of NAME: whether a package of the workspace names that package, or controllers of it.
 spoken_of() {
   local folders
@@ -131,7 +118,7 @@ link_companions() {
     if [ -z "$real" ]; then
       link "$target" "$place"
       COMPANIONS="$COMPANIONS $name"
-    elif [ -L "$place" ] && [ "$(readlink -- "$place")" = "$target" ]; then
+    elif [[ $(readlink -- "$place") == */compat/"$name" ]]; then
       rm -- "$place"
       forget_build "$name"
     fi

@@ -134,7 +134,10 @@ def node_modules(page: str) -> str:
               os.path.join(os.path.dirname(page), "node_modules")]
     for prefix in os.environ.get("CMAKE_PREFIX_PATH", "").split(os.pathsep):
         places.append(os.path.join(prefix, "share", "my_simulations", "node_modules"))
-        places.append(os.path.join(os.path.dirname(prefix), ".my_simulations", "node_modules"))
+        above = os.path.dirname(prefix)
+        # catkin_make_isolated has its prefixes in devel_isolated/NAME.
+        for workspace in (above, os.path.dirname(above)):
+            places.append(os.path.join(workspace, ".my_simulations", "node_modules"))
     return next((place for place in places
                  if place and os.path.isdir(os.path.join(place, "three"))), "")
 

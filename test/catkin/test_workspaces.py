@@ -1,0 +1,122 @@
+"""The set-up in workspaces of catkin tools and catkin_make_isolated, and in moved ones."""
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+from free_ports import free_port
+
+REPOSITORY = Path(__file__).resolve().parents[2]
+OWN = Path(os.environ["CMAKE_PREFIX_PATH"].split(":")[0]).parent / ".my_simulations"
+"""Where the workspace under test has what it fetched."""
+READY = "the world editor is at http"
+SECONDS = 900.0
+
+PACKAGE = """<package format="2"><name>my_lab</name><version>0.0.0</version><description>a</description>
+<maintainer email="a@example.com">a</maintainer><license>a</license>
+<buildtool_depend>catkin</buildtool_depend></package>
+"""
+CMAKE = "cmake_minimum_required(VERSION 3.5)\nproject(my_lab)\nfind_package(catkin REQUIRED)\ncatkin_package()\n"
+
+
+class Workspace:
+    """A person's workspace with a package, which `first` has built, and a terminal."""
+
+    def __init__(self, folder: Path, *first: str) -> None:
+        self.folder = folder
+        package = folder / "ws" / "src" / "my_lab"
+        package.mkdir(parents=True)
+        (package / "package.xml").write_text(PACKAGE)
+        (package / "CMakeLists.txt").write_text(CMAKE)
+        own = folder / "ws" / ".my_simulations"
+        own.mkdir()
+        for name in ("venv", "node_modules", ".page"):
+            (own / name).symlink_to(OWN / name)
+        (folder / "bin").mkdir()
+        (folder / "bin" / "catkin").symlink_to(Path(sys.prefix) / "bin" / "catkin")
+        self.environment = {
+            "HOME": str(folder), "PATH": f"{folder}/bin:/usr/sbin:/usr/bin:/sbin:/bin", "LANG": "C.UTF-8",
+            "MY_SIMULATIONS_WS": str(folder / "ws"), "MY_SIMULATIONS_NO_BROWSER": "1",
+            "ROS_MASTER_URI": f"http://127.0.0.1:{free_port()}", "ROS_IP": "127.0.0.1",
+            **{key: value for key, value in os.environ.items()
+               if key.startswith("MY_SIMULATIONS_TEST")}}
+        for line in first:
+            self.run(line)
+
+    def run(self, line: str) -> str:
+        """The output of a command in the workspace; it must succeed."""
+        done = subprocess.run(["bash", "-c", line], env=self.environment, cwd=self.folder / "ws",
+                              stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
+                              stderr=subprocess.STDOUT, text=True, timeout=SECONDS, check=False)
+        assert done.returncode == 0, f"{line}\n{done.stdout[-4000:]}"
+        return done.stdout
+
+    def set_up(self) -> str:
+        return self.run(f"{REPOSITORY}/tools/run --set-up-only")
+
+    def simulate(self, devel: str) -> None:
+        """Launch the world of the package, and spawn an object of its list."""
+        log = self.folder / "launch.log"
+        source = f"source {self.folder}/ws/{devel}/setup.bash && "
+        with open(log, "w", encoding="utf-8") as output:
+            launch = subprocess.Popen(
+                ["bash", "-c", source + "exec roslaunch my_simulations my_world.launch"],
+                env=self.environment, stdin=subprocess.DEVNULL, stdout=output,
+                stderr=subprocess.STDOUT, start_new_session=True)
+        try:
+            until = time.monotonic() + SECONDS
+            while READY not in log.read_text(encoding="utf-8"):
+                assert launch.poll() is None and time.monotonic() < until, log.read_text()
+                time.sleep(0.05)
+            self.run(source + "rosrun gazebo_ros spawn_model -urdf -model ball -z 1 "
+                     "-file $(rospack find my_simulations)/objects/ball.urdf")
+            names = self.run(source + "rosservice call /gazebo/get_world_properties")
+            assert "ball" in names, names
+        finally:
+            os.killpg(launch.pid, signal.SIGINT)
+            launch.wait(60.0)
+
+
+@pytest.mark.parametrize(("first", "devel"), [
+    (["catkin init", "catkin build --no-status"], "devel"),
+    (["catkin_make_isolated"], "devel_isolated")], ids=["catkin_tools", "isolated"])
+def test_workspace_is_built_by_its_own_command_and_simulates(tmp_path, first, devel):
+    workspace = Workspace(tmp_path, *first)
+    text = workspace.set_up()
+    assert f"source {tmp_path}/ws/{devel}/setup.bash" in text
+    assert (tmp_path / "ws" / "devel").exists() is (devel == "devel")
+    relay = next((tmp_path / "ws" / devel).rglob("lib/my_simulations/spawn_object.py"))
+    assert relay.read_text().startswith(f"#!{tmp_path}/ws/.my_simulations/venv/bin/python3\n")
+    workspace.simulate(devel)
+    assert "Building the workspace ... up to date" in workspace.set_up()
+
+
+BUILD = """for part in causes progress workspace system build; do . $CLONE/tools/lib/$part.sh; done
+set -euo pipefail; COMMAND=tools/run STEPS=2 OWN=$WORKSPACE/.my_simulations
+LOGS=$OWN/log VENV=$OWN/venv; source_setup() { :; }; compile_sources() { :; }
+choose_builder; build_workspace; build_workspace
+"""
+"""The part of the set-up that builds: the whole adds this project's packages."""
+
+
+@pytest.mark.parametrize(("first", "devel"), [
+    ("catkin_make", "devel"), ("catkin init && catkin build --no-status", "devel"),
+    ("catkin_make_isolated", "devel_isolated")], ids=["catkin_make", "catkin_tools", "isolated"])
+def test_moved_workspace_is_built_again_by_the_same_command(tmp_path, first, devel):
+    (tmp_path / "old").mkdir()
+    workspace = Workspace(tmp_path / "old", first)
+    (tmp_path / "old").rename(tmp_path / "new")
+    workspace.folder = tmp_path / "new"
+    workspace.environment.update(
+        HOME=str(tmp_path / "new"), MY_SIMULATIONS_WS=str(tmp_path / "new" / "ws"),
+        PATH=f"{tmp_path}/new/bin:/usr/sbin:/usr/bin:/sbin:/bin")
+    text = workspace.run(f"CLONE={REPOSITORY} WORKSPACE=$MY_SIMULATIONS_WS\n{BUILD}")
+    assert "this workspace was moved" in text and "up to date" in text
+    assert str(tmp_path / "old") not in (tmp_path / "new" / "ws" / devel / "setup.sh").read_text()
+    assert workspace.run(f"source {devel}/setup.bash && rospack find my_lab").strip() == (
+        f"{tmp_path}/new/ws/src/my_lab")
