@@ -39,6 +39,8 @@ common_help() {
 Environment:
   MY_SIMULATIONS_WS                      the catkin workspace (default: the one of this clone,
                                          else ~/simulation_ws)
+  MY_SIMULATIONS_ROS_PREFIX              the folder of a ROS 1 (default: /opt/ros/noetic or
+                                         /opt/ros/one if it exists, else the system's packages)
   MY_SIMULATIONS_OVERRIDE_GAZEBO_ROS=1   the same as --use-companions
 TEXT
 }

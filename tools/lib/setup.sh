@@ -2,7 +2,7 @@
 # Sets up a workspace, from a bare Debian to a built one. Every part first checks whether there is
 # anything to do, so a second run neither installs nor builds nor uses the network.
 
-ROS_PREFIX=/opt/ros/noetic
+ROS_PREFIX=$(choose_ros_prefix)
 PYTHON=/usr/bin/python3
 WITH_TEST_TOOLS=0
 COMMON_PACKAGES=1
@@ -133,7 +133,7 @@ system_packages() {
     apt)
       lists+=(packages-ros)
       [ "$1" = run ] || lists+=(packages-ros-build) ;;
-    noetic) lists+=(packages-noetic) ;;
+    prefix) ros_prefix_packages ;;
   esac
   [ "$WITH_TEST_TOOLS" = 0 ] || lists+=(packages-test)
   [ "$PYTHON_NAME" = 0 ] || lists+=(packages-python)
@@ -181,7 +181,7 @@ install_system_packages() {
   local name
   for name in message_generation trajectory_msgs std_srvs rostest; do
     rospack find "$name" >/dev/null 2>&1 || stop "the ROS package $name is not installed." \
-      "Install it the way ROS was installed here, e.g. ros-noetic-${name//_/-}."
+      "Install it the way ROS was installed here, e.g. ros-$(basename -- "$ROS_PREFIX")-${name//_/-}."
   done
 }
 

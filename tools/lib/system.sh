@@ -6,16 +6,32 @@ OS_RELEASE=/etc/os-release
 # os_value KEY: a value of os-release, without quotes; empty if there is none.
 os_value() { sed -n "s/^$1=//p" "$OS_RELEASE" 2>/dev/null | tr -d "\"'" | head -n 1; }
 
-# ros_source: where ROS comes from: `apt` (the distribution's own packages), `noetic` (packages of
-# ROS below ROS_PREFIX), or `sources` (the same folder, filled without dpkg).
+# choose_ros_prefix: the folder of a ROS 1 beside the system's packages: the one that is named, else that
+# of the distribution that this shell has sourced, else Noetic's or ROS One's.
+choose_ros_prefix() {
+  local name
+  for name in "${ROS_DISTRO:-}" noetic one; do
+    case $name in noetic | one) [ ! -f "/opt/ros/$name/setup.bash" ] || break ;; esac
+  done
+  printf '%s' "${MY_SIMULATIONS_ROS_PREFIX:-/opt/ros/$name}"
+}
+
+# ros_source: where ROS comes from: `apt` (the distribution's own packages), `prefix` (packages of dpkg
+# below ROS_PREFIX), or `sources` (the same folder, filled without dpkg).
 ros_source() {
   if [ ! -f "$ROS_PREFIX/setup.bash" ]; then
     printf apt
-  elif [ -n "$(missing_packages ros-noetic-catkin)" ]; then
+  elif [ -n "$(missing_packages "ros-$(basename -- "$ROS_PREFIX")-catkin")" ]; then
     printf sources
   else
-    printf noetic
+    printf prefix
   fi
+}
+
+# ros_prefix_packages: what the list names for Noetic, for the distribution at ROS_PREFIX.
+ros_prefix_packages() {
+  packages_of "$CLONE/tools/apt-packages-noetic.txt" |
+    sed "s/^ros-noetic-/ros-$(basename -- "$ROS_PREFIX")-/"
 }
 
 # unknown_packages NAME...: those that apt has no version of, by the lists that are there.
@@ -36,8 +52,10 @@ refuse_unknown() {
   fi
   case " ${unknown[*]} " in
     *' python3-rospy '*)
-      stop "${system:-this system} has no packages of ROS 1 (python3-rospy), and there is no $ROS_PREFIX." \
-        "Debian 11, 12 and 13 and Ubuntu 22.04 have them; on Ubuntu 20.04 ROS Noetic does as well." \
+      stop "${system:-this system} has no packages of ROS 1 (python3-rospy), and neither \
+/opt/ros/noetic nor /opt/ros/one is there." \
+        "Debian 11, 12 and 13 and Ubuntu 22.04 have them. On Ubuntu 20.04 install ROS Noetic; on Ubuntu \
+22.04 and 24.04, ROS One." \
         "On this system, use the container: docker/Dockerfile." ;;
   esac
   stop "apt knows no ${unknown[*]} on ${system:-this system}." \

@@ -17,13 +17,14 @@ import test_setup_shell as shells
 REPOSITORY = Path(__file__).resolve().parents[3]
 
 SYSTEMS = {
-    # name: (ID, PRETTY_NAME, /opt/ros/noetic is there, apt has ROS 1)
-    "focal": ("ubuntu", "Ubuntu 20.04 LTS", True, True),
-    "jammy": ("ubuntu", "Ubuntu 22.04 LTS", False, True),
-    "noble": ("ubuntu", "Ubuntu 24.04 LTS", False, False),
-    "bullseye": ("debian", "Debian GNU/Linux 11 (bullseye)", False, True),
-    "bookworm": ("debian", "Debian GNU/Linux 12 (bookworm)", False, True),
-    "trixie": ("debian", "Debian GNU/Linux 13 (trixie)", False, True),
+    # name: (ID, PRETTY_NAME, the folder of /opt/ros that is there, apt has ROS 1)
+    "focal": ("ubuntu", "Ubuntu 20.04 LTS", "noetic", True),
+    "jammy": ("ubuntu", "Ubuntu 22.04 LTS", "", True),
+    "jammy with ROS One": ("ubuntu", "Ubuntu 22.04 LTS", "one", True),
+    "noble": ("ubuntu", "Ubuntu 24.04 LTS", "", False),
+    "bullseye": ("debian", "Debian GNU/Linux 11 (bullseye)", "", True),
+    "bookworm": ("debian", "Debian GNU/Linux 12 (bookworm)", "", True),
+    "trixie": ("debian", "Debian GNU/Linux 13 (trixie)", "", True),
 }
 RECENT = {"libembree4-4": ["trixie"], "chromium-headless-shell": ["bookworm", "trixie"]}
 """Packages that not all of them have, and which have them."""
@@ -34,12 +35,12 @@ class System:
 
     def __init__(self, clone, home, name, root=True, universe=True, machine="x86_64"):
         self.clone, self.home = clone, home
-        kind, title, noetic, has_ros = SYSTEMS[name]
+        kind, title, self.prefix, has_ros = SYSTEMS[name]
         home.mkdir(parents=True)
         (home / "os-release").write_text(f'ID={kind}\nPRETTY_NAME="{title}"\n')
-        if noetic:
-            (home / "noetic").mkdir()
-            (home / "noetic" / "setup.bash").write_text("")
+        if self.prefix:
+            (home / self.prefix).mkdir()
+            (home / self.prefix / "setup.bash").write_text("")
         no_ros = "" if has_ros and universe else "*ros*) ;;"
         shells.fake(home, "id", f"echo {0 if root else 1000}")
         shells.fake(home, "uname", f"echo {machine}")
@@ -47,8 +48,7 @@ class System:
         shells.fake(home, "fake_python", "echo 13" if name == "trixie" else "echo 11")
         shells.fake(home, "dpkg-query", "shift 2; mapfile -t all <$HOME/installed; for name; do "
                     "[[ \" ${all[*]} \" == *\" $name \"* ]] && echo installed $name; "
-                    "[ $name != ros-noetic-catkin ] || "
-                    f"{'echo installed $name' if noetic else 'true'}; done")
+                    f"[ $name != ros-{self.prefix}-catkin ] || echo installed $name; done")
         shells.fake(home, "apt-get", 'echo "$@" >>$HOME/calls')
         shells.fake(home, "apt-cache", "if [ $1 = policy ]; then "
                     f"echo '500 archive jammy/{'universe' if universe else 'main'} all'; exit; fi\n"
@@ -61,7 +61,8 @@ class System:
     def run(self, script):
         """`script` in a shell of this system."""
         return shells.shell(
-            self.clone, "ROS_PREFIX=$HOME/noetic; OS_RELEASE=$HOME/os-release; STEPS=9\n"
+            self.clone, f"ROS_PREFIX=$HOME/{self.prefix or 'noetic'}; STEPS=9\n"
+            "OS_RELEASE=$HOME/os-release\n"
             "PYTHON=$HOME/bin/fake_python; WORKSPACE=$HOME/ws; OWN=$HOME/ws; LOGS=$HOME/logs\n"
             "mkdir -p $OWN/src; rospack() { :; }; COMMAND=tools/run\n"
             "command() { case $2 in sudo|npm) false ;; *) builtin command \"$@\" ;; esac; }\n"
@@ -81,9 +82,10 @@ def test_system_with_ros_installs_its_lists_and_no_others(clone, tmp_path, name)
     update, install = (system.home / "calls").read_text().splitlines()
     assert update == "-q update"
     words = install.split()
-    noetic = SYSTEMS[name][2]
-    assert ("python3-rospy" in words, "catkin" in words) == (not noetic, not noetic)
-    assert ("ros-noetic-dynamic-reconfigure" in words) is noetic
+    assert ("python3-rospy" in words, "catkin" in words) == (not system.prefix, not system.prefix)
+    of_prefix = [word for word in words if word.startswith(("ros-noetic-", "ros-one-"))]
+    assert bool(of_prefix) is bool(system.prefix)
+    assert all(word.startswith(f"ros-{system.prefix}-") for word in of_prefix)
     assert {"python3-venv", "libegl1", "npm"} <= set(words)
 
 
@@ -130,6 +132,23 @@ def test_universe_that_is_not_enabled_is_named(clone, tmp_path):
     done = system.run("install_system_packages")
     assert done.returncode == 1
     assert "add-apt-repository universe" in done.stderr
+
+
+@pytest.mark.parametrize(("there", "variables", "expected"), [
+    (["one"], {}, "/one sources"), (["noetic", "one"], {}, "/noetic sources"), ([], {}, "/one apt"),
+    (["noetic", "one"], {"ROS_DISTRO": "one"}, "/one sources"),
+    (["one", "humble"], {"ROS_DISTRO": "humble"}, "/one sources"),
+    (["noetic"], {"MY_SIMULATIONS_ROS_PREFIX": "/opt/mine"}, "/opt/mine apt")])
+def test_ros_is_the_one_of_the_shell_or_the_first_that_is_there(clone, tmp_path, there, variables,
+                                                                expected):
+    folder = tmp_path / "opt"
+    for name in there:
+        (folder / name).mkdir(parents=True)
+        (folder / name / "setup.bash").touch()
+    library = clone / "tools" / "lib" / "system.sh"
+    library.write_text(library.read_text().replace("/opt/ros/", f"{folder}/"))
+    done = shells.shell(clone, "echo $ROS_PREFIX $(ros_source)", tmp_path / "home", **variables)
+    assert done.stdout.strip().replace(str(folder), "") == expected, done.stderr
 
 
 def test_noetic_from_sources_needs_no_package_of_ros(clone, tmp_path):
