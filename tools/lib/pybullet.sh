@@ -75,6 +75,12 @@ that, and there is neither root nor sudo." \
   apt_install apt-install-compile "$advice" "${missing[@]}"
 }
 
+# Runs setup.py with log messages on: since Python 3.12 it prints no compiler commands on its own.
+RUN_SETUP_PY='import logging, runpy, sys
+logging.basicConfig(level=logging.INFO, format="%(message)s", stream=sys.stdout)
+sys.argv[:1] = []
+runpy.run_path(sys.argv[0], run_name="__main__")'
+
 # compile_pybullet FOLDER SOURCES: a wheel in FOLDER/wheel; says how many of the SOURCES are done, and
 # how long the others take at the pace so far.
 compile_pybullet() {
@@ -84,7 +90,7 @@ compile_pybullet() {
   (
     cd -- "$1/source"
     CFLAGS="$flags" CXXFLAGS=-g0 PYTHONPATH="$1/tools" PYTHONUNBUFFERED=1 \
-      "$VENV/bin/python3" setup.py -v bdist_wheel -d "$1/wheel" 2>&1
+      "$VENV/bin/python3" -c "$RUN_SETUP_PY" setup.py -v bdist_wheel -d "$1/wheel" 2>&1
   ) | while IFS= read -r line; do
     case $line in
       *' -c '*)

@@ -342,7 +342,8 @@ def test_failed_part_of_a_step_says_which_why_and_what_to_do(clone, tmp_path):
 
 
 def test_part_that_takes_long_shows_its_progress_without_a_terminal(clone, tmp_path):
-    script = "LOGS=$HOME/logs; STEPS=1; begin 'Fetching things'\nlogged fetch '' echo line one\nfinish"
+    script = ("LOGS=$HOME/logs; STEPS=1; begin 'Fetching things'\n"
+              "logged fetch '' echo line one\nfinish")
     assert "line one" not in shell(clone, script, tmp_path / "home").stdout
     done = shell(clone, "PROGRESS_SECONDS=0\n" + script, tmp_path / "home")
     # A line of its own, and the end of the step begins another one.
@@ -351,11 +352,13 @@ def test_part_that_takes_long_shows_its_progress_without_a_terminal(clone, tmp_p
 
 @pytest.mark.parametrize(("words", "advice"), [
     (["--gui"], "tools/run -- --gui"), (["gui=false"], "Write gui:=false"),
-    (["lab.world"], "tools/run world:=lab.world"), (["gui:=false", "--set-up"], "no option --set-up")])
+    (["lab.world"], "tools/run world:=lab.world"),
+    (["gui:=false", "--set-up"], "no option --set-up")])
 def test_wrong_word_is_refused_before_anything_is_set_up(clone, tmp_path, words, advice):
     home = tmp_path / "home"
-    done = subprocess.run(["tools/run", *words], cwd=clone, text=True, capture_output=True, timeout=60,
-                          check=False, env={"HOME": str(home), "PATH": os.environ["PATH"]})
+    done = subprocess.run(["tools/run", *words], cwd=clone, text=True, capture_output=True,
+                          check=False, timeout=60,
+                          env={"HOME": str(home), "PATH": os.environ["PATH"]})
     assert done.returncode == 1
     assert advice in done.stderr and done.stdout == ""
     assert not home.exists()
@@ -729,7 +732,17 @@ def test_pybullet_without_a_wheel_is_compiled_once_for_all_workspaces(clone, bar
         assert wheels_compiled(bare_index) == 1
         assert "minutes" in done.stdout or _workspace
     assert (bare_index / ".cache/my_simulations/wheels/pybullet.whl").exists()
-    assert "compiling 1 of about 1, about 0 min left: a.c" in (bare_index / "logs/pybullet-compile.log").read_text()
+    assert "compiling 1 of about 1, about 0 min left: a.c" in (
+        bare_index / "logs/pybullet-compile.log").read_text()
+
+
+def test_commands_that_a_setup_py_only_logs_are_printed(clone, tmp_path):
+    home = tmp_path / "home"
+    home.mkdir()
+    (home / "setup.py").write_text("import logging, sys\n"
+                                   "logging.getLogger('d').info('gcc -c %s', sys.argv[1])\n")
+    done = shell(clone, f"cd $HOME; {sys.executable} -c \"$RUN_SETUP_PY\" setup.py a.c", home)
+    assert done.stdout == "gcc -c a.c\n", done.stderr
 
 
 def test_compilation_that_fails_is_told_with_the_compilers_words(clone, bare_index):
