@@ -81,11 +81,9 @@ bundle_page() {
 page_bundler() {
   local own="$WORKSPACE/.my_simulations/page_bundler" found
   cmp -s -- "$CLONE/tools/page_bundler/package-lock.json" "$own/package-lock.json" || return 1
-  for found in "$own"/node_modules/@esbuild/*/bin/esbuild; do
-    [ -x "$found" ] || return 1
-    printf '%s' "$found"
-    return 0
-  done
+  # npm 7 fetches those of other systems, too.
+  found=$own/node_modules/@esbuild/$(node -p 'process.platform + "-" + process.arch')/bin/esbuild
+  [ -x "$found" ] && printf '%s' "$found"
 }
 
 # fetch_page_bundler: once; where it did not come, again only with other packages of the page.

@@ -629,10 +629,13 @@ echo "$@" >>$HOME/calls
 case $3 in
   */page_bundler)
     [ ! -e $HOME/no_bundler ] || exit 1
-    mkdir -p $3/node_modules/@esbuild/linux-x64/bin
-    printf '#!/bin/bash\nmkdir bundle && cp $1 bundle/ && echo made >>$HOME/calls\n' \
-      >$3/node_modules/@esbuild/linux-x64/bin/esbuild
-    chmod +x $3/node_modules/@esbuild/linux-x64/bin/esbuild ;;
+    # npm 7 fetches the programs of other systems, too.
+    for system in aix-ppc64 $(node -p 'process.platform + "-" + process.arch'); do
+      mkdir -p $3/node_modules/@esbuild/$system/bin
+      printf '#!/bin/bash\n[[ $0 != *aix* ]] && mkdir bundle && cp $1 bundle/ && %s\n' \
+        'echo made >>$HOME/calls' >$3/node_modules/@esbuild/$system/bin/esbuild
+      chmod +x $3/node_modules/@esbuild/$system/bin/esbuild
+    done ;;
   *) mkdir -p $3/node_modules/three && echo 1 >$3/node_modules/three/package.json ;;
 esac
 """
