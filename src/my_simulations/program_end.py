@@ -1,6 +1,7 @@
 """How command-line programs end whose output cannot be written, or that are interrupted."""
 from __future__ import annotations
 
+import argparse
 import errno
 import functools
 import os
@@ -44,6 +45,17 @@ def program(main: Main) -> Main:
             return INTERRUPTED
 
     return cast(Main, guarded)
+
+
+class ArgumentParser(argparse.ArgumentParser):
+    """An argument parser that raises OSError if its help cannot be written, with each Python.
+
+    From Python 3.12 on argparse ignores that, and the program ends with status 0.
+    """
+
+    def _print_message(self, message: str, file: Any = None) -> None:
+        if message:
+            (file or sys.stderr).write(message)
 
 
 def _flush() -> None:

@@ -6,12 +6,14 @@ import difflib
 import re
 from typing import Any, List, NoReturn
 
+from ..program_end import ArgumentParser
+
 _UNKNOWN = "unrecognized arguments: "
 _NEGATIVE = re.compile(r"-(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?(,.*)?$")
 """A negative number, or a list that begins with one; argparse itself knows -0.5, not -1e-3."""
 
 
-class Parser(argparse.ArgumentParser):
+class Parser(ArgumentParser):
     """An argument parser that takes every spelling of negative numbers for values.
 
     It suggests options and choices much like an unknown one.

@@ -4,6 +4,7 @@ from __future__ import annotations
 import argparse
 import re
 
+from ..program_end import ArgumentParser
 from .plan import WHOLE, Shard
 
 _SHARDS = 100
@@ -11,7 +12,7 @@ _SHARDS = 100
 
 def parser() -> argparse.ArgumentParser:
     """The command line."""
-    made = argparse.ArgumentParser(
+    made = ArgumentParser(
         prog="study", description="Run worlds many times with varied parameters, and measure them."
         " Needs no ROS.", epilog="Exit code: 0 if all cases are ok, 1 if some are not or are"
         " missing, 2 for a faulty study or command line, 130 if interrupted.")
