@@ -34,9 +34,10 @@ def is_packaged(name):
 def faults(tmp_path_factory):
     """What libsdformat says of files."""
     program = tmp_path_factory.mktemp("parse_sdf") / "parse_sdf"
-    known = subprocess.run(["pkg-config", "--list-package-names"], capture_output=True, text=True,
-                           check=True, timeout=60).stdout.split()
-    package = next((name for name in known if name.startswith("sdformat")), None)
+    # The pkg-config of Debian 11 has no option for the names alone.
+    known = subprocess.run(["pkg-config", "--list-all"], capture_output=True, text=True,
+                           check=True, timeout=60).stdout.splitlines()
+    package = next((line.split()[0] for line in known if line.startswith("sdformat")), None)
     if package is None and not is_packaged("libsdformat-dev"):
         pytest.skip("this distribution has no libsdformat")
     assert package is not None, "libsdformat-dev is not installed: tools/test installs it"
