@@ -4,7 +4,7 @@ They follow from the links that they connect, as all joints' do in Gazebo.
 """
 from __future__ import annotations
 
-from typing import List, Sequence
+from typing import Any, List, Sequence
 
 import numpy as np
 
@@ -41,7 +41,7 @@ class ClosingJoint:
         """Update its row of the joint table from the link table."""
         poses, twists = {WORLD: Pose()}, {WORLD: Twist()}
         for name, row in self._rows.items():
-            values = links[row].tolist()
+            values: Any = links[row].tolist()
             poses[name] = Pose(tuple(values[0:3]), tuple(values[3:7]))
             twists[name] = Twist(tuple(values[7:10]), tuple(values[10:13]))
         position = joint_position(self._joint, self._at_zero, poses)
