@@ -116,6 +116,7 @@ def ros_one(folder: Path, workspace: Workspace) -> Path:
     workspace.run(f"mkdir -p {folder}/empty/src && catkin_make -C {folder}/empty install "
                   f"-DCMAKE_INSTALL_PREFIX={prefix} -DPYTHON_EXECUTABLE=/usr/bin/python3")
     packages = [path.parent.name for path in Path("/usr/share").glob("*/package.xml")]
+    packages.append("roslib")  # Debian has only its Python module
     modules = Path("lib/python3/dist-packages")
     linked = [Path("share") / name for name in packages]
     linked += [part / name for name in packages for part in (Path("lib"), Path("include"), modules)]
@@ -145,7 +146,8 @@ printf '%s\n' "$@" >>$HOME/asked
 for name; do
   of=${name#ros-one-} of=${of//-/_}
   case $name in
-    ros-one-*) [ -z "$(ls -d $PREFIX/{bin,share}/$of)" ] || echo installed $name ;;
+    ros-one-*) [ -z "$(ls -d $PREFIX/{bin,share,lib/python3/dist-packages}/$of)" ] ||
+      echo installed $name ;;
     *) /usr/bin/dpkg-query -W -f='${db:Status-Status} ${Package}\n' $name ;;
   esac
 done 2>/dev/null""")
