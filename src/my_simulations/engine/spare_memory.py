@@ -88,7 +88,7 @@ def _pages(block: _Range) -> "np.ndarray[Any, Any]":
     """The memory of a range, a row of 8-byte words for each page."""
     first, end = block
     memory = (ctypes.c_char * (end - first)).from_address(first)
-    words = np.frombuffer(memoryview(memory).cast("B"), np.uint64)
+    words: "np.ndarray[Any, Any]" = np.frombuffer(memoryview(memory).cast("B"), np.uint64)
     return words.reshape(-1, mmap.PAGESIZE // 8)
 
 
