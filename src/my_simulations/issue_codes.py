@@ -329,6 +329,8 @@ _TABLE: Tuple[Tuple[str, Tuple[Tuple[str, str, str, str], ...]], ...] = (
          "Simplify the model that triggers it."),
         ("engine-lost", ERROR, "The physics engine could not be restarted.",
          "Restart the simulator."),
+        ("command-refused", ERROR, "The physics engine refused a change, which has no effect.",
+         "See the message."),
         ("state-diverged", ERROR, "The state of a model became NaN or infinite, or a joint races.",
          "Check masses, inertia and gains, or reduce the step size."),
         ("physics-approximate", WARNING, "A setting is simulated approximately.",

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Prints how fast the ROS interface is. Run it in a shell with the workspace, on a quiet machine.
 
-usage: ros_interface.py [ROW …]   rows: calls clients states spawns paused (default: all)
+usage: ros_interface.py [ROW …]   rows: calls clients ratios states spawns paused (default: all)
 
 Each service is called over a persistent connection, by a client in a process of its own. Nothing
 here fails on a slow machine.
@@ -11,8 +11,10 @@ from __future__ import annotations
 import json
 import os
 import random
+import socket
 import subprocess
 import sys
+import threading
 import time
 from typing import Any, Callable, Dict, List, Tuple
 
@@ -22,9 +24,15 @@ from bench import EMPTY, Row, milliseconds
 from clock import Clock
 from server import Server, master, wait
 
+from my_simulations.ros.service_connection import ServiceConnection
+
 READ_MS, WRITE_MS, SLOWEST_MS = 0.3, 1.5, 20.0
 CALLS = 300
 CLIENTS, CLIENT_SECONDS = 8, 30.0
+# What Gazebo 11 did on one machine: 8 clients made 15 400 calls/s, one get took 0.039 ms.
+SET_OVER_GET, CLIENTS_OVER_ONE, ROUNDS = 1.3, 0.6, 20
+CONNECTIONS, LONGEST_WAIT_S = 100, 1.0
+RATIO_SECONDS, RATIO_ROUNDS = 5.0, 3
 STATES_SECONDS = 10.0
 
 ARM = """<robot name="arm"><link name="world"/><link name="fore"><inertial><mass value="1"/>
@@ -113,24 +121,38 @@ def calls() -> List[Row]:
     return rows
 
 
-def client(number: int, seconds: float) -> None:
-    """What one of several client processes does: prints what its calls took, as JSON."""
+def client(number: int, seconds: float, task: str) -> None:
+    """What one of several client processes does: prints what its calls took, as JSON.
+
+    It reads and throws one of a hundred boxes after the other (`throw`), reads its own box and puts
+    it down again (`put`), or only reads it (`read`).
+    """
     import rospy
     rospy.init_node(f"client_{number}", disable_rostime=True, disable_signals=True)
     get, move = proxy("get_model_state"), proxy("set_model_state")
     took: List[float] = []
     errors = 0
     choose = random.Random(number)
+    get(f"b{number}", "")
     until = time.perf_counter() + seconds
     while time.perf_counter() < until:
-        n = choose.randrange(100)
-        for call, arguments in ((get, (f"b{n}", "")),
-                                (move, (put(f"b{n}", 3.0 * (n % 10), 3.0 * (n // 10), 500.0),))):
+        n = choose.randrange(100) if task == "throw" else number
+        state = put(f"b{n}", 3.0 * (n % 10), 3.0 * (n // 10), 500.0 if task == "throw" else 0.5)
+        if task == "put":
+            state.twist = type(state.twist)()
+        for call, arguments in ((get, (f"b{n}", "")), (move, (state,)))[:1 + (task != "read")]:
             began = time.perf_counter()
             errors += not call(*arguments).success
             took.append(time.perf_counter() - began)
     print(json.dumps({"took": took, "errors": errors}))
     rospy.signal_shutdown("done")
+
+
+def client_processes(count: int, seconds: float, task: str) -> "List[subprocess.Popen[str]]":
+    """Clients at work, for so many seconds each; see `client` for tasks."""
+    program = [sys.executable, os.path.abspath(__file__), "--client"]
+    return [subprocess.Popen([*program, str(n), str(seconds), task],
+                             stdout=subprocess.PIPE, text=True) for n in range(count)]
 
 
 def clients() -> List[Row]:
@@ -141,9 +163,7 @@ def clients() -> List[Row]:
         move = proxy("set_model_state")
         for n in range(100):
             move(put(f"b{n}", 3.0 * (n % 10), 3.0 * (n // 10), 500.0))
-        processes = [subprocess.Popen(
-            [sys.executable, os.path.abspath(__file__), "--client", str(n), str(CLIENT_SECONDS)],
-            stdout=subprocess.PIPE, text=True) for n in range(CLIENTS)]
+        processes = client_processes(CLIENTS, CLIENT_SECONDS, "throw")
         wait(lambda: clock.sim > 1.0, 30, "a second")
         sim, since = clock.sim, time.perf_counter()
         time.sleep(CLIENT_SECONDS - 3.0)
@@ -156,6 +176,82 @@ def clients() -> List[Row]:
     return [(f"{CLIENTS} clients, 100 bodies moving: errors / p99 / real-time factor",
              f"{errors} / {tail:.1f} ms / {factor:.3f} ({len(took) / CLIENT_SECONDS:.0f} calls/s)",
              "0 / 25 ms / 0.95", not errors and tail <= 25.0 and factor >= 0.95)]
+
+
+class Direct(ServiceConnection):
+    """A connection to the server of a service, without a question to the master."""
+
+    def __init__(self, host: str, port: int, name: str, kind: Any) -> None:
+        self._kind = kind
+        self._socket = socket.create_connection((host, port))
+        self._shake_hands({"callerid": "/bench", "service": name, "md5sum": kind._md5sum,
+                           "type": kind._type, "persistent": "1"})
+
+
+def longest_wait(name: str, **fields: Any) -> float:
+    """Wall seconds of the slowest of many clients that connect and call a service at once."""
+    import rosservice
+    host, port = rosservice.get_service_uri(name)[len("rosrpc://"):].split(":")
+    kind = rosservice.get_service_class_by_name(name)
+    together, took = threading.Barrier(CONNECTIONS), []
+
+    def call() -> None:
+        together.wait()
+        began = time.perf_counter()
+        connection = Direct(host, int(port), name, kind)
+        connection(**fields)
+        took.append(time.perf_counter() - began)
+        connection.close()
+
+    threads = [threading.Thread(target=call) for _ in range(CONNECTIONS)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    if len(took) < CONNECTIONS:
+        raise RuntimeError(f"{CONNECTIONS - len(took)} of {CONNECTIONS} calls failed")
+    return max(took)
+
+
+def calls_per_second(count: int, task: str) -> float:
+    """The calls of some clients together, each for as long as it runs."""
+    found = [json.loads(process.communicate()[0].splitlines()[-1])
+             for process in client_processes(count, RATIO_SECONDS, task)]
+    if any(each["errors"] for each in found):
+        raise RuntimeError("calls failed")
+    return sum(len(each["took"]) for each in found) / RATIO_SECONDS
+
+
+def ratios() -> List[Row]:
+    from geometry_msgs.msg import Pose
+    rows: List[Row] = []
+    with Server(EMPTY):
+        proxy("spawn_urdf_model")("box", scenes.box_urdf("box"), "", Pose(), "")
+        get, move = proxy("get_model_state"), proxy("set_model_state")
+        gets, sets = [], []
+        for _ in range(ROUNDS):
+            gets += timed(get, ["box", ""], CALLS // 3)
+            sets += timed(move, [put("box", 0.0, 0.0, 9.0)], CALLS // 3)
+        one, other = milliseconds(gets), milliseconds(sets)
+        rows.append(("set_model_state over get_model_state, medians",
+                     f"{other / one:.2f} ({other:.3f} / {one:.3f} ms)", f"{SET_OVER_GET:g}",
+                     other / one <= SET_OVER_GET))
+        wait_s = max(longest_wait("/gazebo/get_model_state", model_name="box")
+                     for _ in range(ROUNDS))
+        rows.append((f"longest wait of {CONNECTIONS} clients that connect at once, {ROUNDS} times",
+                     f"{wait_s:.3f} s", f"{LONGEST_WAIT_S:g} s", wait_s < LONGEST_WAIT_S))
+        for n in range(CLIENTS):
+            where = Pose()
+            where.position.x, where.position.z = 3.0 * n, 0.5
+            proxy("spawn_urdf_model")(f"b{n}", scenes.box_urdf(f"b{n}"), "", where, "")
+        alone = together = 0.0
+        for _ in range(RATIO_ROUNDS):
+            alone += calls_per_second(1, "read") / RATIO_ROUNDS
+            together += calls_per_second(CLIENTS, "put") / RATIO_ROUNDS
+        rows.append((f"calls/s of {CLIENTS} clients that get and set, over one that gets",
+                     f"{together / alone:.2f} ({together:.0f} / {alone:.0f} calls/s)",
+                     f"{CLIENTS_OVER_ONE:g}", together >= CLIENTS_OVER_ONE * alone))
+    return rows
 
 
 def states() -> List[Row]:
@@ -213,12 +309,13 @@ def paused() -> List[Row]:
 
 
 ROWS: Dict[str, Callable[[], List[Row]]] = {
-    "calls": calls, "clients": clients, "states": states, "spawns": spawns, "paused": paused}
+    "calls": calls, "clients": clients, "ratios": ratios, "states": states, "spawns": spawns,
+    "paused": paused}
 
 
 def main(names: List[str]) -> int:
     if names[:1] == ["--client"]:
-        client(int(names[1]), float(names[2]))
+        client(int(names[1]), float(names[2]), names[3])
         return 0
     if any(name not in ROWS for name in names):
         print(__doc__, file=sys.stderr)

@@ -3,10 +3,14 @@
 
 usage: step_cost.py [PAIRS [SCENE …]]     PAIRS: 5 by default; SCENE: words in its name
 
-Each scene runs in a process of its own, ours and bare in turns, steps of 1 ms, in bursts of ten as
-a running world makes them. Bare is PyBullet with its default settings: it damps, holds joints with
-motors unless told, lets wheels yaw and parked robots drift, so its time is a yardstick and no aim.
+Each scene runs in a process of its own, ours and bare in turns, in steps of 1 ms unless its name
+says more, in bursts of ten as a running world makes them. Bare is PyBullet with its default
+settings: it damps, holds joints with motors unless told, lets wheels yaw and parked robots drift,
+so its time is a yardstick and no aim.
 The shortest of ten parts of a run counts: it is the one that other processes disturbed least.
+
+At the end it prints what a simulated second costs with larger steps, as a share of what it costs
+with 1 ms, and what a falling pile costs beside bare PyBullet, each with its bar.
 """
 from __future__ import annotations
 
@@ -24,14 +28,22 @@ import pairs
 import pybullet
 from structures import Piece, model_of
 
-DT, PARTS = 0.001, 10
+PARTS = 10
+BALLS, BALLS_STEPS = "216 balls, falling, {} ms", (1, 2, 5, 10)
+PILE, PILE_BAR = "10 boxes, 10 cans, falling", 1.5
 Steps = Callable[[int], None]
 
 STEPS: Dict[str, Tuple[int, int]] = {  # before the measurement, and of it
     "one box, awake": (500, 4000), "100 boxes, asleep": (4000, 4000),
     "100 cylinders, asleep": (4000, 4000), "30 boxes, tumbling": (0, 1500),
     "50 boxes, flying": (0, 1500), "20 stacks of 10": (300, 500), "a parked base": (1500, 2000),
-    "a driving base": (500, 2000), "an arm of 6, swinging": (200, 2000)}
+    "a driving base": (500, 2000), "an arm of 6, swinging": (200, 2000), PILE: (0, 1500),
+    **{BALLS.format(ms): (0, 10000 // ms) for ms in BALLS_STEPS}}
+
+
+def step_size(scene: str) -> float:
+    """In seconds."""
+    return int(scene.split()[-2]) * 1e-3 if scene.endswith(" ms") else 1e-3
 
 
 def _robot(name: str) -> str:
@@ -69,8 +81,15 @@ def _joint(name: str, parent: str, child: str, at: str, axis: str, damping: floa
 
 
 def _pieces(scene: str) -> List[Piece]:
-    """Of scenes without robots: unit boxes in a grid or in stacks, or smaller ones in a heap."""
+    """Of scenes without robots: unit boxes in a grid or in stacks, or smaller things in a heap."""
     unit = (1.0, 1.0, 1.0)
+    if "balls" in scene:
+        return [Piece(f"b{n}", (0.2, 0.2, 0.2), 1.0, 1.0, (
+            0.3 * (n % 6) + 0.01 * (n // 36 % 2), 0.3 * (n // 6 % 6) + 0.013 * (n // 36 % 3),
+            0.3 + 0.3 * (n // 36))) for n in range(216)]
+    if scene == PILE:
+        return [Piece(f"b{n}", (0.1, 0.1, 0.15) if n % 2 else (0.2, 0.2, 0.2), 1.0, 1.0, (
+            0.25 * (n % 4), 0.25 * (n // 4 % 2), 0.3 + 0.35 * (n // 8))) for n in range(20)]
     if "stacks" in scene:
         return [Piece(f"b{n}", unit, 1.0, 1.0, (4.0 * (n // 10), 0.0, 0.5 + n % 10))
                 for n in range(200)]
@@ -84,9 +103,16 @@ def _pieces(scene: str) -> List[Piece]:
 
 
 def _turn(scene: str, n: int) -> Tuple[float, float, float, float]:
-    turn = pybullet.getQuaternionFromEuler((0.3 * n, 0.2 * n, 0.0) if "tumbling" in scene
-                                           else (0.0, 0.0, 0.0))
+    turned = "tumbling" in scene or scene == PILE
+    turn = pybullet.getQuaternionFromEuler((0.3 * n, 0.2 * n, 0.0) if turned else (0.0, 0.0, 0.0))
     return (turn[0], turn[1], turn[2], turn[3])
+
+
+def _shape(scene: str, n: int) -> str:
+    """`box`, or what lies in the box of a piece's size: `cylinder` or `sphere`."""
+    if "balls" in scene:
+        return "sphere"
+    return "cylinder" if "cylinders" in scene or scene == PILE and n % 2 else "box"
 
 
 def _robot_file(scene: str, folder: str) -> str:
@@ -99,11 +125,12 @@ def _ours(scene: str) -> Steps:
     from conftest import Lab, ground, inertial_of_box, link_of
 
     from my_simulations.description.model import Model
-    from my_simulations.description.shapes import Cylinder
+    from my_simulations.description.shapes import Cylinder, Sphere
     from my_simulations.engine.drive_commands import JointMotor, SetMotors
     from my_simulations.formats.reading import read_file
     from my_simulations.resources.resolver import Resolver
     lab = Lab()
+    lab.configure(step_size=step_size(scene))
     lab.load(ground(1.0))
     if "base" in scene or "arm" in scene:
         with tempfile.TemporaryDirectory() as folder:
@@ -115,9 +142,11 @@ def _ours(scene: str) -> Steps:
     else:
         for n, piece in enumerate(_pieces(scene)):
             model = model_of(piece, asleep="asleep" in scene)[0]
-            if "cylinders" in scene:
+            if _shape(scene, n) != "box":
+                shape = Sphere(piece.size[0] / 2) if _shape(scene, n) == "sphere" else Cylinder(
+                    piece.size[0] / 2, piece.size[2])
                 model = Model(piece.name, links=[link_of(
-                    Cylinder(0.5, 1.0), inertial_of_box(1.0, *piece.size))])
+                    shape, inertial_of_box(1.0, *piece.size))])
             number = lab.load(model, piece.position, _turn(scene, n))
             if "flying" in scene:
                 lab.push(number, (1, 0, 5), (1, 2, 0))
@@ -130,7 +159,7 @@ def _ours(scene: str) -> Steps:
 
 
 def _bare(scene: str) -> Steps:
-    bare_world.begin(DT)
+    bare_world.begin(step_size(scene))
     if "base" in scene or "arm" in scene:
         with tempfile.TemporaryDirectory() as folder:
             robot = pybullet.loadURDF(_robot_file(scene, folder), (0, 0, 0.12) if "base" in scene
@@ -141,11 +170,13 @@ def _bare(scene: str) -> Steps:
                                            targetVelocity=5.0 * drives, force=5.0 * drives)
     else:
         for n, piece in enumerate(_pieces(scene)):
-            shape = pybullet.createCollisionShape(pybullet.GEOM_BOX, halfExtents=[
-                side / 2 for side in piece.size])
-            if "cylinders" in scene:
-                shape = pybullet.createCollisionShape(pybullet.GEOM_CYLINDER, radius=0.5,
-                                                      height=1.0)
+            shape = {
+                "box": lambda size: pybullet.createCollisionShape(
+                    pybullet.GEOM_BOX, halfExtents=[side / 2 for side in size]),
+                "cylinder": lambda size: pybullet.createCollisionShape(
+                    pybullet.GEOM_CYLINDER, radius=size[0] / 2, height=size[2]),
+                "sphere": lambda size: pybullet.createCollisionShape(
+                    pybullet.GEOM_SPHERE, radius=size[0] / 2)}[_shape(scene, n)](piece.size)
             body = pybullet.createMultiBody(piece.mass, shape, -1, piece.position,
                                             _turn(scene, n), useMaximalCoordinates=1)
             pybullet.changeDynamics(body, -1, lateralFriction=1.0)
@@ -172,8 +203,25 @@ def child(kind: str, scene: str) -> None:
     print(min(parts) if before else sum(parts) / PARTS)
 
 
+def print_bars(medians: Dict[str, Tuple[float, float]]) -> None:
+    """Print those ratios with a bar that were measured. `medians`: see `pairs.rows`."""
+    first = medians.get(BALLS.format(1))
+    for ms in BALLS_STEPS[1:]:
+        found = medians.get(BALLS.format(ms))
+        if first is not None and found is not None:
+            _print_bar(f"a second of 216 balls, {ms} ms over 1 ms", found[0] / ms / first[0], 1.0)
+    if PILE in medians:
+        _print_bar(f"{PILE}: over bare", medians[PILE][1], PILE_BAR)
+
+
+def _print_bar(what: str, ratio: float, bar: float) -> None:
+    print(f"{what:<42} {ratio:>5.2f}   bar {bar:g}   {'met' if ratio <= bar else 'NOT MET'}")
+
+
 if __name__ == "__main__":
     if sys.argv[1:2] == ["--child"]:
         child(sys.argv[2], sys.argv[3])
     else:
-        sys.exit(pairs.rows(__file__, list(STEPS), sys.argv[1:]))
+        seen: Dict[str, Tuple[float, float]] = {}
+        pairs.rows(__file__, list(STEPS), sys.argv[1:], medians=seen)
+        print_bars(seen)

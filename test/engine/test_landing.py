@@ -286,3 +286,26 @@ def test_landings_repeat_bit_for_bit_however_many_steps_are_made_in_one_go(lab: 
     fallen(1)  # numbers of bodies are given again from here on
     once = fallen(1)
     assert fallen(1) == once and fallen(64) == once
+
+
+@pytest.mark.parametrize("step_size", [0.002, 0.005, 0.01])
+@pytest.mark.parametrize("name", ["box", "can"])
+def test_what_falls_fast_goes_hardly_deeper_with_larger_steps(lab: Lab, laws: Laws, name: str,
+                                                              step_size: float):
+    """Without help it would by what it moves in a step: 10 cm at 10 m/s and 10 ms."""
+    lab.configure(step_size=step_size)
+    lab.load(ground())
+    dropped = [_drop(lab, name, (n, 0, height)) for n, height in enumerate(HEIGHTS)]
+    for _ in range(round(1.2 / step_size)):
+        lab.steps(1)
+        for number in dropped:
+            laws.at_most(f"dropped from up to 5 m with steps of {1e3 * step_size:g} ms: depth, m",
+                         HALF - lab.pose(number).position[2], 6e-3)
+
+
+def test_what_falls_on_what_fell_beside_it_lands_upright(lab: Lab, laws: Laws):
+    lab.load(ground())
+    cans = [_drop(lab, "can", (0, 0, 1.0 + 0.25 * n)) for n in range(2)]
+    lab.seconds(1.5)
+    for number in cans:
+        laws.at_most("cans that fall above each other: tilt, degrees", _tilt(lab, number), 1.0)

@@ -3,7 +3,7 @@ from __future__ import annotations
 
 import pybullet
 import pytest
-from conftest import ball, box, ground
+from conftest import Lab, ball, box, ground
 from work_count import lines_run
 
 from my_simulations.description.model import Link, Model
@@ -75,3 +75,24 @@ def test_links_without_collisions_meet_nothing(lab, monkeypatch):
                         lambda uid, index, group, mask: filters.append((group, mask)))
     lab.load(Model("m", links=[Link(f"l{n}") for n in range(4)]))
     assert filters == [(0, 0)] * 4
+
+
+def _lines_of_a_fall(step_size: float) -> int:
+    """How many lines half a second of 27 balls takes that fall on each other."""
+    lab = Lab()
+    lab.backend.read()
+    lab.configure(step_size=step_size)
+    lab.load(ground(1.0))
+    for n in range(27):
+        lab.load(ball(f"b{n}", 0.1), (0.25 * (n % 3), 0.25 * (n // 3 % 3) + 0.02 * (n // 9),
+                                      0.3 + 0.3 * (n // 9)))
+    lines = lines_run(lambda: lab.seconds(0.5))
+    lab.backend.close()
+    return lines
+
+
+def test_larger_steps_take_hardly_more_lines_for_the_same_time():
+    """Bullet's share falls with the number of steps; what looks ahead must not look farther."""
+    usual = _lines_of_a_fall(0.001)
+    assert _lines_of_a_fall(0.005) < 1.5 * usual
+    assert _lines_of_a_fall(0.01) < 2.0 * usual

@@ -10,7 +10,7 @@ from typing import Iterator, List, Tuple
 
 from ..child_process import die_with_parent, keep_freed_memory
 from .api import Event, Reply
-from .commands import Command
+from .commands import Command, Post, SetModelState
 from .message_pipe import Wire
 from .ring import RingWriter
 from .runner import Runner
@@ -25,7 +25,8 @@ class _Pipes:
         self._bell, self._notices = bell, notices
 
     def receive(self, timeout: float) -> List[Tuple[int, Command]]:
-        return self._wire.receive(timeout)
+        return [(number, Post(SetModelState.of_plain(message)) if isinstance(message, tuple)
+                 else message) for number, message in self._wire.receive(timeout)]
 
     def reply(self, number: int, reply: Reply) -> None:
         self._send((number, reply))

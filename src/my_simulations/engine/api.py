@@ -10,8 +10,11 @@ from dataclasses import dataclass
 from typing import Callable, List, Protocol, Tuple
 
 from ..errors import SimulationError
-from .commands import Command, PhysicsSettings
+from .commands import Command, PhysicsSettings, SetModelState
 from .ring import RingReader
+
+MOST_POSTED = 64
+"""How many posted commands may wait for a heavy step; the sender of more waits, too."""
 
 
 @dataclass(frozen=True)
@@ -39,7 +42,8 @@ class Event:
     """Something the engine reports by itself.
 
     `kind`: `diverged` (a model's state became non-finite; it was restored to its last finite pose,
-    at rest) or `log` (a setting is simulated approximately).
+    at rest), `refused` (a posted command was rejected) or `log` (a setting is simulated
+    approximately).
     """
 
     kind: str
@@ -58,6 +62,16 @@ class Engine(Protocol):
     def submit(self, command: Command) -> "Future[Reply]":
         """Queue a command. The future fails with `EngineDiedError` if the engine dies before."""
 
+    def post(self, command: SetModelState) -> bool:
+        """Queue a command without a reply, in order with those of `submit`.
+
+        False if it was not queued: the engine died, or `MOST_POSTED` posted commands wait already.
+        """
+
+    @property
+    def posted(self) -> int:
+        """Number of the last posted command; snapshots show it if `ring.applied` is not less."""
+
     def notify(self) -> None:
         """Notify an engine that waits for the host that the step budget is another."""
 
@@ -74,7 +88,11 @@ class Engine(Protocol):
         """Set the listener of events, called from the engine's reader thread."""
 
     def on_death(self, listener: Callable[[str, List[Command]], None]) -> None:
-        """Set the listener of the engine's death: gets a reason and the unanswered commands."""
+        """Set the listener of the engine's death.
+
+        It gets a reason and the commands without a reply in their order, among them each `Post`
+        whose effect no snapshot shows.
+        """
 
     def wait_bell(self, timeout: float) -> bool:
         """Wait for a notification of the engine (if requested, about steps and changes).

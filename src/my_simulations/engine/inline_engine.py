@@ -7,7 +7,8 @@ from concurrent.futures import Future
 from typing import Callable, Dict, List, Tuple
 
 from .api import Backend, EngineDiedError, EngineNotRunningError, Event, Reply
-from .commands import Command, Ping
+from .commands import Command, Ping, Post, SetModelState
+from .posted_commands import PostedCommands
 from .ring import Memory, RingReader, RingWriter
 from .runner import Runner
 
@@ -55,6 +56,7 @@ class InlineEngine:
         self.rung, self.notices = threading.Event(), threading.Event()
         self._lock = threading.Lock()
         self._waiting: Dict[int, Tuple[Command, Future[Reply]]] = {}
+        self._posts = PostedCommands(self._ring)
         self._numbers = 0
         self._on_event: Callable[[Event], None] = lambda event: None
         self._on_death: Callable[[str, List[Command]], None] = lambda reason, commands: None
@@ -100,6 +102,22 @@ class InlineEngine:
             self._channel.commands.put((self._numbers, command))
         return future
 
+    def post(self, command: SetModelState) -> bool:
+        """Queue a command without a reply; see `Engine.post`."""
+        with self._lock:
+            if not self._alive or self._posts.full():
+                return False
+            self._numbers += 1
+            post = Post(command)
+            self._posts.add(self._numbers, post)
+            self._channel.commands.put((self._numbers, post))
+        return True
+
+    @property
+    def posted(self) -> int:
+        """Number of the last posted command; 0 for none."""
+        return self._posts.last
+
     def notify(self) -> None:
         """Notify the thread that the step budget is another."""
         self._channel.commands.put((0, Ping()))
@@ -137,7 +155,9 @@ class InlineEngine:
         self._stop()
         with self._lock:
             waiting, self._waiting = self._waiting, {}
-        self._on_death(reason, [command for command, _ in waiting.values()])
+            lost: Dict[int, Command] = dict(self._posts.take_unshown())
+        lost.update((number, command) for number, (command, _) in waiting.items())
+        self._on_death(reason, [lost[number] for number in sorted(lost)])
         for _, future in waiting.values():
             future.set_exception(EngineDiedError(reason))
 

@@ -20,8 +20,9 @@ from ..child_process import (
 )
 from . import ring as ring_module
 from .api import EngineDiedError, EngineNotRunningError, Event, Reply
-from .commands import Command, SetJoints, SetLinkState, SetModelState
+from .commands import Command, Post, SetJoints, SetLinkState, SetModelState
 from .message_pipe import Wire
+from .posted_commands import PostedCommands
 from .ring import RingReader
 from .scratch_folder import sweep
 from .wake_pipe import WakePipe
@@ -46,6 +47,7 @@ class ProcessEngine:
         self._lock = threading.Lock()
         self._send_lock = threading.Lock()  # taken before the other: numbers leave in order
         self._waiting: "OrderedDict[int, Tuple[Command, Future[Reply]]]" = OrderedDict()
+        self._posts = PostedCommands(self._ring)
         self._numbers = 0
         self._closing = False
         self._verdict = ""
@@ -124,6 +126,28 @@ class ProcessEngine:
                 _log.debug("the engine does not listen: %s", fault)
         return future
 
+    def post(self, command: SetModelState) -> bool:
+        """Queue a command without a reply; see `Engine.post`."""
+        with self._send_lock:
+            with self._lock:
+                wire = self._wire
+                if wire is None or self._posts.full():
+                    return False
+                self._numbers += 1
+                number, post = self._numbers, Post(command)
+                self._posts.add(number, post)
+            try:
+                wire.send((number, command.plain()))
+            except OSError as fault:
+                # The reader thread sees the same end, and reports the command as lost.
+                _log.debug("the engine does not listen: %s", fault)
+        return True
+
+    @property
+    def posted(self) -> int:
+        """Number of the last posted command; 0 for none."""
+        return self._posts.last
+
     def notify(self) -> None:
         """Notify the child that the step budget is another."""
         with self._send_lock:
@@ -198,13 +222,15 @@ class ProcessEngine:
             if self._wire is wire:
                 self._wire = None
             waiting, self._waiting = self._waiting, OrderedDict()
+            lost: Dict[int, Command] = dict(self._posts.take_unshown())
         with self._send_lock:  # it was hung up: whoever still sends fails at once
             wire.sock.close()
         shown = answer_shown(self._ring, waiting)
         reason = self._verdict or _reason(process.returncode)
         self._verdict = ""
         if not self._closing:
-            self._death_listener(reason, [c for c, _ in waiting.values()])
+            lost.update((number, command) for number, (command, _) in waiting.items())
+            self._death_listener(reason, [lost[number] for number in sorted(lost)])
         for future, reply in shown:
             future.set_result(reply)
         for _, future in waiting.values():

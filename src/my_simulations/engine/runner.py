@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import time
 import traceback
-from typing import List, Optional, Protocol, Tuple
+from typing import List, Optional, Protocol, Set, Tuple
 
 from .api import (
     Backend,
@@ -27,6 +27,7 @@ from .commands import (
     Pause,
     PhysicsSettings,
     Ping,
+    Post,
     Run,
     SetClock,
     SetPhysics,
@@ -109,6 +110,7 @@ class Runner:
         # to restore.
         self._shown = (self._clock_sets, self._step)
         self._advance: Optional[Tuple[int, int]] = None  # (command number, last step)
+        self._posted: Set[int] = set()  # numbers of commands at hand that have no reply
         self._ended: List[int] = []  # numbers of advances that were ended early, to be answered
         self._due = 0.0
         self._burst = 1
@@ -180,7 +182,7 @@ class Runner:
         received = self._channel.receive(timeout)
         if not received:
             return False
-        commands = [pair for pair in received if pair[0] > 0]
+        commands = [self._unwrapped(*pair) for pair in received if pair[0] > 0]
         if not commands:
             return True   # only a notification
         answers: List[Tuple[int, object, str]] = []
@@ -226,14 +228,28 @@ class Runner:
         answers[:0] = [(number, self._step, "") for number in self._ended]
         self._ended.clear()
         for number, value, error in answers:
-            self._channel.reply(number, Reply(self._step, sequence, value, error))
+            if number not in self._posted:
+                self._channel.reply(number, Reply(self._step, sequence, value, error))
+            elif error:
+                self._channel.event(Event("refused", error))
+        self._posted.clear()
         self._report_events()
+
+    def _unwrapped(self, number: int, command: Command) -> Tuple[int, Command]:
+        """A command with its number; remembers those to which there is no reply."""
+        if isinstance(command, Post):
+            self._posted.add(number)
+            return number, command.command
+        return number, command
 
     def _await_replacement(self, number: int, error: str) -> None:
         """Report a command that changed only a part of the world, and do nothing more.
 
-        No snapshot shows that part. Raises EOFError when the other side hangs up.
+        No snapshot shows that part. Raises EOFError when the other side hangs up, and
+        EngineBrokenError for a command to which there is no reply: it is sent to the next engine.
         """
+        if number in self._posted:
+            raise EngineBrokenError(error)
         self._channel.reply(number, Reply(self._step, self._words[LATEST], None, error, True))
         while True:
             self._channel.receive(_IDLE_S)

@@ -43,7 +43,8 @@ class StateFeed:
     def states(self) -> Tuple[RowLayout, int, bytes]:
         """The layout, the snapshot's sequence number, and its rows of `ROW_WIDTH` doubles.
 
-        The layout is the same object until models change.
+        The layout is the same object until models change. A state that was set just now may
+        be in the next snapshot only; see `States.await_posted`.
         """
         with self._session.registry_lock:
             return (self._current_layout(), *self._session.ring.raw_links())

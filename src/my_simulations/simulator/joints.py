@@ -34,6 +34,7 @@ class Joints:
 
         Raises UnknownEntityError.
         """
+        self._session.await_posted()
         with self._session.registry_lock:
             entity, joint, _ = self._session.registry.joint(name)
             snapshot = self._session.snapshot()

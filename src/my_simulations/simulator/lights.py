@@ -37,6 +37,7 @@ class Lights:
         """
         check_name(light.name, "light")
         session = self._session
+        session.await_posted()
         with session.structure_lock, session.registry_lock:
             session.check_name_is_free(light.name)
             anchor = session.registry.frame(frame)

@@ -96,6 +96,7 @@ class Models(KnownModels):
         meshes = self._convex_meshes.of(model, meshes or {})
         session = self._session
         with session.structure_lock:
+            session.await_posted()
             again = InterModelJoints() if deleted is None else deleted.joints
             between = self._between.joined(again)
             with session.registry_lock:
@@ -308,6 +309,7 @@ class Models(KnownModels):
         if parent == child:
             raise CommandError(f"cannot attach link '{child}' to itself")
         with session.structure_lock:
+            session.await_posted()
             with session.registry_lock:
                 snapshot = session.snapshot()
                 at = snapshot.link(session.link_row(child))[0]

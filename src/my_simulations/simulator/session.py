@@ -10,7 +10,7 @@ from ..description.model import Model
 from ..description.shapes import MeshTable
 from ..description.world import World
 from ..engine.api import Reply
-from ..engine.commands import GONE, Command
+from ..engine.commands import GONE, Command, SetModelState
 from ..engine.ring import JOINTS, LINKS, RingReader, Snapshot
 from ..engine.ring_rows import axis_rows
 from ..errors import CommandError, Issue, warning
@@ -21,6 +21,8 @@ from .registry import NameTakenError, Registry
 from .row_allocator import RowAllocator
 from .supervisor import Supervisor
 
+_POST_S = 0.002
+"""How long a command that can be posted waits for another one, or for a change of models."""
 _CHANGE_S = 1.0
 """How long a change of models is waited for before something that it concerns is refused."""
 
@@ -60,6 +62,30 @@ class Session:
         """Send an engine command and wait for its reply; see `Supervisor.call` for errors."""
         return self.supervisor.call(command)
 
+    def await_posted(self) -> None:
+        """Wait until snapshots show the effect of all changes that callers were told are done.
+
+        Call it before reading states, without the registry lock. Raises CommandError.
+        """
+        self.supervisor.await_posted()
+
+    def post(self, look_up: Callable[[], SetModelState]) -> None:
+        """Send what `look_up` makes of the registry; reading states waits for its effect.
+
+        For commands that the engine can refuse only if a model is gone: no model is removed
+        meanwhile. While other changes of models are under way it calls `move`. Raises what
+        `look_up` raises, and CommandError.
+        """
+        if self.structure_lock.acquire(timeout=_POST_S):
+            try:
+                with self.registry_lock:
+                    command = look_up()
+                if self.supervisor.post(command):
+                    return
+            finally:
+                self.structure_lock.release()
+        self.move(look_up)
+
     def move(self, look_up: Callable[[], Command]) -> None:
         """Call what `look_up` makes of the registry, which is locked meanwhile.
 
@@ -95,7 +121,10 @@ class Session:
         return self.supervisor.engine.ring
 
     def snapshot(self) -> Snapshot:
-        """A copy of the newest snapshot. Raises CommandError before the first one."""
+        """A copy of the newest snapshot; raises CommandError before the first one.
+
+        Call `await_posted` before.
+        """
         found = self.ring.read()
         if found is None:
             raise CommandError("the physics engine is not running yet")

@@ -153,7 +153,9 @@ class Simulator:
             self.models.load_all(self._world_meshes)
 
     def _on_event(self, event: Event) -> None:
-        if event.kind == "diverged":
+        if event.kind == "refused":
+            self._session.log(error("command-refused", event.message))
+        elif event.kind == "diverged":
             self._session.log(error("state-diverged", event.message))
         elif event.kind == "log":
             self._session.log(warning("physics-approximate", event.message))

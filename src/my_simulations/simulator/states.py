@@ -46,6 +46,7 @@ class States:
         Raises UnknownEntityError, UnknownFrameError.
         """
         session = self._session
+        session.await_posted()
         with session.registry_lock:
             entity = session.registry.model(name)
             anchor = session.registry.frame(frame)
@@ -60,6 +61,7 @@ class States:
     def link_state(self, name: str, frame: str = "") -> Tuple[Pose, Twist]:
         """Pose and twist of a link in `frame`. Raises UnknownEntityError, UnknownFrameError."""
         session = self._session
+        session.await_posted()
         with session.registry_lock:
             row = session.link_row(name)
             anchor = session.registry.frame(frame)
@@ -67,6 +69,10 @@ class States:
                 return session.ring.link(row)
             snapshot = session.snapshot()
         return relative(snapshot.link(row), anchor, snapshot)
+
+    def await_posted(self) -> None:
+        """Wait until snapshots show all states that were set. Raises CommandError."""
+        self._session.await_posted()
 
     def mounting(self, frame: str) -> Tuple[int, Pose]:
         """Row of the link with which a frame moves, and its pose in that link.
@@ -79,15 +85,18 @@ class States:
 
     def link_at(self, row: int) -> Tuple[Pose, Twist]:
         """World pose and twist of the link in a row, for callers that know the row."""
+        self._session.await_posted()
         return self._session.ring.link(row)
 
     def axis_at(self, row: int) -> Tuple[float, float]:
         """Position (rad or m) and rate (rad/s or m/s) of the joint axis in a row."""
+        self._session.await_posted()
         return self._session.ring.joint(row)
 
     def latest(self) -> Tuple[List[Entity], Snapshot]:
         """All entities in load order, and the newest snapshot (an old one if nothing moves)."""
         session = self._session
+        session.await_posted()
         with session.registry_lock:
             entities, snapshot = session.registry.entities(), session.snapshot()
         # A model that is being deleted may be gone from the engine, and its rows from the table.
@@ -125,12 +134,18 @@ class States:
     # -- setting -----------------------------------------------------------------------------------
 
     def set_model_state(self, name: str, pose: Pose, twist: Twist, frame: str = "") -> None:
-        """Move a model; all its links get the rigid body's velocity. Raises CommandError."""
+        """Move a model; all its links get the rigid body's velocity. Raises CommandError.
+
+        The engine does so between its steps: this method does not wait for that, what reads states
+        does.
+        """
         session = self._session
         pose = usable(pose, twist)
         with session.registry_lock:
             entity = session.registry.model(name)
-            if not entity.link_names:
+        if not entity.link_names:
+            session.await_posted()
+            with session.registry_lock:
                 anchor = session.registry.frame(frame)
                 if anchor is not None:
                     pose = compose(anchor.state(session.snapshot())[0], pose)
@@ -138,12 +153,12 @@ class States:
                 session.registry.revision += 1
                 return
 
-        def look_up() -> Command:
+        def look_up() -> SetModelState:
             found, anchor = session.registry.model(name), session.registry.frame(frame)
             at, speed, reference = in_frame(pose, twist, anchor)
             return SetModelState(found.model_id, at, speed, reference, self._owner(reference))
 
-        session.move(look_up)
+        session.post(look_up)
 
     def set_link_state(self, name: str, pose: Pose, twist: Twist, frame: str = "") -> None:
         """Move a link (see `engine.commands.SetLinkState`). Raises CommandError."""

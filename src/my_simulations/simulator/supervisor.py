@@ -1,20 +1,22 @@
 """Supervises the engine: restarts it after a crash and has the world restored.
 
 Commands without a reply are sent again after a crash. If a command crashes the next engine, too,
-it fails: only a command that causes crashes is lost. `Advance` is not sent again, because some of
-its steps were executed. All engines are started from the supervisor's own thread, because the
-kernel ends a child with the thread that started it.
+it fails: only a command that causes crashes is lost. The same holds for posted commands, whose
+senders do not wait: the supervisor sends them again, and reports what fails. `Advance` is not sent
+again, because some of its steps were executed. All engines are started from the supervisor's own
+thread, because the kernel ends a child with the thread that started it.
 """
 from __future__ import annotations
 
 import queue
 import threading
 import time
+from collections import deque
 from concurrent.futures import TimeoutError as FutureTimeout
-from typing import Callable, List, NamedTuple, Optional, Tuple
+from typing import Callable, Deque, List, NamedTuple, Optional, Tuple
 
 from ..engine.api import Engine, EngineDiedError, EngineNotRunningError, Reply
-from ..engine.commands import Advance, Batch, Command, LoadModel
+from ..engine.commands import Advance, Batch, Command, LoadModel, Ping, Post, SetModelState
 from ..engine.ring import HEARTBEAT, PROGRESS
 from ..errors import CommandError, EngineLostError, EngineTimeoutError, Issue, error, warning
 from .watchdog import PERIOD_S, Watchdog
@@ -67,6 +69,9 @@ class Supervisor:
         self._closing = False
         self._deaths: "queue.Queue[Optional[_Death]]" = queue.Queue()
         self._killers: List[Tuple[Command, str]] = []
+        self._lost: Deque[Command] = deque()  # posted commands that no engine has applied
+        self._ping_lock = threading.Lock()
+        self._shown = 0                       # number of a posted command that snapshots show
         self._recent: List[float] = []
         self._failure: Optional[str] = None
         self._engine: Optional[Engine] = None
@@ -125,6 +130,30 @@ class Supervisor:
             if reply.error:
                 raise CommandError(reply.error)
             return reply
+
+    def post(self, command: SetModelState) -> bool:
+        """Send a command without waiting for the reply, if possible; see `Engine.post`.
+
+        `await_posted` waits until snapshots show its effect.
+        """
+        engine = self._engine
+        return engine is not None and self._ready.is_set() and engine.post(command)
+
+    def await_posted(self) -> None:
+        """Wait until snapshots show the effect of all posted commands.
+
+        Do not call it from a thread of the engine or the supervisor. Raises as `call`.
+        """
+        engine = self._engine
+        if engine is None or engine.posted <= self._shown or self.over:
+            return
+        wanted = engine.posted
+        with self._ping_lock:  # one ping serves all who wait meanwhile
+            if self._shown < wanted:
+                number = engine.posted
+                if not self._ready.is_set() or engine.ring.applied < number:
+                    self.call(Ping())
+                self._shown = number
 
     def close(self) -> None:
         """Stop the engine and the thread."""
@@ -193,10 +222,12 @@ class Supervisor:
         if self._closing:
             return
         self._ready.clear()
+        self._lost.extend(one.command for one in unanswered if isinstance(one, Post))
         death = _Death(reason, self._is_replacing, bool(unanswered) and not self._restoring
                        and _brings_models(unanswered[0]))
         self._is_replacing = False
-        if unanswered and not death.is_replaced and not self._restoring:
+        if (unanswered and not isinstance(unanswered[0], Post) and not death.is_replaced
+                and not self._restoring):
             self._killers.append((unanswered[0], reason))
         self._deaths.put(death)
 
@@ -224,6 +255,7 @@ class Supervisor:
             self._engine.restart()
             self.restarts += 1
             self._restore(self._submit, paused)
+            self._send_lost()
         except EngineDiedError:
             return  # it crashed again: that crash is in the queue
         except (OSError, CommandError) as fault:
@@ -232,6 +264,19 @@ class Supervisor:
         finally:
             self._restoring = False
         self._ready.set()
+
+    def _send_lost(self) -> None:
+        """Send the posted commands again that no engine has applied, each of them once."""
+        while self._lost:
+            command = self._lost.popleft()
+            try:
+                fault = self._submit(command).error
+            except EngineDiedError as death:
+                self._log(error("command-refused", f"{death} during {type(command).__name__}, "
+                                f"{_TRIES} times; it has no effect"))
+                raise
+            if fault:
+                self._log(error("command-refused", fault))
 
     def _submit(self, command: Command) -> Reply:
         assert self._engine is not None

@@ -58,6 +58,7 @@ class Wrenches:
         if not is_finite(*force, *torque, *point):
             raise CommandError(f"the wrench for link '{link}' contains NaN or infinity")
         session = self._session
+        session.await_posted()
         with session.structure_lock:
             with session.registry_lock:
                 entity, index = session.registry.link(link)

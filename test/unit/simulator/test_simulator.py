@@ -253,6 +253,7 @@ def test_states_are_parallel_lists_in_load_order(case):
     assert len(layout.model_places) == len(layout.link_places) == 3
     assert len(rows) == 3 * 8 * ROW_WIDTH
     sim.states.set_model_state("b", Pose((1, 0, 0)), STILL)
+    sim.states.await_posted()
     again, later, _ = sim.feed.states()
     assert again is layout and later > sequence
 

@@ -1,12 +1,15 @@
 """How fast, and from where, one body comes nearer to another."""
 from __future__ import annotations
 
+from math import dist
 from typing import Optional, Tuple
 
 import pybullet
 
 from ...geometry import Vec3, add, cross, dot, norm, subtract
 from .bodies import Body
+
+_SAME = 1e-9  # m/s, or share: as rounding changes a velocity
 
 
 def extent(body: Body) -> Tuple[Vec3, Vec3]:
@@ -36,3 +39,12 @@ def speed_of(uid: int) -> float:
     """Of the base of a body, m/s."""
     linear: Vec3 = pybullet.getBaseVelocity(uid)[0]
     return norm(linear)
+
+
+def flies(body: Body, before: Vec3, now: Vec3, pull: Vec3) -> bool:
+    """Whether a rigid body met nothing: nothing but gravity has changed its velocity, m/s.
+
+    `pull`: what gravity gives in this time, m/s.
+    """
+    alone = add(before, pull) if body.parts[0].gravity else before
+    return dist(now, alone) <= _SAME * (1.0 + norm(alone))

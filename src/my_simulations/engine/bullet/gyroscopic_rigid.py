@@ -3,19 +3,21 @@
 Bullet integrates the gyroscopic torque to first order: a body with three different moments that
 turns at 10 rad/s loses 3 to 5 % of its momentum and 10 % of its energy in 20 s. Without torque the
 momentum L = R I R^T w stays (Euler's equations), so the attitude follows q' = w(q) q / 2 with
-w = R I^-1 R^T L alone: after a free step it is put where Runge-Kutta 4 says. Of a damped body the
-damping's share is taken off L.
+w = R I^-1 R^T L alone: after 8 ms of free flight it is put where Runge-Kutta 4 says. It met nothing
+if its velocity has changed by gravity alone. Of a damped body the damping's share is taken off L
+after each step.
 
-Only bodies that turn fast are looked at in each step; which they are is asked now and then.
+Only bodies that turn fast are looked at; which they are is asked now and then.
 """
 from __future__ import annotations
 
-from math import sqrt
-from typing import Callable, Dict, List, Set, Tuple
+from math import ceil, sqrt
+from typing import Callable, Dict, List, NamedTuple, Set
 
 import pybullet
 
-from ...geometry import Quat, Vec3, conjugate, normalised, rotate, scale
+from ...geometry import Quat, Vec3, conjugate, norm, normalised, rotate, scale
+from .approach import flies
 from .bodies import Body
 from .gyroscopic_articulated import GyroscopicArticulated
 from .step_helper import FAR, next_multiple
@@ -23,9 +25,16 @@ from .step_helper import FAR, next_multiple
 _EVERY = 16        # steps between two looks for fast bodies
 _FAST = 1.0        # rad/s
 _ROUND = 0.02      # relative difference of moments that is none
+_SPAN = 8.1e-3     # s of free flight after which an attitude is corrected
+_ANGLE = 0.05      # rad of a step of Runge-Kutta
 
-Free = Tuple[int, Quat, Vec3]
-"""A body before a step: uid, attitude of its principal axes, angular velocity in world axes."""
+
+class _Flight(NamedTuple):
+    """A body before a step: attitude of its principal axes, and velocities in world axes."""
+
+    turn: Quat
+    linear: Vec3
+    angular: Vec3
 
 
 class GyroscopicRigid:
@@ -34,9 +43,11 @@ class GyroscopicRigid:
     def __init__(self, loaded: Callable[[], Set[int]]) -> None:
         """`loaded` tells the rows of links that a load acts on in this step."""
         self._loaded = loaded
-        self._free: List[Free] = []
+        self._flights: Dict[int, _Flight] = {}   # since the last multiple of `_steps`
+        self._steps = 1
         self._moments: Dict[int, Vec3] = {}
         self._bodies: Dict[int, Body] = {}
+        self._damped: Set[int] = set()
         self._fast: List[int] = []
         self._trees = GyroscopicArticulated()
 
@@ -46,62 +57,94 @@ class GyroscopicRigid:
         if body.rigid and body.moves and max(moments) - min(moments) > _ROUND * max(moments):
             self._moments[body.uid] = moments
             self._bodies[body.uid] = body
+            if body.parts[0].link.linear_decay or body.parts[0].link.angular_decay:
+                self._damped.add(body.uid)
         self._trees.add(body)
 
     def forget(self, body: Body) -> None:
         """A body is gone."""
         self._moments.pop(body.uid, None)
         self._bodies.pop(body.uid, None)
+        self._flights.pop(body.uid, None)
+        self._damped.discard(body.uid)
         if body.uid in self._fast:
             self._fast.remove(body.uid)
-        self._free = []
         self._trees.forget(body)
 
     def clear(self) -> None:
         """All bodies are gone."""
         self._moments.clear()
         self._bodies.clear()
+        self._damped.clear()
         self._fast.clear()
-        self._free.clear()
+        self._flights.clear()
         self._trees.clear()
 
     def moved(self, body: Body) -> None:
         """A body was put somewhere, or given another velocity."""
+        self._flights.pop(body.uid, None)
         self._trees.moved(body)
 
+    def touched(self, body: Body) -> None:
+        """A command, or a force that begins, reached a body."""
+        self._flights.pop(body.uid, None)
+
     def due(self, step: int) -> int:
-        """Each step while something turns fast, else the next look."""
-        if self._fast or self._trees.busy:
+        """Each step while what tumbles is damped or has joints, else begin and end of 8 ms."""
+        look = FAR if not self._moments and self._trees.idle else next_multiple(step, _EVERY)
+        if self._trees.busy or not self._damped.isdisjoint(self._fast):
             return step
-        return FAR if not self._moments and self._trees.idle else next_multiple(step, _EVERY)
+        if not self._fast:
+            return look
+        return min(next_multiple(step, self._steps), next_multiple(step + 1, self._steps) - 1)
 
     def before(self, step: int, dt: float, gravity: Vec3) -> None:
-        """See now and then who turns fast, and note their momentum."""
+        """See now and then who turns fast, and note their motion."""
         if step % _EVERY == 0:
+            self._steps = next((n for n in (8, 4, 2) if n * dt <= _SPAN), 1)
             self._fast = [uid for uid in self._moments if _is_fast(uid)]
             self._trees.mend(dt)
-        # Momenta are worked out after the step, for those few that met nothing.
-        self._free = [(uid, pybullet.getBasePositionAndOrientation(uid)[1],
-                       pybullet.getBaseVelocity(uid)[1]) for uid in self._fast]
+        begins = step % self._steps == 0
+        loaded = self._loaded() if self._fast else ()
+        for uid in self._fast:
+            if (begins or uid in self._damped) and self._bodies[uid].parts[0].row not in loaded:
+                self._flights[uid] = _Flight(pybullet.getBasePositionAndOrientation(uid)[1],
+                                             *pybullet.getBaseVelocity(uid))
 
     def after(self, step: int, dt: float, gravity: Vec3) -> None:
         """Give the bodies that met nothing the attitude and velocity of their momentum."""
-        if not (self._free or self._trees.busy):
-            return
-        loaded = self._loaded()
-        self._trees.after(loaded)
-        for uid, turn, angular in self._free:
+        if self._trees.busy:
+            self._trees.after(self._loaded())
+        ends = (step + 1) % self._steps == 0
+        for uid, flight in list(self._flights.items()):
             body = self._bodies[uid]
-            if (body.ties or body.parts[0].row in loaded
-                    or pybullet.getContactPoints(bodyA=uid)):
+            if not (ends or uid in self._damped):
                 continue
-            moments = self._moments[uid]
-            momentum = scale(_momentum(turn, angular, moments), body.turn_kept)
-            turn = _turned(turn, momentum, moments, dt)
-            linear = pybullet.getBaseVelocity(uid)[0]  # first: placing a body stops it
-            pybullet.resetBasePositionAndOrientation(
-                uid, pybullet.getBasePositionAndOrientation(uid)[0], turn)
-            pybullet.resetBaseVelocity(uid, linear, _velocity(turn, momentum, moments))
+            del self._flights[uid]
+            steps = 1 if uid in self._damped else self._steps
+            if not (self._met_something(body, flight, steps * dt, gravity)
+                    or body.ties or body.parts[0].row in self._loaded()):
+                self._correct(uid, flight, steps * dt)
+
+    def _met_something(self, body: Body, flight: _Flight, span: float, gravity: Vec3) -> bool:
+        """Whether anything but gravity has changed the velocity of a body in `span` s."""
+        if body.uid in self._damped:
+            return bool(pybullet.getContactPoints(bodyA=body.uid))
+        return not flies(body, flight.linear, pybullet.getBaseVelocity(body.uid)[0],
+                         scale(gravity, span))
+
+    def _correct(self, uid: int, flight: _Flight, span: float) -> None:
+        """Give a body that has flown for `span` s the attitude and velocity of its momentum."""
+        moments = self._moments[uid]
+        momentum = scale(_momentum(flight.turn, flight.angular, moments),
+                         self._bodies[uid].turn_kept)
+        turn, parts = flight.turn, ceil(span * norm(flight.angular) / _ANGLE)
+        for _ in range(parts):
+            turn = _turned(turn, momentum, moments, span / parts)
+        linear = pybullet.getBaseVelocity(uid)[0]  # first: placing a body stops it
+        pybullet.resetBasePositionAndOrientation(
+            uid, pybullet.getBasePositionAndOrientation(uid)[0], turn)
+        pybullet.resetBaseVelocity(uid, linear, _velocity(turn, momentum, moments))
 
 
 def _is_fast(uid: int) -> bool:

@@ -64,9 +64,10 @@ class HelperSet:
         self.settings = PhysicsSettings()
         self.notices = Notices(models, bodies_by_uid)
         self.readout = StateReadout(self._on_diverged, self._on_raced)
-        self._residual = ResidualFriction()
+        self._residual = ResidualFriction(lambda uid: self._rolling.rolls(uid))
         self._rolling = RollingContacts(lambda links, step: self._landing.see_rolling(links, step),
-                                        lambda: self.forces.loaded_bodies)
+                                        lambda: self.forces.loaded_bodies,
+                                        lambda uid, step: self._landing.flies(uid, step))
         self._seams = SeamContacts(self._rolling)
         self._level = LevelSeams(lambda: self._residual.fast)
         self.sliding = Sliding()
@@ -101,7 +102,7 @@ class HelperSet:
         self._keepers = (*helpers, self.ties, self.motors, self.wrenches, self.readout, self.loop)
         # Whom it concerns that a command, or a force that begins, reaches a body.
         self._hearers = tuple(part.touched for part in (
-            self.loop, self._friction, self._settling, self._residual, self._rolling,
+            self.loop, self._friction, self._settling, self._spin, self._residual, self._rolling,
             self.sliding, self._stop, self._landing, self._seams))
 
     def configure(self, settings: PhysicsSettings) -> None:

@@ -6,12 +6,13 @@ something in an early iteration and nothing in the last one keeps the friction o
 unit cube with mu 0.8 that slides on a box stops 18 % too early, with mu 1 26 %. After the step such
 impulses are known, and their effect on the velocities is taken back: 1 % remains.
 
-Only bodies that slide are looked at: fast ones that do not tumble, fly, or lie in a pile. Which
-they are follows from the step count and their state alone, so runs repeat bit for bit.
+Only bodies that slide are looked at: fast ones that do not tumble, fly, roll on one line, or lie in
+a pile. Which they are follows from the step count and their state alone, so runs repeat bit for
+bit.
 """
 from __future__ import annotations
 
-from typing import Any, Dict, List, Optional, Set, Tuple
+from typing import Any, Callable, Dict, List, Optional, Set, Tuple
 
 import pybullet
 
@@ -40,9 +41,14 @@ _FLIES, _PILED, _SLIDES, _MENDED = range(4)
 
 
 class ResidualFriction:
-    """Mends the velocities of sliding rigid bodies after each step."""
+    """Mends the velocities of sliding rigid bodies after each step.
 
-    def __init__(self) -> None:
+    Args:
+        rolls: tells whether a rigid body is a cylinder that rolls on its side.
+    """
+
+    def __init__(self, rolls: Callable[[int], bool]) -> None:
+        self._rolls = rolls
         self._bodies: Dict[int, Body] = {}
         self._trees: Set[int] = set()
         self._moving: Set[int] = set()
@@ -131,6 +137,8 @@ class ResidualFriction:
     def _keep_on(self, uid: int, found: int, look: int) -> bool:
         """Go on mending a body in every step, or not. Returns False when it flies."""
         until = self._mended[uid]
+        if found == _SLIDES and until != _SOON and self._rolls(uid):
+            found = _PILED
         if found == _MENDED:
             self._mended[uid] = look + _KEPT
         elif found == _SLIDES and until == _SOON:
@@ -176,7 +184,7 @@ class ResidualFriction:
         if (speed == 0.0) != (uid in self._asleep):
             (self._asleep.add if speed == 0.0 else self._asleep.discard)(uid)
             self._rounds = None
-        if speed <= _FAST * _FAST or _tumbles(angular, gravity):
+        if speed <= _FAST * _FAST or _tumbles(angular, gravity) or self._rolls(uid):
             self._fast.pop(uid, None)
             self._mended.pop(uid, None)
         elif until is not None:
@@ -209,21 +217,22 @@ class ResidualFriction:
         contacts = pybullet.getContactPoints(bodyA=uid)
         if len(contacts) > _MOST_CONTACTS:
             return _PILED
-        tells, near = (_SLIDES, contacts[0][2]) if contacts else (_FLIES, -1)
-        if any(contact[2] != near for contact in contacts) and len(
-                {contact[2] for contact in contacts} & self._moving) > 1:
-            return _PILED
+        neighbour, left = -1, []
         for contact in contacts:
-            # What lies apart was not solved in this step, its forces are older ones.
-            if contact[9] > 0.0 or contact[10] == 0.0 or contact[8] > 0.0:
-                continue
             other = contact[2]
-            if other in seen or other in self._trees:
-                continue  # those with joints go through another solver, which leaves nothing
-            self._take_back(uid, other, contact, dt)
-            tells = _MENDED
+            if other != neighbour and other in self._moving:
+                if neighbour >= 0:
+                    return _PILED
+                neighbour = other
+            # What lies apart was not solved in this step, its forces are older ones. Those with
+            # joints go through another solver, which leaves nothing.
+            if (contact[9] <= 0.0 and contact[10] != 0.0 and contact[8] <= 0.0
+                    and other not in seen and other not in self._trees):
+                left.append(contact)
+        for contact in left:
+            self._take_back(uid, contact[2], contact, dt)
         seen.add(uid)
-        return tells
+        return _MENDED if left else _SLIDES if contacts else _FLIES
 
     def _take_back(self, uid: int, other: int, contact: Tuple[Any, ...], dt: float) -> None:
         """Undo the friction impulse of one contact: it acts against the slip of each body."""

@@ -99,14 +99,16 @@ class RollingContacts:
     Args:
         dropping: is told, before that, of which links points are dropped, and in which step.
         loaded: tells the bodies that timed forces act on in this step.
+        flies: tells whether a body is known to touch nothing in a step.
 
     Attributes:
         on_seams: what rolls on triangles just now, and its axis in the frame of its principal axes.
     """
 
     def __init__(self, dropping: Callable[[AbstractSet[Key], int], None],
-                 loaded: Callable[[], AbstractSet[int]]) -> None:
-        self._dropping, self._loaded = dropping, loaded
+                 loaded: Callable[[], AbstractSet[int]],
+                 flies: Callable[[int, int], bool]) -> None:
+        self._dropping, self._loaded, self._flies = dropping, loaded, flies
         self.on_seams: Dict[Key, Vec3] = {}
         self._rollers: Dict[Key, _Roller] = {}
         self._rolling: Dict[Key, collision_groups.Filter] = {}
@@ -162,6 +164,10 @@ class RollingContacts:
             if abs(dot(normal, rotate(turn, roller.axis))) > _UPRIGHT:
                 del self._rolling[uid, BASE]
 
+    def rolls(self, uid: int) -> bool:
+        """Whether a rigid body rolls on its side."""
+        return (uid, BASE) in self._rolling
+
     @property
     def knows_seams(self) -> bool:
         """Whether something may roll on triangles."""
@@ -178,6 +184,8 @@ class RollingContacts:
             for key, roller in self._rollers.items():
                 if roller.wait:
                     roller.wait -= 1
+                elif self._flies(key[0], step):
+                    continue
                 elif self._rolls(roller, dt, gravity, roller.body.uid in loaded):
                     self._rolling[key] = roller.meets
                 else:
@@ -191,7 +199,8 @@ class RollingContacts:
                 pybullet.resetBaseVelocity(uid, _NONE, _NONE)
         self._dropping(self._rolling.keys(), step)
         for (uid, index), meets in self._rolling.items():
-            pybullet.setCollisionFilterGroupMask(uid, index, meets.group, meets.mask)
+            if not self._flies(uid, step):
+                pybullet.setCollisionFilterGroupMask(uid, index, meets.group, meets.mask)
 
     def due(self, step: int) -> int:
         """Each step while something rolls, or stands, else the next look."""

@@ -69,13 +69,14 @@ class StateSetter:
         pose, twist = self._in_world(command.pose, command.twist, command.frame)
         if not entry.model.links:
             return
-        current = self.model_pose(entry)
         # As in Gazebo the velocity is that of the canonical link, which is what is read as well.
-        at = compose(pose, entry.model.links[_canonical(entry)].pose).position
+        row = entry.first_row + _canonical(entry)
+        current, wanted = self.link_state(row).pose, compose(
+            pose, entry.model.links[row - entry.first_row].pose)
         self._waker.around(entry.bodies)
         for body in entry.bodies:
-            self._move(body, current, pose, twist, at)
-        self._waker.around(entry.bodies)
+            self._move(body, row, current, wanted, twist)
+        self._waker.around(entry.bodies, awake=True)
 
     def set_link(self, command: SetLinkState) -> None:
         """Move the body of a link. Raises CommandRefusedError."""
@@ -89,8 +90,8 @@ class StateSetter:
         pose, twist = self._in_world(command.pose, command.twist, command.frame)
         current = self.link_state(part.row).pose
         self._waker.around([body])
-        self._move(body, current, pose, twist, pose.position)
-        self._waker.around([body])
+        self._move(body, part.row, current, pose, twist)
+        self._waker.around([body], awake=True)
 
     def set_joints(self, command: SetJoints) -> None:
         """Set joint axes; all are checked before the first moves. Raises CommandRefusedError.
@@ -140,9 +141,13 @@ class StateSetter:
                           rotate(at.orientation, twist.angular))
         return compose(at, pose), twist
 
-    def _move(self, body: Body, current: Pose, wanted: Pose, twist: Optional[Twist],
-              at: Vec3) -> None:
-        """Move a body as if `current`, fixed to it, became `wanted`, with `twist` in `at`."""
+    def _move(self, body: Body, row: int, current: Pose, wanted: Pose,
+              twist: Optional[Twist]) -> None:
+        """Move a body as if the link at `row`, fixed to it, went from `current` to `wanted`.
+
+        `twist` is the velocity there; None keeps it, turned.
+        """
+        at = wanted.position
         lead = self.link_state(body.parts[0].row)
         target = lead.pose
         is_anchored = not body.rigid and body.base is None
@@ -154,7 +159,8 @@ class StateSetter:
                 pybullet.resetBasePositionAndOrientation(body.uid, base.position,
                                                          base.orientation)
         else:
-            target = compose(wanted, compose(inverse(current), lead.pose))
+            target = wanted if row == body.parts[0].row else compose(
+                wanted, compose(inverse(current), lead.pose))
             bodies.place(body, target)
         rates = before if twist is None else (
             anchored_bodies.rates(body, twist) if is_anchored else {})

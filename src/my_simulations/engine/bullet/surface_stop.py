@@ -11,19 +11,21 @@ fast, what is ahead, no sooner than they can be there. Small balls are swept alo
 from __future__ import annotations
 
 from heapq import heappop, heappush
-from math import dist
-from typing import Dict, List, NamedTuple, Optional, Set, Tuple
+from math import dist, inf
+from typing import Dict, List, NamedTuple, Set, Tuple
 
 import pybullet
 
 from ...description.shapes import Plane
-from ...geometry import Vec3, add, dot, norm, scale, subtract
-from .approach import approach, extent
+from ...geometry import Vec3, add, cross, dot, norm, scale, subtract
+from .approach import extent
 from .bodies import Body
 from .step_helper import FAR
 
-_DEEP = 1.8e-3   # m: so deep a body may go in one step
-_AHEAD = 16      # steps for which a fast body looks ahead
+_DEEP = 1.8e-3   # m: so deep a body may go in one step of 1 ms or less
+_DEEPEST = 3.0   # times as deep in a longer one, at most: else what rolls slowly counts as fast
+_AHEAD_S = 0.016 # s for which a fast body looks ahead: what is near then is all that is asked for
+_AHEAD = 16      # steps for which it does, at most
 _SELDOM = 256    # steps between two looks at a slow one, at most
 
 
@@ -44,16 +46,17 @@ class _Motion(NamedTuple):
         return norm((max(high[0] - x, x - low[0]), max(high[1] - y, y - low[1]),
                      max(high[2] - z, z - low[2])))
 
-    def nearing(self, other: "Optional[_Motion]", radius: float) -> float:
-        """The most by which points of both can near each other, m/s, within `radius` of this one.
+    def nearing(self, other: "_Motion", radius: float) -> float:
+        """The most by which points of both near each other, m/s, within `radius` of this one."""
+        return norm(subtract(self.linear, other.linear)) + norm(self.angular) * radius + (
+            norm(other.angular) * (dist(self.centre, other.centre) + radius))
 
-        None is what does not move.
-        """
-        spin = norm(self.angular) * radius
-        if other is None:
-            return norm(self.linear) + spin
-        return norm(subtract(self.linear, other.linear)) + spin + norm(other.angular) * (
-            dist(self.centre, other.centre) + radius)
+    def at(self, place: Vec3) -> Vec3:
+        """The velocity of a point, as if joints stood still, m/s."""
+        return add(self.linear, cross(self.angular, subtract(place, self.centre)))
+
+
+_STILL = _Motion((0.0, 0.0, 0.0), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
 
 
 class SurfaceStop:
@@ -62,8 +65,10 @@ class SurfaceStop:
     def __init__(self) -> None:
         self._bodies: Dict[int, Body] = {}
         self._moving: Set[int] = set()
+        self._radii: Dict[int, float] = {}        # of spheres that hold rigid bodies, m
         self._floors: Set[int] = set()            # the boxes below planes
         self._next: Dict[int, int] = {}           # the step of the next look, by body
+        self._seen: Dict[int, _Motion] = {}       # of other bodies, in this step
         self._looks: List[Tuple[int, int]] = []   # a heap of them; those that are not next are old
 
     def add(self, body: Body) -> None:
@@ -77,17 +82,21 @@ class SurfaceStop:
         if body.base is not None and not (body.swept and body.is_ball):
             self._bodies[body.uid] = body
             self._plan(body.uid, 0)
+        if body.rigid:
+            # The radius holds the corners of the box about a body: a ball's is shorter.
+            self._radii[body.uid] = body.radius * (3.0 ** -0.5 if body.is_ball else 1.0)
 
     def forget(self, body: Body) -> None:
         """A body is gone."""
         self._bodies.pop(body.uid, None)
+        self._radii.pop(body.uid, None)
         self._next.pop(body.uid, None)
         self._moving.discard(body.uid)
         self._floors.difference_update(body.uids)
 
     def clear(self) -> None:
         """All bodies are gone."""
-        for table in (self._bodies, self._next):
+        for table in (self._bodies, self._next, self._radii):
             table.clear()
         for group in (self._moving, self._floors):
             group.clear()
@@ -112,6 +121,7 @@ class SurfaceStop:
             if not self._is_old(*look):
                 now.append(look[1])
                 del self._next[look[1]]
+        self._seen.clear()
         for uid in sorted(now):
             self._plan(uid, step + self._look(self._bodies[uid], dt, gravity))
 
@@ -129,44 +139,72 @@ class SurfaceStop:
     def _look(self, body: Body, dt: float, gravity: Vec3) -> int:
         """Put a body back if need be. Returns how many steps later to look again."""
         linear, angular = pybullet.getBaseVelocity(body.uid)
-        speed, fall, fast = norm(linear), norm(gravity) * dt, _DEEP / dt
+        deep = _DEEP * min(_DEEPEST, max(1.0, dt / 1e-3))
+        speed, fall, fast = norm(linear), norm(gravity) * dt, deep / dt
+        ahead = max(1, min(_AHEAD, round(_AHEAD_S / dt)))
         if speed + fall < fast:
-            return min(_SELDOM, max(_AHEAD, int((fast - speed) / max(fall, 1e-9))))
-        ahead, late = self._way(body, speed + _AHEAD * fall, dt, gravity)
+            return min(_SELDOM, max(ahead, int((fast - speed) / max(fall, 1e-9))))
+        here = _Motion(pybullet.getBasePositionAndOrientation(body.uid)[0], linear, angular)
+        ahead, late = self._way(body, here, ahead, deep, dt, gravity)
         if late > 0.0:
             at, turn = pybullet.getBasePositionAndOrientation(body.uid)
             way = scale(add(linear, scale(gravity, dt)), late * dt)
             pybullet.resetBasePositionAndOrientation(body.uid, subtract(at, way), turn)
             pybullet.resetBaseVelocity(body.uid, linear, angular)  # placing a body stops it
+            self._seen.pop(body.uid, None)
         return ahead
 
-    def _way(self, body: Body, speed: float, dt: float, gravity: Vec3) -> Tuple[int, float]:
-        """Steps for which nothing is reached, and the share of this step to take back.
+    def _way(self, body: Body, here: _Motion, ahead: int, deep: float, dt: float, gravity: Vec3,
+             ) -> Tuple[int, float]:
+        """Steps (at most `ahead`) for which nothing is reached, and the share of this one to undo.
 
-        `speed`: the most that the body has while it looks ahead, m/s.
+        `deep`: what need not be undone, m.
         """
-        uid, ahead, late = body.uid, _AHEAD, 0.0
-        low, high = extent(body)
-        reach = (speed * dt * (_AHEAD + 2),) * 3
-        near = pybullet.getOverlappingObjects(subtract(low, reach), add(high, reach)) or ()
-        here = _Motion.of(uid)
-        radius = here.radius(low, high)
+        uid, late, fall = body.uid, 0.0, norm(gravity) * dt
+        speed = norm(here.linear) + ahead * fall   # the most that it has meanwhile
+        reach, radius = speed * dt * (ahead + 2), self._radii.get(uid, 0.0)
+        (x, y, z), around = here.centre, radius + reach
+        low, high = (x - around, y - around, z - around), (x + around, y + around, z + around)
+        if not body.is_ball:
+            low, high = extent(body)
+            radius = here.radius(low, high)
+            low = (low[0] - reach, low[1] - reach, low[2] - reach)
+            high = (high[0] + reach, high[1] + reach, high[2] + reach)
+        near = pybullet.getOverlappingObjects(low, high) or ()
         for other in sorted({pair[0] for pair in near} - {uid} - self._floors):
-            moves = other in self._moving
-            there = _Motion.of(other) if moves else None
+            there = self._motion(other) if other in self._moving else _STILL
+            nearing = (here.nearing(there, radius) + fall) * dt
             # What falls or slides together is no danger, and finding its nearest points is dear.
-            if (here.nearing(there, radius) + norm(gravity) * dt) * dt <= _DEEP:
+            if nearing <= deep:
                 continue
-            towards = speed + (norm(there.linear) if there is not None else 0.0)
-            points = pybullet.getClosestPoints(uid, other, towards * dt * (_AHEAD + 2))
+            towards = speed + norm(there.linear)
+            apart = dist(here.centre, there.centre) - radius - self._radii.get(other, inf)
+            if apart > nearing:   # not in this step: when it may be there is enough to know
+                ahead = min(ahead, max(1, int(apart / (towards * dt))))
+                continue
+            points = pybullet.getClosestPoints(uid, other, towards * dt * (ahead + 2))
             if not points:
                 continue
-            nearest = min(points, key=lambda point: point[8])
+            nearest = min(points, key=_depth)
             gap, normal = nearest[8], nearest[7]
-            inward = approach(uid, other if moves else None, nearest[5], normal)
-            if not moves or other not in self._bodies:
+            if gap <= 0.0 or gap > ahead * towards * dt:
+                continue
+            inward = dot(subtract(there.at(nearest[5]), here.at(nearest[5])), normal)
+            if there is _STILL or other not in self._bodies:
                 inward -= dot(gravity, normal) * dt
-            if gap > 0.0 and inward * dt > _DEEP:
+            if inward * dt > deep:
                 ahead = min(ahead, max(1, int(gap / (towards * dt))))
-                late = max(late, 1.0 - (gap + _DEEP) / (inward * dt))
+                late = max(late, 1.0 - (gap + deep) / (inward * dt))
         return ahead, late
+
+    def _motion(self, uid: int) -> _Motion:
+        """The motion of a body in this step."""
+        found = self._seen.get(uid)
+        if found is None:
+            found = self._seen[uid] = _Motion.of(uid)
+        return found
+
+
+def _depth(point: Tuple[float, ...]) -> float:
+    """The distance at a closest point, m, below 0 for an overlap."""
+    return point[8]

@@ -29,13 +29,18 @@ class WakeUp:
         for body in self._bodies.values():
             self._rouse(body)
 
-    def around(self, targets: Iterable[Body]) -> None:
-        """Wake the targets, whatever overlaps them, and so on through moving bodies."""
+    def around(self, targets: Iterable[Body], awake: bool = False) -> None:
+        """Wake the targets, whatever overlaps them, and so on through moving bodies.
+
+        With `awake` the targets were woken just now, and have been put elsewhere since.
+        """
         queue: List[Body] = list(targets)
         seen: Set[int] = {body.uid for body in queue}
+        woken = seen.copy() if awake else set()
         while queue:
             body = queue.pop()
-            self._rouse(body)
+            if body.uid not in woken:
+                self._rouse(body)
             for uid in self._overlapping(body):
                 near = self._bodies.get(uid)
                 if near is None or near.uid in seen or not near.moves:
