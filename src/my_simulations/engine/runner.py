@@ -78,13 +78,12 @@ class Runner:
         # What the host was notified of: nothing before the clock is set, since the last states must
         # stay readable for a restart.
         self._synchronized = (self._sync.settings, self._step)
-        # Of the newest snapshot: that of an earlier engine is the one to restore.
         self._shown = (self._clock_sets, self._step)
         self._advance: Optional[Tuple[int, int]] = None  # (command number, last step)
         self._ended: List[int] = []  # numbers of advances that were ended early, to be answered
         self._due = 0.0
         self._burst = 1
-        self._step_cost = 0.0
+        self._step_cost, self._least_cost = 0.0, 1.0   # s; the latter without other processes' time
         self._readouts, self._rows = ReadoutSchedule(self._words), CommandRows()
         self._backend.configure(self._settings)
         if not self._words[LATEST]:  # a second engine on the ring leaves the last states readable
@@ -294,16 +293,18 @@ class Runner:
         if self._step >= self._limit:
             return
         made = self._make_steps(self._late_steps(now))
-        if not made:
-            return   # a record waits for room
-        self._step_cost += 0.1 * ((time.perf_counter() - now) / made - self._step_cost)
+        if not made:   # a record waits for room
+            return
+        cost = (time.perf_counter() - now) / made
+        self._step_cost += 0.1 * (cost - self._step_cost)
+        self._least_cost = min(cost, 1.02 * self._least_cost)
         self._due = max(self._due + made / self._settings.rate, now - _MAX_DEBT_S)
         self._after_steps(_SHARE_LATE if self._due < time.perf_counter() else _SHARE_ON_TIME)
 
     def _late_steps(self, now: float) -> int:
         """How many steps are due; a row of them costs much less than each by itself."""
         late = int((now - self._due) * self._settings.rate)
-        return max(1, min(1 + late, int(_BURST_S / max(self._step_cost, 1e-6)),
+        return max(1, min(1 + late, int(_BURST_S / self._least_cost),
                           self._horizon - self._step, self._limit - self._step))
 
     def _make_steps(self, count: int) -> int:
