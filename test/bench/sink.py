@@ -15,6 +15,7 @@ from xmlrpc.client import ServerProxy
 
 _WAIT_S = 60.0
 _LENGTH = struct.Struct("<I")
+_PIECES = 2   # received when a message has come: the header of the connection, and the message
 
 
 def _header(fields: Dict[str, str]) -> bytes:
@@ -52,12 +53,17 @@ def main(topics: List[str]) -> None:
         found[made.fileno()] = (topic, made)
         poll.register(made.fileno(), select.EPOLLIN)
     buffer = bytearray(1 << 20)
-    print("ready", flush=True)
+    silent = dict.fromkeys(found, _PIECES)
     while True:
         for number, _ in poll.poll():
-            topic, made = found[number]
-            if not made.recv_into(buffer):
+            if not found[number][1].recv_into(buffer):
                 poll.unregister(number)
+            elif number in silent:
+                silent[number] -= 1
+                if not silent[number]:
+                    del silent[number]
+                    if not silent:
+                        print("ready", flush=True)
 
 
 if __name__ == "__main__":

@@ -165,11 +165,11 @@ def busy() -> List[Row]:
         others = [subprocess.Popen([sys.executable, "-c", "while True: pass"])
                   for _ in range(BUSY)]
         try:
-            time.sleep(SETTLE_S)
-            alone = measure(server).factor
+            time.sleep(3.0 * SETTLE_S)
+            alone = measure(server, 2.0 * MEASURE_S).factor
             with subscriber(SMALL.topics):
-                time.sleep(SETTLE_S)
-                subscribed = measure(server).factor
+                time.sleep(3.0 * SETTLE_S)
+                subscribed = measure(server, 2.0 * MEASURE_S).factor
         finally:
             for one in others:
                 one.kill()

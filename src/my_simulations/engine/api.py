@@ -134,6 +134,25 @@ class EngineBrokenError(SimulationError):
     """The world was lost during a change: this engine ends and is replaced by another one."""
 
 
+class CommandChannel(Protocol):
+    """How commands arrive and replies leave."""
+
+    def receive(self, timeout: float) -> List[Tuple[int, Command]]:
+        """Commands with their numbers; waits up to `timeout` s for the first. Raises EOFError."""
+
+    def reply(self, number: int, reply: Reply) -> None:
+        """Answer a command."""
+
+    def event(self, event: Event) -> None:
+        """Send an event."""
+
+    def bell(self) -> None:
+        """Wake the thread that waits for the next step."""
+
+    def notify(self) -> None:
+        """Wake the host of plugins."""
+
+
 class Backend(Protocol):
     """Moves the bodies step by step; driven by `engine.runner`."""
 

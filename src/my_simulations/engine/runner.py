@@ -8,13 +8,13 @@ from __future__ import annotations
 
 import time
 import traceback
-from typing import List, Optional, Protocol, Set, Tuple
+from typing import List, Optional, Set, Tuple
 
 from .api import (
     Backend,
+    CommandChannel,
     CommandRefusedError,
     EngineBrokenError,
-    Event,
     PartiallyAppliedError,
     Reply,
 )
@@ -33,14 +33,13 @@ from .commands import (
     SetPhysics,
 )
 from .host_sync import HostSync
+from .readout_schedule import NOTHING, POSES, STATES, CommandRows, ReadoutSchedule
 from .ring import (
     BELL,
     CLOCK_SETS,
-    DEMAND_NS,
     HEARTBEAT,
     LATEST,
     NO_LIMIT,
-    POSE_DEMAND_NS,
     PROGRESS,
     STATUS,
     STATUS_PAUSED,
@@ -55,34 +54,8 @@ _BURST_S = 0.0008        # bursts between two looks at the commands
 _MAX_DEBT_S = 0.2        # a world that is later than this has given up the rest
 _IDLE_S = 2.0            # heartbeat while paused
 _SYNC_S = 0.02           # between two looks at the budget while the host works; it notifies earlier
-_MAKE_UP_S = 0.05        # of read-outs that somebody waits for, after a delay
 _SHARE_ON_TIME = 0.25    # of the wall time for read-outs nobody waits for, while on schedule
 _SHARE_LATE = 0.02       # the same while late or unthrottled
-_MOST_OWED_S = 0.01      # or the last read-out, if that took longer: what it costs is made up for
-_HEAVY_S = 0.0003        # a late world with steps like this lets clients that ask in a row go first
-_PATIENCE_S = 0.0015     # how long it waits for a second command
-_MOST_PATIENCE_S = 0.005 # and for the third and further ones: a step's time, but no longer
-_PATIENT_SHARE = 0.5     # of the wall time at most
-_LONGEST_ROW_S = 0.02    # without a step in between
-
-
-class CommandChannel(Protocol):
-    """How commands arrive and replies leave."""
-
-    def receive(self, timeout: float) -> List[Tuple[int, Command]]:
-        """Commands with their numbers; waits up to `timeout` s for the first. Raises EOFError."""
-
-    def reply(self, number: int, reply: Reply) -> None:
-        """Answer a command."""
-
-    def event(self, event: Event) -> None:
-        """Report something."""
-
-    def bell(self) -> None:
-        """Wake whoever waits for the next step."""
-
-    def notify(self) -> None:
-        """Wake the host of plugins."""
 
 
 class Runner:
@@ -103,25 +76,17 @@ class Runner:
         self._clock_sets = self._words[CLOCK_SETS] + 1  # in a new engine it is another clock
         self._sync = HostSync(writer, backend, channel.notify)
         self._limit = NO_LIMIT
-        # The settings and step that the host was notified of: none before the clock is set, since
-        # the last states must stay readable for who puts them back.
+        # What the host was notified of: nothing before the clock is set, since the last states must
+        # stay readable for a restart.
         self._synchronized = (self._sync.settings, self._step)
-        # Setting of the clock and step of the newest snapshot: that of an earlier engine is the one
-        # to restore.
         self._shown = (self._clock_sets, self._step)
         self._advance: Optional[Tuple[int, int]] = None  # (command number, last step)
         self._posted: Set[int] = set()  # numbers of commands at hand that have no reply
         self._ended: List[int] = []  # numbers of advances that were ended early, to be answered
         self._due = 0.0
         self._burst = 1
-        self._allowance = 0.0
-        self._allowed_at = time.perf_counter()
-        self._demanded_at = 0.0
-        self._posed_at = 0.0
-        self._step_cost = 0.0
-        self._patience = 0.0
-        self._patient_at = time.perf_counter()
-        self._rung_at = 0.0
+        self._step_cost, self._least_cost = 0.0, 1.0   # s; the latter without other processes' time
+        self._readouts, self._rows = ReadoutSchedule(self._words), CommandRows()
         self._backend.configure(self._settings)
         if not self._words[LATEST]:  # a second engine on the ring leaves the last states readable
             self._write(force=True)
@@ -131,7 +96,9 @@ class Runner:
         try:
             while True:
                 self._words[HEARTBEAT] += 1
-                if self._sync.records.next_step <= self._step and not self._record():
+                if (self._sync.records.next_step <= self._step and not self._sync.record(
+                        self._step, self._clock_sets, self._clock)):
+                    self._serve(_SYNC_S)   # for the host to make room
                     continue
                 self._sync.report_records(at_once=False)
                 self._limit = self._sync.limit()
@@ -152,13 +119,6 @@ class Runner:
                         self._free_burst()
         except EOFError:
             return
-
-    def _record(self) -> bool:
-        """Write the record of this step; False if that must wait for the host."""
-        if self._sync.record(self._step, self._clock_sets, self._clock):
-            return True
-        self._serve(_SYNC_S)
-        return False
 
     def _synchronize(self) -> bool:
         """Notify the host, once, that the engine waits for it; wait if steps are wanted.
@@ -183,8 +143,8 @@ class Runner:
         if not received:
             return False
         commands = [self._unwrapped(*pair) for pair in received if pair[0] > 0]
-        if not commands:
-            return True   # only a notification
+        if not commands:   # only a notification
+            return True
         answers: List[Tuple[int, object, str]] = []
         for number, command in commands:
             if isinstance(command, Batch):
@@ -342,24 +302,25 @@ class Runner:
             if self._due > now:
                 return
         elif self._serve(0.0):
-            self._linger()
+            self._rows.serve(self._step_cost, self._serve, lambda: self._running)
             if not self._running:
                 return
             now = time.perf_counter()
         if self._step >= self._limit:
             return
         made = self._make_steps(self._late_steps(now))
-        if not made:
-            return   # a record waits for room
-        self._step_cost += 0.1 * ((time.perf_counter() - now) / made - self._step_cost)
+        if not made:   # a record waits for room
+            return
+        cost = (time.perf_counter() - now) / made
+        self._step_cost += 0.1 * (cost - self._step_cost)
+        self._least_cost = min(cost, 1.02 * self._least_cost)
         self._due = max(self._due + made / self._settings.rate, now - _MAX_DEBT_S)
-        late = self._due < time.perf_counter()
-        self._after_steps(_SHARE_LATE if late else _SHARE_ON_TIME)
+        self._after_steps(_SHARE_LATE if self._due < time.perf_counter() else _SHARE_ON_TIME)
 
     def _late_steps(self, now: float) -> int:
         """How many steps are due; a row of them costs much less than each by itself."""
         late = int((now - self._due) * self._settings.rate)
-        return max(1, min(1 + late, int(_BURST_S / max(self._step_cost, 1e-6)),
+        return max(1, min(1 + late, int(_BURST_S / self._least_cost),
                           self._horizon - self._step, self._limit - self._step))
 
     def _make_steps(self, count: int) -> int:
@@ -376,36 +337,11 @@ class Runner:
                 self._sync.record(self._step, self._clock_sets, self._clock)
         return count - left
 
-    def _linger(self) -> None:
-        """While steps are heavy, serve a row of commands without a step between each two.
-
-        Else a client that sends a thousand commands one after the other would wait a thousand
-        steps of a world that is late anyway.
-        """
-        now = time.perf_counter()
-        between = now - self._patient_at
-        self._patience = min(_LONGEST_ROW_S, self._patience
-                             + between * _PATIENT_SHARE / (1.0 - _PATIENT_SHARE))
-        self._patient_at = now
-        if self._step_cost < _HEAVY_S:
-            return
-        wait = _PATIENCE_S
-        came = True
-        while came and self._patience > 0.0 and self._running:
-            came = self._serve(wait)
-            spent = time.perf_counter() - now
-            self._patience -= spent
-            now += spent
-            # A client that sends the next one at once is worth a step's time.
-            wait = max(_PATIENCE_S, min(_MOST_PATIENCE_S, self._step_cost))
-        self._patient_at = time.perf_counter()
-
     def _free_burst(self) -> None:
         count = min(self._burst, min(self._horizon, self._limit) - self._step)
-        if count <= 0:
-            return
-        self._burst_of(count)
-        self._after_steps(_SHARE_LATE)
+        if count > 0:
+            self._burst_of(count)
+            self._after_steps(_SHARE_LATE)
 
     def _advance_burst(self) -> None:
         if self._advance is None:
@@ -439,33 +375,24 @@ class Runner:
         """Publish the step; read states out when demanded or when the share of time allows it."""
         self._writer.set_step(self._step)
         now = time.perf_counter()
-        self._allowance = min(self._allowance + (now - self._allowed_at) * share, 0.01)
-        self._allowed_at = now
-        demand, poses = self._words[DEMAND_NS], self._words[POSE_DEMAND_NS]
-        demanded = _is_due(self._demanded_at, demand, now)
-        if demanded or self._allowance > 0.0:
-            if demanded:
-                # From when it was due: steps that are made up after a delay are shown, too.
-                self._demanded_at = max(self._demanded_at + demand * 1e-9, now - _MAKE_UP_S)
-            self._posed_at = now
+        wanted = self._readouts.next(now, share)
+        if wanted == STATES:
             self._write()
-            took = time.perf_counter() - now
-            self._allowance = max(self._allowance - took, -max(took, _MOST_OWED_S))
-            self._report_events()
-        elif _is_due(self._posed_at, poses, now):
-            self._posed_at = max(self._posed_at + poses * 1e-9, now - _MAKE_UP_S)
+            self._readouts.spend(time.perf_counter() - now)
+        elif wanted == POSES:
             if self._backend.read_poses():
                 self._writer.write_poses(self._step, self._clock, self._backend.tables()[0])
             else:
                 self._writer.hold(self._step)
+        if wanted != NOTHING:
             self._report_events()
-        if self._words[BELL] and now - self._rung_at >= 0.0005:
-            self._rung_at = now
+        if self._readouts.take_bell(now):
             self._channel.bell()
 
     def _write(self, force: bool = False) -> int:
         """Write a snapshot if anything may have changed; returns the newest one's sequence."""
-        self._words[STATUS] = STATUS_RUNNING if self._moving else STATUS_PAUSED
+        moving = self._advance is not None or self._running
+        self._words[STATUS] = STATUS_RUNNING if moving else STATUS_PAUSED
         changed = self._backend.read()
         if not (changed or force):
             self._writer.hold(self._step)
@@ -478,10 +405,6 @@ class Runner:
             self._channel.bell()
         return sequence
 
-    @property
-    def _moving(self) -> bool:
-        return self._advance is not None or self._running
-
     def _write_at_horizon(self) -> None:
         """Write one snapshot when the horizon is reached."""
         if self._running and self._horizon_written != self._step:
@@ -491,8 +414,3 @@ class Runner:
     def _report_events(self) -> None:
         for event in self._backend.events():
             self._channel.event(event)
-
-
-def _is_due(last: float, every_ns: int, now: float) -> bool:
-    """Whether what is wanted `every_ns` (0: never) and was done at `last` s must be done."""
-    return every_ns > 0 and (now - last) * 1e9 >= every_ns - 2e5

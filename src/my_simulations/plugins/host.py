@@ -53,7 +53,7 @@ class PluginHost:
         self._simulator, self._graph, self._registry, self._log = simulator, graph, registry, log
         self._scene, self._schedule = SceneSensing(simulator, log), Schedule()
         self._sync, self._observations = simulator.sync_points, Observations()
-        view = StepView(simulator.states, lambda: simulator.feed.states()[2])
+        view = StepView(simulator.states, simulator.feed.rows)
         self._records = RecordHandover(self._sync, self._observations, view, self._schedule)
         readings = StepReadings(simulator, self._schedule, view)
         self._shared = Shared(simulator, graph, log, self._scene, self._schedule, readings,

@@ -25,7 +25,7 @@ class Outgoing:
 
     def send(self, plugins: Mapping[SimulatedContext, Running], guarded: Callable[..., bool],
              failing: Callable[[Running], Callable[[Exception], None]]) -> None:
-        """Send the messages and transforms of some plugins.
+        """Send the transforms of some plugins, then their messages, which may need them.
 
         Args:
             plugins: by their contexts.
@@ -33,16 +33,16 @@ class Outgoing:
             failing: makes the function that receives a plugin's fault in another thread.
         """
         transforms: Dict[int, List[TransformOf]] = {}
-        for context, running in plugins.items():
-            graph = context.graph
-            if graph.outbox:
-                outbox, graph.outbox = graph.outbox, []
-                guarded(running, self._send, outbox, failing(running))
-            for ns, transform in graph.transforms:
+        for context in plugins:
+            for ns, transform in context.graph.transforms:
                 transforms.setdefault(ns, []).append(transform)
-            graph.transforms = []
+            context.graph.transforms = []
         for ns in sorted(transforms):
             self._graph.send_transforms(transforms[ns], ns)
+        for context, running in plugins.items():
+            if context.graph.outbox:
+                outbox, context.graph.outbox = context.graph.outbox, []
+                guarded(running, self._send, outbox, failing(running))
 
     def _send(self, messages: Sequence[Tuple[Topic, Any]],
               fail: Callable[[Exception], None]) -> None:

@@ -100,7 +100,7 @@ class Photographer:
         mount = Mount(row, compose(offset, pose))
         ns = self._simulator.clock.sim_ns
         (future,) = self._scene.render([(mount, camera, tuple(outputs))], ns,
-                                       self._simulator.feed.states()[2])
+                                       self._simulator.feed.rows())
         try:
             found = future.result(_PATIENCE_S)
         except SensingError as fault:

@@ -49,6 +49,11 @@ class StateFeed:
         with self._session.registry_lock:
             return (self._current_layout(), *self._session.ring.raw_links())
 
+    def rows(self) -> bytes:
+        """The rows of `states`; they show all states that were set. Raises CommandError."""
+        self._session.await_posted()
+        return self.states()[2]
+
     def earlier_states(self, sequence: int) -> Optional[Tuple[int, bytes]]:
         """Step and rows of an earlier snapshot; None if it was overwritten."""
         return self._session.ring.earlier_links(sequence)

@@ -159,7 +159,7 @@ OPERATIONS = {
     "wrench": (nothing, lambda case: case.sim.wrenches.apply_wrench(
         "arm::tip", (1.0, 0, 0), (0, 0, 0), duration_ns=10 ** 9)),
     "group": (nothing, lambda case: Group((
-        AddModel(box("one"), Pose()), SetPoses({"shelf": Pose((3.0, 0, 0))}),
+        AddModel(box("one"), Pose()), SetPoses({"arm::tip": Pose((3.0, 0, 0))}),
         RemoveModel("crate"))).apply(case.sim)),
 }
 
