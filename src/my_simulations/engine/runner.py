@@ -15,6 +15,7 @@ from .api import (
     CommandChannel,
     CommandRefusedError,
     EngineBrokenError,
+    Event,
     PartiallyAppliedError,
     Reply,
 )

@@ -127,14 +127,14 @@ class Simulator:
         self.models.divide_meshes(world, meshes or {}, gently=True)  # the old world runs meanwhile
         with session.structure_lock:
             restarts = session.supervisor.restarts
-            # What can be refused comes with the end of the old world, so that it can stay.
-            session.call(Batch((Pause(), Clear(), ClearTimedForces(self.wrenches.ids),
-                                *self._settings_of(world))))
+            # The settings come first: the old world stays if the engine refuses them.
+            session.call(Batch((*self._settings_of(world), Pause(), Clear(),
+                                ClearTimedForces(self.wrenches.ids))))
             self.models.forget_all()
             self.wrenches.replace_all()
             self.drives.forget_all()
             if session.supervisor.restarts != restarts:  # the new engine received the old models
-                session.call(Batch((Pause(), Clear(), *self._settings_of(world))))
+                session.call(Batch((*self._settings_of(world), Pause(), Clear())))
             session.world, self._world_meshes = world, meshes or {}
             self.physics.adopt_world()
             self._fill()
