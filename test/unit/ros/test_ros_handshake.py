@@ -13,7 +13,7 @@ CLIENTS, WAIT = 100, 20.0
 
 
 class Server:
-    """What rospy has: a socket that listens; nobody accepts."""
+    """What rospy has: a socket that listens. Connections are never accepted."""
 
     def __init__(self):
         self.server_sock = socket.socket()

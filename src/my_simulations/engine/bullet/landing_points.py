@@ -1,4 +1,4 @@
-"""Finds all points at which bodies that land will touch, by tilting them to and fro."""
+"""Finds all points at which bodies that land will touch, by tilting them back and forth."""
 from __future__ import annotations
 
 from math import atan2, cos, hypot, pi, sin
@@ -76,7 +76,7 @@ class LandingPoints:
         self._meets = meets
 
     def find(self, touches: List[Touch]) -> None:
-        """Tilt bodies to and fro about where they will touch, and let Bullet look for points."""
+        """Tilt bodies about where they will touch, and let Bullet look for points."""
         trials = [_Trial(touch, _FIRST, _TILT, -touch.gap) for touch in touches]
         # What is long and thin has corners that no four directions find, but these do.
         trials = [trial._replace(angle=_longest(trial.touch, points))

@@ -44,7 +44,7 @@ class ResidualFriction:
     """Mends the velocities of sliding rigid bodies after each step.
 
     Args:
-        rolls: tells whether a rigid body is a cylinder that rolls on its side.
+        rolls: returns whether a rigid body is a cylinder that rolls on its side.
     """
 
     def __init__(self, rolls: Callable[[int], bool]) -> None:

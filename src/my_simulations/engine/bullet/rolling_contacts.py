@@ -99,7 +99,7 @@ class RollingContacts:
     Args:
         dropping: is told, before that, of which links points are dropped, and in which step.
         loaded: tells the bodies that timed forces act on in this step.
-        flies: tells whether a body is known to touch nothing in a step.
+        flies: returns whether a body is known to touch nothing in a step.
 
     Attributes:
         on_seams: what rolls on triangles just now, and its axis in the frame of its principal axes.

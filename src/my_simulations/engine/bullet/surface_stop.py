@@ -22,9 +22,9 @@ from .approach import extent
 from .bodies import Body
 from .step_helper import FAR
 
-_DEEP = 1.8e-3   # m: so deep a body may go in one step of 1 ms or less
-_DEEPEST = 3.0   # times as deep in a longer one, at most: else what rolls slowly counts as fast
-_AHEAD_S = 0.016 # s for which a fast body looks ahead: what is near then is all that is asked for
+_DEEP = 1.8e-3   # m: the depth that a body may reach in one step of 1 ms or less
+_DEEPEST = 3.0   # times as deep in longer steps, at most: otherwise slow rolling counts as fast
+_AHEAD_S = 0.016 # s for which a fast body looks ahead
 _AHEAD = 16      # steps for which it does, at most
 _SELDOM = 256    # steps between two looks at a slow one, at most
 
