@@ -30,6 +30,7 @@ BUILT_IN: Mapping[str, str] = {
         "drive.force_based_move:RidgebackForceBasedMove",
     "libgazebo_ros_joint_state_publisher.so": "state.joint_state_publisher:JointStatePublisher",
     "libgazebo_ros_control.so": "control.gazebo_ros_control:GazeboRosControl",
+    "libhwi_switch_gazebo_ros_control.so": "control.hwi_switch:HwiSwitchGazeboRosControl",
     "libgazebo_ros_p3d.so": "state.p3d:P3d",
     "libgazebo_ros_force.so": "state.force:Force",
     "libgazebo_ros_joint_pose_trajectory.so": "state.joint_pose_trajectory:JointPoseTrajectory",

@@ -23,18 +23,19 @@ class Span:
         return round(self.seconds * 1e9)
 
 
-def transmission(joint, interface):
-    return Transmission(f"{joint}_trans", joints=[TransmissionJoint(joint, [interface])])
+def transmission(joint, *interfaces):
+    return Transmission(f"{joint}_trans", joints=[TransmissionJoint(joint, list(interfaces))])
 
 
 class Arm:
     """A robot of joints `one` and `two`, or others, driven through an interface, and its
-    controllers. `places` says where joints are.
+    controllers. `places` says where joints are, `kind` is the class of the plugin. An item of
+    `interfaces` can be several, in one string.
     """
 
     def __init__(self, interface="hardware_interface/PositionJointInterface", inside="",
                  axis=None, parameters=None, interfaces=None, names=("one", "two"), places=None,
-                 **controllers):
+                 kind=GazeboRosControl, **controllers):
         self.context = FakeContext(f"<plugin>{inside}</plugin>", joints=names)
         axis = axis or JointAxis((0.0, 0.0, 1.0), lower=-3.0, upper=3.0, effort=100.0,
                                  velocity=50.0)
@@ -43,11 +44,11 @@ class Arm:
             NS, links=[Link("base"), *(Link(name, pose=Pose((places or {}).get(
                 name, (0.0, 0.0, 0.0)))) for name in names)],
             joints=[Joint(name, "revolute", "base", name, axis=axis) for name in names],
-            transmissions=[transmission(name, kind) for name, kind in zip(names, kinds)])
+            transmissions=[transmission(name, *one.split()) for name, one in zip(names, kinds)])
         for joint in self.context.description.joints:
             self.context.joints[joint.name].spec = joint
         self.context.ros_parameters = {NS: {**controllers, **(parameters or {})}}
-        self.plugin = GazeboRosControl(self.context)
+        self.plugin = kind(self.context)
         self.plugin.load()
 
     def ask(self, service, **fields):

@@ -30,6 +30,15 @@ Planar = Tuple[float, float, float]
 STANDING: Planar = (0.0, 0.0, 0.0)
 
 
+def along_arc(pose: Planar, way: Planar) -> Planar:
+    """Where a base at a pose gets to by a way in its own axes, turning evenly: m, m, rad."""
+    (x, y, yaw), (forward, sideways, turn) = pose, way
+    half = turn / 2.0
+    chord = math.sin(half) / half if abs(half) > 1e-9 else 1.0
+    c, s = chord * math.cos(yaw + half), chord * math.sin(yaw + half)
+    return x + c * forward - s * sideways, y + s * forward + c * sideways, yaw + turn
+
+
 class BaseController(Controller):
     """Hears `cmd_vel`, tells `odom` and the transform from odom to the base.
 
@@ -173,11 +182,7 @@ class BaseController(Controller):
         if dt <= 0.0:
             return
         forward, sideways, turn = self.way(dt)
-        x, y, yaw = self._pose
-        half = turn / 2.0
-        chord = math.sin(half) / half if abs(half) > 1e-9 else 1.0
-        c, s = chord * math.cos(yaw + half), chord * math.sin(yaw + half)
-        self._pose = (x + c * forward - s * sideways, y + s * forward + c * sideways, yaw + turn)
+        self._pose = along_arc(self._pose, (forward, sideways, turn))
         self._velocities.append((forward / dt, sideways / dt, turn / dt))
 
     @property

@@ -112,6 +112,9 @@ class Controller:
     def switch_on(self) -> None:
         """Start."""
         self.state, self._told = RUNNING, ""
+        for interface, names in self.claimed.items():
+            for name in names:
+                self.hardware.claim(interface, name)
         self.start()
 
     def switch_off(self) -> None:

@@ -1,31 +1,41 @@
 """libgazebo_ros_control.so: the joints of a robot for ros_control, and its controller manager."""
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, List, Mapping, Type
 
+from ...description.transmission import Transmission
 from ..base import Plugin
 from ..context import PluginError
-from .hardware import Hardware
+from .hardware import Hardware, SwitchingHardware
 from .manager import ControllerManager
 
-_KNOWN = ("", "gazebo_ros_control/DefaultRobotHWSim")
+DEFAULT, SWITCHING = ("gazebo_ros_control/DefaultRobotHWSim",
+                      "cob_gazebo_ros_control/HWISwitchRobotHWSim")
+_HARDWARE: Mapping[str, Type[Hardware]] = {DEFAULT: Hardware, SWITCHING: SwitchingHardware}
 
 
 class GazeboRosControl(Plugin):
-    """Reads transmissions; controllers do the rest."""
+    """Reads transmissions; controllers do the rest.
+
+    Attributes:
+        hardware_type: the simulated hardware; "" if `<robotSimType>` decides.
+    """
+
+    hardware_type = ""
 
     def load(self) -> None:
         """Find the joints; offer the controller manager."""
         context, p = self.context, self.context.parameters
         # As in Gazebo an empty element, such as xacro leaves, is the node's namespace.
         context.use_namespace(p.text("robotNamespace", context.model))
-        simulated = p.text("robotSimType")
-        if simulated not in _KNOWN:
-            context.warn(f"<robotSimType> {simulated} is not simulated; {_KNOWN[1]} is used")
+        kind = self.hardware_type or p.text("robotSimType") or DEFAULT
+        if kind not in _HARDWARE:
+            context.warn(f"<robotSimType> {kind} is not simulated; {DEFAULT} is used")
+        hardware = _HARDWARE.get(kind, Hardware)
         transmissions = context.transmissions(p.text("robotParam") or "robot_description")
         if not transmissions:
             raise PluginError("the robot has no <transmission>: no joint can be controlled")
-        self._hardware = Hardware(context, transmissions)
+        self._hardware = hardware(context, self.controllable(transmissions))
         period = p.number("controlPeriod", 0.0)
         self._manager = ControllerManager(context, self._hardware, period)
         self._stopped = False
@@ -33,6 +43,10 @@ class GazeboRosControl(Plugin):
         if topic:
             context.subscribe(topic, "std_msgs/Bool", self._hear_stop)
         self._hardware.rest()
+
+    def controllable(self, transmissions: List[Transmission]) -> List[Transmission]:
+        """Return the transmissions of the joints that this plugin controls. Raises PluginError."""
+        return transmissions
 
     def reset(self) -> None:
         """Joints are where they began: they are held, and controllers start anew, there."""
@@ -49,9 +63,13 @@ class GazeboRosControl(Plugin):
 
     def _hear_stop(self, message: Any) -> None:
         """Stopped, controllers go on but drive nothing; then they start anew, as in Gazebo."""
-        if bool(message.data) == self._stopped:
+        self.set_stopped(bool(message.data))
+
+    def set_stopped(self, stopped: bool) -> None:
+        """Begin or end an emergency stop."""
+        if stopped == self._stopped:
             return
-        self._stopped = bool(message.data)
+        self._stopped = stopped
         self._hardware.halt(self._stopped)
         if not self._stopped:
             self._manager.restart()

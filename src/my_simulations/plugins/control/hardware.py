@@ -98,14 +98,21 @@ class HardwareJoint:
 
 
 class Hardware:
-    """All joints that have a transmission."""
+    """All joints that have a transmission.
+
+    Attributes:
+        switches: whether a joint offers all interfaces of its transmission and moves by the one
+            that was claimed last; else it has the first one only, as in gazebo_ros_control.
+    """
+
+    switches = False
 
     def __init__(self, context: Context, transmissions: Sequence[Transmission]) -> None:
         self._context = context
         self._tunings: List[Reconfigure] = []
         self._all: Dict[Tuple[str, str], HardwareJoint] = {}
         self.names: List[str] = []
-        self._first: Dict[str, HardwareJoint] = {}
+        self._active: Dict[str, HardwareJoint] = {}
         gains = Settings(context, "gazebo_ros_control/pid_gains")
         for transmission in transmissions:
             self._add(transmission, gains)
@@ -135,10 +142,11 @@ class Hardware:
             return
         limits = limits_of(joint.spec, context)
         holding = holding_effort(context.description, joint.spec, context.gravity)
-        for interface in known[:1]:
-            made = HardwareJoint(joint, interface, limits, gains.gains(joint.name), holding)
+        for interface in known if self.switches else known[:1]:
+            made = HardwareJoint(joint, interface, limits,
+                                 None if self.switches else gains.gains(joint.name), holding)
             self._all.setdefault((interface, joint.name), made)
-            if self._first.setdefault(joint.name, made) is made and made.drive_gains is not None:
+            if self._active.setdefault(joint.name, made) is made and made.drive_gains is not None:
                 self._tunings.append(tunable(
                     context, f"{gains.name}/{joint.name}", made.drive_gains, made.retune_drive))
 
@@ -167,9 +175,13 @@ class Hardware:
 
     def rest(self, but: Sequence[str] = ()) -> None:
         """Nobody controls any joint, besides those named."""
-        for name, joint in self._first.items():
+        for name, joint in self._active.items():
             if name not in but:
                 joint.rest()
+
+    def claim(self, interface: str, name: str) -> None:
+        """Move a joint by this interface from now on. Raises PluginError."""
+        self._active[name] = self.joint(interface, name)
 
     def halt(self, halted: bool) -> None:
         """Emergency stop: hold positions where they are now, rates and efforts at 0, until it ends.
@@ -184,8 +196,17 @@ class Hardware:
 
     def release(self, name: str) -> None:
         """Nobody controls a joint any more."""
-        if name in self._first:
-            self._first[name].rest()
+        if name in self._active:
+            self._active[name].rest()
+
+
+class SwitchingHardware(Hardware):
+    """Joints with several interfaces. Source: cob_gazebo_ros_control's HWISwitchRobotHWSim.
+
+    It ignores `pid_gains`, as the original.
+    """
+
+    switches = True
 
 
 def _interface(name: str) -> str:

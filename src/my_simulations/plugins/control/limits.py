@@ -68,7 +68,7 @@ def holding_effort(model: Model, joint: Joint, gravity: Vec3) -> float:
     below: Dict[str, List[Joint]] = {}
     for one in model.joints:
         below.setdefault(one.parent, []).append(one)
-    origin = _origin(joint, model)
+    origin = joint_origin(joint, model)
     load, todo, seen = 0.0, [(joint.child, 0.0, origin)], {joint.parent}
     while todo:
         name, reach, start = todo.pop()
@@ -80,12 +80,12 @@ def holding_effort(model: Model, joint: Joint, gravity: Vec3) -> float:
         way = reach + norm(subtract(centre, start))
         load += link.inertial.mass * (1.0 if joint.type == "prismatic" else way)
         for one in below.get(name, ()):
-            at = _origin(one, model)
+            at = joint_origin(one, model)
             todo.append((one.child, reach + norm(subtract(at, start)), at))
     return _SPARE * norm(gravity) * load
 
 
-def _origin(joint: Joint, model: Model) -> Vec3:
+def joint_origin(joint: Joint, model: Model) -> Vec3:
     """Where a joint is in its model, at joint positions 0."""
     for link in model.links:
         if link.name == joint.child:

@@ -38,6 +38,8 @@ TYPES: Mapping[str, str] = {
         "four_wheel_steering_controller:FourWheelSteeringController",
     "mecanum_drive_controller/MecanumDriveController":
         "mecanum_drive_controller:MecanumDriveController",
+    "cob_omni_drive_controller/WheelController": "omni_drive_controllers:WheelController",
+    "cob_omni_drive_controller/OdometryController": "omni_drive_controllers:OdometryController",
     "imu_sensor_controller/ImuSensorController": "sensor_controllers:ImuSensorController",
     "force_torque_sensor_controller/ForceTorqueSensorController":
         "sensor_controllers:ForceTorqueSensorController",

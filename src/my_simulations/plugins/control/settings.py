@@ -1,18 +1,25 @@
 """Parameters of a controller, by path: `constraints/goal_time`."""
 from __future__ import annotations
 
-from typing import Any, List, Optional
+from typing import Any, Dict, List, Optional
 
 from ...engine.drive_commands import PidGains
 from ..context import Context, PluginError
 
 
 class Settings:
-    """What the parameter server says below a name. Values of a wrong type raise PluginError."""
+    """What the parameter server says below a name. Values of a wrong type raise PluginError.
 
-    def __init__(self, context: Context, name: str) -> None:
+    Args:
+        context: of the plugin.
+        name: of the parameter.
+        found: its value; default what the parameter server says.
+    """
+
+    def __init__(self, context: Context, name: str, found: Optional[Dict[str, Any]] = None) -> None:
         self.name = name
-        found = context.parameter(name, {})
+        if found is None:
+            found = context.parameter(name, {})
         self._tree: Any = found if isinstance(found, dict) else {}
 
     def get(self, path: str) -> Any:

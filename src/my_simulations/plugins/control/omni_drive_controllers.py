@@ -1,0 +1,186 @@
+"""cob_omni_drive_controller: bases that go in any direction on wheels that are driven and steered.
+
+Parameters, topics, services and laws are those of the package of that name. Two differences: the
+drive of a wheel that stands beside its steering axis is corrected by the rate of the steering (the
+original takes its angle, so that such a wheel turns while the base stands), and the odometry counts
+how far joints have turned, along arcs.
+"""
+from __future__ import annotations
+
+import math
+from typing import Any, List, Optional
+
+from ..context import PluginError, Publication
+from ..drive.odometry import diagonal, fill_pose, planar
+from ..frames import stamped
+from ..time_out import TimeOut
+from .base_controller import STANDING, Planar, along_arc
+from .controller import RUNNING, Controller
+from .hardware import VELOCITY
+from .omni_wheels import WheelState, WheelTarget, bounded, moved, read_wheels
+
+_UPDATE_HZ = 100.0
+_MESSAGES = "cob_base_controller_utils/WheelCommands"
+
+
+class WheelController(Controller):
+    """Follows geometry_msgs/Twist on `command` until `timeout`."""
+
+    def load(self) -> None:
+        """Read parameters; take the joints; offer topics."""
+        s = self.settings
+        self._wheels = read_wheels(self.context, s, steered=True)
+        self._steers = [self.take(VELOCITY, wheel.steer) for wheel in self._wheels]
+        self._drives = [self.take(VELOCITY, wheel.drive) for wheel in self._wheels]
+        self._most_turn = s.number("max_rot_velocity", 0.0)
+        self._most_speed = s.number("max_trans_velocity", 0.0)
+        timeout = s.number("timeout", 1.0)
+        for name, value in (("max_rot_velocity", self._most_turn), ("timeout", timeout),
+                            ("max_trans_velocity", self._most_speed)):
+            if value < 0.0:
+                raise PluginError(f"parameter {s.name}/{name} must not be negative")
+        self._time_out = TimeOut(self.context, timeout if timeout else math.inf)
+        self._command: Optional[Planar] = None   # that the targets are not made of yet
+        self._commands: Optional[Publication] = None
+        if s.number("pub_divider", 0.0) > 0.0:
+            self._offer_commands()
+        self.subscribe("command", "geometry_msgs/Twist", self._hear, checks=True)
+
+    def _offer_commands(self) -> None:
+        try:
+            self._commands = self.publish("wheel_commands", _MESSAGES, 5)
+        except PluginError as missing:
+            self.context.warn(f"controller '{self.name}' does not publish wheel_commands:"
+                              f" {missing}")
+
+    def start(self) -> None:
+        """Stand; keep the steering angles."""
+        self._command, self._moving = None, False
+        self._targets = [WheelTarget(joint.position, 0.0) for joint in self._steers]
+        self._rates = [0.0] * len(self._wheels)
+        self._now_ns = self.context.now_ns
+        self.stop()
+        self.every(1.0 / self.period if self.period else _UPDATE_HZ, self._update)
+
+    def stop(self) -> None:
+        """Stand."""
+        for joint in (*self._steers, *self._drives):
+            joint.command(0.0)
+
+    def _hear(self, message: Any) -> None:
+        """Follow a command; one that is not finite stops the base, as in the original."""
+        wanted = (float(message.linear.x), float(message.linear.y), float(message.angular.z))
+        if not all(map(math.isfinite, wanted)):
+            self.context.warn(f"controller '{self.name}' stops the base: a command is not finite")
+            wanted = STANDING
+        self._command = (bounded(wanted[0], self._most_speed), bounded(wanted[1], self._most_speed),
+                         bounded(wanted[2], self._most_turn))
+        self._time_out.begin()
+
+    def _update(self) -> None:
+        now = self.context.now_ns
+        dt, self._now_ns = (now - self._now_ns) * 1e-9, now
+        if dt <= 0.0:
+            return
+        angles = [joint.position for joint in self._steers]
+        if self._moving and self._time_out.is_over:
+            self._command = STANDING
+        if self._command is not None:
+            self._moving = self._command != STANDING
+            self._targets = [
+                wheel.target(self._command, angle, target.angle)
+                for wheel, angle, target in zip(self._wheels, angles, self._targets)]
+            self._command = None
+        self._drive(angles, dt)
+
+    def _drive(self, angles: List[float], dt: float) -> None:
+        steps = max(1, round(dt / self.context.step_size))
+        deltas = [math.remainder(target.angle - angle, 2.0 * math.pi)
+                  for target, angle in zip(self._targets, angles)]
+        steered, driven = [], []
+        for n, (wheel, target) in enumerate(zip(self._wheels, self._targets)):
+            assert wheel.steering is not None
+            turned, self._rates[n] = wheel.steering.advance(deltas[n], self._rates[n], dt, steps)
+            steered.append(bounded(turned / dt, wheel.most_steer))
+            driven.append(bounded(target.rate + steered[n] * wheel.induced, wheel.most_drive))
+            self._steers[n].command(steered[n])
+            self._drives[n].command(driven[n])
+        if self._commands is not None and self._commands.wanted:
+            message = stamped(self.context, _MESSAGES)
+            message.drive_target_velocity, message.steer_target_velocity = driven, steered
+            message.steer_target_position = [target.angle for target in self._targets]
+            message.steer_target_error = deltas
+            self._commands.publish(message)
+
+
+class OdometryController(Controller):
+    """Publishes `odometry` and its transform; `reset_odometry` begins at the origin again."""
+
+    def load(self) -> None:
+        """Read parameters; offer topics and the service."""
+        s = self.settings
+        self._wheels = read_wheels(self.context, s, steered=False)
+        self._joints = [(self.hardware.state(wheel.steer), self.hardware.state(wheel.drive))
+                        for wheel in self._wheels]
+        if s.get("publish_rate") is None:
+            raise PluginError(f"parameter {s.name}/publish_rate is missing")
+        self._publish_hz = s.number("publish_rate", 0.0)
+        if self._publish_hz <= 0.0:
+            raise PluginError(f"parameter {s.name}/publish_rate must be positive")
+        self._frames = (s.text("frame_id", "odom"), s.text("child_frame_id", "base_footprint"))
+        self._covariances = [diagonal((s.number(f"cov_{what}", 0.1),) * 6)
+                             for what in ("pose", "twist")]
+        self._broadcasts = s.flag("broadcast_tf", True)
+        self._odometry = self.publish("odometry", "nav_msgs/Odometry")
+        self.serve("reset_odometry", "std_srvs/Trigger", self._reset)
+        self._stopped_ns = -1
+        self._pose = self._velocity = STANDING
+
+    def start(self) -> None:
+        """Begin at the origin, or go on after a stop in the same moment."""
+        self._now_ns = self.context.now_ns
+        if self._now_ns != self._stopped_ns:
+            self._pose = STANDING
+        self._velocity, self._states = STANDING, self._read()
+        hertz = 1.0 / self.period if self.period else max(_UPDATE_HZ, self._publish_hz)
+        self.every(hertz, self._count)
+        self.every(self._publish_hz, self._publish)
+
+    def stop(self) -> None:
+        """Keep the pose."""
+        self._stopped_ns = self.context.now_ns
+
+    def _read(self) -> List[WheelState]:
+        return [WheelState(steer.position, drive.position) for steer, drive in self._joints]
+
+    def _count(self) -> None:
+        """Integrate an arc, exactly."""
+        now = self.context.now_ns
+        dt, self._now_ns = (now - self._now_ns) * 1e-9, now
+        if dt <= 0.0:
+            return
+        before, self._states = self._states, self._read()
+        way = moved(self._wheels, before, self._states)
+        self._pose = along_arc(self._pose, way)
+        self._velocity = (way[0] / dt, way[1] / dt, way[2] / dt)
+
+    def _publish(self) -> None:
+        pose = planar(*self._pose)
+        if self._broadcasts:
+            self.context.transform(*self._frames, pose)
+        if not self._odometry.wanted:
+            return
+        message = stamped(self.context, "nav_msgs/Odometry", self._frames[0])
+        message.child_frame_id = self._frames[1]
+        fill_pose(message.pose.pose, pose)
+        message.pose.covariance, message.twist.covariance = map(list, self._covariances)
+        twist = message.twist.twist
+        twist.linear.x, twist.linear.y, twist.angular.z = self._velocity
+        self._odometry.publish(message)
+
+    def _reset(self, request: Any, response: Any) -> None:
+        response.success = self.state == RUNNING
+        if response.success:
+            self._pose = STANDING
+        else:
+            response.message = "not running"
