@@ -13,6 +13,7 @@ from typing import Any, List, Optional
 from ..context import PluginError, Publication
 from ..drive.odometry import diagonal, fill_pose, planar
 from ..frames import stamped
+from ..stepwise_change import StepwiseChange
 from ..time_out import TimeOut
 from .base_controller import STANDING, Planar, along_arc
 from .controller import RUNNING, Controller
@@ -20,6 +21,7 @@ from .hardware import VELOCITY
 from .omni_wheels import WheelState, WheelTarget, bounded, moved, read_wheels
 
 _UPDATE_HZ = 100.0
+_STILL = 1e-4   # rad/s, of the steering
 _MESSAGES = "cob_base_controller_utils/WheelCommands"
 
 
@@ -42,6 +44,8 @@ class WheelController(Controller):
         self._time_out = TimeOut(self.context, timeout if timeout else math.inf)
         self._command: Optional[Planar] = None   # that the targets are not made of yet
         self._commands: Optional[Publication] = None
+        self._hertz = 1.0 / self.period if self.period else _UPDATE_HZ
+        self._change = StepwiseChange(self.context, self._hertz, self._update)
         if s.number("pub_divider", 0.0) > 0.0:
             self._offer_commands()
         self.subscribe("command", "geometry_msgs/Twist", self._hear, checks=True)
@@ -58,12 +62,14 @@ class WheelController(Controller):
         self._command, self._moving = None, False
         self._targets = [WheelTarget(joint.position, 0.0) for joint in self._steers]
         self._rates = [0.0] * len(self._wheels)
-        self._now_ns = self.context.now_ns
+        self._steered = self._driven = self._deltas = self._rates
         self.stop()
-        self.every(1.0 / self.period if self.period else _UPDATE_HZ, self._update)
+        if self._commands is not None:
+            self.observe(self._hertz, self._publish, [self._commands])
 
     def stop(self) -> None:
         """Stand."""
+        self._change.end()
         for joint in (*self._steers, *self._drives):
             joint.command(0.0)
 
@@ -76,12 +82,10 @@ class WheelController(Controller):
         self._command = (bounded(wanted[0], self._most_speed), bounded(wanted[1], self._most_speed),
                          bounded(wanted[2], self._most_turn))
         self._time_out.begin()
+        self._change.begin()
 
-    def _update(self) -> None:
-        now = self.context.now_ns
-        dt, self._now_ns = (now - self._now_ns) * 1e-9, now
-        if dt <= 0.0:
-            return
+    def _update(self, dt: float) -> bool:
+        """Follow the command; whether the base stands."""
         angles = [joint.position for joint in self._steers]
         if self._moving and self._time_out.is_over:
             self._command = STANDING
@@ -92,25 +96,34 @@ class WheelController(Controller):
                 for wheel, angle, target in zip(self._wheels, angles, self._targets)]
             self._command = None
         self._drive(angles, dt)
+        stands = not self._moving and max(map(abs, self._rates)) < _STILL
+        if stands:
+            self.stop()
+        return stands
 
     def _drive(self, angles: List[float], dt: float) -> None:
         steps = max(1, round(dt / self.context.step_size))
-        deltas = [math.remainder(target.angle - angle, 2.0 * math.pi)
-                  for target, angle in zip(self._targets, angles)]
-        steered, driven = [], []
+        self._deltas = [math.remainder(target.angle - angle, 2.0 * math.pi)
+                        for target, angle in zip(self._targets, angles)]
+        steered, driven, rates = [], [], []
         for n, (wheel, target) in enumerate(zip(self._wheels, self._targets)):
             assert wheel.steering is not None
-            turned, self._rates[n] = wheel.steering.advance(deltas[n], self._rates[n], dt, steps)
+            turned, rate = wheel.steering.advance(self._deltas[n], self._rates[n], dt, steps)
+            rates.append(rate)
             steered.append(bounded(turned / dt, wheel.most_steer))
             driven.append(bounded(target.rate + steered[n] * wheel.induced, wheel.most_drive))
             self._steers[n].command(steered[n])
             self._drives[n].command(driven[n])
-        if self._commands is not None and self._commands.wanted:
-            message = stamped(self.context, _MESSAGES)
-            message.drive_target_velocity, message.steer_target_velocity = driven, steered
-            message.steer_target_position = [target.angle for target in self._targets]
-            message.steer_target_error = deltas
-            self._commands.publish(message)
+        self._rates, self._steered, self._driven = rates, steered, driven
+
+    def _publish(self) -> None:
+        assert self._commands is not None
+        message = stamped(self.context, _MESSAGES)
+        message.drive_target_velocity = list(self._driven)
+        message.steer_target_velocity = list(self._steered)
+        message.steer_target_position = [target.angle for target in self._targets]
+        message.steer_target_error = list(self._deltas)
+        self._commands.publish(message)
 
 
 class OdometryController(Controller):
@@ -143,8 +156,10 @@ class OdometryController(Controller):
             self._pose = STANDING
         self._velocity, self._states = STANDING, self._read()
         hertz = 1.0 / self.period if self.period else max(_UPDATE_HZ, self._publish_hz)
-        self.every(hertz, self._count)
-        self.every(self._publish_hz, self._publish)
+        self.observe(hertz, self._count, [self._odometry], transforms=self._broadcasts,
+                     remembers=True)
+        self.observe(self._publish_hz, self._publish, [self._odometry],
+                     transforms=self._broadcasts)
 
     def stop(self) -> None:
         """Keep the pose."""
