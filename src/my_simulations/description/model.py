@@ -1,6 +1,7 @@
 """Models: links, joints, inertia."""
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
 from typing import List, Optional, Tuple
 
@@ -79,7 +80,7 @@ class SoftLimits:
     """Within these the rate gets smaller towards the limits (URDF, safety_controller).
 
     Attributes:
-        lower, upper: rad or m.
+        lower, upper: rad or m; infinite for a joint without position limits.
         k_position: rate by distance to the limit, 1/s.
         k_velocity: effort by what the rate is too high, N m s/rad or N s/m.
     """
@@ -91,6 +92,8 @@ class SoftLimits:
 
     def rates(self, position: float, most: float) -> Tuple[float, float]:
         """The least and the greatest rate that may be commanded at a position."""
+        if math.isinf(self.upper - self.lower):
+            return -most, most
         return (max(-most, min(most, -self.k_position * (position - self.lower))),
                 max(-most, min(most, -self.k_position * (position - self.upper))))
 

@@ -6,7 +6,7 @@ import math
 import pytest
 from robot_control import Arm, Message, Span
 
-from my_simulations.description.model import JointAxis
+from my_simulations.description.model import JointAxis, SoftLimits
 from my_simulations.plugins.actions import ABORTED, PREEMPTED, REJECTED, SUCCEEDED
 
 EFFORT = "hardware_interface/EffortJointInterface"
@@ -241,3 +241,16 @@ def test_wheels_without_a_radius_are_told():
                                "wheel_separation": 0.5})
     assert not arm.load("drive")
     assert "wheel_radius" in arm.context.said[-1]
+
+
+@pytest.mark.parametrize("kind", ["Velocity", "Position", "Effort"])
+def test_soft_limits_do_not_hold_a_joint_without_position_limits(kind):
+    """As `<safety_controller k_velocity="10"/>` of wheels: it has soft limits of 0, and no gain."""
+    robot = Arm(f"hardware_interface/{kind}JointInterface",
+                axis=JointAxis((0.0, 0.0, 1.0), velocity=20.0, effort=5.0,
+                               soft=SoftLimits(0.0, 0.0, 0.0, 10.0)),
+                go={"type": f"{kind.lower()}_controllers/Joint{kind}Controller", "joint": "one"})
+    robot.run("go")
+    robot.hear("go/command", data=2.0)
+    robot.context.advance(1.0)
+    assert robot.at() == pytest.approx(1.0 if kind == "Effort" else 2.0, rel=0.01)

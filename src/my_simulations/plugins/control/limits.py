@@ -57,6 +57,9 @@ def limits_of(joint: Joint, context: Context) -> JointLimits:
             said.number("soft_lower_limit", found.lower),
             said.number("soft_upper_limit", found.upper),
             said.number("k_position", 0.0), said.number("k_velocity", 0.0)))
+    if found.soft is not None and math.isinf(found.lower) and math.isinf(found.upper):
+        # A wheel's `<safety_controller k_velocity="10"/>` has soft limits of 0.
+        found = replace(found, soft=replace(found.soft, lower=-math.inf, upper=math.inf))
     return found
 
 
