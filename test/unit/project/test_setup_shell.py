@@ -16,7 +16,8 @@ REPOSITORY = Path(__file__).resolve().parents[3]
 
 PACKAGE = "<package format='2'>\n  <!-- old -->\n  <name> {name} </name>\n</package>\n"
 
-CONTROL = ("control_msgs", "controller_manager", "controller_manager_msgs")
+CONTROL = ("cob_bringup_sim", "cob_gazebo_objects", "cob_gazebo_worlds", "control_msgs",
+           "controller_manager", "controller_manager_msgs")
 
 
 @pytest.fixture
