@@ -97,6 +97,34 @@ class Ray:
 
 
 @dataclass
+class Lens:
+    """The lens of a wide-angle camera. Source: SDF spec 1.7, sensor/camera/lens.
+
+    A ray at an angle theta to the optical axis falls at r = c1 f fun(theta / c2 + c3) from the middle
+    of the picture, of half of the picture's width.
+
+    Attributes:
+        type: `gnomonical`, `stereographic`, `equidistant`, `equisolid_angle`, `orthographic` or
+            `custom`; only the last one uses `c1` to `fun`.
+        c1, c2, c3, f: numbers of the mapping; `c3` in rad.
+        fun: `tan`, `sin` or `id`.
+        scale_to_hfov: replace `f`, so that the picture's width is the horizontal field of view.
+        cutoff_angle: rays at greater angles are black, rad.
+        env_texture_size: pixels along the sides of the pictures that the picture is made of.
+    """
+
+    type: str = "stereographic"
+    c1: float = 1.0
+    c2: float = 1.0
+    c3: float = 0.0
+    f: float = 1.0
+    fun: str = "tan"
+    scale_to_hfov: bool = True
+    cutoff_angle: float = 1.5707
+    env_texture_size: int = 256
+
+
+@dataclass
 class Camera:
     """A pinhole camera. Source: SDF spec 1.7, sensor/camera.
 
@@ -119,6 +147,7 @@ class Camera:
         k1, k2, k3: radial coefficients of Brown's distortion model.
         p1, p2: tangential coefficients of Brown's distortion model.
         distortion_center: centre of the distortion as fractions of width and height.
+        lens: of a wide-angle camera; other cameras have none.
     """
 
     name: str = ""
@@ -140,6 +169,7 @@ class Camera:
     p1: float = 0.0
     p2: float = 0.0
     distortion_center: "tuple[float, float]" = (0.5, 0.5)
+    lens: Lens = field(default_factory=Lens)
 
 
 @dataclass

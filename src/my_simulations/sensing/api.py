@@ -118,6 +118,26 @@ class Distortion:
 
 
 @dataclass(frozen=True)
+class WideLens:
+    """A lens for wide angles: r = scale fun(theta / c2 + c3), see `description.sensor.Lens`.
+
+    Attributes:
+        scale: c1 times f.
+        c2, c3: numbers of the mapping.
+        fun: `tan`, `sin` or `id`.
+        cutoff: rad; rays at greater angles are black.
+        side: pixels along the sides of the pictures that the picture is made of.
+    """
+
+    scale: float
+    c2: float
+    c3: float
+    fun: str
+    cutoff: float
+    side: int
+
+
+@dataclass(frozen=True)
 class CameraSpec:
     """A pinhole camera: square pixels, the optical axis through the middle of the picture.
 
@@ -133,6 +153,7 @@ class CameraSpec:
             else 1.
         distortion: of RGB, depth and labels alike; None for an ideal lens.
         shadows: False leaves out those the world asks for.
+        lens: None for a pinhole; a wide-angle camera may see 2 pi.
     """
 
     width: int = 320
@@ -143,11 +164,16 @@ class CameraSpec:
     samples: int = 1
     distortion: Optional[Distortion] = None
     shadows: bool = True
+    lens: Optional[WideLens] = None
 
     @property
     def focal_length(self) -> float:
-        """In pixels."""
-        from math import tan
+        """In pixels; of a wide-angle lens in the middle of the picture."""
+        from math import cos, tan
+
+        if self.lens is not None:
+            slope = {"tan": cos(self.lens.c3) ** -2, "sin": cos(self.lens.c3), "id": 1.0}
+            return self.width / 2.0 * self.lens.scale * slope[self.lens.fun] / self.lens.c2
 
         return self.width / (2.0 * tan(self.hfov / 2.0))
 

@@ -2,7 +2,7 @@
 import pytest
 
 from my_simulations.description.compare import differences
-from my_simulations.description.sensor import Noise
+from my_simulations.description.sensor import Lens, Noise
 from my_simulations.formats.reading import read_entity
 from my_simulations.formats.sdf.writer.entities import write_entity
 from my_simulations.resources.resolver import Resolver
@@ -87,6 +87,20 @@ def test_several_cameras_and_their_names():
     left, right = model.links[0].sensors[0].cameras
     assert (left.name, left.width, left.height) == ("left", 10, 240)
     assert (right.name, right.width, right.far) == ("right", 320, 7.0)
+
+
+def test_the_lens_of_a_wide_angle_camera_is_read_and_written_back():
+    model, issues = model_of(sdf(
+        '<sensor name="s" type="wideanglecamera"><camera name="c"><lens><type>custom</type>'
+        "<custom_function><c1>1.05</c1><c2>4</c2><f>2</f><fun>tan</fun></custom_function>"
+        "<scale_to_hfov>false</scale_to_hfov><cutoff_angle>3.1</cutoff_angle>"
+        "<env_texture_size>512</env_texture_size></lens></camera>"
+        '<plugin name="p" filename="libgazebo_ros_camera.so"/></sensor>'))
+    assert not issues, issues
+    lens = model.links[0].sensors[0].cameras[0].lens
+    assert lens == Lens("custom", 1.05, 4.0, 0.0, 2.0, "tan", False, 3.1, 512)
+    again, _ = read_entity(write_entity(model), Resolver())
+    assert not differences(model, again)
 
 
 def test_a_contact_sensor_names_collisions():

@@ -9,7 +9,7 @@ import pytest
 from PIL import Image
 
 from my_simulations.description.sensor import Camera as CameraBlock
-from my_simulations.description.sensor import Noise, Sensor
+from my_simulations.description.sensor import Lens, Noise, Sensor
 from my_simulations.geometry import Pose
 from my_simulations.plugins.context import PluginError
 from my_simulations.plugins.sensors.camera import (
@@ -22,7 +22,7 @@ from my_simulations.plugins.sensors.depth_camera import DepthCamera, OpenniKinec
 from my_simulations.plugins.sensors.image_messages import encoded
 from my_simulations.plugins.sensors.realsense import RealSense
 from my_simulations.plugins.testing import FakeContext, Message
-from my_simulations.sensing.api import DEPTH, RGB, Distortion, Pictures
+from my_simulations.sensing.api import DEPTH, RGB, Distortion, Pictures, WideLens
 
 NAMES = "<cameraName>cam</cameraName><frameName>cam_optical</frameName>"
 RAW, INFO = "cam/image_raw", "cam/camera_info"
@@ -379,3 +379,52 @@ def test_a_realsense_does_without_a_camera_that_the_model_lacks():
     assert len(context.published["camera/depth/image_raw"]) == 1 and len(context.said) == 3
     with pytest.raises(PluginError, match="d_color"):
         realsense(names=())
+
+
+def wide(hfov=2.0, **lens):
+    block = CameraBlock(width=8, height=6, horizontal_fov=hfov, lens=Lens(**lens))
+    context = camera(block=block, kind="wideanglecamera")
+    context.advance(0.15)
+    return context
+
+
+@pytest.mark.parametrize(("kind", "scale", "c2", "fun"), [
+    ("gnomonical", 1.0 / math.tan(1.0), 1.0, "tan"),
+    ("stereographic", 1.0 / math.tan(0.5), 2.0, "tan"),
+    ("equidistant", 1.0, 1.0, "id"),
+    ("equisolid_angle", 1.0 / math.sin(0.5), 2.0, "sin"),
+    ("orthographic", 1.0 / math.sin(1.0), 1.0, "sin"),
+])
+def test_a_lens_is_scaled_to_the_field_of_view(kind, scale, c2, fun):
+    lens = wide(type=kind).views[-1][0].camera.lens
+    assert lens.scale == pytest.approx(scale)
+    assert (lens.c2, lens.c3, lens.fun, lens.cutoff, lens.side) == (c2, 0.0, fun, 1.5707, 256)
+
+
+def test_a_custom_lens_has_the_numbers_of_its_function():
+    numbers = {"c1": 1.05, "c2": 4.0, "c3": 0.1, "f": 2.0, "fun": "tan"}
+    context = wide(type="custom", scale_to_hfov=False, cutoff_angle=3.0, env_texture_size=512,
+                   **numbers)
+    assert context.views[-1][0].camera.lens == WideLens(2.1, 4.0, 0.1, "tan", 3.0, 512)
+    scaled = wide(hfov=3.5, type="custom", **numbers).views[-1][0].camera.lens
+    assert scaled.scale == pytest.approx(1.0 / math.tan(1.75 / 4.0 + 0.1))
+    assert not context.said
+    focal = context.published[INFO][-1].K[0]
+    assert focal == pytest.approx(4.0 * 2.1 / math.cos(0.1) ** 2 / 4.0)
+
+
+def test_only_a_wide_angle_camera_has_a_lens():
+    context = camera(block=CameraBlock(width=8, height=6, lens=Lens(type="equidistant")))
+    context.advance(0.15)
+    assert context.views[-1][0].camera.lens is None
+
+
+@pytest.mark.parametrize(("lens", "words"), [
+    ({"type": "round"}, "'round'; there are gnomonical, "),
+    ({"type": "custom", "fun": "cos"}, "'cos'; there are tan, sin, id"),
+    ({"type": "gnomonical", "hfov": 3.2}, "does not see a field of view of 3.2 rad"),
+    ({"type": "custom", "c2": 0.0}, "does not see a field of view"),
+])
+def test_a_lens_that_there_is_not_is_told(lens, words):
+    with pytest.raises(PluginError, match=words):
+        wide(**lens)

@@ -88,7 +88,18 @@ CAMERA = _table("camera", Camera, {
         **{name: Value(name, FLOAT) for name in ("k1", "k2", "k3", "p1", "p2")},
         "center": Value("distortion_center", VECTOR2),
     }),
-    **_kept("save", "lens", "visibility_mask", "frame", "segmentation_type", "box_type",
+    "lens": Group({
+        "type": Value("type", TEXT),
+        "custom_function": Group({
+            **{name: Value(name, FLOAT) for name in ("c1", "c2", "c3", "f")},
+            "fun": Value("fun", TEXT),
+        }),
+        "scale_to_hfov": Value("scale_to_hfov", BOOL),
+        "cutoff_angle": Value("cutoff_angle", FLOAT),
+        "env_texture_size": Value("env_texture_size", INT),
+        **_kept("intrinsics", "projection"),
+    }, part="lens"),
+    **_kept("save", "visibility_mask", "frame", "segmentation_type", "box_type",
             "optical_frame_id", "camera_info_topic", "trigger_topic", "triggered"),
 }, attributes={"name": Value("name", TEXT)})
 

@@ -144,7 +144,7 @@ def bounded(value: float, most: float) -> float:
 def read_wheels(context: Context, settings: Settings, steered: bool) -> List[OmniWheel]:
     """Return the wheels in the parameters `wheels` and `defaults` of a controller.
 
-    What is missing there comes from the robot's description: positions and radius from the steering
+    Missing values come from the robot's description: positions and radius from the steering
     joint, the offset from the drive joint, the limits from both.
 
     Args:

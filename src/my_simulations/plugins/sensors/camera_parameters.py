@@ -17,6 +17,7 @@ from ..context import Context, Publication
 from ..frames import prefixed
 from ..parameters import lowest_rate, namespace_or
 from ..reconfigure import Option, Reconfigure, Value
+from .lens_parameters import WIDE_ANGLE, wide_lens_of
 
 USUAL_RATE = 30.0
 """Hz, of a camera that names no rate."""
@@ -112,7 +113,8 @@ def spec_of(context: Context, block: CameraBlock, crop: bool = False) -> CameraS
     """
     lens = (block.k1, block.k2, block.k3, block.p1, block.p2)
     hfov, near, far = block.horizontal_fov, block.near, block.far
-    if not 0.0 < hfov < math.pi:
+    is_wide = context.sensor is not None and context.sensor.type == WIDE_ANGLE
+    if not 0.0 < hfov < math.pi and not is_wide:
         hfov = _WIDEST if hfov >= math.pi else _NARROWEST
         context.warn(f"<horizontal_fov> {block.horizontal_fov:g} of camera {block.name!r} is none:"
                      f" {hfov:g} rad is drawn")
@@ -126,7 +128,8 @@ def spec_of(context: Context, block: CameraBlock, crop: bool = False) -> CameraS
     return CameraSpec(
         max(1, block.width), max(1, block.height), hfov, near, far,
         1 if block.anti_aliasing <= 1 else 0,
-        Distortion(*lens, center=block.distortion_center, crop=crop) if any(lens) else None)
+        Distortion(*lens, center=block.distortion_center, crop=crop) if any(lens) and not is_wide
+        else None, lens=wide_lens_of(block, hfov) if is_wide else None)
 
 
 class Calibration:

@@ -30,6 +30,7 @@ from .lit_surfaces import Lighting, LitSurfaces
 from .sky import sky_uniforms
 from .targets import Targets
 from .uploaded_textures import Textures
+from .wide_lens import LensMap
 
 _VIEW_FROM_SENSOR = np.array([[0.0, -1, 0, 0], [0, 0, 1, 0], [-1, 0, 0, 0], [0, 0, 0, 1]])
 
@@ -73,6 +74,7 @@ class Renderer:
         self._map_targets = [self._context.framebuffer(depth_attachment=one) for one in self._maps]
         self._map_keys: List[Any] = [None] * len(self._maps)
         self._kept = KeptPictures()
+        self._wide: Dict[CameraSpec, LensMap] = {}
         self._lenses: Dict[CameraSpec, Tuple[np.ndarray, np.ndarray]] = {}
 
     def add(self, body: Body) -> None:
@@ -144,8 +146,19 @@ class Renderer:
         placed = self._scenery.extended(poses, ns)
         drawn = self._kept.get((spec, outputs, frame.tobytes()),
                                (placed.tobytes(), self._scenery.forms(ns)),
-                               lambda: self._drawn(spec, frame, placed, outputs, ns))
+                               lambda: self._seen(spec, frame, placed, outputs, ns))
         return Pictures(*drawn, step)
+
+    def _seen(self, spec: CameraSpec, frame: np.ndarray, poses: np.ndarray,
+              outputs: Tuple[str, ...], ns: int) -> Drawn:
+        if spec.lens is None:
+            return self._drawn(spec, frame, poses, outputs, ns)
+        if spec not in self._wide:
+            self._wide[spec] = LensMap(spec, spec.lens)
+        wide = self._wide[spec]
+        check(wide.spec, self._targets.most)
+        return wide.composed([self._drawn(wide.spec, frame @ side.frame, poses, outputs, ns)
+                              for side in wide.sides])
 
     def _all(self) -> Iterator[Batch]:
         yield from self._batches.values()
