@@ -100,8 +100,8 @@ class Ray:
 class Lens:
     """The lens of a wide-angle camera. Source: SDF spec 1.7, sensor/camera/lens.
 
-    A ray at an angle theta to the optical axis falls at r = c1 f fun(theta / c2 + c3) from the middle
-    of the picture, of half of the picture's width.
+    A ray at an angle theta to the optical axis falls at r = c1 f fun(theta / c2 + c3) from the
+    middle of the picture; r is 1 at half of the picture's width.
 
     Attributes:
         type: `gnomonical`, `stereographic`, `equidistant`, `equisolid_angle`, `orthographic` or

@@ -10,7 +10,8 @@ from .plugin import read_plugin
 from .sensor_tables import BLOCKS, CAMERA, FIELDS, SENSOR
 
 ACTING = ("ray", "gpu_ray", "lidar", "gpu_lidar", "camera", "depth", "multicamera",
-          "wideanglecamera", "imu", "contact", "gps", "navsat", "magnetometer", "altimeter", "force_torque")
+          "wideanglecamera", "imu", "contact", "gps", "navsat", "magnetometer", "altimeter",
+          "force_torque")
 """Sensor types that plugins implement; others are reported as not simulated."""
 
 
