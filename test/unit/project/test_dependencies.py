@@ -103,7 +103,7 @@ def test_programs_that_the_sources_start_are_declared():
 
 def test_rosdep_has_a_rule_for_all_dependencies_and_no_other():
     named = set().union(*(dependencies(folder) for folder in (REPOSITORY, *COMPANIONS)))
-    assert named == set(RULES)
+    assert named - {"my_simulations"} == set(RULES)  # which companions find beside themselves
 
 
 @pytest.mark.parametrize("key", sorted(RULES))
