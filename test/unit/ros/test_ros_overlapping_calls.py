@@ -45,7 +45,13 @@ def sim():
 
 @pytest.fixture
 def meanwhile(sim, monkeypatch):
-    """Lets another client do something between a look at the registry and the next command."""
+    """Lets another client do something between a look at the registry and the next command.
+
+    A command that can be posted is sent under the lock of such changes; here as many are posted as
+    may wait.
+    """
+    monkeypatch.setattr(sim._session.supervisor, "post", lambda command: False)
+
     def then(work):
         call = sim._session.call
 
@@ -86,6 +92,24 @@ def test_the_error_of_what_was_deleted_meanwhile_is_that_of_an_unknown_name(sim,
     meanwhile(lambda: sim.models.delete("a"))
     with pytest.raises(UnknownEntityError):
         MOVES["a model"](sim)
+
+
+def test_no_model_is_deleted_between_a_look_at_the_registry_and_a_posted_command(sim, monkeypatch):
+    found, deleted = threading.Event(), []
+    post = sim._session.supervisor.post
+
+    def late(command):
+        deleter.start()
+        deleter.join(0.2)  # which it would need to come in between
+        deleted.append(not sim.models.has("a"))
+        return post(command)
+
+    deleter = threading.Thread(target=lambda: (sim.models.delete("a"), found.set()))
+    monkeypatch.setattr(sim._session.supervisor, "post", late)
+    sim.states.set_model_state("a", NEAR, STILL)
+    assert found.wait(60) and deleted == [False]
+    deleter.join()
+    assert sim.models.names() == ["other"]
 
 
 @pytest.mark.parametrize("what", MOVES)
