@@ -113,7 +113,9 @@ def test_a_cart_built_by_mouse_loads_without_a_warning_and_its_wheels_turn(launc
     with open(world, "w", encoding="utf-8") as stream:
         stream.write(WORLD)
     fresh = launch(world)
-    assert "warning" not in fresh.said().lower()
+    # Tests beside this one may have the port of the editor.
+    assert not [line for line in fresh.said().lower().splitlines()
+                if "warning" in line and "is in use" not in line]
     for wheel in ("link_1_joint", "link_2_joint"):
         assert fresh.ask("apply_joint_effort", ApplyJointEffort, effort=2.0,
                          joint_name=f"cart::{wheel}", duration=rospy.Duration(-1.0)).success

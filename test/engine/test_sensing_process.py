@@ -325,6 +325,7 @@ def test_requests_name_a_state_of_the_running_engine(start):
     try:
         engine = sim._session.supervisor._engine
         sim.states.set_model_state("ball", Pose((3.0, 0.0, 5.0)), STILL)
+        sim.states.await_posted()
         sensing = start(engine.ring_fd)
         row = sim._session.registry.link("ball::link")[0].first_link_row
         sensing.change(LoadScene([body("ball", Sphere(0.5), row)]))
