@@ -14,17 +14,21 @@ PACKAGES = [REPOSITORY, *sorted((REPOSITORY / "compat").iterdir())]
 PRAGMA = re.compile(r"\s*#catkin_lint: ")
 
 
+LINT = (sys.executable, os.path.join(os.path.dirname(sys.executable), "catkin_lint"))
+ROSDEP = ("/usr/bin/python3", "/usr/bin/rosdep")
+"""The distribution's: pip's brings a rospkg that does not find the distribution's packages."""
+
+
 def run(tmp_path, *words, **variables):
     """Both tools read files of the user's home folder, which is an empty one here."""
-    program = os.path.join(os.path.dirname(sys.executable), words[0])
     kept = {name: os.environ[name] for name in ("LC_ALL", "PATH") if name in os.environ}
-    return subprocess.run([sys.executable, program, *words[1:]], cwd=REPOSITORY, text=True,
+    return subprocess.run(words, cwd=REPOSITORY, text=True,
                           capture_output=True, timeout=120,
                           env={**kept, "HOME": str(tmp_path), **variables})
 
 
 def test_catkin_lint_finds_neither_errors_nor_warnings(tmp_path):
-    done = run(tmp_path, "catkin_lint", "--offline", "-W1", *map(str, PACKAGES))
+    done = run(tmp_path, *LINT, "--offline", "-W1", *map(str, PACKAGES))
     assert done.stdout == "", done.stdout
     assert f"checked {len(PACKAGES)} packages and found 0 problems" in done.stderr
 
@@ -48,9 +52,9 @@ def test_rosdep_resolves_all_dependencies_with_the_rules_of_this_repository(
     (tmp_path / "sources" / "10.list").write_text(f"yaml file://{REPOSITORY}/rosdep.yaml\n")
     places = {"ROSDEP_SOURCE_PATH": str(tmp_path / "sources"), "ROS_PYTHON_VERSION": "3",
               "ROSDISTRO_INDEX_URL": f"file://{index}"}
-    updated = run(tmp_path, "rosdep", "update", **places)
+    updated = run(tmp_path, *ROSDEP, "update", **places)
     assert updated.returncode == 0, updated.stderr
-    done = run(tmp_path, "rosdep", "install", "--from-paths", *paths, "--ignore-src",
+    done = run(tmp_path, *ROSDEP, "install", "--from-paths", *paths, "--ignore-src",
                "--reinstall", "--simulate", "--os", system, "--rosdistro", "noetic", **places)
     assert done.returncode == 0, done.stderr
     assert "apt-get install rviz" in done.stdout
