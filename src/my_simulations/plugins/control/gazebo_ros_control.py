@@ -6,6 +6,7 @@ from typing import Any
 from ..base import Plugin
 from ..context import PluginError
 from .hardware import Hardware
+from .initial_hold import InitialHold
 from .manager import ControllerManager
 
 _KNOWN = ("", "gazebo_ros_control/DefaultRobotHWSim")
@@ -27,21 +28,25 @@ class GazeboRosControl(Plugin):
             raise PluginError("the robot has no <transmission>: no joint can be controlled")
         self._hardware = Hardware(context, transmissions)
         period = p.number("controlPeriod", 0.0)
-        self._manager = ControllerManager(context, self._hardware, period)
+        self._hold = InitialHold(context, self._hardware, lambda: self._manager.claimed)
+        self._manager = ControllerManager(context, self._hardware, period,
+                                          claimed=self._hold.limit)
         self._stopped = False
         topic = p.text("eStopTopic")
         if topic:
             context.subscribe(topic, "std_msgs/Bool", self._hear_stop)
-        self._hardware.rest()
+        self._hold.begin()
 
     def reset(self) -> None:
         """Joints are where they began: they are held, and controllers start anew, there."""
         self._hardware.halt(self._stopped)
         self._manager.restart()
+        self._hold.begin()
 
     def clock_set(self) -> None:
         """What was planned by the clock counts no more."""
         self._manager.restart()
+        self._hold.begin()
 
     def close(self) -> None:
         """The robot goes, and with it its controllers."""

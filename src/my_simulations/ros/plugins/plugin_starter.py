@@ -54,7 +54,7 @@ class PluginStarter:
             self._host.begin()
 
     def expect(self) -> None:
-        """Start the host; for `SyncPoints.on_plugins`, before the first model with plugins comes."""
+        """Start the host, before the first model with plugins comes (`SyncPoints.on_plugins`)."""
         with self._lock:
             if not self._ended:
                 self._begin()
