@@ -76,7 +76,8 @@ class HardwareJoint:
 
     def hold(self) -> None:
         """Hold it where it is, or is put, until it is commanded or let rest."""
-        self._steer(JointServo(0, "position", holds=True))
+        limits = self.limits   # of which the joint may be outside when it is spawned
+        self._steer(JointServo(0, "position", holds=True, lower=limits.lower, upper=limits.upper))
         self.is_held = True
 
     def _steer(self, servo: JointServo) -> None:
