@@ -40,7 +40,7 @@ _TABLE: Tuple[Tuple[str, Tuple[Tuple[str, str, str, str], ...]], ...] = (
         ("xml-malformed", EITHER, "The document is not well-formed XML; repaired with a warning "
          "where Gazebo's parser accepts it.", "Correct the given line."),
         ("xml-truncated", ERROR, "The document ends inside an element.", "Restore the file."),
-        ("xml-encoding", WARNING, "The text is not in the declared encoding; read as Latin-1.",
+        ("xml-encoding", WARNING, "The text is not in its encoding; read as Latin-1, or without it.",
          "Save it as UTF-8."),
         ("xml-entities", ERROR, "The document declares entities, which are never expanded.",
          "Write the text instead of the entity."),
