@@ -209,6 +209,8 @@ _TABLE: Tuple[Tuple[str, Tuple[Tuple[str, str, str, str], ...]], ...] = (
          "Write a non-zero scale."),
         ("mesh-not-found", EITHER, "The mesh file was not found; the shape is skipped.",
          "Correct the URI, or add its folder to the resource paths."),
+        ("home-path", WARNING, "A path in the home folder of another machine; the model of that name "
+         "is used.", "Write model://NAME."),
         ("image-not-found", EITHER, "The image was not found.", "Correct the path."),
         ("terrain-blends", WARNING, "The number of <blend> does not fit that of <texture>.",
          "Write one <blend> fewer than textures."),
