@@ -289,7 +289,7 @@ def test_models_and_meshes_in_the_home_folder_of_another_machine_are_replaced(tm
     """`file:///home/NAME/.gazebo/models/X` stands in many files, and X is often here, too."""
     resolver = shelf(tmp_path, rock=LINK)
     (tmp_path / "rock" / "a.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
-    home = "/home/somebody/.gazebo/models/rock"
+    home = "/home/other/.gazebo/models/rock"
     shape = f"<geometry><mesh><uri>file://{home}/a.obj</uri></mesh></geometry>"
     link = (f'<link name="l"><collision name="c">{shape}</collision>'
             f'<visual name="v">{shape}</visual></link>')

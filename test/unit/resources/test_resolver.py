@@ -131,12 +131,12 @@ def test_a_model_or_package_is_suggested_for_an_absolute_path_of_another_machine
 @pytest.mark.parametrize("scheme", ["", "file://"])
 def test_a_model_in_the_home_folder_of_another_machine_is_taken_from_the_model_folders(
         resolver, tree, scheme):
-    home = f"{scheme}/home/somebody/.gazebo/models"
+    home = f"{scheme}/home/other/.gazebo/models"
     assert found(resolver, f"{home}/lamp/b.dae", tree) == "second/lamp/b.dae"
     assert found(resolver, f"{home}/lamp", tree) == "second/lamp"
     assert resolver.replaced_home(f"{home}/lamp/b.dae") == "model://lamp/b.dae"
     for other in (f"{home}/nowhere/b.dae", f"{home}/", f"{home}/lamp/other.dae",
-                  "/home/somebody/models/lamp/b.dae", "model://lamp/b.dae",
+                  "/home/other/models/lamp/b.dae", "model://lamp/b.dae",
                   "home/.gazebo/models/lamp/b.dae"):
         assert resolver.replaced_home(other) == ""
     with pytest.raises(ResourceNotFoundError):
