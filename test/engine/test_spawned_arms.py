@@ -14,6 +14,7 @@ from my_simulations.engine.bullet.backend import BulletBackend
 from my_simulations.engine.inline_engine import InlineEngine
 from my_simulations.engine.ring import HEARTBEAT
 from my_simulations.geometry import Pose
+from my_simulations.plugins.base import Plugin
 from my_simulations.plugins.control.gazebo_ros_control import GazeboRosControl
 from my_simulations.plugins.control.initial_hold import PATIENCE_S
 from my_simulations.plugins.host import PluginHost
@@ -209,12 +210,18 @@ def test_joints_are_held_where_they_began_after_a_reset(spawning):
     assert max(map(abs, one.positions())) < 1e-3
 
 
-def test_a_motor_takes_a_held_joint_over(spawning):
-    one = spawning()
-    one.spawn(heavy_arm("EffortJointInterface"))
-    one.run(100)
-    one.sim.drives.drive_axis("arm::joint5", 0.5, 1000.0)
+class Driving(Plugin):
+    def load(self):
+        self.context.joint("joint5").drive(0.5, 1000.0)
+
+
+@pytest.mark.parametrize("order", [(CONTROL, "libdriving.so"), ("libdriving.so", CONTROL)])
+def test_the_motor_of_another_plugin_drives_a_joint_that_would_be_held(spawning, order):
+    """Robots with diff_drive often have transmissions, too, and no controllers."""
+    one = spawning({"libdriving.so": f"{__name__}:Driving"})
+    one.spawn(heavy_arm("EffortJointInterface", order))
     until(lambda: one.positions()[5] > 0.1)
+    assert max(map(abs, one.positions()[:5])) < 1e-3
 
 
 @pytest.mark.parametrize("library", ["libof_nobody.so", CONTROL])
