@@ -43,21 +43,21 @@ class PluginStarter:
                     models.with_plugins()[1] or world.plugins
                     or any(actor.plugins for actor in world.actors)):
                 return
-            self._begin()
-            host = self._host
+            host = self._begun()
         host.settle()
 
-    def _begin(self) -> None:
-        """Start the host, for which the world stands still while plugins are loaded."""
+    def _begun(self) -> Any:
+        """The host; started if it does not run. The world waits while it loads plugins."""
         if self._host is None:
             self._host = self._made()
             self._host.begin()
+        return self._host
 
     def expect(self) -> None:
         """Start the host, before the first model with plugins comes (`SyncPoints.on_plugins`)."""
         with self._lock:
             if not self._ended:
-                self._begin()
+                self._begun()
 
     def look(self) -> None:
         """Start the host if a model has come that needs it; for models from the editor."""
