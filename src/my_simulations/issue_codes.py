@@ -40,7 +40,7 @@ _TABLE: Tuple[Tuple[str, Tuple[Tuple[str, str, str, str], ...]], ...] = (
         ("xml-malformed", EITHER, "The document is not well-formed XML; repaired with a warning "
          "where Gazebo's parser accepts it.", "Correct the given line."),
         ("xml-truncated", ERROR, "The document ends inside an element.", "Restore the file."),
-        ("xml-encoding", WARNING, "The text is not in the declared encoding; read as Latin-1.",
+        ("xml-encoding", WARNING, "The text is not in its encoding; see the message.",
          "Save it as UTF-8."),
         ("xml-entities", ERROR, "The document declares entities, which are never expanded.",
          "Write the text instead of the entity."),
@@ -209,6 +209,8 @@ _TABLE: Tuple[Tuple[str, Tuple[Tuple[str, str, str, str], ...]], ...] = (
          "Write a non-zero scale."),
         ("mesh-not-found", EITHER, "The mesh file was not found; the shape is skipped.",
          "Correct the URI, or add its folder to the resource paths."),
+        ("home-path", WARNING, "A path in another machine's home folder; the model here is used.",
+         "Write model://NAME."),
         ("image-not-found", EITHER, "The image was not found.", "Correct the path."),
         ("terrain-blends", WARNING, "The number of <blend> does not fit that of <texture>.",
          "Write one <blend> fewer than textures."),

@@ -66,6 +66,8 @@ class JointServo:
         target_rate: the rate at the target.
         spline: the target as a function of time, instead of `target`.
         gains: of the loop about the target; None passes it on.
+        holds: `target` is the position that the joint has when the servo begins, and each one that
+            it is set to later; see `JointServo.held_at`.
         of_rate: that loop is about the rate, else about the position.
         by_rates: its d is about the difference of the rates, else that of errors in time.
         feedforward: what is commanded a target rate.
@@ -81,6 +83,7 @@ class JointServo:
     target_rate: float = 0.0
     spline: Optional[Spline] = None
     gains: Optional[PidGains] = None
+    holds: bool = False
     of_rate: bool = False
     by_rates: bool = False
     feedforward: float = 0.0
@@ -92,10 +95,14 @@ class JointServo:
     most_effort: float = math.inf
     soft: Optional[SoftLimits] = None
 
+    def held_at(self, position: float) -> "JointServo":
+        """The servo of a joint that is at a position now: its target, if the servo `holds`."""
+        return replace(self, target=position) if self.holds else self
+
     def same_loops(self, other: "JointServo") -> bool:
         """Whether it differs in its target alone."""
         return self == replace(other, target=self.target, target_rate=self.target_rate,
-                               spline=self.spline)
+                               spline=self.spline, holds=self.holds)
 
 
 @dataclass(frozen=True)

@@ -72,7 +72,6 @@ class PluginHost:
         self._settled = threading.Condition()
         self._stop = threading.Event()
         self._by_hand = simulator.clock.by_hand
-        self._attached = False       # the engine keeps to the step budget
         self._delivering = False     # what has come is taken, and its effect not yet ordered
         self._settings: Optional[int] = None
         self._moment: Optional[Moment] = None
@@ -86,8 +85,16 @@ class PluginHost:
 
     def start(self) -> None:
         """Begin; returns when the plugins of all present models are loaded."""
-        self._thread.start()
+        self.begin()
         self.settle()
+
+    def begin(self) -> None:
+        """Begin; from now on the world makes no step while plugins of new models are loaded.
+
+        Raises CommandError for a second host.
+        """
+        self._sync.attach(self._deliver_all)
+        self._thread.start()
 
     def settle(self) -> None:
         """Wait until the plugins of all models that are in the world now are loaded."""
@@ -154,9 +161,7 @@ class PluginHost:
         self._watch.stop()
         self._scene.close()
         self._outgoing.stop()
-        if self._attached:
-            self._sync.detach()
-            self._attached = False
+        self._sync.detach()
         with self._settled:
             self._settled.notify_all()
 
@@ -180,6 +185,8 @@ class PluginHost:
             self._by_hand = not self._by_hand
             self._observations.changed = True
         settings, moment = self._sync.settings, self._sync.now()
+        if self._settings is None and not self._sync.waits_at(moment):
+            return   # until the engine has stopped, for the first time
         self._records.hand_over(self._hand_over)
         if settings != self._settings:
             self._sync.finish_changes()
@@ -194,8 +201,8 @@ class PluginHost:
         self._scene.send()
         if self._touched:
             self._give_orders()
-        settled = self._go_on(settings, moment)
-        self._end_deliveries(settled)
+        self._go_on(settings, moment)
+        self._end_deliveries(settled=True)
         if self._touched:
             self._publish()
 
@@ -231,22 +238,9 @@ class PluginHost:
                 self._simulator, list(self._touched), self._models.revision):
             self._follow_models()
 
-    def _go_on(self, settings: int, moment: Moment) -> bool:
-        """Let the engine run to the next step at which a plugin acts.
-
-        False if that must wait until the engine stops for the first time.
-        """
-        if not self._running:
-            if self._attached:
-                self._sync.detach()
-                self._attached = False
-            return True
-        if not self._attached:
-            self._sync.attach(self._deliver_all)
-            self._attached, self._settings = True, None
+    def _go_on(self, settings: int, moment: Moment) -> None:
+        """Let the engine run to the next step at which a plugin acts."""
         if self._settings is None:
-            if not self._sync.waits_at(moment):
-                return False
             self._schedule.make_anew(self._clock_was_set(moment))
         if settings != self._settings or self._observations.changed:
             rules = self._observations.new_rules(self._graph.transforms_wanted,
@@ -255,7 +249,6 @@ class PluginHost:
                 self._sync.set_rules(rules)
         self._sync.allow(settings, self._schedule.next_step)
         self._moment, self._settings = moment, settings
-        return True
 
     def _clock_was_set(self, moment: Moment) -> bool:
         return self._moment is not None and moment.clock_sets != self._moment.clock_sets

@@ -45,6 +45,8 @@ class FakeJoint:
         """Jump to a position, at rest."""
         self.position, self.velocity = position, 0.0
         self.puts += 1
+        if self.servo is not None and self.servo.holds:
+            self.steer(self.servo)
 
     def drive(self, rate: float, effort: float) -> None:
         """Turn the motor."""
@@ -52,6 +54,7 @@ class FakeJoint:
 
     def steer(self, servo: JointServo) -> None:
         """Hand over to a servo."""
+        servo = servo.held_at(self.position)
         before, self.servo = self.servo, servo
         if not servo.drive:
             self._law = None

@@ -19,6 +19,7 @@ from .ros_packages import ExportedPaths, FindPackage, PackageIndex, package_name
 from .suggestions import NO_PACKAGE, same_file_elsewhere, suggestion
 
 _MEDIA_SUFFIXES = ("", "models", "media/models", "Media/models")
+_HOME_MODELS = "/.gazebo/models/"
 _MOST_PLACES = 3
 """Most searched places in a message; `ResourceNotFoundError.tried` has all."""
 
@@ -236,7 +237,24 @@ class Resolver:
             if os.path.exists(path):
                 return os.path.abspath(path)
             tried.append(path)
+        here = self.replaced_home(uri)
+        if here:
+            return self.resolve(here)
         raise ResourceNotFoundError(uri, tried)
+
+    def replaced_home(self, uri: str) -> str:
+        """`model://NAME/…` for a path `…/.gazebo/models/NAME/…` that does not exist.
+
+        Many files name the home folder of the machine that they were written on; `resolve` then
+        takes the model of that name. "" for other URIs, and if there is no such model here.
+        """
+        path = uri.strip()
+        path = path[len("file://"):] if path.startswith("file://") else path
+        before, found, inside = path.rpartition(_HOME_MODELS)
+        if not (found and inside and os.path.isabs(before or path)) or os.path.exists(path):
+            return ""
+        there = (os.path.join(folder, inside) for folder in self._all("models"))
+        return f"model://{inside}" if any(map(os.path.exists, there)) else ""
 
     def model_file(self, uri: str, base_dir: str = "") -> str:
         """The description file of a URI: the file itself, or that of a model folder.

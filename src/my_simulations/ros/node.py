@@ -56,6 +56,8 @@ class Node:
         self._network = _flag(self._parameters, "enable_ros_network", True)
         self._extensions = _flag(self._parameters, "extensions", True)
         self._plugins = PluginStarter(simulator, log_issue, _plugin_classes(self._parameters))
+        if self._network:
+            simulator.sync_points.on_plugins(self._plugins.expect)
         self._engine_pid = 0
         self._announce_editor = announce_editor
         self._membership = Membership(master_uri, rospy.get_name(),

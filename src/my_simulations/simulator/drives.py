@@ -61,6 +61,7 @@ class Drives:
         with self._session.structure_lock:
             if revision is not None and revision != self._session.registry.revision:
                 return False
+            servos = self._with_ended_holds(motors, servos)
             commands: List[Command] = []
             new = [motor for motor in motors if self._motors.get(motor.row) != motor]
             if new:
@@ -78,6 +79,17 @@ class Drives:
             self._planar.update(moved)
             self._keep(steered)
             return True
+
+    def _with_ended_holds(self, motors: Sequence[JointMotor],
+                          servos: Sequence[JointServo]) -> List[JointServo]:
+        """Servos, and the ends of those that hold axes which motors drive."""
+        if not motors and not any(servo.holds for servo in servos):
+            return list(servos)
+        now = {**self._motors, **{motor.row: motor for motor in motors}}
+        driven = {row for row, motor in now.items() if motor.effort > 0.0}
+        return [*(servo for servo in servos if not (servo.holds and servo.row in driven)),
+                *(JointServo(row, "") for row, servo in self._servos.items()
+                  if servo.holds and row in driven)]
 
     def drive_axis(self, joint: str, rate: float, effort: float) -> None:
         """Drive an axis, given by name, at a rate (rad/s or m/s) with a limited effort (N m or N).

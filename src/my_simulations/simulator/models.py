@@ -6,6 +6,7 @@ from typing import Dict, List, Optional, Sequence
 
 from ..description.flatten import flattened
 from ..description.model import WORLD, Inertial, Joint, Model
+from ..description.model_plugins import has_plugins
 from ..description.shapes import MeshTable
 from ..description.world import World
 from ..engine.commands import (
@@ -95,6 +96,8 @@ class Models(KnownModels):
         model = flattened(model)
         meshes = self._convex_meshes.of(model, meshes or {})
         session = self._session
+        if has_plugins(model):
+            session.before_plugins()
         with session.structure_lock:
             session.await_posted()
             again = InterModelJoints() if deleted is None else deleted.joints
@@ -197,6 +200,8 @@ class Models(KnownModels):
         check_name(model.name, "model")
         model = flattened(model)
         session = self._session
+        if has_plugins(model):
+            session.before_plugins()
         with session.structure_lock:
             with session.registry_lock:
                 old = session.registry.model(name)

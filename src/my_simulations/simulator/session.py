@@ -43,6 +43,7 @@ class Session:
         registry: the entities in the world. Read and changed with `registry_lock` held.
         log: receives issues that no caller waits for.
         before_advance: called before an advance; see `SyncPoints.attach`.
+        before_plugins: called before a model with plugins comes; see `SyncPoints.on_plugins`.
     """
 
     def __init__(self, world: World, supervisor: Supervisor, log: Callable[[Issue], None]) -> None:
@@ -50,6 +51,7 @@ class Session:
         self.world = world
         self.log = log
         self.before_advance: Callable[[], None] = do_nothing
+        self.before_plugins: Callable[[], None] = do_nothing
         self.structure_lock = threading.RLock()
         self.registry_lock = threading.RLock()
         self.registry = Registry(lambda: self.world.lights,
@@ -195,7 +197,7 @@ class Session:
 
 
 def do_nothing() -> None:
-    """For `Session.before_advance`."""
+    """For `Session.before_advance` and `before_plugins`."""
 
 
 def check_name(name: str, kind: str) -> None:

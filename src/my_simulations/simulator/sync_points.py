@@ -95,6 +95,14 @@ class SyncPoints:
         ring.words[STEP_BUDGET] = budget_word(self.settings, ring.step)
         self._session.supervisor.engine.notify()
 
+    def on_plugins(self, call: Callable[[], None]) -> None:
+        """Call a function, in any thread, before a model with plugins comes into the world.
+
+        If it attaches a host, the world makes no step between that and the loading of the plugins.
+        It must not wait for changes of models: the caller may hold the structure lock.
+        """
+        self._session.before_plugins = call
+
     def detach(self) -> None:
         """Let the engine run freely, without records."""
         with self._lock:

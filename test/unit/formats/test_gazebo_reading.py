@@ -285,6 +285,24 @@ def test_an_empty_pose_of_an_include_replaces_that_of_the_model(tmp_path):
     assert errors(issues) == []
 
 
+def test_models_and_meshes_in_the_home_folder_of_another_machine_are_replaced(tmp_path):
+    """`file:///home/NAME/.gazebo/models/X` stands in many files, and X is often here, too."""
+    resolver = shelf(tmp_path, rock=LINK)
+    (tmp_path / "rock" / "a.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
+    home = "/home/other/.gazebo/models/rock"
+    shape = f"<geometry><mesh><uri>file://{home}/a.obj</uri></mesh></geometry>"
+    link = (f'<link name="l"><collision name="c">{shape}</collision>'
+            f'<visual name="v">{shape}</visual></link>')
+    world, issues = world_of(f"<include><uri>{home}</uri></include>"
+                             f'<model name="m">{link}</model>', "1.7", resolver)
+    assert [model.name for model in world.models] == ["rock", "m"]
+    found = world.models[1].links[0]
+    for part in (found.collisions[0], found.visuals[0]):
+        assert part.geometry.path == str(tmp_path / "rock" / "a.obj")
+    assert tolerated(issues) == ["home-path"] * 3 and errors(issues) == []
+    assert "model://rock is used" in issues[0].message and "model://rock/a.obj" in issues[1].hint
+
+
 def test_a_missing_include_leaves_out_itself_alone():
     model, issues = model_of(LINK + include("nowhere"), "1.7")
     assert [link.name for link in model.links] == ["l"] and model.models == []

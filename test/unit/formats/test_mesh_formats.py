@@ -14,10 +14,11 @@ from my_simulations.description.model import Link, Model
 from my_simulations.description.shapes import Collision, Mesh, mesh_key
 from my_simulations.errors import InputError
 from my_simulations.formats.mesh import loading, part
-from my_simulations.formats.mesh.loading import load_mesh
+from my_simulations.formats.mesh.loading import collision_meshes, load_mesh
 from my_simulations.formats.mesh.part import MeshPart
 
 CORNERS = [(0.0, 0.0, 0.0), (0.0254, 0.0, 0.0), (0.0, 0.0508, 0.0)]
+DECLARATION = '<?xml version="1.0" encoding="utf-8"?>\n'
 VERTEX = '<input semantic="VERTEX" source="#v" offset="0"/>'
 
 
@@ -355,3 +356,28 @@ def test_whatever_a_reader_raises_is_a_fault_of_that_file_and_the_others_are_rea
     assert list(table) == [mesh_key(good)]
     assert [(one.code, os.path.basename(one.file)) for one in issues] == [
         ("mesh-unreadable", "bad.dae"), ("mesh-unreadable", "large.dae")]
+
+
+@pytest.mark.parametrize("declared", ["<?xml version='1.0' encoding='utf-8'?>\n", ""])
+def test_bytes_of_collada_that_are_not_utf_8_are_left_out_with_a_warning(tmp_path, declared):
+    """TinyXML passes over such bytes, for instance those of a comment in Latin-1."""
+    text = declared + collada((DECLARATION, ""), ("<asset>", "<!-- f\u00fcr\n --><asset>"))
+    (tmp_path / "a.dae").write_bytes(text.encode("latin-1"))
+    mesh = Mesh("a.dae", str(tmp_path / "a.dae"))
+    assert corners_of(load_mesh(mesh)) == CORNERS
+    (warned,) = warnings_of(mesh)
+    assert (warned.code, warned.file) == ("xml-encoding", mesh.path)
+    assert warned.line == text[:text.index("\u00fc")].count("\n") + 1
+
+
+@pytest.mark.parametrize("encoding", ["utf-8", "iso-8859-1", "utf-16"])
+def test_collada_is_read_in_the_encoding_that_it_names(tmp_path, encoding):
+    text = collada((DECLARATION, f"<?xml version='1.0' encoding='{encoding}'?>\n"),
+                   ("<asset>", "<!-- f\u00fcr --><asset>"))
+    mesh = written(tmp_path, "a.dae", text.encode(encoding))
+    assert corners_of(load_mesh(mesh)) == CORNERS
+    assert warnings_of(mesh) == []
+
+
+def warnings_of(mesh):
+    return collision_meshes(Model("m", links=[Link("l", collisions=[Collision("c", mesh)])]))[1]

@@ -91,7 +91,7 @@ def test_joint_states_come_at_their_rate_and_before_any_other_controller():
     ghost = {"name": "ghost", "position": 0.5}
     arm = Arm("EffortJointInterface", states={**STATE, "extra_joints": [ghost]})
     arm.run("states")
-    arm.context.joints["two"].position = 0.25
+    arm.context.joints["two"].put(0.25)
     arm.context.advance(0.1)
     messages = arm.published("joint_states")
     assert [one.header.stamp for one in messages] == [20e6, 40e6, 60e6, 80e6, 100e6]
@@ -103,7 +103,7 @@ def test_joint_states_come_at_their_rate_and_before_any_other_controller():
 def test_joint_states_are_in_alphabetical_order_of_the_joints():
     arm = Arm("EffortJointInterface", names=("shoulder", "elbow"), states=STATE)
     arm.run("states")
-    arm.context.joints["elbow"].position = 0.25
+    arm.context.joints["elbow"].put(0.25)
     arm.context.advance(0.02)
     (message,) = arm.published("joint_states")
     assert (message.name, message.position) == (["elbow", "shoulder"], [0.25, 0.0])

@@ -8,6 +8,7 @@ from my_simulations.description.model import Joint, Link, Model
 from my_simulations.plugins.context import PluginError
 from my_simulations.plugins.control.gazebo_ros_control import GazeboRosControl
 from my_simulations.plugins.control.hwi_switch import HwiSwitchGazeboRosControl
+from my_simulations.plugins.control.initial_hold import PATIENCE_S
 from my_simulations.plugins.registry import PluginRegistry
 from my_simulations.plugins.testing import FakeContext
 
@@ -61,7 +62,9 @@ def test_a_joint_without_controller_keeps_the_interface_of_the_last_one():
     assert robot.switch(stop=["by_velocity"])
     assert (drive_of(robot), robot.context.joints["one"].servo.target) == ("velocity", 0.0)
     robot.plugin.reset()
-    assert drive_of(robot) == "velocity"
+    assert drive_of(robot) == "position"  # held until a controller could have started
+    robot.context.advance(PATIENCE_S + 0.1)
+    assert (drive_of(robot), robot.context.joints["one"].servo.target) == ("velocity", 0.0)
 
 
 def test_gains_do_not_change_the_interface():

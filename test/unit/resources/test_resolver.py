@@ -120,12 +120,35 @@ def test_the_same_path_in_this_package_is_suggested_for_an_unknown_package(tmp_p
 
 def test_a_model_or_package_is_suggested_for_an_absolute_path_of_another_machine(tree):
     resolver = Resolver([str(tree / "first")], packages=lambda: [str(tree / "second")])
-    model = missing(resolver, "/home/other/.gazebo/models/crate/a.dae")
+    model = missing(resolver, "/home/other/models/crate/a.dae")
     assert "did you mean model://crate/a.dae?" in resolver.explain(model, "")[1]
     (tree / "second" / "b.dae").write_text("")
     package = missing(resolver, "file:///home/other/ws/src/second/b.dae")
     assert "did you mean package://second/b.dae?" in resolver.explain(package, "")[1]
     assert resolver.explain(missing(resolver, "/home/other/nothing/x.dae"), "")[1] == ""
+
+
+@pytest.mark.parametrize("scheme", ["", "file://"])
+def test_a_model_in_the_home_folder_of_another_machine_is_taken_from_the_model_folders(
+        resolver, tree, scheme):
+    home = f"{scheme}/home/other/.gazebo/models"
+    assert found(resolver, f"{home}/lamp/b.dae", tree) == "second/lamp/b.dae"
+    assert found(resolver, f"{home}/lamp", tree) == "second/lamp"
+    assert resolver.replaced_home(f"{home}/lamp/b.dae") == "model://lamp/b.dae"
+    for other in (f"{home}/nowhere/b.dae", f"{home}/", f"{home}/lamp/other.dae",
+                  "/home/other/models/lamp/b.dae", "model://lamp/b.dae",
+                  "home/.gazebo/models/lamp/b.dae"):
+        assert resolver.replaced_home(other) == ""
+    with pytest.raises(ResourceNotFoundError):
+        resolver.resolve(f"{home}/nowhere/b.dae")
+
+
+def test_a_home_folder_that_is_there_is_used(resolver, tree):
+    path = tree / "home" / ".gazebo" / "models" / "lamp" / "b.dae"
+    path.parent.mkdir(parents=True)
+    path.write_text("own")
+    assert resolver.resolve(str(path)) == str(path)
+    assert resolver.replaced_home(str(path)) == ""
 
 
 @pytest.mark.parametrize("uri", ["", "  ", "__default__", "http://example.invalid/a.dae", "model://",

@@ -116,8 +116,9 @@ class JointServos:
         for servo in changed:
             body, axis = self._axes[servo.row]
             law = self._laws.get(servo.row)
-            if law is not None and law.servo == servo:
+            if law is not None and law.servo == servo.held_at(law.servo.target):
                 continue
+            servo = _begun(servo, body, axis)
             if not servo.drive:
                 self._laws.pop(servo.row, None)
                 self._release(body, axis)
@@ -146,8 +147,12 @@ class JointServos:
     def disturbed(self, body: Body) -> None:
         """The joints of a body were set."""
         for axis in body.axes:
-            if axis.row in self._laws:
-                self._laws[axis.row].disturbed()
+            law = self._laws.get(axis.row)
+            if law is not None:
+                law.disturbed()
+                if law.servo.holds:
+                    law.change(_begun(law.servo, body, axis))
+                    self._drive(body, axis)
 
     def forget(self, body: Body) -> None:
         """A body is gone."""
@@ -221,6 +226,12 @@ class JointServos:
                 targetPosition=max(servo.lower, min(servo.upper, servo.target)),
                 positionGain=FOLLOW, velocityGain=1.0, force=_strength(servo),
                 maxVelocity=servo.most_rate if servo.most_rate < math.inf else _FAST)
+
+
+def _begun(servo: JointServo, body: Body, axis: Axis) -> JointServo:
+    if not servo.holds:
+        return servo
+    return servo.held_at(float(pybullet.getJointState(body.uid, axis.index)[0]))
 
 
 def _strength(servo: JointServo) -> float:

@@ -118,6 +118,8 @@ def elevations_of(path: str, widest: int) -> Optional[Elevations]:
             nothing = float(tags.get(_NO_DATA, "nan"))
         except ValueError:
             nothing = math.nan  # not a number: every pixel is a height
+        if image.mode == "F":
+            nothing = float(np.float32(nothing))   # as the pixels
         for band in _bands(image, 0, step):
             heights = np.asarray(band, dtype=np.float64)
             known = np.isfinite(heights) & (heights != nothing)

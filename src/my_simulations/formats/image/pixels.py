@@ -9,6 +9,7 @@ from typing import IO, Any, Optional, Sequence, Union
 
 from ...resources.limited_file import at_most
 from ..reader_process import read_elsewhere
+from . import float64_tiff
 
 MOST_PIXELS = 64 << 20
 """Most pixels of an image: Pillow uses up to four bytes for each."""
@@ -62,17 +63,29 @@ def opened(source: Union[str, IO[bytes]]) -> Any:
         OSError, ValueError, SyntaxError, EOFError: it is none of `FORMATS`, damaged, or has too
             many pixels.
     """
-    from PIL import Image
+    from PIL import Image, UnidentifiedImageError
 
     try:
         image = of_formats(source, FORMATS)
     except Image.DecompressionBombError:
         raise ValueError(f"it has more than {MOST_PIXELS} pixels") from None
+    except UnidentifiedImageError:
+        deep = _of_float64(source)
+        if deep is None:
+            raise
+        return deep
     if image.width * image.height > MOST_PIXELS:
         size = image.size
         image.close()
         raise ValueError(f"it has {size[0]} x {size[1]} pixels")
     return image
+
+
+def _of_float64(source: Union[str, IO[bytes]]) -> Optional[Any]:
+    if not isinstance(source, str):
+        return float64_tiff.image_of(source, MOST_PIXELS)
+    with open(source, "rb") as stream:
+        return float64_tiff.image_of(stream, MOST_PIXELS)
 
 
 def is_costly(path: str) -> bool:
@@ -87,7 +100,7 @@ def is_costly(path: str) -> bool:
 
 
 def _takes_much(content: bytes) -> bool:
-    if len(content) > _PLAIN_BYTES:
+    if len(content) > _PLAIN_BYTES or float64_tiff.pixels_in(content) > _PLAIN_PIXELS:
         return True
     with opened(io.BytesIO(content)) as image:
         if image.width * image.height > _PLAIN_PIXELS:

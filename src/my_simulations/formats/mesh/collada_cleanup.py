@@ -11,6 +11,7 @@ import copy
 import re
 from typing import Any, Dict, List, Optional, Set
 
+from .collada_encoding import without_stray_bytes
 from .part import MeshError
 
 _LIBRARIES = {"asset", "library_geometries", "library_nodes", "library_visual_scenes", "scene"}
@@ -56,7 +57,7 @@ def parsed(data: bytes) -> Any:
     parser = etree.XMLParser(resolve_entities=False, no_network=True, load_dtd=False,
                              huge_tree=True, remove_comments=True, remove_pis=True)
     try:
-        root = etree.fromstring(data, parser)
+        root = etree.fromstring(without_stray_bytes(data), parser)
     except etree.XMLSyntaxError as fault:
         raise MeshError(f"not well formed: {fault.msg}", fault.position[0]) from None
     name = etree.QName(root)

@@ -13,6 +13,7 @@ from ...errors import InputError, Issue, Severity, error
 from ...resources.lfs_pointer import LFS_HINT, LFS_POINTER, is_lfs_pointer
 from ..reader_process import read_elsewhere
 from ..xml.binding import closest
+from .collada_encoding import encoding_issues
 from .part import MeshError, MeshPart
 from .suspicious_units import odd_size
 from .terrain import solid_mesh
@@ -85,7 +86,7 @@ def collision_meshes(model: Model) -> Tuple[MeshTable, List[Issue]]:
             data = load_solid(mesh)
             table[mesh_key(mesh)] = data
             if isinstance(mesh, Mesh):
-                found = odd_size(mesh, data, moves=not model.static)
+                found = [*odd_size(mesh, data, moves=not model.static), *encoding_issues(mesh)]
         except InputError as fault:
             found = [replace(issue, message=f"{issue.message}; it is skipped", tolerated=True,
                              severity=Severity.WARNING) for issue in fault.issues]

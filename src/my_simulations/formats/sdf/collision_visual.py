@@ -179,7 +179,7 @@ def find_mesh(mesh: Union[Mesh, Heightmap, ImageMap], element: Any, source: Sour
     A visual whose file is missing is kept without a path, so that saving keeps it.
     """
     try:
-        mesh.path = source.resolver.resolve(mesh.uri, source.base_dir)
+        mesh.path = source.resolve(mesh.uri, element)
     except ResourceNotFoundError as missing:
         owner = "collision" if collides else "visual"
         kind = "mesh" if isinstance(mesh, Mesh) else "image"

@@ -63,7 +63,7 @@ def read_include(element: Any, source: Source, read_model: ModelReader, static: 
     )
     read = functools.partial(read_model, static=static, outer=outer, alone=alone and not outer)
     try:
-        path = source.resolver.model_file(probe.uri, source.base_dir)
+        path = source.model_file(probe.uri, element)
     except ResourceNotFoundError as missing:
         text, hint = source.resolver.explain(
             missing, "install it in ~/.gazebo/models or a folder of GAZEBO_MODEL_PATH, or name a"

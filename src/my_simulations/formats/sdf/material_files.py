@@ -44,6 +44,8 @@ def _read_scripts(uris: List[str], element: Any, source: Source
     for number, uri in enumerate(uris):
         if uri == BUILT_IN_SCRIPT:
             continue
+        named = written[number] if len(written) == len(uris) else element
+        source.report_home_path(uri, named)
         try:
             scripts, more = scripts_of(uri, source.resolver)
             folders += more
@@ -56,7 +58,7 @@ def _read_scripts(uris: List[str], element: Any, source: Source
                           if isinstance(fault, ResourceNotFoundError)
                           else (f"{uri!r} cannot be read: {fault.strerror}", ""))
             source.warn("material-script-not-found", f"the material script {text}; it is left"
-                        " out", written[number] if len(written) == len(uris) else element, hint)
+                        " out", named, hint)
     return known, folders, complete
 
 
@@ -88,6 +90,7 @@ def check_texture_uri(uri: str, element: Any, source: Source) -> None:
         source: receives a warning, and resolves the URI.
     """
     try:
+        source.report_home_path(uri, element)
         source.resolver.resolve(uri)
     except ResourceNotFoundError as missing:
         text, hint = source.resolver.explain(missing, "check the path and ROS_PACKAGE_PATH")

@@ -42,7 +42,7 @@ def _found(uri: str, what: str, element: Any, source: Source) -> str:
     if not uri or uri == _PLACEHOLDER:
         return ""
     try:
-        path = source.resolver.resolve(uri, source.base_dir)
+        path = source.resolve(uri, element)
     except ResourceNotFoundError as missing:
         if stand_in(uri) is None:
             without = "grey is shown instead" if what == "texture" else "it is left out"

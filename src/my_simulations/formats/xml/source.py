@@ -104,6 +104,23 @@ class Source:
         """Add a warning about a fault that Gazebo tolerates, too."""
         self.report(FaultLevel.WARNING, code, message, element, hint)
 
+    def resolve(self, uri: str, element: Any) -> str:
+        """The path of a URI that `element` names. Raises ResourceNotFoundError."""
+        self.report_home_path(uri, element)
+        return self.resolver.resolve(uri, self.base_dir)
+
+    def model_file(self, uri: str, element: Any) -> str:
+        """The description file of a model's URI. Raises ResourceNotFoundError."""
+        self.report_home_path(uri, element)
+        return self.resolver.model_file(uri, self.base_dir)
+
+    def report_home_path(self, uri: str, element: Any) -> None:
+        """Warn of a URI in the home folder of another machine; see `Resolver.replaced_home`."""
+        here = self.resolver.replaced_home(uri)
+        if here:
+            self.tolerate("home-path", f"{uri!r} is a path of another machine; {here} is used",
+                          element, f"write {here}")
+
     def tolerate(
         self, code: str, message: str, element: Optional[Any] = None, hint: str = ""
     ) -> None:

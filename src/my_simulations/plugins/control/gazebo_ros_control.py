@@ -7,6 +7,7 @@ from ...description.transmission import Transmission
 from ..base import Plugin
 from ..context import PluginError
 from .hardware import Hardware, SwitchingHardware
+from .initial_hold import InitialHold
 from .manager import ControllerManager
 
 DEFAULT, SWITCHING = ("gazebo_ros_control/DefaultRobotHWSim",
@@ -37,12 +38,14 @@ class GazeboRosControl(Plugin):
             raise PluginError("the robot has no <transmission>: no joint can be controlled")
         self._hardware = hardware(context, self.controllable(transmissions))
         period = p.number("controlPeriod", 0.0)
-        self._manager = ControllerManager(context, self._hardware, period)
+        self._hold = InitialHold(context, self._hardware, lambda: self._manager.claimed)
+        self._manager = ControllerManager(context, self._hardware, period,
+                                          claimed=self._hold.limit)
         self._stopped = False
         topic = p.text("eStopTopic")
         if topic:
             context.subscribe(topic, "std_msgs/Bool", self._hear_stop)
-        self._hardware.rest()
+        self._hold.begin()
 
     def controllable(self, transmissions: List[Transmission]) -> List[Transmission]:
         """Return the transmissions of the joints that this plugin controls. Raises PluginError."""
@@ -52,10 +55,12 @@ class GazeboRosControl(Plugin):
         """Joints are where they began: they are held, and controllers start anew, there."""
         self._hardware.halt(self._stopped)
         self._manager.restart()
+        self._hold.begin()
 
     def clock_set(self) -> None:
         """What was planned by the clock counts no more."""
         self._manager.restart()
+        self._hold.begin()
 
     def close(self) -> None:
         """The robot goes, and with it its controllers."""

@@ -30,12 +30,13 @@ class HardwareJoint:
         interface: e.g. `hardware_interface::EffortJointInterface`.
         limits: of the joint.
         halted: commands are not carried out.
+        is_held: see `hold`.
     """
 
     def __init__(self, joint: Joint, interface: str, limits: JointLimits,
                  gains: Optional[PidGains], holding: float) -> None:
         self.name, self.interface, self.limits = joint.name, interface, limits
-        self.halted = False
+        self.halted = self.is_held = False
         self._joint = joint
         most = limits.effort
         if interface == POSITION and gains is None:
@@ -73,8 +74,14 @@ class HardwareJoint:
             of_rate=of_rate, by_rates=by_rates, feedforward=feedforward,
             most_effort=min(most_effort, self._servo.most_effort)))
 
+    def hold(self) -> None:
+        """Hold it where it is, or is put, until it is commanded or let rest."""
+        limits = self.limits   # of which the joint may be outside when it is spawned
+        self._steer(JointServo(0, "position", holds=True, lower=limits.lower, upper=limits.upper))
+        self.is_held = True
+
     def _steer(self, servo: JointServo) -> None:
-        self._ordered = servo
+        self._ordered, self.is_held = servo, False
         self._joint.steer(servo)
 
     @property
@@ -90,11 +97,13 @@ class HardwareJoint:
     def retune_drive(self, gains: PidGains) -> None:
         """Have the loop between the interface and the joint go on with other gains."""
         self._servo = replace(self._servo, drive_gains=gains)
-        self._steer(replace(self._ordered, drive_gains=gains))
+        if not self.is_held:
+            self._steer(replace(self._ordered, drive_gains=gains))
 
     def rest(self) -> None:
         """What nobody controls: positions are held, rates and efforts are 0."""
-        self.command(self.position if self.interface == POSITION else 0.0)
+        if not self.halted:
+            self._steer(replace(self._servo, holds=self.interface == POSITION))
 
 
 class Hardware:
@@ -182,6 +191,18 @@ class Hardware:
     def claim(self, interface: str, name: str) -> None:
         """Move a joint by this interface from now on. Raises PluginError."""
         self._active[name] = self.joint(interface, name)
+
+    def hold(self) -> None:
+        """Hold all joints where they are, or are put, until they are commanded or let rest."""
+        for joint in self._active.values():
+            joint.hold()
+
+    def end_holds(self, but: Sequence[str]) -> List[str]:
+        """Let those rest that are still held, besides those named; returns which may move now."""
+        held = [name for name, joint in self._active.items() if joint.is_held and name not in but]
+        for name in held:
+            self._active[name].rest()
+        return [name for name in held if self._active[name].interface == EFFORT]
 
     def halt(self, halted: bool) -> None:
         """Emergency stop: hold positions where they are now, rates and efforts at 0, until it ends.

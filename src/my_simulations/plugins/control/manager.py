@@ -57,12 +57,14 @@ class ControllerManager:
         hardware: the joints.
         period: s between updates that the user has asked for; 0 for none.
         extra: finds further classes by type, None for unknown ones.
+        claimed: called when a controller has claimed joints and started.
     """
 
     def __init__(self, context: Context, hardware: Hardware, period: float = 0.0,
-                 extra: Callable[[str], Optional[Type[Controller]]] = lambda kind: None) -> None:
+                 extra: Callable[[str], Optional[Type[Controller]]] = lambda kind: None,
+                 claimed: Callable[[], None] = lambda: None) -> None:
         self._context, self._hardware, self._period = context, hardware, period
-        self._extra = extra
+        self._extra, self._on_claim = extra, claimed
         self._loaded: Dict[str, Controller] = {}
         self._types: Dict[str, str] = {}
         for name, kind, answer in (
@@ -78,6 +80,12 @@ class ControllerManager:
     def controllers(self) -> Dict[str, Controller]:
         """The loaded ones by name."""
         return dict(self._loaded)
+
+    @property
+    def claimed(self) -> List[str]:
+        """The joints of the controllers that run."""
+        return [name for one in self._loaded.values() if one.state == RUNNING
+                for names in one.claimed.values() for name in names]
 
     # -- what can be asked -------------------------------------------------------------------------
 
@@ -156,6 +164,8 @@ class ControllerManager:
         except PluginError:
             one.switch_off()
             raise
+        if one.claimed:
+            self._on_claim()
 
     def _class_of(self, kind: str) -> Type[Controller]:
         where = TYPES.get(kind)

@@ -33,22 +33,31 @@ class PluginStarter:
 
         Cheap where no model has a plugin, and where nothing has changed.
         """
+        models, world = self._simulator.models, self._simulator.world
         with self._lock:
-            if self._ended:
-                return
-            models, world = self._simulator.models, self._simulator.world
             revision = models.revision
-            if revision == self._seen:
+            if self._ended or revision == self._seen:
                 return
             self._seen = revision
-            if self._host is None:
-                if not (models.with_plugins()[1] or world.plugins
-                        or any(actor.plugins for actor in world.actors)):
-                    return
-                self._host = self._made()
-                self._host.start()
+            if self._host is None and not (
+                    models.with_plugins()[1] or world.plugins
+                    or any(actor.plugins for actor in world.actors)):
                 return
-        self._host.settle()
+            host = self._begun()
+        host.settle()
+
+    def _begun(self) -> Any:
+        """The host; started if it does not run. The world waits while it loads plugins."""
+        if self._host is None:
+            self._host = self._made()
+            self._host.begin()
+        return self._host
+
+    def expect(self) -> None:
+        """Start the host, before the first model with plugins comes (`SyncPoints.on_plugins`)."""
+        with self._lock:
+            if not self._ended:
+                self._begun()
 
     def look(self) -> None:
         """Start the host if a model has come that needs it; for models from the editor."""
