@@ -3,7 +3,7 @@
 
 usage: step_cost.py [PAIRS [SCENE …]]     PAIRS: 5 by default; SCENE: words in its name
 
-Each scene runs in a process of its own, ours and bare in turns, in steps of 1 ms unless its name
+Each scene runs in a process of its own, ours and bare alternately, in steps of 1 ms unless its name
 says more, in bursts of ten as a running world makes them. Bare is PyBullet with its default
 settings: it damps, holds joints with motors unless told, lets wheels yaw and parked robots drift,
 so its time is a yardstick and no aim.

@@ -11,6 +11,7 @@ import rospy
 from ...errors import SimulationError
 from ...plugins.graph import Closing, MissingTypeError, ServiceTakenError, Topic, TransformOf
 from ..direct_connection import direct
+from ..topics.subscriber_events import SubscriberEvents
 from .packed_transforms import PackedTransforms
 
 _TF_QUEUE = 100
@@ -46,22 +47,6 @@ class RosTopic:
             self._publisher.unregister()
 
 
-class _Subscribers(rospy.SubscribeListener):
-    """Reports that subscribers come and go."""
-
-    def __init__(self, changed: Callable[[], None]) -> None:
-        super().__init__()
-        self._changed = changed
-
-    def peer_subscribe(self, topic_name: str, topic_publish: Any, peer_publish: Any) -> None:
-        """One has come."""
-        self._changed()
-
-    def peer_unsubscribe(self, topic_name: str, num_peers: int) -> None:
-        """One has gone."""
-        self._changed()
-
-
 class _Closing:
     def __init__(self, close: Callable[[], Any]) -> None:
         self._close = close
@@ -92,7 +77,7 @@ class RosGraph:
     def publish(self, name: str, kind: str, queue: int, latch: bool,
                 changed: Callable[[], None] = _ignore) -> Topic:
         """Offer a topic."""
-        return RosTopic(rospy.Publisher(name, self._type(kind, "msg"), _Subscribers(changed),
+        return RosTopic(rospy.Publisher(name, self._type(kind, "msg"), SubscriberEvents(changed),
                                         queue_size=queue, latch=latch, tcp_nodelay=True))
 
     def subscribe(self, name: str, kind: str, call: Callable[[Any], None], queue: int) -> Closing:
