@@ -196,7 +196,7 @@ def test_a_lost_scheduler_ends_the_run_which_goes_on_elsewhere(folder, cluster, 
     driver = started(folder, cluster, certificates, DROP.replace("count: 30", "count: 200"), "s")
     wait_for_rows(folder / "s" / "journal.jsonl", 5, driver)
     cluster.processes[0].kill()
-    assert driver.wait(120) == 2
+    assert driver.wait(120) == 2, (folder / "s.err").read_text()
     assert "`study resume` goes on" in (folder / "s.err").read_text()
     assert main(["study", "resume", "s", "--slots", "2"]) == 0
     journal = list(rows(str(folder / "s" / "journal.jsonl")))

@@ -6,6 +6,7 @@ use TLS and certificates on both sides: a scheduler runs whatever who reaches it
 """
 from __future__ import annotations
 
+import asyncio
 import itertools
 import os
 import time
@@ -35,6 +36,7 @@ _MOST_CASES = 5000  # of a shard
 _LOOK_S = 1.0      # between two looks at which workers there are
 _CONNECT_S = 30.0
 _GATHER_S = 10.0   # for the rows of a shard to arrive
+_CONNECTED = "running"  # the status of a client whose scheduler answers
 
 Result = Tuple[Row, Optional[Kept]]
 
@@ -191,9 +193,16 @@ class DaskRunner:
         try:
             self._register(client, name)
             self._drive(client, name, shard)
-        except (OSError, CommClosedError) as fault:  # TimeoutError included
-            raise CommandError(f"the Dask scheduler {self._address} was lost: {fault};"
-                               " `study resume` goes on") from None
+        except CommandError:
+            raise
+        except (Exception, asyncio.CancelledError) as fault:
+            if client.status == _CONNECTED and not isinstance(fault, (OSError, CommClosedError)):
+                raise
+            # Which error a lost connection gives depends on what waits for it: a call, a row, or
+            # the client, which cancels all futures first and is closed later.
+            raise CommandError(f"the Dask scheduler {self._address} was lost:"
+                               f" {str(fault) or type(fault).__name__}; `study resume` goes on"
+                               ) from None
         finally:
             self._recorder.close()
             self._leave(client, name)
@@ -222,11 +231,13 @@ class DaskRunner:
 
     def _leave(self, client: Client, name: str) -> None:
         try:
-            client.cancel([flight.future for flight in self._flights.values()])
-            client.unregister_worker_plugin(name)
-        except Exception as fault:  # the study is over; workers end their engines when idle
-            self._say(f"the cluster could not be told that the study is over: {fault}")
-        client.close(timeout=5)
+            if client.status == _CONNECTED:
+                client.cancel([flight.future for flight in self._flights.values()])
+                client.unregister_worker_plugin(name)
+            client.close(timeout=5)
+        except (Exception, asyncio.CancelledError) as fault:  # workers end their engines when idle
+            self._say("the cluster could not be told that the study is over:"
+                      f" {str(fault) or type(fault).__name__}")
 
     # -- sharing out -------------------------------------------------------------------------------
 
@@ -304,9 +315,13 @@ class DaskRunner:
             self._ended.put(flight.future)
             return
         except (KilledWorker, CancelledError):
+            if flight.future.client.status != _CONNECTED:
+                raise  # the client cancels all futures when the scheduler is lost
             self._lose(flight)
             return
         except Exception as fault:  # such as a module that is not installed there
+            if flight.future.status != "error":
+                raise  # of the connection, not of the task
             kind = "" if isinstance(fault, CommandError) else f"{type(fault).__name__}: "
             raise CommandError(f"worker {flight.worker}: {kind}{fault}") from None
         self._remove(flight)
