@@ -51,7 +51,8 @@ def test_rosdep_resolves_all_dependencies_with_the_rules_of_this_repository(
     (tmp_path / "sources").mkdir()
     (tmp_path / "sources" / "10.list").write_text(f"yaml file://{REPOSITORY}/rosdep.yaml\n")
     places = {"ROSDEP_SOURCE_PATH": str(tmp_path / "sources"), "ROS_PYTHON_VERSION": "3",
-              "ROSDISTRO_INDEX_URL": f"file://{index}"}
+              "ROSDISTRO_INDEX_URL": f"file://{index}",
+              "PIP_BREAK_SYSTEM_PACKAGES": "1"}  # Debian 13's rosdep wants it
     updated = run(tmp_path, *ROSDEP, "update", **places)
     assert updated.returncode == 0, updated.stderr
     done = run(tmp_path, *ROSDEP, "install", "--from-paths", *paths, "--ignore-src",
