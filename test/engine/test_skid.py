@@ -14,6 +14,8 @@ from my_simulations.description.shapes import Collision, Cylinder, Surface
 from my_simulations.engine.bullet.edge_loads import shared
 from my_simulations.engine.bullet.link_states import Motion
 from my_simulations.engine.commands import ReadContacts
+from my_simulations.engine.drive_commands import JointMotor, SetMotors
+from my_simulations.engine.timed_forces import AddTimedForces, TimedWrench
 from my_simulations.geometry import Pose, norm, quat_from_rpy, rotate
 
 AHEAD, ASIDE, RADIUS, SPEED = 0.2, 0.25, 0.1, 0.3   # wheels from the centre, m; m/s
@@ -58,6 +60,39 @@ def test_a_skid_steered_base_turns_slowly_and_fast(lab: Lab, laws: Laws, share: 
         angle += 1e-3 * lab.twist(base).angular[2]
     laws.near("a skid-steered base at 0.03 to 1.5 m/s, mu 0.3 and 1: mean turn",
               angle / (1e-3 * steps) / (share * EXPECTED), 1.0, rel=0.05)
+
+
+@pytest.mark.parametrize("period", [10, 20, 50])
+def test_a_skid_steered_base_turns_under_commands_that_change(lab: Lab, laws: Laws, period: int):
+    # Controllers with feedback send another rate at each of their steps: 100, 50 and 20 Hz.
+    lab.load(ground(1.0))
+    base = lab.load(_base(), (0, 0, RADIUS))
+    rows = [lab.joint_rows[base, f"j{n}"] for n in range(4)]
+    angle, steps = 0.0, 1500
+    for step in range(500 + steps):
+        if step % period == 0:
+            change = 1e-3 * (1 if step // period % 2 else -1)
+            lab.apply(SetMotors(tuple(
+                JointMotor(row, SPEED / RADIUS * (-1 if n % 2 == 0 else 1) + change, 1e3)
+                for n, row in enumerate(rows))))
+        lab.steps(1)
+        angle += 1e-3 * lab.twist(base).angular[2] * (step >= 500)
+    laws.near("a skid-steered base, commands at 20 to 100 Hz: mean turn, rad/s",
+              angle / (1e-3 * steps), EXPECTED, rel=0.05)
+
+
+def test_a_skid_steered_base_turns_in_a_wind_that_changes_each_step(lab: Lab, laws: Laws):
+    lab.load(ground(1.0))
+    base = lab.load(_base(), (0, 0, RADIUS))
+    row = lab.rows[base, "link"]
+    angle, steps = 0.0, 1500
+    for step in range(500 + steps):
+        lab.apply(AddTimedForces((TimedWrench(step + 1, row, lab.step, lab.step + 1,
+                                              force=(1e-3, 0.0, 0.0)),)))
+        lab.steps(1)
+        angle += 1e-3 * lab.twist(base).angular[2] * (step >= 500)
+    laws.near("a skid-steered base, 1 mN renewed each step: mean turn, rad/s",
+              angle / (1e-3 * steps), EXPECTED, rel=0.05)
 
 
 def test_a_skid_steered_base_turns_on_a_box(lab: Lab, laws: Laws):

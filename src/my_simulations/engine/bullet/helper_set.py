@@ -100,10 +100,10 @@ class HelperSet:
         self.loop = StepLoop(helpers, pybullet.stepSimulation)
         # Everything that remembers bodies one by one.
         self._keepers = (*helpers, self.ties, self.motors, self.wrenches, self.readout, self.loop)
-        # Whom it concerns that a command, or a force that begins, reaches a body.
+        # Helpers notified when a command moves a body, or a force or motor command acts on it.
         self._hearers = tuple(part.touched for part in (
             self.loop, self._friction, self._settling, self._spin, self._residual, self._rolling,
-            self.sliding, self._stop, self._landing, self._seams))
+            self._stop, self._landing, self._seams))
 
     def configure(self, settings: PhysicsSettings) -> None:
         """Use these settings from the next step on, and have Bullet use them."""
@@ -164,6 +164,7 @@ class HelperSet:
         """A command reached a body: it may be elsewhere."""
         self.notices.forget(body.model_id)
         self.readout.touch(body)
+        self.sliding.touched(body)  # not if driven: a wheel that slides goes on sliding
         self._tell(body)
 
     def _driven(self, body: Body) -> None:
