@@ -78,6 +78,11 @@ BUILT_IN: Mapping[str, str] = {
     "librealsense_gazebo_plugin.so": "sensors.realsense:RealSense",
     "libgazebo_ros_realsense.so": "sensors.realsense:RealSense",
     "libgazebo_ros_openni_kinect.so": "sensors.depth_camera:OpenniKinect",
+    "libhector_gazebo_quadrotor_simple_controller.so":
+        "flight.quadrotor_simple_controller:QuadrotorSimpleController",
+    "libhector_gazebo_quadrotor_propulsion.so": "flight.quadrotor_propulsion:QuadrotorPropulsion",
+    "libhector_gazebo_quadrotor_aerodynamics.so":
+        "flight.quadrotor_aerodynamics:QuadrotorAerodynamics",
     "libmy_simulations_segmentation_camera.so": "sensors.segmentation:SegmentationCamera",
     "libmy_simulations_gps.so": "sensors.environment:GpsSensor",
     "libmy_simulations_magnetometer.so": "sensors.environment:MagnetometerSensor",

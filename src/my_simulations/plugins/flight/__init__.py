@@ -1,0 +1,1 @@
+"""Plugins of multirotors: rotors, drag, flight controllers and their sensors."""

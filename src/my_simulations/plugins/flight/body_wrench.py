@@ -1,0 +1,39 @@
+"""Wrenches that plugins give in the axes of a link."""
+from __future__ import annotations
+
+from typing import Any, Tuple
+
+from ...geometry import Vec3, conjugate, cross, rotate, subtract
+from ..context import Context, Link
+
+Wrench = Tuple[Vec3, Vec3]
+"""Force in N and torque in N m."""
+
+NO_WRENCH: Wrench = ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
+
+
+def push_at_origin(context: Context, link: Link, wrench: Wrench) -> None:
+    """Apply a wrench at the origin of a link from now on, given in the axes of the link."""
+    force, torque = wrench
+    torque = subtract(torque, cross(link.inertial.pose.position, force))
+    turn = link.pose.orientation
+    context.push(link.name, rotate(turn, force), rotate(turn, torque))
+
+
+def body_twist(link: Link) -> Tuple[Vec3, Vec3]:
+    """Linear and angular velocity of a link at its origin, in its axes, m/s and rad/s."""
+    back, twist = conjugate(link.pose.orientation), link.twist
+    return rotate(back, twist.linear), rotate(back, twist.angular)
+
+
+def clamped_vector(vector: Vec3, most: float) -> Vec3:
+    """A vector whose components are within +-`most`."""
+    x, y, z = (max(-most, min(most, value)) for value in vector)
+    return x, y, z
+
+
+def fill_wrench(message: Any, wrench: Wrench) -> None:
+    """Fill a geometry_msgs/Wrench."""
+    force, torque = wrench
+    message.force.x, message.force.y, message.force.z = force
+    message.torque.x, message.torque.y, message.torque.z = torque

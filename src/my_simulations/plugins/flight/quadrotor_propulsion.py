@@ -1,0 +1,224 @@
+"""libhector_gazebo_quadrotor_propulsion.so: four motors with propellers, driven by voltages.
+
+Parameters, defaults, topics and laws are those of hector_quadrotor_gazebo_plugins and
+hector_quadrotor_model. Where it differs: the world does not wait for commands. A command acts
+`<controlDelay>` after its stamp, or at once if that is past, and `<controlTolerance>` has no
+effect. With a `<controlRate>` the motors stop 1 s of sim time after the last command. Wrench and
+status are published from the first command on.
+"""
+from __future__ import annotations
+
+import math
+from collections import deque
+from typing import Any, Deque, List, NamedTuple, Optional, Sequence, Tuple
+
+from ...geometry import Vec3
+from ..base import Plugin
+from ..context import Ending
+from ..finite_messages import finite_only
+from ..frames import stamped
+from ..parameters import namespace_or
+from .body_wrench import Wrench, body_twist, clamped_vector, fill_wrench, push_at_origin
+from .quadrotor_aerodynamics import MOST_VELOCITY, model_parameters
+
+_PWM_STEPS = 255
+_COMMAND_END_NS = 10 ** 9
+_SUPPLY_HZ = 1.0
+_TURNS = 1.0   # rad/s: a motor that turns faster counts as running
+
+
+class MotorConstants(NamedTuple):
+    """Parameters of a motor with its propeller, by their names in hector_quadrotor_model.
+
+    Attributes:
+        k_t: torque per thrust, m.
+        k_m: friction, N m s.
+        CT0s, CT1s, CT2s: of the thrust, for the speed of the rotor squared, for its product with
+            the speed of the air, and for that squared.
+        Psi: torque per current, N m / A.
+        J_M: inertia of motor and propeller, kg m^2.
+        R_A: ohm.
+        alpha_m, beta_m: of the current, for the voltage.
+        l_m: m from the middle of the body to a rotor.
+    """
+
+    k_t: float
+    k_m: float
+    CT0s: float
+    CT1s: float
+    CT2s: float
+    Psi: float
+    J_M: float
+    R_A: float
+    alpha_m: float
+    beta_m: float
+    l_m: float
+
+
+class Rotor(NamedTuple):
+    """State of a motor: its speed in rad/s, and the thrust, torque and current of the last step."""
+
+    speed: float = 0.0
+    thrust: float = 0.0
+    torque: float = 0.0
+    current: float = 0.0
+
+    def stepped(self, constants: MotorConstants, voltage: float, air: float, dt: float) -> "Rotor":
+        """Return the state `dt` s later; `air` is the speed of the rotor along its axis, m/s.
+
+        Source: hector_quadrotor_model, quadrotorPropulsion. Thrust F = CT0s w^2 + CT1s w v -+ CT2s
+        v^2; current I from a quadratic characteristic; torque M = Psi I; J_M dw/dt = M - k_t F -
+        k_m w.
+        """
+        thrust = (constants.CT0s * self.speed ** 2 + constants.CT1s * air * self.speed
+                  - math.copysign(constants.CT2s * air ** 2, air))
+        half = (voltage * constants.beta_m - constants.Psi * self.speed) / (2.0 * constants.R_A)
+        current = half + math.sqrt(max(0.0, half ** 2 + voltage * constants.alpha_m
+                                       / constants.R_A))
+        torque = constants.Psi * current
+        change = (torque - constants.k_t * thrust - constants.k_m * self.speed) / constants.J_M
+        return Rotor(self.speed + dt * change, thrust, torque, current)
+
+
+def rotor_speeds_along(velocity: Vec3, spin: Vec3, arm: float) -> Tuple[float, ...]:
+    """Speeds along z of the rotors at the front, right, rear and left, m/s, in body axes."""
+    return (velocity[2] - arm * spin[1], velocity[2] - arm * spin[0],
+            velocity[2] + arm * spin[1], velocity[2] + arm * spin[0])
+
+
+def wrench_of(rotors: Sequence[Rotor], arm: float) -> Wrench:
+    """The wrench of rotors at the front, right, rear and left, in body axes."""
+    front, right, rear, left = (rotor.thrust for rotor in rotors)
+    yaw = rotors[0].torque - rotors[1].torque + rotors[2].torque - rotors[3].torque
+    return ((0.0, 0.0, front + right + rear + left),
+            ((left - right) * arm, (rear - front) * arm, yaw))
+
+
+class QuadrotorPropulsion(Plugin):
+    """Acts on the first link of the model."""
+
+    def load(self) -> None:
+        """Read parameters; offer topics."""
+        context, p = self.context, self.context.parameters
+        context.use_namespace(namespace_or(p, ""))
+        self._link = context.link("")
+        namespace = p.text("paramNamespace", "quadrotor_propulsion")
+        self._constants = MotorConstants(*model_parameters(
+            context, namespace, list(MotorConstants._fields)))
+        self._voltage = float(context.parameter(f"{namespace}/supply_voltage",
+                                                p.number("supplyVoltage", 14.8)))
+        self._delay_ns = round(p.number("controlDelay", 0.0) * 1e9)
+        self._control_hz = p.number("controlRate", 0.0)
+        self._status_ns = round(1e9 / p.positive("motorStatusRate", 1e9)) \
+            if p.number("motorStatusRate", 0.0) > 0.0 else 0
+        for name, kind, read in (
+                (p.text("topicName", "command/motor"), "MotorCommand", self._hear_voltages),
+                (p.text("voltageTopicName") or p.text("pwmTopicName", "motor_pwm"), "MotorPWM",
+                 self._hear_pwm)):
+            if name:
+                context.subscribe(name, f"hector_uav_msgs/{kind}", finite_only(context, name, read))
+        self._frame = p.text("frameId", self._link.name)
+        self._trigger = context.publish(p.text("triggerTopic", "quadro/trigger"),
+                                        "rosgraph_msgs/Clock", 10)
+        self._wrenches = context.publish(p.text("wrenchTopic", "propulsion/wrench"),
+                                         "geometry_msgs/WrenchStamped", 10)
+        self._supply = context.publish(p.text("supplyTopic", "supply"), "hector_uav_msgs/Supply",
+                                       10, latch=True)
+        self._status = context.publish(p.text("statusTopic", "motor_status"),
+                                       "hector_uav_msgs/MotorStatus", 10)
+        if self._control_hz > 0.0:
+            context.observe(self._control_hz, self._publish_trigger, [self._trigger])
+        if p.text("supplyTopic", "supply"):
+            self._publish_supply()
+            context.observe(_SUPPLY_HZ, self._publish_supply, [self._supply])
+        self._timer: Optional[Ending] = None
+        self.reset()
+
+    def reset(self) -> None:
+        """The motors are off."""
+        if self._timer is not None:
+            self._timer.end()
+            self._timer = None
+        self._rotors = [Rotor()] * 4
+        self._voltages = [0.0] * 4
+        self._on = False
+        self.clock_set()
+
+    def clock_set(self) -> None:
+        """Commands of another time are lost."""
+        self._queue: Deque[Tuple[int, List[float]]] = deque()
+        self._last_command_ns = self.context.now_ns
+        self._last_ns = self.context.now_ns
+        self._next_status_ns = 0
+
+    # -- commands --------------------------------------------------------------------------------
+
+    def _hear_voltages(self, message: Any) -> None:
+        steps = [min(_PWM_STEPS, max(0, round(value / self._voltage * _PWM_STEPS)))
+                 for value in message.voltage]
+        self._add(message.header.stamp, steps)
+
+    def _hear_pwm(self, message: Any) -> None:
+        self._add(message.header.stamp, list(message.pwm))
+
+    def _add(self, stamp: Any, steps: Sequence[int]) -> None:
+        """Queue a command: for each motor a part of the voltage in 255 steps."""
+        volts = [step * self._voltage / _PWM_STEPS for step in steps[:4]]
+        ns = int(stamp.to_nsec())
+        due = ns + self._delay_ns if ns else self.context.now_ns
+        self._queue.append((due, volts if len(volts) == 4 else [0.0] * 4))
+        self._on = True
+        self._last_command_ns = self.context.now_ns
+        if self._timer is None:
+            self._last_ns = self.context.now_ns
+            self._timer = self.context.every(0.0, self.update)
+
+    def _take_commands(self) -> None:
+        now = self.context.now_ns
+        while self._queue and self._queue[0][0] <= now:
+            self._voltages = self._queue.popleft()[1]
+        if self._control_hz > 0.0 and now - self._last_command_ns > _COMMAND_END_NS and self._on:
+            self._on, self._voltages = False, [0.0] * 4
+            self.context.warn("no motor command for 1 s; the motors stop")
+
+    # -- motors ----------------------------------------------------------------------------------
+
+    def update(self) -> None:
+        """Before each step."""
+        dt = (self.context.now_ns - self._last_ns) * 1e-9
+        self._last_ns = self.context.now_ns
+        self._take_commands()
+        velocity, spin = (clamped_vector(one, MOST_VELOCITY) for one in body_twist(self._link))
+        arm = self._constants.l_m
+        self._rotors = [rotor.stepped(self._constants, voltage, air, dt)
+                        for rotor, voltage, air in zip(self._rotors, self._voltages,
+                                                       rotor_speeds_along(velocity, spin, arm))]
+        wrench = wrench_of(self._rotors, arm)
+        push_at_origin(self.context, self._link, wrench)
+        if self._wrenches.wanted:
+            message = stamped(self.context, "geometry_msgs/WrenchStamped", self._frame)
+            fill_wrench(message.wrench, wrench)
+            self._wrenches.publish(message)
+        if self._status.wanted and self.context.now_ns >= self._next_status_ns:
+            self._next_status_ns = self.context.now_ns + self._status_ns
+            self._publish_status()
+
+    def _publish_status(self) -> None:
+        message = stamped(self.context, "hector_uav_msgs/MotorStatus")
+        message.on = self._on
+        message.running = all(rotor.speed > _TURNS for rotor in self._rotors)
+        message.voltage = list(self._voltages)
+        message.frequency = [rotor.speed for rotor in self._rotors]
+        message.current = [rotor.current for rotor in self._rotors]
+        self._status.publish(message)
+
+    def _publish_trigger(self) -> None:
+        message = self.context.message("rosgraph_msgs/Clock")
+        message.clock = self.context.stamp()
+        self._trigger.publish(message)
+
+    def _publish_supply(self) -> None:
+        message = stamped(self.context, "hector_uav_msgs/Supply")
+        message.voltage = [self._voltage]
+        message.current = []
+        self._supply.publish(message)

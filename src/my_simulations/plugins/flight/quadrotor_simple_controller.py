@@ -1,0 +1,158 @@
+"""libhector_gazebo_quadrotor_simple_controller.so: forces on a body make it fly as commanded.
+
+Parameters, defaults, topics, services and laws are those of hector_quadrotor_gazebo_plugins: PID
+loops turn a velocity command in the axes of the heading into roll and pitch, and these into a
+thrust along the z axis of the body and a torque. Where it differs: parameters named `<imuTopic>`
+and `<stateTopic>` are ignored, the loops always use the true state; a wrench is published while the
+motors are on; motors that the service `shutdown` has stopped need another command to start.
+"""
+from __future__ import annotations
+
+import math
+from typing import Any, Optional
+
+from ...geometry import Vec3, conjugate, dot, norm, rotate, rpy_from_quat, scale, subtract
+from ..base import Plugin
+from ..context import Ending
+from ..finite_messages import finite_only
+from ..parameters import namespace_or
+from ..sensors.hector_errors import rate_of
+from .body_wrench import NO_WRENCH, fill_wrench, push_at_origin
+from .filtered_pid import FilteredPid
+
+_TAKE_OFF = 0.1        # m/s: a command to rise this fast starts the motors
+_TOUCHED_DOWN = -1.0   # m: integral of the height error below which the body has landed
+
+
+class QuadrotorSimpleController(Plugin):
+    """Flies the link `<bodyName>`, or the model's first one."""
+
+    def load(self) -> None:
+        """Read parameters; offer topics and services."""
+        context, p = self.context, self.context.parameters
+        context.use_namespace(namespace_or(p, ""))
+        self._link = context.link(p.text("bodyName"))
+        self._most_force = p.number("maxForce", -1.0)
+        self._auto_engages = p.flag("autoEngage", True)
+        self._roll, self._pitch = FilteredPid(p, "rollpitch"), FilteredPid(p, "rollpitch")
+        self._yaw = FilteredPid(p, "yaw")
+        self._x, self._y = FilteredPid(p, "velocityXY"), FilteredPid(p, "velocityXY")
+        self._z = FilteredPid(p, "velocityZ")
+        hertz = rate_of(p)
+        self._period_ns = round(1e9 / hertz) if hertz > 0.0 else 0
+        command = self._topic("velocity_topic", p.text("topicName", "cmd_vel"))
+        if command:
+            context.subscribe(command, "geometry_msgs/Twist",
+                              finite_only(context, command, self._hear))
+        for name in ("imuTopic", "stateTopic"):
+            if p.text(name):
+                context.warn(f"<{name}> is ignored; the controller uses the true state")
+        self._wrenches = context.publish(self._topic("wrench_topic", p.text(
+            "wrenchTopic", "wrench_out")), "geometry_msgs/Wrench", 10)
+        context.serve("engage", "std_srvs/Empty", lambda request, response: self._engage())
+        context.serve("shutdown", "std_srvs/Empty", lambda request, response: self._shut_down())
+        self._timer: Optional[Ending] = None
+        self._begin()
+
+    def _topic(self, parameter: str, default: str) -> str:
+        return str(self.context.parameter(f"controller/{parameter}", default))
+
+    def _begin(self) -> None:
+        self._command: Vec3 = (0.0, 0.0, 0.0)
+        self._yaw_rate = 0.0
+        self._wrench = NO_WRENCH
+
+    def reset(self) -> None:
+        """The motors are off."""
+        if self._timer is not None:
+            self._timer.end()
+            self._timer = None
+        self._begin()
+
+    def clock_set(self) -> None:
+        """The next update is due at once."""
+        self._last_ns = self.context.now_ns - self._period_ns
+
+    def _hear(self, message: Any) -> None:
+        self._command = (message.linear.x, message.linear.y, message.linear.z)
+        self._yaw_rate = message.angular.z
+        if self._auto_engages and self._timer is None and self._command[2] > _TAKE_OFF:
+            self._engage()
+
+    def _engage(self) -> None:
+        """Start the motors."""
+        if self._timer is not None:
+            return
+        for pid in (self._roll, self._pitch, self._yaw, self._x, self._y, self._z):
+            pid.reset()
+        self._velocity = self._link.twist.linear
+        self.clock_set()
+        self._timer = self.context.every(0.0, self.update)
+
+    def _shut_down(self) -> None:
+        """Stop the motors."""
+        if self._timer is not None:
+            self._timer.end()
+            self._timer = None
+            self._wrench = NO_WRENCH
+            self._apply()
+            self._publish()
+
+    def update(self) -> None:
+        """Before each step."""
+        elapsed_ns = self.context.now_ns - self._last_ns
+        if elapsed_ns >= self._period_ns and elapsed_ns > 0:
+            self._last_ns = self.context.now_ns
+            self._control(elapsed_ns * 1e-9)
+            if self._has_landed():
+                self._shut_down()
+                return
+            self._publish()
+        self._apply()
+
+    def _has_landed(self) -> bool:
+        return (self._auto_engages and self._z.integral < _TOUCHED_DOWN
+                and self._command[2] < -_TAKE_OFF and abs(self._velocity[2]) < _TAKE_OFF)
+
+    def _control(self, dt: float) -> None:
+        """Compute the wrench in the axes of the body."""
+        pose, twist, inertial = self._link.pose, self._link.twist, self._link.inertial
+        before, self._velocity = self._velocity, twist.linear
+        acceleration = scale(subtract(self._velocity, before), 1.0 / dt)
+        roll, pitch, yaw = rpy_from_quat(pose.orientation)
+        spin = rotate(conjugate(pose.orientation), twist.angular)
+        velocity, change = _to_heading(yaw, self._velocity), _to_heading(yaw, acceleration)
+        gravity = norm(self.context.gravity)
+        per_gravity = 1.0 / gravity if gravity > 0.0 else 0.0
+        pitch_command = self._x.update(self._command[0], velocity[0], change[0], dt) * per_gravity
+        roll_command = -self._y.update(self._command[1], velocity[1], change[1], dt) * per_gravity
+        torque = (inertial.ixx * self._roll.update(roll_command, roll, spin[0], dt),
+                  inertial.iyy * self._pitch.update(pitch_command, pitch, spin[1], dt),
+                  inertial.izz * self._yaw.update(self._yaw_rate, twist.angular[2], 0.0, dt))
+        lift = inertial.mass * (self._z.update(self._command[2], velocity[2], change[2], dt)
+                                + self._load_factor() * gravity)
+        if self._most_force > 0.0:
+            lift = min(lift, self._most_force)
+        self._wrench = ((0.0, 0.0, max(0.0, lift)), torque)
+
+    def _load_factor(self) -> float:
+        """1 / cos of the tilt, by which the thrust of a tilted body carries its weight."""
+        gravity = self.context.gravity
+        along = dot(gravity, rotate(self._link.pose.orientation, gravity))
+        square = dot(gravity, gravity)
+        return square / along if abs(along) > 1e-6 * square else 0.0
+
+    def _apply(self) -> None:
+        push_at_origin(self.context, self._link, self._wrench)
+
+    def _publish(self) -> None:
+        if self._wrenches.wanted:
+            message = self.context.message("geometry_msgs/Wrench")
+            fill_wrench(message, self._wrench)
+            self._wrenches.publish(message)
+
+
+def _to_heading(yaw: float, vector: Vec3) -> Vec3:
+    """A vector of the world in axes that turn with the yaw angle."""
+    c, s = math.cos(yaw), math.sin(yaw)
+    return c * vector[0] + s * vector[1], c * vector[1] - s * vector[0], vector[2]

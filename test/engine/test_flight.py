@@ -1,0 +1,131 @@
+"""hector's quadrotor with real physics: hovering, velocity commands, terminal velocities."""
+from __future__ import annotations
+
+import math
+
+import pytest
+from plugin_case import PluginCase, kept
+from wheeled_robots import plugin
+
+from my_simulations.description.model import Inertial, Link, Model
+from my_simulations.description.shapes import Box, Collision
+from my_simulations.description.world import World
+from my_simulations.engine.bullet.backend import BulletBackend
+from my_simulations.geometry import Pose, rpy_from_quat
+from my_simulations.plugins.testing import Message
+
+MASS, G = 1.5, 9.8
+GAINS = {"rollpitchProportionalGain": 10.0, "rollpitchDifferentialGain": 5.0, "rollpitchLimit": 0.5,
+         "yawProportionalGain": 2.0, "yawLimit": 1.5,
+         "velocityXYProportionalGain": 5.0, "velocityXYDifferentialGain": 1.0,
+         "velocityXYLimit": 2.0,
+         "velocityZProportionalGain": 5.0, "velocityZLimit": 0.5, "maxForce": 30.0}
+MOTOR = {"Psi": 0.0072, "J_M": 2.6e-5, "R_A": 0.2, "k_t": 0.0153, "k_m": 1e-5, "alpha_m": 0.105,
+         "beta_m": 0.55, "CT2s": 0.0, "CT1s": -1e-3, "CT0s": 1.54e-5, "l_m": 0.275}
+
+
+def quadrotor(*plugins, z=0.1):
+    body = Link("base_link", inertial=Inertial(MASS, ixx=0.0116, iyy=0.0116, izz=0.0218),
+                collisions=[Collision("c", Box((0.4, 0.4, 0.1)))])
+    return Model("quadrotor", Pose((0.0, 0.0, z)), links=[body], plugins=list(plugins))
+
+
+def simple_controller():
+    return plugin("libhector_gazebo_quadrotor_simple_controller.so", "".join(
+        f"<{name}>{value}</{name}>" for name, value in GAINS.items()))
+
+
+@pytest.fixture
+def case():
+    yield from kept(lambda *models, parameters=None: PluginCase(
+        World(models=list(models), gravity=(0.0, 0.0, -G)), BulletBackend, parameters=parameters))
+
+
+def fly(one, seconds, x=0.0, y=0.0, z=0.0, yaw=0.0):
+    one.hear("cmd_vel", linear={"x": x, "y": y, "z": z}, angular={"x": 0.0, "y": 0.0, "z": yaw})
+    one.sim.clock.advance(round(seconds * 1000))
+    return one.sim.states.model_state("quadrotor")
+
+
+def test_a_quadrotor_rises_hovers_and_follows_velocity_commands(case):
+    one = case(quadrotor(simple_controller()))
+    pose, twist = fly(one, 4.0, z=0.5)
+    # A first-order lag of 1 / 5 s: v = 0.5 (1 - exp(-5 t)), so that 0.1 m are missing.
+    assert twist.linear[2] == pytest.approx(0.5, rel=0.01)
+    assert pose.position[2] == pytest.approx(0.1 + 0.5 * 4.0 - 0.1, abs=0.01)
+    before = fly(one, 2.0)[0]
+    pose, twist = fly(one, 3.0)
+    assert pose.position == pytest.approx(before.position, abs=1e-3)   # it hovers
+    assert twist.linear == pytest.approx((0.0, 0.0, 0.0), abs=1e-3)
+    assert one.graph.on("wrench_out")[-1].force.z == pytest.approx(MASS * G, rel=1e-3)
+    height = pose.position[2]
+    fly(one, 5.0, x=1.0, y=-0.5)
+    pose, twist = fly(one, 1.0, x=1.0, y=-0.5)
+    assert twist.linear == pytest.approx((1.0, -0.5, 0.0), abs=0.02)
+    assert pose.position[2] == pytest.approx(height, abs=0.1)
+    fly(one, 3.0, yaw=0.5)
+    pose, twist = fly(one, 1.0, yaw=0.5)
+    assert twist.angular[2] == pytest.approx(0.5, rel=0.01)
+    yaw = rpy_from_quat(pose.orientation)[2]
+    fly(one, 4.0)
+    heading = rpy_from_quat(fly(one, 0.001)[0].orientation)[2]
+    assert heading > yaw + 0.1
+    _, twist = fly(one, 4.0, x=0.8)   # forward is where the body looks
+    assert twist.linear[:2] == pytest.approx((0.8 * math.cos(heading), 0.8 * math.sin(heading)),
+                                             abs=0.02)
+
+
+def balance(voltage):
+    """Rotor speed and rising velocity at which torques and weight balance, by bisection."""
+    def speed_at(climb):
+        low, high = 0.0, 3000.0
+        for _ in range(80):
+            w = (low + high) / 2.0
+            drive = voltage * MOTOR["beta_m"] - MOTOR["Psi"] * w
+            current = (drive + math.sqrt(drive ** 2 + 4.0 * MOTOR["R_A"] * voltage
+                                         * MOTOR["alpha_m"])) / (2.0 * MOTOR["R_A"])
+            load = MOTOR["k_t"] * thrust(w, climb) + MOTOR["k_m"] * w
+            low, high = (w, high) if MOTOR["Psi"] * current > load else (low, w)
+        return low
+
+    def thrust(w, climb):
+        return MOTOR["CT0s"] * w * w + MOTOR["CT1s"] * w * climb
+
+    low, high = -20.0, 20.0
+    for _ in range(80):
+        climb = (low + high) / 2.0
+        rises = 4.0 * thrust(speed_at(climb), climb) > MASS * G
+        low, high = (climb, high) if rises else (low, climb)
+    return speed_at(low), low
+
+
+class Stamp:
+    def to_nsec(self):
+        return 0
+
+
+def test_a_quadrotor_rises_at_the_velocity_at_which_its_propellers_carry_it(case):
+    steps = 162
+    one = case(quadrotor(plugin("libhector_gazebo_quadrotor_propulsion.so", ""), z=200.0),
+               parameters={"quadrotor_propulsion": MOTOR})
+    one.hear("motor_pwm", header=Message(stamp=Stamp()), pwm=[steps] * 4)
+    one.sim.clock.advance(12000)
+    speed, climb = balance(14.8 * steps / 255)
+    pose, twist = one.sim.states.model_state("quadrotor")
+    assert twist.linear[2] == pytest.approx(climb, abs=0.01)
+    assert one.graph.on("motor_status")[-1].frequency == pytest.approx([speed] * 4, rel=1e-3)
+    assert rpy_from_quat(pose.orientation) == pytest.approx((0.0, 0.0, 0.0), abs=1e-6)
+
+
+def test_a_falling_quadrotor_reaches_the_velocity_at_which_drag_carries_it(case):
+    one = case(quadrotor(plugin("libhector_gazebo_quadrotor_aerodynamics.so", ""), z=500.0),
+               parameters={"quadrotor_aerodynamics": {
+                   "C_wxy": 0.12, "C_wz": 0.1, "C_mxy": 0.074, "C_mz": 0.05}})
+    one.sim.clock.advance(2000)
+    terminal = math.sqrt(MASS * G / 0.1)
+    # v = v_t tanh(g t / v_t)
+    fall = one.sim.states.model_state("quadrotor")[1].linear[2]
+    assert fall == pytest.approx(-terminal * math.tanh(G * 2.0 / terminal), rel=2e-3)
+    one.hear("/wind", x=0.0, y=0.0, z=terminal)
+    one.sim.clock.advance(6000)
+    assert one.sim.states.model_state("quadrotor")[1].linear[2] == pytest.approx(0.0, abs=0.02)
