@@ -333,7 +333,8 @@ _TABLE: Tuple[Tuple[str, Tuple[Tuple[str, str, str, str], ...]], ...] = (
          "Restart the simulator."),
         ("command-refused", ERROR, "The physics engine refused a change, which has no effect.",
          "See the message."),
-        ("state-diverged", ERROR, "The state of a model became NaN or infinite, or a joint races.",
+        ("state-diverged", ERROR, "The state of a model became NaN or infinite, a joint races, or "
+         "a model was stopped that left 10 km or exceeded the speed of sound.",
          "Check masses, inertia and gains, or reduce the step size."),
         ("physics-approximate", WARNING, "A setting is simulated approximately.",
          "See the message."),

@@ -11,6 +11,7 @@ from . import bodies, extra_surfaces, joint_axes
 from .bodies import Body, Part
 from .constraint_book import ConstraintBook
 from .contact_settling import ContactSettling
+from .divergence_stop import DivergenceStop
 from .force_dependent_slip import slips
 from .forces import Forces
 from .gyroscopic_rigid import GyroscopicRigid
@@ -88,15 +89,18 @@ class HelperSet:
             self._on_held)
         self._landing = LandingContacts(self._rolling.landed, self._settling.solve_impact)
         self._stop = SurfaceStop()
+        self._divergence = DivergenceStop(self.notices.stopped, lambda: self.forces.loaded_bodies,
+                                          self.readout.touch)
         self.mover = StateSetter(rows, axes, self.readout, self.waker, self.forces, self._spin,
-                                 self.holds)
+                                 (self.holds.moved, self._divergence.put))
         self.motors = JointMotors(axes, driver.around)
         self.planar = PlanarMotion(models, self.mover.model_pose, driver.around)
         self.wrenches = JointWrenches(models, self.forces, self.sliding)
         # What acts around the steps, in the order in which it does.
         helpers = (self._friction, self._bounces, self._settling, self._decay, self.forces,
                    self.planar, self._rolling, self._spin, self._residual, self.sliding,
-                   self.holds, self._stop, self._landing, self._level, self._seams)
+                   self.holds, self._stop, self._landing, self._level, self._seams,
+                   self._divergence)
         self.loop = StepLoop(helpers, pybullet.stepSimulation)
         # Everything that remembers bodies one by one.
         self._keepers = (*helpers, self.ties, self.motors, self.wrenches, self.readout, self.loop)
@@ -111,6 +115,7 @@ class HelperSet:
         configure_solver(settings)
         self._settling.configure(settings.iterations, settings.step_size)
         self.sliding.configure(settings.cone)
+        self._divergence.configure(settings.step_size)
 
     def add(self, body: Body, model: Model) -> None:
         """A body of a model is there."""
@@ -122,6 +127,7 @@ class HelperSet:
         self._residual.add(body)
         self._settling.add(body)
         self._stop.add(body)
+        self._divergence.add(body)
         self.readout.add(body)
         dt = self.settings.step_size
         self._decay.add(body, dt)

@@ -62,9 +62,13 @@ class Notices:
                               " rad/s or m/s, the fastest that is computed: what drives it is too "
                               f"strong for steps of {step_size:g} s")
 
-    def _tell_lost(self, body: Body, text: str) -> None:
+    def stopped(self, body: Body, text: str) -> None:
+        """A body was stopped; `text` is a clause about how and why."""
+        self._tell_lost(body, "model '{}' {}", text)
+
+    def _tell_lost(self, body: Body, text: str, *values: str) -> None:
         """Say it once, as it may come in each step, until the model is put elsewhere."""
         if body.model_id not in self._lost:
             self._lost.add(body.model_id)
             name = self._models[body.model_id].model.name
-            self._events.append(Event("diverged", text.format(name), body.model_id))
+            self._events.append(Event("diverged", text.format(name, *values), body.model_id))

@@ -1,7 +1,7 @@
 """Puts bodies somewhere, and tells everyone who remembers where they were."""
 from __future__ import annotations
 
-from typing import Dict, Optional, Tuple
+from typing import Callable, Dict, Iterable, Optional, Tuple
 
 import pybullet
 
@@ -26,7 +26,6 @@ from . import anchored_bodies, bodies
 from .bodies import Axis, Body, Part
 from .forces import Forces
 from .gyroscopic_rigid import GyroscopicRigid
-from .pinned_bodies import PinnedBodies
 from .state_readout import StateReadout
 from .state_restore import Entry, set_ball
 from .wake_up import WakeUp
@@ -37,15 +36,18 @@ class StateSetter:
 
     def __init__(self, rows: Dict[int, Tuple[Body, Part]], axes: Dict[int, Tuple[Body, Axis]],
                  readout: StateReadout, waker: WakeUp, forces: Forces, spin: GyroscopicRigid,
-                 holds: PinnedBodies) -> None:
-        """`rows` and `axes` are looked into, never changed: who has a row of the tables."""
+                 put: Iterable[Callable[[Body], None]]) -> None:
+        """`rows` and `axes` are looked into, never changed: who has a row of the tables.
+
+        Each of `put` is called with a body that was given a pose or velocity.
+        """
         self._rows = rows
         self._axes = axes
         self._readout = readout
         self._waker = waker
         self._forces = forces
         self._spin = spin
-        self._holds = holds
+        self._put = tuple(put)
 
     def link_state(self, row: int) -> LinkState:
         """Of the link at a row, as last read."""
@@ -110,6 +112,8 @@ class StateSetter:
             self._waker.around([body])
             bodies.put_axis(body, axis, position, rate)
             self._forces.disturbed(body)
+            for put in self._put:
+                put(body)
             self._spin.moved(body)
             self._readout.touch(body)
 
@@ -174,7 +178,8 @@ class StateSetter:
         self._forces.disturbed(body)
         if body.moves and not is_anchored:
             bodies.launch(body, target, _carried(lead, target, at, twist))
-        self._holds.moved(body)
+        for put in self._put:
+            put(body)
         self._spin.moved(body)
         self._readout.touch(body)
 

@@ -1,0 +1,183 @@
+"""Stops models that a wrong gain, inertia or overlap has thrown out of the world.
+
+A body is stopped if, since it was last put somewhere, it went further than `RANGE` or became
+faster than `SPEED`. It is then kept in place, at rest, until it is moved by a command, reset or
+removed; the world goes on. Velocities that a command sets may be higher: then twice that speed is
+the limit.
+"""
+from __future__ import annotations
+
+from math import sqrt
+from typing import Callable, Dict, List, NamedTuple, Optional, Set
+
+import pybullet
+
+from ...geometry import Pose, Vec3, norm, scale, subtract
+from .bodies import Axis, Body, put_axis
+from .link_states import motion
+from .step_helper import FAR
+
+RANGE = 1e4
+"""m."""
+SPEED = 343.0
+"""m/s: the speed of sound in air at 20 degrees Celsius."""
+
+_PERIOD_S = 0.2        # of sim time between two checks of all bodies
+_STILL = (0.0, 0.0, 0.0)
+_LEAST_GYRATION = 1e-3  # m, of a radius of gyration: smaller ones are mistakes of units
+_MASS_RATIO = 1000.0    # of neighbouring links
+_FALL = 0.02            # relative difference from a free fall that still counts as one
+_FAST_JOINT = 100.0     # rad/s or m/s
+
+
+class _Start(NamedTuple):
+    """Where a body was put, at which step, how fast, and how fast it may become."""
+
+    pose: Pose
+    velocity: Vec3
+    step: int
+    limit: float
+
+
+class _Stop(NamedTuple):
+    """A stopped body, its pose, and its joint positions."""
+
+    body: Body
+    pose: Pose
+    joints: List[float]
+
+
+class DivergenceStop:
+    """Checks the first link of each moving body every 0.2 s of sim time.
+
+    Args:
+        report: is called once for each stop with the body and a clause that says what happened.
+        loaded: returns PyBullet's numbers of the bodies on which forces act.
+        moved: is called with a body that was just stopped.
+    """
+
+    def __init__(self, report: Callable[[Body, str], None], loaded: Callable[[], Set[int]],
+                 moved: Callable[[Body], None]) -> None:
+        self._report, self._loaded, self._moved = report, loaded, moved
+        self._bodies: Dict[int, Body] = {}
+        self._starts: Dict[int, Optional[_Start]] = {}
+        self._new: List[Body] = []
+        self._stops: Dict[int, _Stop] = {}
+        self._period = 1
+
+    def configure(self, step_size: float) -> None:
+        """Use another step size, s."""
+        self._period = max(1, round(_PERIOD_S / step_size))
+
+    def add(self, body: Body) -> None:
+        """Check a new body."""
+        if body.moves:
+            self._bodies[body.uid] = body
+            self._new.append(body)
+
+    def put(self, body: Body) -> None:
+        """Measure from the pose and velocity that a command has set; release a stopped body."""
+        if body.uid in self._bodies:
+            self._stops.pop(body.uid, None)
+            self._new.append(body)
+
+    def forget(self, body: Body) -> None:
+        """Forget a removed body."""
+        self._bodies.pop(body.uid, None)
+        self._starts.pop(body.uid, None)
+        self._stops.pop(body.uid, None)
+        self._new = [one for one in self._new if one is not body]
+
+    def clear(self) -> None:
+        """Forget all bodies."""
+        for table in (self._bodies, self._starts, self._stops, self._new):
+            table.clear()
+
+    def due(self, step: int) -> int:
+        """Each step while a body is stopped or new, else each period."""
+        if self._stops or self._new:
+            return step
+        return step + -step % self._period if self._bodies else FAR
+
+    def before(self, step: int, dt: float, gravity: Vec3) -> None:
+        """Record where new bodies begin, and check all bodies once in a period."""
+        for body in self._new:
+            now = motion(body.uid, body.parts[0].index)
+            self._starts[body.uid] = _Start(Pose(now.position, now.orientation), now.linear, step,
+                                            max(SPEED, 2.0 * norm(now.linear)))
+        self._new.clear()
+        if step % self._period == 0:
+            for body in list(self._bodies.values()):
+                self._check(body, step, dt, gravity)
+
+    def after(self, step: int, dt: float, gravity: Vec3) -> None:
+        """Put stopped bodies back, at rest."""
+        for stop in self._stops.values():
+            _put(stop)
+
+    def _check(self, body: Body, step: int, dt: float, gravity: Vec3) -> None:
+        start = self._starts.get(body.uid)
+        if start is None or body.uid in self._stops:
+            return
+        now = motion(body.uid, body.parts[0].index)
+        speed = norm(now.linear)
+        if speed > start.limit:
+            what = f"became faster than the speed of sound ({speed:.0f} m/s)"
+        elif norm(subtract(now.position, start.pose.position)) > RANGE:
+            what = f"went further than {RANGE / 1000:g} km"
+        else:
+            return
+        cause = self._cause(body, start, now.linear, (step - start.step) * dt, gravity)
+        stop = _Stop(body, Pose(*pybullet.getBasePositionAndOrientation(body.uid)),
+                     [pybullet.getJointState(body.uid, axis.index)[0] for axis in body.axes])
+        self._stops[body.uid] = stop
+        _put(stop)
+        self._moved(body)
+        self._report(body, f"{what} and was stopped; likely cause: {cause}")
+
+    def _cause(self, body: Body, start: _Start, velocity: Vec3, elapsed: float,
+               gravity: Vec3) -> str:
+        """A clause that names the likely cause, of those that files and users can correct."""
+        fall = subtract(subtract(velocity, start.velocity), scale(gravity, elapsed))
+        if norm(fall) < _FALL * norm(velocity) and norm(gravity) > 0.0:
+            return "nothing is below it, so it fell freely"
+        odd = _odd_inertia(body)
+        if odd:
+            return odd
+        axis = _fastest(body)
+        if axis:
+            return f"the gain or effort that drives joint '{axis.name}' is too high"
+        if body.uid in self._loaded():
+            return "a force that acts on it is too strong, as of a plugin with too high a gain"
+        return "it overlapped another body, or what touches it is driven too fast"
+
+
+def _put(stop: _Stop) -> None:
+    body = stop.body
+    for axis, position in zip(body.axes, stop.joints):
+        put_axis(body, axis, position)
+    for ball in body.balls:
+        turn = pybullet.getJointStateMultiDof(body.uid, ball.index)[0]
+        pybullet.resetJointStateMultiDof(body.uid, ball.index, turn, _STILL)
+    pybullet.resetBasePositionAndOrientation(body.uid, stop.pose.position, stop.pose.orientation)
+    pybullet.resetBaseVelocity(body.uid, _STILL, _STILL)
+
+
+def _odd_inertia(body: Body) -> str:
+    """A clause about a link whose inertia cannot be meant; "" if there is none."""
+    moving = [part for part in body.parts if part.mass > 0.0]
+    for part in moving:
+        if sqrt(max(part.moments) / part.mass) < _LEAST_GYRATION:
+            return (f"the inertia of link '{part.link.name}' is far too small for its mass of "
+                    f"{part.mass:g} kg")
+    masses = sorted(moving, key=lambda part: part.mass)
+    if masses and masses[-1].mass > _MASS_RATIO * masses[0].mass:
+        return (f"link '{masses[-1].link.name}' has more than {_MASS_RATIO:g} times the mass of "
+                f"link '{masses[0].link.name}'")
+    return ""
+
+
+def _fastest(body: Body) -> Optional[Axis]:
+    """The joint axis with the highest rate, if that is beyond what motors reach."""
+    rates = [abs(pybullet.getJointState(body.uid, axis.index)[1]) for axis in body.axes]
+    return body.axes[rates.index(max(rates))] if rates and max(rates) > _FAST_JOINT else None
