@@ -426,17 +426,24 @@ def test_a_mesh_of_one_part_becomes_its_hull_and_not_that_of_its_voxels(tmp_path
 def test_several_meshes_are_divided_two_at_a_time_with_a_word_for_each(tmp_path, monkeypatch):
     marks = tmp_path / "marks"
     marks.mkdir()
-    # Each ends only when another one has begun: one at a time they would never end.
+    # Each ends when another one has begun and a progress message has come: one at a time they
+    # would never end.
     with_vhacd(monkeypatch, tmp_path / "fake",
                f"open(os.path.join({str(marks)!r}, str(os.getpid())), 'w').close(); "
-               f"[time.sleep(0.01) for _ in iter(lambda: len(os.listdir({str(marks)!r})) > 1, 1)];"
+               f"[time.sleep(0.01) for _ in iter(lambda: len(os.listdir({str(marks)!r})) > 2, 1)];"
                " os.abort()")
     monkeypatch.setattr(batch, "WORD_EVERY_S", 0.2)
     monkeypatch.setattr(os, "sched_getaffinity", lambda _: {0, 1})
     second = MeshData(angle().vertices * 2.0, angle().triangles)
     told = []
+
+    def hear(words):
+        told.append(words)
+        if "0 of 2 meshes divided after" in words:
+            (marks / "progress").touch()
+
     meshes = [("a::l", angle()), ("b::l", mesh_of(box())), ("c::l", second), ("d::l", angle())]
-    made = batch.divide_all(meshes, told.append, cache_dir=str(tmp_path / "cache"))
+    made = batch.divide_all(meshes, hear, cache_dir=str(tmp_path / "cache"))
     assert [volume(one.parts) for one in made] == pytest.approx([5.0, 1.0, 40.0, 5.0])
     assert "2 meshes are divided" in told[0] and str(tmp_path / "cache") in told[0]
     assert any(words.startswith("dividing mesh 1 of 2 (a::l), 20 triangles") for words in told)
