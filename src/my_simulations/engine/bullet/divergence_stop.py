@@ -61,7 +61,7 @@ class DivergenceStop:
         self._report, self._loaded, self._moved = report, loaded, moved
         self._bodies: Dict[int, Body] = {}
         self._starts: Dict[int, Optional[_Start]] = {}
-        self._new: List[Body] = []
+        self._new: Dict[int, Body] = {}
         self._stops: Dict[int, _Stop] = {}
         self._period = 1
 
@@ -73,20 +73,18 @@ class DivergenceStop:
         """Check a new body."""
         if body.moves:
             self._bodies[body.uid] = body
-            self._new.append(body)
+            self._new[body.uid] = body
 
     def put(self, body: Body) -> None:
         """Measure from the pose and velocity that a command has set; release a stopped body."""
         if body.uid in self._bodies:
             self._stops.pop(body.uid, None)
-            self._new.append(body)
+            self._new[body.uid] = body
 
     def forget(self, body: Body) -> None:
         """Forget a removed body."""
-        self._bodies.pop(body.uid, None)
-        self._starts.pop(body.uid, None)
-        self._stops.pop(body.uid, None)
-        self._new = [one for one in self._new if one is not body]
+        for table in (self._bodies, self._starts, self._stops, self._new):
+            table.pop(body.uid, None)
 
     def clear(self) -> None:
         """Forget all bodies."""
@@ -101,7 +99,7 @@ class DivergenceStop:
 
     def before(self, step: int, dt: float, gravity: Vec3) -> None:
         """Record where new bodies begin, and check all bodies once in a period."""
-        for body in self._new:
+        for body in self._new.values():
             now = motion(body.uid, body.parts[0].index)
             self._starts[body.uid] = _Start(Pose(now.position, now.orientation), now.linear, step,
                                             max(SPEED, 2.0 * norm(now.linear)))
