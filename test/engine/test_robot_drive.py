@@ -52,7 +52,7 @@ class Drive:
     def odometry(self):
         wanted = (self.sim.clock.step // 20) * 20 * 10 ** 6
         deadline = time.monotonic() + 60.0
-        while self.graph.on("/odom")[-1].header.stamp < wanted:
+        while not self.graph.on("/odom") or self.graph.on("/odom")[-1].header.stamp < wanted:
             assert time.monotonic() < deadline
             time.sleep(0.001)
         pose = self.graph.on("/odom")[-1].pose.pose
