@@ -19,7 +19,7 @@ class IssueCode:
     Attributes:
         code: stable identifier in kebab-case, as in `Issue.code`.
         severity: ERROR, WARNING, NOTE or EITHER.
-        meaning: what is wrong, one sentence.
+        meaning: the fault, one sentence.
         action: what to do about it, one sentence.
     """
 

@@ -12,7 +12,7 @@ GREY = (0.7, 0.7, 0.7, 1.0)
 """Of what has no material."""
 
 GROUND = 0.8
-"""How bright planes are: a ground of one grey with what stands on it would swallow its outlines."""
+"""How bright planes are: on a ground of the same grey, objects would have no outlines."""
 
 DULLEST = 0.02
 """Highlights weaker than this are not worth their computing."""

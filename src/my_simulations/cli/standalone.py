@@ -110,7 +110,7 @@ class Opening:
             show(*self._page)
 
     def cancel(self) -> None:
-        """Open it no more."""
+        """Do not open it any longer."""
         with self._lock:
             self._opened = True
         self._timer.cancel()

@@ -111,7 +111,7 @@ def half_extents(geometry: Geometry) -> Optional[Vec3]:
 def reach_of(link: Link) -> float:
     """Radius about the link's origin, m, that contains its shapes; infinite for planes.
 
-    Without meshes, of which `advice` does not tell whether they overlap.
+    Meshes are left out: `advice` does not check whether they overlap.
     """
     reach = 0.0
     for collision in link.collisions:

@@ -1,6 +1,6 @@
 """The editor's server: a page in the browser that shows the running world and changes it.
 
-Nothing of it is imported before somebody wants an editor; `start` does.
+Its modules are imported by `start`, when an editor is requested.
 """
 from __future__ import annotations
 

@@ -92,7 +92,7 @@ class Assembly:
         for task in self._tasks:
             task.cancel()
         self._topics.close()
-        with contextlib.suppress(CommandError):  # nobody is left to be told
+        with contextlib.suppress(CommandError):  # no page is left to report it to
             self._logs.close()
         clients = list(self.hub.clients.values())
         await asyncio.gather(*(client.close() for client in clients), return_exceptions=True)
@@ -121,7 +121,7 @@ class Assembly:
             await asyncio.sleep(_AUTOSAVE_S + 10.0 * (loop.time() - started))
 
     def _ended(self, task: "asyncio.Future[Any]") -> None:
-        """A task that ends by itself is a defect; whoever started the server must hear of it."""
+        """Report a task that ended by itself, which is a defect, to the owner of the server."""
         if not task.cancelled():
             defect = task.exception()
             self.tell_all(error("editor-defect", "a part of the editor has ended: "

@@ -18,7 +18,7 @@ TOKEN_VARIABLE = "MY_SIMULATIONS_EDITOR_TOKEN"
 
 
 def _ignore(_issue: Issue) -> None:
-    """Nobody listens."""
+    """Discard an issue: no listener was given."""
 
 
 @dataclass(frozen=True)
@@ -70,7 +70,7 @@ def is_loopback(host: str) -> bool:
 
 
 def cache_folder() -> str:
-    """Where editors of this user keep what can be made anew."""
+    """The folder for files of this user's editors that can be made again."""
     return _xdg("XDG_CACHE_HOME", "~/.cache")
 
 

@@ -1,4 +1,4 @@
-"""Serves the page while its world is being loaded: what is under way, until there is an editor."""
+"""Serves the page while its world is loaded: the progress, until there is an editor."""
 from __future__ import annotations
 
 import asyncio
@@ -22,7 +22,7 @@ _AGAIN = 1012
 
 
 class LoadingServer:
-    """The page's files, and a web socket that tells the progress.
+    """The page's files, and a web socket that reports the progress.
 
     Attributes:
         url: what to open in a browser; with the token.
@@ -66,7 +66,7 @@ class LoadingServer:
         return self._listener
 
     def stop(self) -> None:
-        """End for good: the world cannot be loaded, or nobody wants it any more."""
+        """End for good: the world cannot be loaded, or loading was cancelled."""
         self._end()
         address_file.remove(self._address_files)
         self._listener.close()

@@ -60,7 +60,7 @@ class EditorServer:
         self._address_files = keep_address(self.url, options) if self._guard.token else []
 
     def stop(self, reason: str = "the simulator ends") -> None:
-        """Tell the pages, and end; unsaved edits stay in the autosave."""
+        """Notify the pages, and end; unsaved edits stay in the autosave."""
         if self._loop is None or not self._thread.is_alive():
             return
         address_file.remove(self._address_files)

@@ -15,7 +15,7 @@ class ListedTopic(Protocol):
 
     @property
     def kind(self) -> str:
-        """Type, such as `sensor_msgs/LaserScan`; "" where nobody knows it."""
+        """Type, such as `sensor_msgs/LaserScan`; "" if it is unknown."""
 
     @property
     def publishers(self) -> int:
@@ -50,7 +50,7 @@ class Subscription(Protocol):
         """Bytes that have come so far, of all publishers."""
 
     def close(self) -> None:
-        """Hear it no more."""
+        """End the subscription."""
 
 
 class Publisher(Protocol):
@@ -67,7 +67,7 @@ class TopicSource(Protocol):
     """Topics by name; all calls may wait for the master and raise OSError."""
 
     def topics(self) -> List[ListedTopic]:
-        """All topics that somebody publishes or hears, by name."""
+        """All topics with a publisher or subscriber, by name."""
 
     def hear(self, name: str, kind: str, call: Callable[[Any], None]) -> Subscription:
         """Subscribe; `call` comes from another thread and must not change the message.

@@ -101,7 +101,7 @@ class Requests:
                 "number": client.number}
 
     async def _presence(self, client: Client, message: Dict[str, Any]) -> None:
-        """Somebody tells a name, or what they have selected."""
+        """Store the name or the selection that a client sends."""
         if message.get("name"):
             self._people.rename(client.number, message["name"])
             self._hub.push(self.history_push())

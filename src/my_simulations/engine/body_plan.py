@@ -162,7 +162,7 @@ class _Planner:
         return self._grow(body, end, len(body.links) - 1)
 
     def _from_held(self, name: str) -> List[BodyPlan]:
-        """What hangs on a kinematic link and those it is connected to; they alone if nothing."""
+        """Plan the bodies of a kinematic link, the links connected to it, and their children."""
         body = self._grow(BodyPlan([self._fixed(name)], fixed_base=True), name, 0)
         if any(link.joint is not None for link in body.links):
             return [body]

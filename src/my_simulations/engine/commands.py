@@ -2,7 +2,7 @@
 
 Commands are applied between steps, also while paused. The simulator identifies a model by its id, a
 link by its row in the ring's link table, a joint axis by its row in the joint table. Those that
-drive joints are in `drive_commands`, those that let forces act for some time in `timed_forces`.
+drive joints are in `drive_commands`, those of forces with a duration in `timed_forces`.
 """
 from __future__ import annotations
 
@@ -237,8 +237,8 @@ class Contact:
 class ReadJointWrenches(Command):
     """What joints transmitted in the last step.
 
-    A joint is measured from the step after its first reading on, until nobody has read it for
-    `joint_wrenches.FORGOTTEN` steps: whoever wants every value asks once in advance.
+    A joint is measured from the step after its first reading on, until it was not read for
+    `joint_wrenches.FORGOTTEN` steps. To get every value, read it once in advance.
 
     Reply value: a tuple with a `JointWrench` for each joint; None for one that was not measured in
     the last step (read for the first time, or since then everything began anew) or is not there.

@@ -70,7 +70,7 @@ class JointServo:
             it is set to later; see `JointServo.held_at`.
         of_rate: that loop is about the rate, else about the position.
         by_rates: its d is about the difference of the rates, else that of errors in time.
-        feedforward: what is commanded a target rate.
+        feedforward: the command for each unit of target rate.
         drive_gains: of the loop of the drive.
         wraps: position errors are angles in -pi to pi.
         lower, upper, most_rate, most_effort: limits of commands.
@@ -124,7 +124,7 @@ class WheelSlip:
     """A wheel that slips in proportion to its speed (Gazebo's WheelSlipPlugin).
 
     Its slips (see `Surface.slip1`) are `radius` times the rate of its joint, by the normal force,
-    times a compliance: worked out anew in every step.
+    times a compliance: computed in every step.
 
     Attributes:
         row: link row of the wheel.

@@ -56,7 +56,7 @@ class ProcessEngine:
         self._child: Optional[subprocess.Popen[bytes]] = None
         self._wire: Optional[Wire] = None
         self._reader: Optional[threading.Thread] = None
-        sweep()  # what was left behind when a whole node was killed
+        sweep()  # files left behind when a whole node was killed
         self.restart()
 
     @property
@@ -223,7 +223,7 @@ class ProcessEngine:
                 self._wire = None
             waiting, self._waiting = self._waiting, OrderedDict()
             lost: Dict[int, Command] = dict(self._posts.take_unshown())
-        with self._send_lock:  # it was hung up: whoever still sends fails at once
+        with self._send_lock:  # it was closed: further sends fail at once
             wire.sock.close()
         shown = answer_shown(self._ring, waiting)
         reason = self._verdict or _reason(process.returncode)

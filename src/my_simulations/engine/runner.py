@@ -55,7 +55,7 @@ _BURST_S = 0.0008        # bursts between two looks at the commands
 _MAX_DEBT_S = 0.2        # a world that is later than this has given up the rest
 _IDLE_S = 2.0            # heartbeat while paused
 _SYNC_S = 0.02           # between two looks at the budget while the host works; it notifies earlier
-_SHARE_ON_TIME = 0.25    # of the wall time for read-outs nobody waits for, while on schedule
+_SHARE_ON_TIME = 0.25    # of the wall time for read-outs that no reader waits for, if on schedule
 _SHARE_LATE = 0.02       # the same while late or unthrottled
 
 

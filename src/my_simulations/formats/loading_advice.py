@@ -32,7 +32,7 @@ class Written:
 
 
 UNKNOWN = Written()
-"""Models that were written nowhere, or nobody knows where."""
+"""Models whose place in a file is unknown."""
 
 
 def findings(models: Sequence[Model], meshes: Mapping[str, MeshTable],

@@ -5,8 +5,8 @@ a mesh names its own parts again and again. Only files that could do so are read
 are is decided by those who read them, from size and header. The process is started with the first
 of them, serves the next ones, and is ended when there are none for a while.
 
-Its answers are JSON and arrays, never pickles: whoever has taken over a decoder must not get into
-this process with what it sends.
+Its answers are JSON and arrays, never pickles: a decoder that a file has taken over must not gain
+control of this process.
 """
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ def read_elsewhere(task: str, path: str, code: str, **options: Any) -> Answer:
     Args:
         task: name of a function in `reader_worker`.
         path: the file.
-        code: of the issue that tells of exceeded limits.
+        code: of the issue that reports exceeded limits.
         options: for the task, as JSON.
 
     Raises:
@@ -66,7 +66,7 @@ class _GoneError(Exception):
 
 
 _GONE = (_GoneError, ValueError, TypeError, LookupError, AttributeError)
-"""The same, or an answer that is none."""
+"""The same, or an invalid answer."""
 
 
 class ReaderProcess:
@@ -146,7 +146,7 @@ class ReaderProcess:
 
     def _started(self) -> Any:
         if self._child is not None and self._child.poll() is not None:
-            self._end()  # somebody ended it while it had nothing to do
+            self._end()  # it was ended from outside while idle
         if self._child is None:
             # A session of its own: Ctrl-C is for the caller, whose end closes the pipe.
             self._child = subprocess.Popen(

@@ -55,7 +55,7 @@ class LoadedWorld:
 
 
 def _silent(_name: str, _done: int, _of: int) -> None:
-    """Nobody waits."""
+    """Ignore progress."""
 
 
 def read_world(path: str, resolver: Resolver, *, seed: int = 0, profile: str = "",

@@ -1,4 +1,4 @@
-"""A world as an environment of gymnasium: what is common to all tasks."""
+"""A world as an environment of gymnasium: the base class of all tasks."""
 from __future__ import annotations
 
 from dataclasses import dataclass, field
@@ -71,7 +71,7 @@ class WorldEnv(gymnasium.Env[Any, Any]):
     """An environment with a world of its own, in an engine process of its own.
 
     Episodes with equal seeds and actions repeat bit for bit. If the engine dies, the episode is
-    truncated with the reason under "fault" of the info, and the next `reset` opens the world anew.
+    truncated with the reason under "fault" of the info, and the next `reset` opens the world again.
 
     Args:
         task: what it is about.

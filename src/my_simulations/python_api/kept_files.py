@@ -26,8 +26,8 @@ ReadModel = Tuple[Model, MeshTable, List[Issue]]
 class KeptFiles:
     """Reads files, or gives what it has read of them before.
 
-    What is given is a copy, which may be changed, except meshes and issues. Files that change
-    between two calls count once they have been forgotten. Safe from any thread.
+    Callers may change the returned copy, except meshes and issues. Changed files are read again
+    after `forget`. Safe from any thread.
 
     Args:
         resolver: finds the files.

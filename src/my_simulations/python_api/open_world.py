@@ -76,7 +76,7 @@ class OpenWorld:
 
     Every method raises CommandError for a name that does not exist or a request that the engine
     refuses, and EngineLostError when the engine died: the world has lost its state then, and
-    `reset` opens it anew.
+    `reset` opens it again.
 
     Attributes:
         issues: faults and advice found so far, in order.
@@ -145,7 +145,7 @@ class OpenWorld:
         self._whole()
 
     def reset(self, seed: Optional[int] = None) -> None:
-        """Open the world anew, with another seed if one is given.
+        """Open the world again, with another seed if one is given.
 
         What follows repeats bit for bit what followed `open_world` with the same seed.
         """
@@ -223,8 +223,8 @@ class OpenWorld:
             width: pixels.
             height: pixels.
             hfov: horizontal angle of view, rad.
-            near: m along the optical axis; what is nearer is not drawn.
-            far: m along the optical axis; what is farther is not drawn.
+            near: m along the optical axis; nearer points are not drawn.
+            far: m along the optical axis; farther points are not drawn.
             outputs: some of "rgb", "depth" and "labels".
 
         Raises:

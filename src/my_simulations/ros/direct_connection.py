@@ -60,7 +60,7 @@ class DirectConnection:
         return True
 
     def go_on(self) -> None:
-        """Send what waits, as far as there is room. Raises TransportTerminated."""
+        """Send pending messages, as far as there is room. Raises TransportTerminated."""
         with self._lock:
             while self._send():
                 if not self._waiting:
@@ -112,7 +112,7 @@ class _Writer:
         """Nothing waits any more for the connection with this descriptor, or it was closed."""
         with self._lock:
             self._connections.pop(number, None)
-            with contextlib.suppress(OSError):  # what is closed has left by itself
+            with contextlib.suppress(OSError):  # a closed socket is already unregistered
                 self._poll.unregister(number)
 
     def _run(self) -> None:

@@ -56,7 +56,7 @@ class ServiceConnection:
             kind: its class.
 
         Raises:
-            ServiceCallError: nobody offers it, or who does refuses this class.
+            ServiceCallError: no node offers it, or that node refuses this class.
             OSError: no connection.
         """
         self._kind = kind

@@ -34,7 +34,7 @@ def main(argv: List[str]) -> int:
 
 
 def _leave_a_core() -> None:
-    """Where Mesa draws with the processor, it takes no more than all cores but one."""
+    """Limit Mesa's software renderer to all cores but one."""
     cores = len(os.sched_getaffinity(0))
     os.environ.setdefault("LP_NUM_THREADS", str(min(max(cores - 1, 1), 8)))
 

@@ -1,4 +1,4 @@
-"""The interface of the sensing process: what can be asked of it, and what comes back.
+"""The interface of the sensing process: its requests and replies.
 
 Sensors hang on links; a link is known by its row in the engine's ring. A request names the state it
 is to be answered for (`At`), so the same request gives the same bytes however late it is worked on.
@@ -46,8 +46,7 @@ At = Union[None, int, bytes]
 """The state to look at: a ring sequence, link rows as `RingReader.raw_links` gives them, or None.
 
 A sequence is copied when the request arrives at the process, and fails with `SnapshotGoneError`
-when it has been overwritten (16 snapshots later). Rows never fail. None is the newest state, for
-whoever only wants a picture now.
+when it has been overwritten (16 snapshots later). Rows never fail. None is the newest state.
 """
 
 
@@ -148,7 +147,7 @@ class CameraSpec:
     Attributes:
         width, height: pixels.
         hfov: rad, the whole angle.
-        near, far: metres along +x; what lies outside is not drawn.
+        near, far: metres along +x; points outside this range are not drawn.
         samples: of a pixel, for smooth edges of RGB: 1 or 4; 0 for 4 where a graphics card draws,
             else 1.
         distortion: of RGB, depth and labels alike; None for an ideal lens.
@@ -358,14 +357,14 @@ Request = Union[CastRays, CastBatch, RenderCamera]
 
 
 class Sensing(Protocol):
-    """What sensors need of whoever looks; `process.SensingProcess` is the real one.
+    """The interface that sensors use; `process.SensingProcess` implements it.
 
     All calls return at once and are safe from any thread. Changes and requests take effect in the
     order of the calls.
     """
 
     def change(self, change: Change) -> None:
-        """Tell what is in the world. Costs nothing before the first request: no process yet."""
+        """Change the scene. Costs little before the first request, as there is no process yet."""
 
     def cast(self, request: CastRays) -> "Future[RayReturns]":
         """Rays; the first request starts the process. The future fails with a `SensingError`."""

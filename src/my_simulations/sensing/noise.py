@@ -53,11 +53,11 @@ class Noise:
         return float(-bias if draws.random() < 0.5 else bias)
 
     def reset(self) -> None:
-        """The world begins anew: the bias is where it began."""
+        """Reset the bias to its initial value, for a reset of the world."""
         self._wandering = self.bias
 
     def apply(self, values: Any, sample: int, elapsed: float) -> Any:
-        """Values of a sample with their noise; what is not finite stays.
+        """Return the values of a sample with noise; values that are not finite stay.
 
         Args:
             values: a float or an array, in the quantity's unit.

@@ -64,7 +64,7 @@ def transforms(poses: np.ndarray) -> np.ndarray:
 
 @lru_cache(maxsize=1024)
 def matrix(pose: Pose) -> np.ndarray:
-    """A pose as a (4, 4) matrix, parent from child; nobody may write to it."""
+    """A pose as a (4, 4) matrix, parent from child; read-only."""
     made: np.ndarray = matrices(np.array([[*pose.position, *pose.orientation]]))[0]
     made.flags.writeable = False
     return made

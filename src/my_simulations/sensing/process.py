@@ -60,8 +60,8 @@ class _Waiting:
 class SensingProcess:
     """A child that casts rays and draws. Satisfies `api.Sensing`.
 
-    Nothing but this object exists before the first request. All that could block is done by threads
-    of its own, so a child that hangs holds nobody up: it is ended after `patience` s. After a death
+    The child process starts with the first request. Separate threads do everything that could
+    block, so a child that hangs blocks no caller: it is ended after `patience` s. After a death
     the next request starts another child with the same scene; three deaths in a row without an
     answer to rays, or to pictures, and requests of that kind fail at once until the scene changes.
 
@@ -99,7 +99,7 @@ class SensingProcess:
         self._listener = listener
 
     def change(self, change: Change) -> None:
-        """Tell what is in the world."""
+        """Change the scene."""
         with self._lock:
             self._refusals.clear()
             self._deaths = dict.fromkeys(self._deaths, 0)
@@ -200,7 +200,7 @@ class SensingProcess:
                 return False
         try:
             child, wire = self._spawn()
-        except OSError as fault:  # of memory, processes or descriptors there are no more
+        except OSError as fault:  # no memory, processes or descriptors are left
             self._fail_all(f"the sensing process cannot be started ({fault})")
             return False
         with self._lock:
@@ -235,7 +235,7 @@ class SensingProcess:
             if wire is not None:
                 wire.send(message)
         except OSError as fault:
-            # The reader sees the same end, and fails what waits.
+            # The reader sees the same end, and fails the pending requests.
             _log.debug("the sensing process does not listen: %s", fault)
 
     # The reader of one child.
@@ -283,7 +283,7 @@ class SensingProcess:
         return oldest is not None and time.monotonic() - oldest > patience
 
     def _fail_all(self, reason: str, wire: Optional[Wire] = None) -> None:
-        """Fail what waits; `wire`: of the child that has ended, None where none was started."""
+        """Fail all pending requests; `wire`: of the child that has ended, None if none started."""
         with self._lock:
             self._verdict = ""
             if self._wire is wire:
@@ -300,7 +300,7 @@ class SensingProcess:
             one.future.set_exception(SensingGoneError(reason))
 
     def _give_up(self, reason: str, kinds: Set[str]) -> str:
-        """Count a death while such requests waited; what is said where one kind is given up."""
+        """Count a death with such requests pending; returns the message if a kind is given up."""
         for kind in kinds:
             self._deaths[kind] += 1
         ended = sorted(kind for kind in kinds if self._deaths[kind] >= _MOST_DEATHS)

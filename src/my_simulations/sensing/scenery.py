@@ -1,7 +1,7 @@
 """Roads and actors, which belong to no model: surfaces at places of their own.
 
 The n-th of them is at the row -1 - n of a table of poses: `extended` puts theirs behind those of
-the links, so that whoever places links places them, too.
+the links, so that code that places links places them, too.
 """
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ NO_SCENERY = SetScenery()
 
 
 def _untold(text: str) -> None:
-    """Nobody is told."""
+    """Discard a message."""
 
 
 @dataclass(frozen=True)

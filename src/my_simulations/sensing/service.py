@@ -97,15 +97,15 @@ class Service:
                 return  # the parent is gone: `run` sees it, too
 
     def trouble(self, text: str) -> None:
-        """Tell the parent what is left out."""
+        """Report to the parent what is left out."""
         self._reply(TROUBLE, text)
 
 
 class _Worker:
     """A thread with a queue; it begins with the first request. Changes before are taken at once:
-    they only say what the first request will find, and nobody would empty the queue.
+    they only describe what the first request will find, and no thread empties the queue yet.
 
-    `at_once`: there is no thread, whoever puts something in does the work.
+    `at_once`: there is no thread; `put` does the work itself.
     """
 
     def __init__(self, name: str, viewer: "Union[_Rays, _Camera]",

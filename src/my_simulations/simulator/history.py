@@ -22,7 +22,7 @@ class Step:
         label: text for the history menu.
         inverse: operation that undoes it.
         number: unique id.
-        author: who did it; "" for nobody in particular.
+        author: the user; "" if it is unknown.
     """
 
     label: str

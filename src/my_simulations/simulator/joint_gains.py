@@ -5,8 +5,9 @@ joint and that of those before it, as if each were one body, in the configuratio
 description; of two free bodies the axis feels 1 / (1 / J1 + 1 / J2).
 
 With the step size dt, an explicit loop of gain d on the rate is stable below 2 J / dt; a tenth of
-that is used, which leaves room for what moves with other joints. The other gains follow from it, so
-that a loop is also damped with the 15 times larger inertia of a wheel that carries its robot.
+that is used, which leaves room for links that move with other joints. The other gains follow from
+it, so that a loop is also damped with the 15 times larger inertia of a wheel that carries its
+robot.
 """
 from __future__ import annotations
 

@@ -68,7 +68,7 @@ class ReferenceFrame:
         return compose(pose, self.offset), twist
 
     def newest(self, ring: RingReader) -> Tuple[Pose, Twist]:
-        """As `state`, in the newest snapshot, of which no more is copied than that."""
+        """As `state`, in the newest snapshot, of which only this is copied."""
         if self.row < 0:
             return self.offset, STILL
         pose, twist = ring.link(self.row)

@@ -92,7 +92,7 @@ def _configuration(world: World, entities: Sequence[Entity],
                    snapshot: Snapshot) -> Optional[SavedState]:
     """State of the models whose links or joints have moved, at rest at time 0; None if none have.
 
-    A model without an entry is at its own `<pose>`, so that users can edit that in the file.
+    A model without an entry is at its own `<pose>`, which users can edit in the file.
     """
     models = [_at_rest(_model_state(entity, snapshot)) for entity in entities
               if not entity.model.static and _is_displaced(entity, snapshot)]

@@ -107,7 +107,7 @@ class Session:
                 command = again
 
     def _looked_up_again(self, look_up: Callable[[], Command]) -> Command:
-        # Who replaces a model tells the engine first, and the registry next. Not for ever: the
+        # A replacement changes the engine first, and the registry next. The wait is limited: the
         # change may itself wait for a plugin that moves something.
         held = self.structure_lock.acquire(timeout=_CHANGE_S)
         try:

@@ -17,7 +17,7 @@ Progress = Callable[[str, str, int, int], None]
 
 
 def _silent(_title: str, _text: str, _done: int, _of: int) -> None:
-    """Nobody waits."""
+    """Ignore progress."""
 
 
 def start_world(name: str, resolver: Resolver, engines: Callable[[], Engine], log: Log, *,

@@ -135,12 +135,12 @@ class Wrenches:
 
     def swap(self, old: Sequence[int], wrenches: Sequence[Tuple[str, Vec3, Vec3]],
              revision: Optional[int] = None) -> Optional[List[int]]:
-        """Clear some by id, and let others act until they are cleared, in the same gap.
+        """Clear some by id, and add others until they are cleared, between the same two steps.
 
         Args:
             old: ids; unknown ones have run out.
             wrenches: scoped name of a link, force (N) and torque (N m) in world axes at the centre
-                of mass. What is zero, or on a link that is not there, is left out.
+                of mass. Zero ones, and those on a missing link, are left out.
             revision: of the models when they were worked out (`Models.revision`).
 
         Returns:

@@ -11,7 +11,7 @@ Kept = TypeVar("Kept")
 def until_no_crash(most: int, attempt: Callable[[int], Tuple[Row, Kept]]) -> Tuple[Row, Kept]:
     """The first attempt, counted from 1, that does not crash, or the last of `most`.
 
-    One that comes out after a crash is flaky, and its row tells of the first crash.
+    One that comes out after a crash is flaky, and its row describes the first crash.
     """
     crash: Optional[Row] = None
     for number in range(1, most + 1):

@@ -1,4 +1,4 @@
-"""The world of one case, for whoever runs, shows or records it."""
+"""The world of one case, to run, show or record it."""
 from __future__ import annotations
 
 from typing import Callable, Sequence, Tuple

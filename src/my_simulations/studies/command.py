@@ -72,7 +72,7 @@ def main(argv: Optional[Sequence[str]] = None, hook: Optional[Hook] = None,
     except SimulationError as fault:
         _tell(f"study: {fault}")
         return INVALID
-    except BrokenPipeError:  # whoever read the output has gone: no fault of the study
+    except BrokenPipeError:  # the reader of the output has ended: no fault of the study
         raise
     except OSError as fault:  # such as that of a full disk; what has finished is in the journal
         _tell(f"study: {fault}; `study resume` goes on")
@@ -203,7 +203,7 @@ def _status(options: argparse.Namespace, _: Optional[Hook]) -> int:
 
 def _tell_status(folder: StudyFolder, plan: CasePlan, shard: Shard, as_json: bool,
                  files: List[str]) -> int:
-    """Tell what became of the cases of a shard, or of all; returns the exit code."""
+    """Report the results of the cases of a shard, or of all; returns the exit code."""
     total = folder.became(plan, shard)
     cases, name = _count(plan, shard), plan.study.name
     done = sum(total.values())

@@ -198,8 +198,8 @@ class DaskRunner:
         except (Exception, asyncio.CancelledError) as fault:
             if client.status == _CONNECTED and not isinstance(fault, (OSError, CommClosedError)):
                 raise
-            # Which error a lost connection gives depends on what waits for it: a call, a row, or
-            # the client, which cancels all futures first and is closed later.
+            # A lost connection gives different errors to a call, a row, and the client, which
+            # cancels all futures first and is closed later.
             raise CommandError(f"the Dask scheduler {self._address} was lost:"
                                f" {str(fault) or type(fault).__name__}; `study resume` goes on"
                                ) from None
@@ -261,7 +261,7 @@ class DaskRunner:
             self._collect(0.0 if over else _LOOK_S)
 
     def _look(self, client: Client) -> None:
-        """See which workers there are; what was on those that have gone runs again."""
+        """Read the list of workers; cases of workers that have left run again."""
         threads: Dict[str, int] = client.nthreads()
         for address in [address for address in self._nodes if address not in threads]:
             for flight in self._nodes.pop(address).flights:

@@ -110,7 +110,7 @@ class StudyFolder:
             raise CommandError(f"cannot write to {self.path}: {fault.strerror}") from None
 
     def keep(self, study_file: str) -> None:
-        """Copy the study file for the record; for whoever has opened a journal of the folder."""
+        """Copy the study file for the record; the caller has opened a journal of the folder."""
         try:
             with replaced(os.path.join(self.path, COPY)) as part:
                 shutil.copyfile(study_file, part)

@@ -1,4 +1,4 @@
-"""The cases of a study, one at a time: a million of them need no more memory than one."""
+"""The cases of a study, generated one at a time: a million of them need the memory of one."""
 from __future__ import annotations
 
 import os

@@ -1,4 +1,4 @@
-"""Writes files so that whoever reads one finds it whole, whatever ends the writer."""
+"""Writes files atomically: readers find them whole, however the writer ends."""
 from __future__ import annotations
 
 import contextlib

@@ -23,7 +23,7 @@ class Row:
         index: its number in the plan.
         seed: its seed.
         settings: values of what was varied.
-        values: what was measured and required; empty unless the run came to its end.
+        values: measured and required values; empty unless the run was completed.
         attempt: in which attempt this came out, from 1.
         flaky: whether an attempt before this one crashed, and this one did not.
         signal: name of the signal that ended the engine; "" for none.

@@ -20,7 +20,7 @@ class SignalReader:
 
     Args:
         world: the world that is read.
-        signals: what is read.
+        signals: the signals to read.
         settings: of the case, for `vary`.
 
     Raises:

@@ -78,7 +78,7 @@ class OneLifeEngine(ProcessEngine):
 
 @dataclass
 class _Run:
-    """A case that is being run: what is known of it so far."""
+    """A case that is running, with its results so far."""
 
     world: OpenWorld
     reader: SignalReader

@@ -18,7 +18,7 @@ from .slot import Hook, Slot, StoppedError
 
 _LOOK_S = 0.25
 _KEPT_FILES = 16  # worlds, models and lists of objects
-_IDLE_S = 60.0  # after which engines that nobody uses are ended
+_IDLE_S = 60.0  # after which unused engines are ended
 
 Take = Callable[[Row, Optional[Kept]], None]
 

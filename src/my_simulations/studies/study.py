@@ -1,4 +1,4 @@
-"""A study: what is run, varied, measured and kept, and its limits."""
+"""A study: its world, parameters, measurements, kept files and limits."""
 from __future__ import annotations
 
 from dataclasses import dataclass
@@ -100,11 +100,11 @@ class Study:
         duration: s of sim time of each case.
         seeds: seeds of each combination; a random plan takes them in turn.
         plan: how values are combined.
-        parameters: what is varied.
+        parameters: the varied parameters.
         measure: expressions by column of the table.
         require: conditions by name; a case in which one is false has failed.
         sample: s of sim time between two samples of signals.
-        trajectory: what is kept of the motion; None for nothing.
+        trajectory: the recorded part of the motion; None for nothing.
         limits: what a case may use.
         scenarios: roslaunch files with tests, each run by rostest instead of a world, as in
             `scenario_path`; empty for a study of worlds.

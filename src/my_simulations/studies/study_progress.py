@@ -1,4 +1,4 @@
-"""Tells how a study goes on: one line that is written again, or JSON lines."""
+"""Reports the progress of a study: one line that is overwritten, or JSON lines."""
 from __future__ import annotations
 
 import json

@@ -45,7 +45,7 @@ def rows_in_order(paths: Sequence[str]) -> Iterator[Row]:
 
 
 def cells(row: Row) -> Dict[str, Any]:
-    """A row by column; what was not measured is not there."""
+    """The values of a row by column, without those that were not measured."""
     found: Dict[str, Any] = {name: getattr(row, name) for name in _FIRST + _LAST}
     found.update({name: _plain(value) for name, value in row.settings.items()})
     found.update(row.values)

@@ -154,7 +154,7 @@ def _check_values(reader: ValueReader, name: str, target: Target, values: Sequen
     for value in values:
         needed = needed_of(target, value)
         if target.part == "iterations" and isinstance(value, float) and not value.is_integer():
-            needed = needed or "a whole number"  # the table would tell of another than was used
+            needed = needed or "a whole number"  # else the table would show another value
         if needed:
             reader.fault(path, f"'{name}' must be {needed}, is {value:g}")
             return

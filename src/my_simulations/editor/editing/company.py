@@ -14,7 +14,7 @@ CODE = "shared-edit"
 
 
 class Company:
-    """Sends notices to those whom they concern. Used in the thread of edits.
+    """Sends notices to the users that they concern. Used in the thread of edits.
 
     Args:
         hub: reaches the pages.
@@ -53,7 +53,7 @@ class Company:
 
     @contextlib.contextmanager
     def watching(self, client: int) -> Iterator[None]:
-        """While a client edits: whoever drags what it deletes hears of that, and so does it."""
+        """Notify users who drag a model that this client deletes, and the client itself."""
         yield
         me = self._people.name_of(client)
         for other, names in self._drags.gone().items():

@@ -1,4 +1,4 @@
-"""Bodies that somebody drags with the mouse: held, at rest, moved live; not yet a step of undo."""
+"""Bodies that users drag with the mouse: held at rest, moved live; not yet a step of undo."""
 from __future__ import annotations
 
 from typing import Dict, List
@@ -60,7 +60,7 @@ class Drags:
         return {name: mine[name] for name in names if name in mine}
 
     def moved(self, client: int, names: List[str]) -> None:
-        """A move has ended the client's drags of these; for others they begin anew."""
+        """End the client's drags of these names after a move; those of others start again."""
         for other, before in self._before.items():
             for name in names:
                 if name not in before:
@@ -75,7 +75,7 @@ class Drags:
         self._hold()
 
     def gone(self) -> Dict[int, List[str]]:
-        """Names that were dragged and are no more, by client; forgets them."""
+        """Return and forget the dragged names that no longer exist, by client."""
         lost: Dict[int, List[str]] = {}
         for client, before in self._before.items():
             for name in list(before):
@@ -87,7 +87,7 @@ class Drags:
         return lost
 
     def end(self, client: int) -> None:
-        """A client drags nothing any more; what it has not put down goes back."""
+        """End all drags of a client; bodies that it has not dropped return to where they were."""
         before = self._before.pop(client, {})
         for name, pose in before.items():
             if self.others(client, [name]):
@@ -100,7 +100,7 @@ class Drags:
             self._hold()
 
     def forget(self) -> None:
-        """Nobody drags anything any more, and all stays where it is: the world is another one."""
+        """End all drags where the bodies are: another world was opened."""
         self._before.clear()
         self._hold()
 

@@ -65,7 +65,7 @@ class Edits:
     """Makes operations of messages and has the history carry them out. One thread at a time.
 
     Args:
-        simulator: what is edited.
+        simulator: the simulator whose world is edited.
         resolver: finds what texts and URIs name.
         history: remembers.
         protocol: says which operations there are.
@@ -191,7 +191,7 @@ class Edits:
         first = entities[-1].pose
         names, parts = [], []
         for entity in entities:
-            # What comes from a file is the first of its name, not a copy.
+            # An entity from a file is the first of its name, not a copy.
             own = entity.name if op.get("source") else f"{entity.name}_clone"
             name = free_name(op.get("name") or own, taken)
             taken.add(name)

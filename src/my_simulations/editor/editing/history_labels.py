@@ -35,7 +35,7 @@ def listed(names: Sequence[str]) -> str:
 
 
 def short(target: str, model: Optional[Model]) -> str:
-    """A scoped name without the parts that nobody needs: a model's only link, and so on.
+    """A scoped name without redundant parts: a model's only link, and so on.
 
     `unit_box::link::collision:collision` of a box is `unit_box`; of a robot it stays
     `robot::wheel::collision`.

@@ -216,7 +216,7 @@ class ModelBuilding:
 
 
 def _check_xml(text: str) -> None:
-    """Files are repaired where Gazebo does so; what is being typed is not. Raises CommandError."""
+    """Raise CommandError for text that is no XML: only files are repaired, as Gazebo does."""
     from lxml import etree
 
     try:

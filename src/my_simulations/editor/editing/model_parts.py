@@ -1,7 +1,7 @@
 """Models with a part more, less or under another name, as the model editor makes them.
 
-All functions take a flattened model and return a copy; what is wrong with the result as a whole is
-found by `validate`.
+All functions take a flattened model and return a copy. `validate` finds faults of the result as a
+whole.
 """
 from __future__ import annotations
 

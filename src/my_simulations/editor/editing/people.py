@@ -11,7 +11,7 @@ _MOST_SELECTED = 50
 
 @dataclass
 class Person:
-    """Somebody at a page.
+    """A user of a page.
 
     Attributes:
         key: stays the same when the page is loaded again.
@@ -51,7 +51,7 @@ class People:
             self._here.pop(client, None)
 
     def rename(self, client: int, name: str) -> None:
-        """Somebody gives another name; what is no name, or another's, changes nothing."""
+        """Rename a user; an invalid name, or that of another user, changes nothing."""
         with self._lock:
             person = self._here.get(client)
             name = _tidy(name)
@@ -63,7 +63,7 @@ class People:
                     one.name = name
 
     def select(self, client: int, names: List[str]) -> None:
-        """Somebody has selected these."""
+        """Store the selection of a user."""
         with self._lock:
             if client in self._here:
                 self._here[client].selected = names[:_MOST_SELECTED]
@@ -79,7 +79,7 @@ class People:
             return changed
 
     def key_of(self, client: int) -> str:
-        """Whose edits this client's are; "" for nobody's."""
+        """The key under which this client's edits are recorded; "" for an unknown client."""
         with self._lock:
             return self._here[client].key if client in self._here else ""
 

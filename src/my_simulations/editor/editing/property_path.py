@@ -26,7 +26,7 @@ def with_value(target: T, path: str, value: Any) -> T:
     Args:
         target: a dataclass; it stays as it is.
         path: names of fields joined by dots; numbers are places in lists.
-        value: JSON; null where the field may be None.
+        value: JSON; null for an optional field without a value.
 
     Raises:
         CommandError: no such property, or the value does not fit it.
@@ -78,7 +78,7 @@ def _hints_of(target: Any) -> Dict[str, Any]:
 
 
 def _fresh(hint: Any, path: str) -> Any:
-    """A default object for an optional field that is None."""
+    """A default object for an optional field without a value."""
     for option in typing.get_args(hint):
         if is_dataclass(option) and all(
                 one.default is not MISSING or one.default_factory is not MISSING

@@ -1,7 +1,8 @@
-"""Edits that nobody saved, kept on disk, so that a crash of page, node or machine costs nothing.
+"""Unsaved edits, kept on disk, so that a crash of page, node or machine loses none.
 
-An entry is a world file and a small JSON file about it, each written whole. An entry whose process
-is gone is offered at the next start with the same world. What somebody discards stays for a week.
+An entry is a world file and a small JSON file about it, each written atomically. An entry whose
+process has ended is offered at the next start with the same world. Discarded entries stay for a
+week.
 """
 from __future__ import annotations
 
@@ -24,13 +25,13 @@ KEPT_S = 7.0 * _DAY_S
 """How long discarded changes can be recovered."""
 
 UNCLAIMED_S = 60.0 * _DAY_S
-"""How long changes are kept that nobody has discarded or restored."""
+"""How long changes are kept that were neither discarded nor restored."""
 
 
 @dataclass(frozen=True)
 class Entry:
     """`file`: the world it belongs to, "" for a new one; `saved_at` s since 1970; `launched`: the
-    models of it that a launch file had spawned; `discarded_at`: 0 unless somebody discarded it.
+    models of it that a launch file had spawned; `discarded_at`: 0 unless it was discarded.
     """
 
     about: str
@@ -90,7 +91,7 @@ class Autosave:
                 for entry in sorted(self._left(), key=lambda one: -one.saved_at)]
 
     def keep(self) -> None:
-        """Write the entry anew if there are edits that are not in it; remove it if there are none.
+        """Write the entry again if edits are missing in it; remove it if there are no edits.
 
         Blocks; call it now and then, from any thread.
         """
@@ -130,7 +131,7 @@ class Autosave:
         return found.file
 
     def discard(self) -> None:
-        """Offer what was found no more; it can be recovered for a while."""
+        """Stop offering the found entry; it can be recovered for a while."""
         if self.found is not None:
             self._mark_discarded(self.found.about)
             self.found = None
@@ -162,7 +163,7 @@ class Autosave:
             with open(about, encoding="utf-8") as stream:
                 data = json.load(stream)
         except FileNotFoundError:
-            return  # somebody else has recovered it
+            return  # another editor has recovered it
         except (OSError, ValueError) as fault:
             raise CommandError(f"{about}: {fault}") from fault
         data["discarded"] = time.time()

@@ -52,7 +52,7 @@ class LibraryRequests:
         return {kind: Route(handler, self._pool) for kind, handler in handlers.items()}
 
     async def watch(self) -> None:
-        """Push the library whenever it has changed, once somebody has asked for it."""
+        """Push the library after each change, from the first request for it."""
         loop = asyncio.get_running_loop()
         while True:
             await asyncio.sleep(_LOOK_S)
@@ -93,7 +93,7 @@ class LibraryRequests:
             raise CommandError(f"{uri!r} is not a model URI")
         self._library.provide(uri)
         entity, issues = entity_of_uri(uri, self._resolver)
-        # Nobody has asked for the models of the gallery's pictures.
+        # The gallery's pictures load models that the user did not request.
         for issue in () if message.get("quiet") else issues:
             self._tell(issue)
         return shown(entity, self._hub.documents)

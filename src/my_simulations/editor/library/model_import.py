@@ -82,7 +82,7 @@ def _stored(files: Dict[str, bytes], name: str, target: str, density: float,
 
 
 def _take_place(folder: str, target: str, former: str) -> None:
-    """Move a folder to `target`; what is there, perhaps a link, goes to `former`."""
+    """Move a folder to `target`; an existing folder or link there moves to `former`."""
     if not os.path.lexists(target):
         os.rename(folder, target)
         return

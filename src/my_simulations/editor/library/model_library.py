@@ -27,7 +27,7 @@ _LARGEST_CONFIG = 1 << 16
 _FORBIDDEN = ("/proc", "/sys", "/dev", "/etc", "/boot")
 _REMOTE = "remote"
 _FUEL = "fuel"
-_LOOK = 2  # of the pictures that the page draws: a new number has them drawn anew
+_LOOK = 2  # of the pictures that the page draws: a new number makes it draw them again
 
 Progress = Callable[[str, int, int], None]
 

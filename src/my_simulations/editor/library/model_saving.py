@@ -27,7 +27,7 @@ def save_model(message: Dict[str, Any], world: Simulator,
     loaded again.
 
     Raises:
-        InputError: what was written could not be read.
+        InputError: the written file could not be read.
         EditRefusedError: `exists`, where there is a folder of that name that must not be replaced.
         CommandError: no such model, no usable name, or the folder cannot be written.
     """

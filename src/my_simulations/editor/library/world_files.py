@@ -1,4 +1,4 @@
-"""World files: opened, saved, begun anew; and what a file dialog lists."""
+"""World files: opened, saved, created; and the entries of a file dialog."""
 from __future__ import annotations
 
 import os
@@ -57,8 +57,8 @@ class WorldFiles:
     def save(self, message: Dict[str, Any]) -> Dict[str, Any]:
         """`save`: to a path, or to where the world was opened or saved.
 
-        What is chosen with a path, holds for the next saves without one. A `copy` leaves the file
-        and the choices of this world as they are: it is the world as it is now, state and all.
+        Choices made with a path also apply to later saves without one. A `copy` leaves the file
+        and the choices of this world as they are: it is the world as it is now, with its state.
         """
         with self._lock:
             if message.get("copy"):
@@ -79,7 +79,7 @@ class WorldFiles:
             left_out = [] if self._chosen["launched"] else self._world.models.launched()
             self.file = save_world(self._world, target, roots=self.roots(), inline=inline,
                                    resolver=self._resolver, overwrite=overwrite,
-                                   despite_losses=True,  # whoever says overwrite was asked
+                                   despite_losses=True,  # the user confirmed it
                                    **self._chosen)
             self._ours.add(self.file)
             self._history.saved()

@@ -29,7 +29,7 @@ _LARGEST = 256 << 20
 
 
 def new_name() -> str:
-    """What a log is called that nobody gave a name: date and time."""
+    """The default name of a log: date and time."""
     return strftime("%Y-%m-%dT%H.%M.%S")
 
 

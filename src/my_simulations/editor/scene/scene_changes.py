@@ -13,7 +13,7 @@ from .scene_json import Documents
 
 @dataclass
 class News:
-    """A push, and the links whose poses every client must get anew (None: all)."""
+    """A push, and the links whose poses every client must receive again (None: all)."""
 
     push: Dict[str, Any]
     links: Optional[List[int]] = field(default_factory=list)

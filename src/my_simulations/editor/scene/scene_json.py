@@ -37,7 +37,7 @@ from .served_files import MESHES, ServedFiles
 NAMES = {Box: "box", Sphere: "sphere", Cylinder: "cylinder", Capsule: "capsule", Cone: "cone",
          Ellipsoid: "ellipsoid", Plane: "plane", Mesh: "mesh", Heightmap: "heightmap",
          Polyline: "polyline", ImageMap: "image"}
-"""`type` of a geometry; what is not here is "empty"."""
+"""`type` of a geometry; other kinds are "empty"."""
 
 _SCALABLE = (Box, Sphere, Cylinder, Capsule, Cone, Ellipsoid, Mesh, Polyline)
 

@@ -1,4 +1,4 @@
-"""Topics whose messages tell a part of the whole: tf and markers."""
+"""Topics whose messages contain a part of the whole: tf and markers."""
 from __future__ import annotations
 
 import math
@@ -109,7 +109,7 @@ class _Kept:
         return self._ends - now if math.isfinite(self._ends) else 0.0
 
     def is_expired(self, now: float) -> bool:
-        """Whether its lifetime is over, or sim time began anew."""
+        """Whether its lifetime is over, or sim time has started again."""
         return math.isfinite(self._ends) and not self._came <= now < self._ends
 
 

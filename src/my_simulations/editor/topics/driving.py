@@ -11,7 +11,7 @@ from ..transport.browser_client import Client
 
 KIND = "geometry_msgs/Twist"
 _SILENCE_S = 0.5
-"""A page that says nothing for so long drives no more: the robot stops."""
+"""The robot stops if a page sends no command for this time."""
 
 _KEPT_S = 5.0
 """How long a topic is offered after the last command."""

@@ -1,7 +1,7 @@
-"""Topics that pages look at: subscribed to while somebody does, sent as often as each page takes.
+"""Topics that pages show: subscribed to while one does, sent as often as each page accepts.
 
-Of what comes faster than it is shown only the newest message is converted. A page gets the next
-view of a topic when it has shown the one before, so a slow page costs nobody anything.
+If messages arrive faster than they are shown, only the newest one is converted. A page receives the
+next view of a topic after it has shown the one before, so a slow page does not delay others.
 """
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ TOPIC = 3
 
 _HEAD = struct.Struct("<II")
 _LOOK_S = 1.0
-"""How soon a topic is found that nobody published before."""
+"""How soon a topic with its first publisher is found."""
 
 
 def frame_of(head: Dict[str, Any], payload: bytes) -> bytes:
@@ -125,7 +125,7 @@ class LiveTopics:
             self._serve(topic)
 
     def traffic(self) -> Dict[str, LiveTopic]:
-        """The topics that are heard, with what comes on them."""
+        """The subscribed topics, with their message rates."""
         now = self._loop.time()
         for topic in self._topics.values():
             topic.count(now)

@@ -22,8 +22,8 @@ class UnviewableError(SimulationError):
 class Viewer:
     """Makes views of one topic's messages.
 
-    `take` may be called from any thread, `view` from another one; what is shown is the newest
-    message, or of topics that tell in parts (tf, markers) all that was told.
+    `take` may be called from any thread, `view` from another one. A view shows the newest
+    message, or, of topics that send parts (tf, markers), all parts received so far.
 
     Args:
         kind: the topic's type.
@@ -50,7 +50,7 @@ class Viewer:
             if self._kept is not None:
                 return "", 0.0, (self._kept.fields(), b"")
             frame, stamp = _header(message)
-            with np.errstate(all="ignore"):  # numbers that are none are no rarity here
+            with np.errstate(all="ignore"):  # NaN is common here
                 return frame, stamp, self._make(message)
         except (AttributeError, ValueError, TypeError, LookupError, ArithmeticError) as fault:
             raise UnviewableError(f"the message is not as its type says: {fault}") from fault
@@ -152,4 +152,4 @@ ACCUMULATED: Dict[str, Callable[[Callable[[], float]], Any]] = {
     "tf2_msgs/TFMessage": Transforms, "tf/tfMessage": Transforms,
     "visualization_msgs/Marker": Markers, "visualization_msgs/MarkerArray": Markers,
 }
-"""Types whose messages tell a part of the whole."""
+"""Types whose messages contain a part of the whole."""

@@ -47,8 +47,8 @@ class Guard:
     async def middleware(self, request: web.Request, handler: Handler) -> web.StreamResponse:
         """Refuse what is foreign; every answer gets careful headers, refusals too.
 
-        Whatever is not the page may do nothing if a browser opens it by itself: it may come from a
-        model that somebody else made.
+        Other documents may do nothing if a browser opens them directly: they may come from a
+        model of unknown origin.
         """
         problem = self._problem(request)
         try:

@@ -11,7 +11,7 @@ from aiohttp import web
 from .pose_messages import SentPoses
 
 _MOST_WAITING = 64 << 20
-"""Bytes, or so; a browser that is so far behind is cut off and starts anew."""
+"""Bytes, approximately; a browser that is so far behind is disconnected and connects again."""
 
 _FULL = 1 << 20
 
@@ -52,7 +52,7 @@ class Client:
 
     @property
     def full(self) -> bool:
-        """Whether what comes many times a second had better be left out."""
+        """Whether data sent many times a second should be left out."""
         return self._waiting > _FULL
 
     def post(self, message: Dict[str, Any]) -> None:

@@ -17,7 +17,7 @@ class RealTime:
     def __init__(self, simulator: Simulator) -> None:
         self._simulator = simulator
         self._at = time.monotonic_ns()
-        # The world may have run before anybody looked: as if in real time.
+        # The world may have run before the first reading: assume real time.
         self._real_ns = simulator.clock.sim_ns
         self._sim_ns = simulator.clock.sim_ns
         self._paused = simulator.clock.paused

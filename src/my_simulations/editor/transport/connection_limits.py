@@ -1,4 +1,4 @@
-"""Connections that say nothing: they end, so that nobody can use up the server's descriptors."""
+"""Ends idle connections, so that no client can use up the server's descriptors."""
 from __future__ import annotations
 
 import asyncio

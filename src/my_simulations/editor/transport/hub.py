@@ -112,7 +112,7 @@ class Hub:
             self._nudged.set()
 
     def stats_soon(self) -> None:
-        """Tell the time now; safe from any thread."""
+        """Send the statistics as soon as possible; safe from any thread."""
         self._stats_due = 0.0
         self.nudge()
 
@@ -165,7 +165,7 @@ class Hub:
         self._nudged.set()
 
     def want(self, states_hz: float) -> None:
-        """Have the engine read whole states so often, not only poses, while somebody listens."""
+        """Set how often the engine reads whole states, not only poses, for connected clients."""
         if states_hz != self._states_hz:
             self._states_hz = states_hz
             self._ask()

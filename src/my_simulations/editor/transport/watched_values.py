@@ -50,7 +50,7 @@ class Watches:
 
     def pushes(self, topics: Iterable[str]) -> Dict[str, Dict[str, Any]]:
         """The push of each topic, now."""
-        # The clock first: time goes on between the two, and what moves has a snapshot of that time.
+        # The clock first: a snapshot of a later time is harmless, one of an earlier time is not.
         self._step, clock = self._world.clock.now()
         entities, snapshot = self._world.states.latest()
         names = {entity.model.name: entity for entity in entities}

@@ -12,7 +12,7 @@ _ROUND = 32     # points on a circle
 _SPHERE = 256   # points on a sphere
 
 
-_THIN = 2.5        # times the distance: what is thinner is not shrunk
+_THIN = 2.5        # times the distance: thinner hulls are not shrunk
 _FARTHEST = 3.0    # times the distance: how far a sharp corner moves
 
 

@@ -175,7 +175,7 @@ def convex_pieces(mesh: Any) -> Optional[List[Hull]]:
     """The hulls of a mesh's separate pieces, if all are convex, such as a table of boxes.
 
     Those inside of another one are left out, such as the inner side of a closed shell: V-HACD fills
-    what is closed, too, and nothing can get there.
+    closed shells, too, and no body can get inside.
     """
     import numpy as np
     from trimesh.graph import connected_components

@@ -48,7 +48,7 @@ def _loaded(text: bytes) -> Any:
         raise ValueError(fault.msg) from None
     except RecursionError:
         raise
-    except RuntimeError:  # pycollada raises again what nobody has raised
+    except RuntimeError:  # pycollada has a bare `raise` outside of a handler
         raise ValueError("an element stands where COLLADA has no such element") from None
 
 

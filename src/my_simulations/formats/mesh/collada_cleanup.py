@@ -37,7 +37,7 @@ def tidied(data: bytes) -> Any:
     for child in list(root):
         if _local(child) not in _LIBRARIES:
             root.remove(child)
-    document.find_ids()  # what was removed is no target any more
+    document.find_ids()  # removed elements are no longer targets
     document.tidy_nodes()
     document.share_nodes()
     document.tidy_geometries()

@@ -18,7 +18,7 @@ def colored(shape: Any, faces: Array, uv: Optional[Array], paint: Paint,
             ) -> Tuple[Optional[Array], Paint]:
     """Texture coordinates (3 m, 2) and paint of a mesh of trimesh with its corners' colours.
 
-    `faces`: of it, in the order in which they are drawn; colours beside a picture are not heeded.
+    `faces`: of it, in the order in which they are drawn. Colours are ignored if there is a picture.
     """
     colors = None if paint.picture is not None else colors_of(shape, faces)
     if colors is None:

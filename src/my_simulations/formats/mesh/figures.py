@@ -25,9 +25,9 @@ from .painted import PaintedPart, corners_of, indexed
 from .part import MOST_TRIANGLES, MeshError
 
 _MOST_BONES = 4
-"""Of a vertex; as many as the editor's page heeds."""
+"""Of a vertex; as many as the editor's page uses."""
 _LARGEST = 64 << 20
-"""Bytes of a file with bones: nobody else has limited what reading an animation takes."""
+"""Bytes of a file with bones: no other limit applies to reading an animation."""
 
 
 @dataclass(frozen=True)
@@ -74,7 +74,7 @@ class FigureFile:
 
 @dataclass(frozen=True)
 class Movement:
-    """The animation of a file: what moves, how, and the file's unit in m."""
+    """The animation of a file: its bones, their keyframes, and the file's unit in m."""
 
     tree: Bones
     clip: Clip

@@ -51,8 +51,8 @@ class Clip:
 def clip_of(root: Any, tree: NodeTree) -> Optional[Clip]:
     """All animations of a file at once; None for none.
 
-    Gazebo heeds no `<animation_clip>`: a movement lasts until the last key. Between keys all goes
-    evenly, whatever `INTERPOLATION` says.
+    Gazebo ignores `<animation_clip>`: a movement lasts until the last key. Between keys it is
+    linear, whatever `INTERPOLATION` says.
 
     Raises:
         ValueError, LookupError: numbers that do not fit each other.

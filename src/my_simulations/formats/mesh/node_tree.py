@@ -10,7 +10,7 @@ from .part import MeshError
 
 MOST_NODES, _DEEPEST = 20_000, 100
 PLACINGS = ("matrix", "translate", "rotate", "scale")
-"""Elements that say where a node is; others (lookat, skew) are not heeded."""
+"""Elements that say where a node is; others (lookat, skew) are ignored."""
 
 Array = Any  # a NumPy array; its shape is documented at each use
 Placing = Tuple[str, str, Array]
@@ -23,7 +23,7 @@ def floats(element: Any) -> Array:
 
 
 class Bones:
-    """What hangs on what, each after the one that it hangs on.
+    """Bones and their parents, parents first.
 
     Attributes:
         names: by which animations of other files may find it: the sid of a joint, else the name.

@@ -69,7 +69,7 @@ def _picture(effect: Any) -> Any:
 def _opacity(effect: Any) -> float:
     """Of a COLLADA effect: 1 unless `<transparent opaque="...">` says how its colour is meant.
 
-    Gazebo's rule; pictures that say it are not heeded.
+    Gazebo's rule; pictures with transparency are ignored.
     """
     transparent = effect.transparent
     element = effect.xmlnode.find(".//{*}transparent")

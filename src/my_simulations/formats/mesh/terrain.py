@@ -61,9 +61,9 @@ def _terrain(path: str, changed: int, size: Tuple[float, float, float],
              position: Tuple[float, float, float], sampling: int) -> MeshData:
     """Black is at `position`, white `size[2]` above it; the image's top row is at +y.
 
-    A negative height inverts the levels. The lowest point of an elevation model is at its own
-    height above `position`, the highest `size[2]` above that; without a size, extent and heights
-    are those of the file. Source: SDF spec, heightmap, and Gazebo behaviour.
+    A negative height inverts the levels. The lowest point of an elevation model is at its height
+    in the file above `position`, the highest `size[2]` above that; without a size, extent and
+    heights are those of the file. Source: SDF spec, heightmap, and Gazebo behaviour.
     """
     import numpy as np
 

@@ -40,7 +40,7 @@ class Balanced:
         elements: number of start tags.
         hopeless: why repairing was given up; "" if it was not.
         repairs: the changes.
-        cut_off: what is missing at the end of a truncated text; "" if it is complete.
+        cut_off: the part missing at the end of a truncated text; "" if it is complete.
         cut_off_line: line where the incomplete part begins.
     """
 

@@ -16,7 +16,7 @@ URL = "~my_simulations/editor_url"
 
 
 _PROGRESS = ("meshes", "model-download")
-"""Codes of the notes that tell how far loading is."""
+"""Codes of the notes about the progress of loading."""
 
 
 class RunningEditor(Protocol):

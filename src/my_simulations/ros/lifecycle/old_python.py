@@ -2,7 +2,7 @@
 
 Its imports in several threads may fail: `from package.module import name` can see a module that
 another thread has imported half (issue 43517 of CPython, mended in 3.8.9 and 3.9.3). And its rospy
-calls `Thread.isAlive`, which Python 3.9 has no more.
+calls `Thread.isAlive`, which Python 3.9 has removed.
 """
 from __future__ import annotations
 

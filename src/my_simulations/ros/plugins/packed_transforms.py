@@ -20,7 +20,7 @@ class PackedTransforms(TFMessage):
     __slots__ = ["_packed"]
 
     def __init__(self, transforms: Sequence[TransformOf], ns: int) -> None:
-        # Not the fields: what is sent is in `_packed`.
+        # The fields stay empty: `_packed` holds the message.
         stamp = _STAMP.pack(0, *divmod(ns, 10 ** 9))
         parts = [_COUNT.pack(len(transforms))]
         for parent, child, pose in transforms:

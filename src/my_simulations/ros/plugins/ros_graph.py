@@ -29,12 +29,12 @@ class RosTopic:
 
     @property
     def wanted(self) -> bool:
-        """Whether anybody listens."""
+        """Whether the topic has a subscriber."""
         implementation = self._publisher.impl
         return implementation is not None and bool(implementation.connections)
 
     def send(self, message: Any) -> None:
-        """Publish; nobody hears it any more while the node ends."""
+        """Publish, unless the node is ending."""
         try:
             self._publish(message)
         except rospy.ROSException:
@@ -94,7 +94,7 @@ class RosGraph:
             try:
                 call(request, response)
             except SimulationError as fault:
-                # Of another exception rospy would log a traceback; the plugins' host tells of
+                # rospy would log a traceback of another exception; the plugin host reports
                 # faults itself, with file and line.
                 raise rospy.ServiceException(str(fault)) from fault
             return response

@@ -21,7 +21,7 @@ class ListedTopic(NamedTuple):
 
     Attributes:
         name: with a leading slash.
-        kind: type; "" where nobody knows it.
+        kind: type; "" if it is unknown.
         publishers, subscribers: how many nodes.
         model: the model whose plugin offers or hears it; "" for others.
         driven: whether a plugin of the model hears it.
@@ -54,7 +54,7 @@ class Heard:
         return sum(int(one.stat_bytes) for one in list(implementation.connections or ()))
 
     def close(self) -> None:
-        """Hear it no more."""
+        """End the subscription."""
         with contextlib.suppress(OSError):  # the master has gone
             self._subscriber.unregister()
 
@@ -72,7 +72,7 @@ class TopicGraph(RosGraph):
         self._uses, self._ask = uses, ask
 
     def topics(self) -> List[ListedTopic]:
-        """All topics that somebody publishes or hears. Raises OSError."""
+        """All topics with a publisher or subscriber. Raises OSError."""
         state: Any = self._ask("getSystemState") or ([], [], [])
         kinds: Dict[str, str] = dict(self._ask("getTopicTypes") or ())
         return listed(state, kinds, self._uses(), rospy.resolve_name)
@@ -113,7 +113,7 @@ def listed(state: Tuple[Any, Any, Any], kinds: Dict[str, str], uses: Iterable[To
 def _of_plugins(uses: List[TopicUse]) -> Tuple[str, bool, str, Pose]:
     models: Set[str] = {use.model for use in uses}
     if len(models) != 1:
-        return "", False, "", IDENTITY  # nobody's, or of several robots at once
+        return "", False, "", IDENTITY  # of no robot, or of several ones
     driven = any(use.heard for use in uses)
     sensor = next((use for use in uses if use.link and not use.heard), None)
     if sensor is None:

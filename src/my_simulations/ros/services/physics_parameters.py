@@ -27,7 +27,7 @@ class Parameter(Option):
     The names of those of `ode` are also in gazebo_msgs/ODEPhysics.
 
     Attributes:
-        ode: field of `description.world.OdePhysics`; "" for parameters that are none.
+        ode: field of `description.world.OdePhysics`; "" for other parameters.
     """
 
     ode: str = ""

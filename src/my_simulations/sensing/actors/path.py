@@ -4,7 +4,7 @@ Trajectories run one after the other, each from its first waypoint on, in world 
 the trajectory's `tension` joins their positions, another one their orientations (`turn_spline`).
 One without waypoints lasts as long as the animation that it names. All this is as in Gazebo; but
 an actor is at its `<pose>` in trajectories without waypoints, in Gazebo at the world's origin, and
-the distance along a path begins anew with each cycle, in Gazebo not in a loop of one trajectory.
+the distance along a path begins at 0 with each cycle, in Gazebo not in a loop of one trajectory.
 `delay_start` is waited for before each cycle (SDF spec 1.7, script/delay_start).
 """
 from __future__ import annotations
@@ -155,7 +155,7 @@ class ActorPath:
 
 
 def _slopes(points: List[Vec3], tension: float) -> List[Vec3]:
-    """Of a cardinal spline, which does not heed how long segments take (ignition::math::Spline).
+    """Slopes of a cardinal spline, independent of the durations (ignition::math::Spline).
 
     `tension` 0: Catmull-Rom; 1: straight, with a halt at each point.
     """

@@ -71,9 +71,9 @@ class Skeleton:
         return None
 
     def time_at(self, distance: float) -> Optional[float]:
-        """When, s, its root has gone that far along x, m; at its end it begins anew.
+        """The time, s, at which its root has gone that far along x, m; the movement repeats.
 
-        Gazebo's rule. None where the movement does not bring it on.
+        Gazebo's rule. None if the movement does not advance.
         """
         if self._way is None or self._way[1][-1] <= 0.0:
             return None

@@ -10,7 +10,7 @@ from ..api import CameraSpec, SensingError
 
 
 def check(spec: CameraSpec, most: int) -> None:
-    """Raises SensingError for a camera that nobody can draw; `most`: pixels a side."""
+    """Raise SensingError for a camera that cannot be drawn; `most`: pixels a side."""
     if not 0.0 < spec.hfov < math.pi and spec.lens is None:
         raise SensingError(f"a camera's angle of view lies between 0 and pi, not at {spec.hfov:g}")
     if not 0.0 < spec.near < spec.far < math.inf:

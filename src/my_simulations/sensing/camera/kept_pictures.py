@@ -8,7 +8,7 @@ import numpy as np
 _MOST = 16   # cameras
 
 Drawn = Tuple[Optional[np.ndarray], Optional[np.ndarray], Optional[np.ndarray]]
-"""Colours, depth and labels, as in `Pictures`; nobody writes into them."""
+"""Colours, depth and labels, as in `Pictures`; read-only."""
 
 
 class KeptPictures:

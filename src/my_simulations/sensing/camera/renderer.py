@@ -229,7 +229,7 @@ class Renderer:
         if self._scene.sky is not None:
             self._draw_sky(spec, view)
         if clear:
-            clear.sort(key=lambda one: one.ahead)  # what is behind shows through what is before it
+            clear.sort(key=lambda one: one.ahead)  # farther surfaces show through nearer ones
             self._draw_clear(clear, target, lighting)
         if samples > 1:
             whole = self._targets.get("rgb", spec.width, spec.height, 1)

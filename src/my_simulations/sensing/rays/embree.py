@@ -1,7 +1,7 @@
 """The few calls of Embree 4 that are needed, through ctypes.
 
 The library is the one that the `embreex` wheel carries: Debian's is Embree 3, and the wheel's
-Python module knows no instances. Source of names and numbers: Embree's API documentation.
+Python module has no instances. Source of names and numbers: Embree's API documentation.
 """
 from __future__ import annotations
 
@@ -79,7 +79,7 @@ class Embree:
             call = getattr(building if name == "rtcCommitScene" else library, name)
             call.restype, call.argtypes = result, arguments
             setattr(self, name, call)
-        # One thread: what is built is small, and the physics needs the other cores.
+        # One thread: the trees are small, and the physics needs the other cores.
         self.device = self.rtcNewDevice(b"threads=1,set_affinity=0")
         if not self.device:
             raise SensingUnavailableError("Embree does not run on this processor")

@@ -139,7 +139,7 @@ def parsed_fragment(xml: str) -> Any:
 
 
 def _is_uri(text: str) -> bool:
-    """Whether lxml declares a namespace of this name; what is none stays where the file has it."""
+    """Whether lxml accepts this text as a namespace; else it stays where the file has it."""
     try:
         etree.Element("all", nsmap={"prefix": text})
     except ValueError:
