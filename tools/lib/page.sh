@@ -72,6 +72,10 @@ bundle_page() {
     --minify-whitespace --minify-syntax --legal-comments=eof --log-level=warning --outdir=. \
     --entry-names='bundle/[name]' --chunk-names='bundle/[name]-[hash]' --metafile=meta.json ||
     return 0
+  recorded page-bundle env -C "$work" NODE_PATH="$own/node_modules" "$esbuild" \
+    "$CLONE/web/js/replay/main.js" --bundle --format=iife --target=es2022 --minify \
+    --define:import.meta.url='""' --legal-comments=eof --log-level=warning --outfile=replay.js ||
+    return 0
   printf '%s\n' "$sources" >"$work/sources"
   mv -- "$work" "$place"
   BUNDLE_REMARK=

@@ -633,22 +633,25 @@ case $3 in
     # npm 7 fetches the programs of other systems, too.
     for system in aix-ppc64 $(node -p 'process.platform + "-" + process.arch'); do
       mkdir -p $3/node_modules/@esbuild/$system/bin
-      printf '#!/bin/bash\n[[ $0 != *aix* ]] && mkdir bundle && cp $1 bundle/ && %s\n' \
-        'echo made >>$HOME/calls' >$3/node_modules/@esbuild/$system/bin/esbuild
+      printf '#!/bin/bash\n[[ $1 != */replay/* ]] || exec cp $1 replay.js\n%s && %s && %s\n' \
+        '[[ $0 != *aix* ]]' 'mkdir bundle && cp $1 bundle/' 'echo made >>$HOME/calls' \
+        >$3/node_modules/@esbuild/$system/bin/esbuild
       chmod +x $3/node_modules/@esbuild/$system/bin/esbuild
     done ;;
   *) mkdir -p $3/node_modules/three && echo 1 >$3/node_modules/three/package.json ;;
 esac
 """
 PACKED = "ws/.my_simulations/node_modules/my_simulations_page/bundle/main.js"
+PACKED_REPLAY = "ws/.my_simulations/node_modules/my_simulations_page/replay.js"
 
 
 @pytest.fixture
 def packed_home(clone, page_home):
     """As `page_home`, with a page of one module and what packs it."""
     (page_home / "bin" / "npm").write_text(NPM)
-    (clone / "web" / "js").mkdir()
+    (clone / "web" / "js" / "replay").mkdir(parents=True)
     (clone / "web" / "js" / "main.js").write_text("one();")
+    (clone / "web" / "js" / "replay" / "main.js").write_text("play();")
     return page_home
 
 
@@ -659,6 +662,7 @@ def test_modules_of_the_page_are_packed_once_and_again_after_an_edit(clone, pack
         done = shell(clone, PAGE, packed_home)
         assert done.returncode == 0 and f"{expected} (" in done.stdout, done.stderr
         assert (packed_home / PACKED).read_text() == text
+        assert (packed_home / PACKED_REPLAY).read_text() == "play();"
         calls = (packed_home / "calls").read_text().splitlines()
         assert calls.count("made") == made and len(calls) == made + 2
 

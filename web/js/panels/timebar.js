@@ -236,7 +236,7 @@ export class TimeBar {
       h('span', {text: '/'}),
       log.end,
       log.rate,
-      h('button', {type: 'button', text: 'Close log', onclick: () => this.actions.logClose()}),
+      h('button', {type: 'button', class: 'close-log', text: 'Close log', onclick: () => this.actions.logClose()}),
     );
   }
 

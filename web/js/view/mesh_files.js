@@ -25,15 +25,15 @@ const plainMaterial = new MeshPhongMaterial({color: 0xc8c8c8, specular: 0x0d0d0d
 const paintedMaterial = new MeshPhongMaterial({vertexColors: true, specular: 0x0d0d0d,
   side: DoubleSide});
 
-/** @param {string} url */
-async function bytes(url) {
-  const response = await fetch(url);
+/** @param {string} url @param {LoadingManager} manager */
+async function bytes(url, manager) {
+  const response = await fetch(manager.resolveURL(url));
   if (!response.ok) throw new Error(`${url}: ${response.status} ${response.statusText}`);
   return response.arrayBuffer();
 }
 
-/** @param {string} url */
-const text = async (url) => new TextDecoder().decode(await bytes(url));
+/** @param {string} url @param {LoadingManager} manager */
+const text = async (url, manager) => new TextDecoder().decode(await bytes(url, manager));
 /** three turns a scene unless its file says that y is up. */
 const UP_AXIS = /<up_axis>[^<]*<\/up_axis>/;
 const SHADING = /<(lambert|phong|blinn|constant)>.*?<\/\1>/gs;
@@ -87,31 +87,31 @@ const folder = (url) => url.slice(0, url.lastIndexOf('/') + 1);
 /** @param {string} url @param {LoadingManager} manager */
 async function readCollada(url, manager) {
   const [{ColladaLoader}, content] = await Promise.all([
-    import('three/addons/loaders/ColladaLoader.js'), text(url)]);
+    import('three/addons/loaders/ColladaLoader.js'), text(url, manager)]);
   const loader = new ColladaLoader(manager);
   const read = loader.parse(asGazeboReads(content), folder(url));
   if (!read) throw new Error(`${url} is not COLLADA`);
   return read.scene;
 }
 
-/** @param {string} url */
-async function readStl(url) {
+/** @param {string} url @param {LoadingManager} manager */
+async function readStl(url, manager) {
   const [{STLLoader}, content] = await Promise.all([
-    import('three/addons/loaders/STLLoader.js'), bytes(url)]);
+    import('three/addons/loaders/STLLoader.js'), bytes(url, manager)]);
   return new Mesh(new STLLoader().parse(content), plainMaterial);
 }
 
-/** The simulator's form of PLY files. @param {string} url */
-async function readPly(url) {
+/** The simulator's form of PLY files. @param {string} url @param {LoadingManager} manager */
+async function readPly(url, manager) {
   const [{PLYLoader}, content] = await Promise.all([
-    import('three/addons/loaders/PLYLoader.js'), bytes(url)]);
+    import('three/addons/loaders/PLYLoader.js'), bytes(url, manager)]);
   const geometry = new PLYLoader().parse(content);
   return new Mesh(geometry, geometry.hasAttribute('color') ? paintedMaterial : plainMaterial);
 }
 
-/** @param {string} url */
-async function readTerrain(url) {
-  const [{sharedCorners}, read] = await Promise.all([import('./terrain_grid.js'), readStl(url)]);
+/** @param {string} url @param {LoadingManager} manager */
+async function readTerrain(url, manager) {
+  const [{sharedCorners}, read] = await Promise.all([import('./terrain_grid.js'), readStl(url, manager)]);
   const found = sharedCorners(/** @type {Float32Array} */ (read.geometry.attributes.position.array));
   if (!found) return read;
   const {position, normal, uv, index} = found;
@@ -125,12 +125,12 @@ async function readTerrain(url) {
 async function readObj(url, manager) {
   const [{OBJLoader}, {MTLLoader}, content] = await Promise.all([
     import('three/addons/loaders/OBJLoader.js'), import('three/addons/loaders/MTLLoader.js'),
-    text(url)]);
+    text(url, manager)]);
   const loader = new OBJLoader(manager);
   const library = /^mtllib\s+(.+?)\s*$/m.exec(content)?.[1];
   if (library) {
     const address = new URL(encodeURI(library), new URL(url, location.href)).href;
-    const materials = new MTLLoader(manager).parse(await text(address), folder(address));
+    const materials = new MTLLoader(manager).parse(await text(address, manager), folder(address));
     materials.preload();
     loader.setMaterials(materials);
   }
@@ -152,7 +152,7 @@ function plainly(material) {
 /** @param {string} url @param {LoadingManager} manager */
 async function readGltf(url, manager) {
   const [{GLTFLoader}, content] = await Promise.all([
-    import('three/addons/loaders/GLTFLoader.js'), bytes(url)]);
+    import('three/addons/loaders/GLTFLoader.js'), bytes(url, manager)]);
   const {scene} = await new GLTFLoader(manager).parseAsync(content, folder(url));
   scene.traverse((object) => {
     if (!(object instanceof Mesh)) return;
@@ -162,9 +162,9 @@ async function readGltf(url, manager) {
   return scene;
 }
 
-/** @param {string} url */
-async function readBvh(url) {
-  const [{sceneOf}, content] = await Promise.all([import('./bvh.js'), text(url)]);
+/** @param {string} url @param {LoadingManager} manager */
+async function readBvh(url, manager) {
+  const [{sceneOf}, content] = await Promise.all([import('./bvh.js'), text(url, manager)]);
   return sceneOf(content);
 }
 
@@ -273,9 +273,13 @@ export class Meshes {
   /** @type {Map<string, MeshPart[]>} */
   #ready = new Map();
 
-  /** @param {(problem: string) => void} onProblem  called once for each file that cannot be read */
-  constructor(onProblem) {
+  /**
+   * @param {(problem: string) => void} onProblem  called once for each file that cannot be read
+   * @param {(url: string) => string} [resolveUrl]  returns where a file is loaded from
+   */
+  constructor(onProblem, resolveUrl) {
     this.onProblem = onProblem;
+    if (resolveUrl) this.manager.setURLModifier(resolveUrl);
     /** @type {Set<string>} */
     const told = new Set();
     this.manager.onStart = () => { this.#busy = true; };

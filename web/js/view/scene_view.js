@@ -82,12 +82,12 @@ export class View {
   #hands;
 
   /** @param {HTMLElement} element @param {ViewOptions} viewOptions */
-  constructor(element, {store, actions, connection, watches, topics}) {
+  constructor(element, {store, actions, connection, watches, topics, resolveUrl}) {
     this.#store = store;
     const stage = new Stage(element);
     this.#stage = stage;
     const meshes = new Meshes((message) =>
-      store.addIssue({severity: 'warning', code: 'resource', message}));
+      store.addIssue({severity: 'warning', code: 'resource', message}), resolveUrl);
     meshes.onArrived = () => stage.invalidate();
     meshes.onCount = counted((done, of) => store.emit('loading', {
       type: 'loading', title: 'Loading meshes and textures', text: '', done, of}));

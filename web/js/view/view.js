@@ -32,7 +32,11 @@ import {NoWebGL} from './stage.js';
 
 /** @typedef {InstanceType<typeof View>} SceneView */
 
-/** @typedef {Pick<ViewParts, 'store'|'actions'|'connection'|'watches'> & {topics: Topics}} ViewOptions */
+/**
+ * `resolveUrl` returns where a mesh or picture is loaded from; without it, from the simulator.
+ * @typedef {Pick<ViewParts, 'store'|'actions'|'connection'|'watches'> &
+ *   {topics: Topics, resolveUrl?: (url: string) => string}} ViewOptions
+ */
 
 const NO_WEBGL = `WebGL is not available in this browser, and the 3D view needs it. The tree, the
   properties, the time bar and saving work without it. To get the 3D view, enable hardware

@@ -135,6 +135,17 @@ class LogReader:
         """Give the file back."""
         self._file.close()
 
+    def times(self, period: float) -> List[float]:
+        """The times of states at least `period` apart, s: the first and last one, and the first one
+        after each document.
+        """
+        found: List[float] = []
+        for record, time in zip(self._states, self._times):
+            changed = record == 0 or self._records[record - 1].kind == DOCUMENT
+            if not found or changed or time >= found[-1] + period - 1e-9:
+                found.append(time)
+        return found if found[-1] == self.end else [*found, self.end]
+
     def seek(self, time: float) -> Tuple[int, Poses]:
         """The number of the document that holds at a time, and the poses then."""
         import numpy as np

@@ -1,0 +1,70 @@
+"""`replay`: writes a recorded run as one HTML file that plays it without a server."""
+from __future__ import annotations
+
+import argparse
+import os
+import sys
+from typing import Optional, Sequence
+
+from ..editor.logs.replay_page import STATES_HZ, write_replay
+from ..editor.logs.state_log import FILE
+from ..errors import CommandError
+from ..program_end import program
+from ..resources.resolver import Resolver
+from ..ros.arguments import Parser
+
+NAME = "replay"
+
+
+def parser() -> argparse.ArgumentParser:
+    """The command line."""
+    made = Parser(
+        prog=NAME, description="Write a recorded run as one HTML file with time bar and 3D view,"
+        " which a browser plays without a server and without a network. Needs no ROS master.",
+        epilog="Exit code: 0 on success, 1 if the run cannot be read or the file cannot be"
+        " written, 2 for an invalid command line.")
+    made.add_argument("run", metavar="RUN", help="a state log, or the folder that contains it;"
+                      " the editor, gzserver -r and `study export --log` record them")
+    made.add_argument("-o", "--output", metavar="FILE", default="",
+                      help="the HTML file (default: RUN.html in the working directory)")
+    made.add_argument("--title", default="", help="title of the page (default: name of the run)")
+    made.add_argument("--rate", type=float, default=STATES_HZ, metavar="HZ", help="states for each"
+                      " second of sim time; the page interpolates between them (default:"
+                      " %(default)g)")
+    return made
+
+
+@program
+def main(argv: Optional[Sequence[str]] = None) -> int:
+    """Run the command.
+
+    Args:
+        argv: the whole command line, program name first; default `sys.argv`.
+
+    Returns:
+        0 on success, 1 on failure, 2 for an invalid command line.
+    """
+    options = parser().parse_args((sys.argv if argv is None else list(argv))[1:])
+    log = log_of(options.run)
+    stem = os.path.splitext(os.path.basename(os.path.abspath(options.run)))[0]
+    output = options.output or f"{stem}.html"
+    try:
+        missing = write_replay(log, output, Resolver.from_environment(), options.title,
+                               options.rate)
+    except CommandError as fault:
+        print(f"{NAME}: {fault}", file=sys.stderr)
+        return 1
+    for address in missing:
+        print(f"{NAME}: {os.path.basename(address)} was not found; its model is shown without it",
+              file=sys.stderr)
+    print(os.path.abspath(output), flush=True)
+    return 0
+
+
+def log_of(run: str) -> str:
+    """The state log of a run: the file itself, or `state.log` in its folder."""
+    return os.path.join(run, FILE) if os.path.isdir(run) else run
+
+
+if __name__ == "__main__":
+    sys.exit(main())
