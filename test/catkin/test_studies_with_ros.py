@@ -12,6 +12,8 @@ from pathlib import Path
 import pytest
 from lxml import etree
 
+from my_simulations.editor.logs.state_log import LogReader
+
 REPOSITORY = Path(__file__).resolve().parents[2]
 STUDY = [sys.executable, str(REPOSITORY / "scripts" / "study")]
 SECONDS = 300.0
@@ -118,6 +120,20 @@ def test_each_test_of_a_folder_is_a_row_with_its_results(package):
     kept = package / "tests" / "scenarios" / falls["case"]
     assert etree.parse(str(kept / "junit.xml")).getroot().find(".//testcase").get(
         "name") == "test_height"
+    assert not (kept / "state.log").exists()
+
+
+def test_a_failed_scenario_keeps_a_replay(package):
+    (package / "test" / "falls.test").write_text(FALLS)
+    done = study(package, "scenarios: test/*.test\nvary:\n"
+                          "  below: {set: arg.below, values: [-1, 5]}\n", "--slots", "1")
+    assert done.returncode == 1, done.stderr
+    assert [row["status"] for row in table(package)] == ["failed", "ok"], done.stderr
+    case = table(package)[0]["case"]
+    log = LogReader(str(package / "tests" / "scenarios" / case / "state.log"))
+    assert '"ball"' in log.text(log.seek(log.end)[0]).decode()
+    assert os.listdir(package / "tests" / "replays") == [f"{case}.html"]
+    assert f"replays/{case}.html" in (package / "tests" / "report.html").read_text()
     assert processes_of(package) == []
 
 

@@ -16,6 +16,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from my_simulations.cli import study_command
+from my_simulations.editor.logs.state_log import LogReader
 from my_simulations.errors import CommandError
 from my_simulations.python_api import OpenWorld, WorldChoice
 from my_simulations.studies.command import main
@@ -510,3 +512,26 @@ measure:
     found = [(row["status"], row["attempt"], row["step"]) for row in table(folder)]
     assert found == [("failed", "1", "0"), ("ok", "1", "10"), ("failed", "1", "0")]
     assert all("step size" in row["issue"] for row in table(folder)[::2])
+
+
+def test_failed_cases_keep_replays_and_the_report_leads_to_them(folder):
+    text = DROP.replace("count: 20", "count: 3").replace("values: [0, 0.3, 0.6]", "values: [0]")
+    (folder / "s.yaml").write_text(text + "require: {low: initial(pose.box.z) < 0.5}\n")
+    for _ in range(2):      # the second run keeps what the first one wrote
+        assert study_command.main(["study", "run", "s.yaml", "--replays", "2"]) == 1
+        failed = [row["case"] for row in table(folder) if row["status"] == "failed"]
+        assert len(failed) == 1
+        replays = os.listdir(folder / "s" / "replays")
+        assert replays == [f"{failed[0]}.html"]
+    assert 'id="data"' in (folder / "s" / "replays" / replays[0]).read_text(encoding="utf-8")
+    assert f'<a href="replays/{failed[0]}.html">' in (folder / "s" / "report.html").read_text()
+    log = folder / "again.log"
+    assert study_command.main(["study", "export", failed[0], "--log", str(log), "--in", "s"]) == 0
+    assert LogReader(str(log)).end == pytest.approx(0.4)
+
+
+def test_without_replays_none_are_written(folder):
+    text = DROP.replace("count: 20", "count: 2") + "require: {never: final(time) < 0}\n"
+    (folder / "s.yaml").write_text(text)
+    assert study_command.main(["study", "run", "s.yaml", "--replays", "0"]) == 1
+    assert not (folder / "s" / "replays").exists()

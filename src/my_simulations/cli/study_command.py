@@ -5,14 +5,14 @@ import sys
 from typing import Optional, Sequence
 
 from ..program_end import program
-from ..studies.command import Record
 from ..studies.command import main as study
+from ..studies.replays import Record
 
 
 @program
 def main(argv: Optional[Sequence[str]] = None) -> int:
     """Run the command; see `studies.command.main`."""
-    return study(argv, records={"bag": _bag, "log": _log})
+    return study(argv, records={"bag": _bag, "log": _log}, write_replay=_write_replay)
 
 
 def _bag(path: str) -> Record:
@@ -25,6 +25,13 @@ def _log(path: str) -> Record:
     from .case_records import LogRecord
 
     return LogRecord(path)
+
+
+def _write_replay(log: str, path: str, title: str) -> None:
+    from ..editor.logs.replay_page import write_replay
+    from ..resources.resolver import Resolver
+
+    write_replay(log, path, Resolver.from_environment(), title)
 
 
 if __name__ == "__main__":

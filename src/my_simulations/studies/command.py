@@ -8,11 +8,11 @@ import os
 import shlex
 import signal
 import sys
+from functools import partial
 from types import FrameType
-from typing import Callable, List, Mapping, Optional, Protocol, Sequence, Set, Tuple
+from typing import Callable, List, Mapping, Optional, Sequence, Set, Tuple
 
 from ..errors import CommandError, InputError, SimulationError
-from ..python_api import OpenWorld
 from . import slurm
 from .case_world import opened, play
 from .cluster_address import SLURM, TlsFiles, scheduler_address
@@ -21,6 +21,7 @@ from .folder import REPORT, StudyFolder, shard_of
 from .journal import Journal, finished_cases
 from .plan import WHOLE, Case, CasePlan, Shard, number_of
 from .replacing import replaced
+from .replays import Record, WriteReplay, keep_replays
 from .report import write_report
 from .row import OK
 from .row_recorder import Recorder
@@ -35,27 +36,18 @@ from .table import rows_in_order
 NOT_ALL_OK, INVALID, INTERRUPTED = 1, 2, 130
 
 
-class Record(Protocol):
-    """A file that records what happens in a world."""
-
-    def look(self, world: OpenWorld) -> None:
-        """Add the present state."""
-
-    def close(self) -> None:
-        """Finish the file."""
-
-
 Records = Mapping[str, Callable[[str], Record]]
 
 
 def main(argv: Optional[Sequence[str]] = None, hook: Optional[Hook] = None,
-         records: Optional[Records] = None) -> int:
+         records: Optional[Records] = None, write_replay: Optional[WriteReplay] = None) -> int:
     """Run the command.
 
     Args:
         argv: the whole command line, program name first; default `sys.argv`.
         hook: see `Slot`.
         records: what makes the file of `export --bag` and of `export --log`, by "bag" and "log".
+        write_replay: writes a replay; None: failed cases keep none.
 
     Returns:
         The exit code, see `command_line.parser`.
@@ -64,6 +56,9 @@ def main(argv: Optional[Sequence[str]] = None, hook: Optional[Hook] = None,
     try:
         if options.action == "export" and (options.bag or options.log):
             return _record(options, records or {})
+        options.keep_replays = None
+        if write_replay is not None and records is not None and "log" in records:
+            options.keep_replays = partial(keep_replays, record=records["log"], write=write_replay)
         return _ACTIONS[options.action](options, hook)
     except InputError as fault:
         for issue in fault.issues:
@@ -169,7 +164,10 @@ def _work(options: argparse.Namespace, folder: StudyFolder, plan: CasePlan, shar
         journal.close()
     files = []
     if shard.of == 1 or folder.is_complete(plan):  # of many, the last one writes the table
-        files = [*folder.write_tables(plan, _tell), _report(folder, plan)]
+        files = folder.write_tables(plan, _tell)
+        if options.keep_replays is not None:
+            files += options.keep_replays(plan, folder, options.replays, _tell)
+        files.append(_report(folder, plan))
     return _tell_status(folder, plan, shard, options.json, files)
 
 

@@ -8,6 +8,7 @@ from ..program_end import ArgumentParser
 from .plan import WHOLE, Shard
 
 _SHARDS = 100
+_REPLAYS = 3
 
 
 def parser() -> argparse.ArgumentParser:
@@ -40,6 +41,9 @@ def parser() -> argparse.ArgumentParser:
                           help="folder of the results; default: the working directory")
     for each in (run, resume):
         _add_places(each)
+        each.add_argument("--replays", type=int, metavar="N", default=_REPLAYS,
+                          help="failed cases of which a replay is kept, one HTML file each;"
+                          f" default: {_REPLAYS}")
     for each in (run, resume, *parsers.values()):
         each.add_argument("--json", action="store_true", help="print JSON")
     return made

@@ -2,11 +2,13 @@
 from __future__ import annotations
 
 import math
+import os
 from html import escape
 from typing import Any, Dict, List, Sequence, Tuple
 
 from .plots import scatter
 from .replacing import replaced
+from .replays import replay_of
 from .row import OK, STATUSES, Row
 from .study import Study
 from .table import cells, columns_of, rows_in_order
@@ -40,7 +42,8 @@ def write_report(path: str, study: Study, paths: Sequence[str], have_run: int, c
     parts = [f'<!DOCTYPE html><html lang="en"><head><meta charset="utf-8"><title>'
              f'{escape(study.name)}</title><style>{_STYLE}</style></head><body>'
              f'<h1>{escape(study.name)}</h1><p><code>{escape(study.file)}</code></p>',
-             _summary(study, found, have_run), _plots(study, found), _failures(found, command),
+             _summary(study, found, have_run), _plots(study, found),
+             _failures(found, command, os.path.dirname(path)),
              _table(study, found), "</body></html>\n"]
     with replaced(path) as part, open(part, "w", encoding="utf-8") as stream:
         stream.write("\n".join(text for text in parts if text))
@@ -104,12 +107,20 @@ def _finite(value: Any) -> bool:
     return isinstance(value, (int, float)) and math.isfinite(value)
 
 
-def _failures(found: _Collected, command: str) -> str:
+def _replay(folder: str, case: str) -> str:
+    """A link to the replay of a case, if there is one."""
+    path = replay_of(folder, case)
+    if not os.path.isfile(path):
+        return ""
+    return f' <a href="{escape(os.path.relpath(path, folder))}">replay</a>'
+
+
+def _failures(found: _Collected, command: str, folder: str) -> str:
     if not found.causes:
         return ""
     rows = []
     for cause, count in sorted(found.cause_counts.items(), key=lambda item: -item[1]):
-        shown = "<br>".join(f"<code>{escape(command)} {row.case}</code>"
+        shown = "<br>".join(f"<code>{escape(command)} {row.case}</code>{_replay(folder, row.case)}"
                             for row in found.causes[cause])
         rows.append(f"<tr><td>{cause[0]}</td><td>{escape(cause[1])}</td><td>{count}</td>"
                     f"<td>{shown}</td></tr>")

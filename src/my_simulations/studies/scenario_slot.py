@@ -28,6 +28,9 @@ _LOOK_S = 0.1
 _END_S = 40.0            # for rostest and its nodes to end
 _MOST_BYTES = 1 << 20    # of a log that is kept
 _MOST_LOGS = 20
+_LONGEST_RECORDING = 64 << 20   # bytes
+RECORDING = "state.log"
+"""File of what the simulator recorded, of a scenario that is not ok."""
 
 
 def require_ros() -> None:
@@ -134,7 +137,8 @@ class ScenarioSlot:
         path, *arguments = words
         results, logs = os.path.join(folder, "results"), os.path.join(folder, "log")
         environment = {**os.environ, "ROS_HOME": folder, "ROS_LOG_DIR": logs,
-                       "ROS_TEST_RESULTS_DIR": results, "PYTHONUNBUFFERED": "1"}
+                       "ROS_TEST_RESULTS_DIR": results, "PYTHONUNBUFFERED": "1",
+                       "MY_SIMULATIONS_RECORD": os.path.join(folder, "recording")}
         command = [sys.executable, "-I", scenario_process.__file__, str(os.getpid()),
                    str(self._plan.study.limits.seconds), "rostest",
                    "--pkgdir", os.path.dirname(path), "--package", "study",
@@ -166,6 +170,10 @@ def _files(folder: str, junit: bytes, with_logs: bool) -> Dict[str, bytes]:
     """What is kept: results and output; logs of nodes where something went wrong."""
     found = {"junit.xml": junit, "output.txt": _end_of(os.path.join(folder, "output.txt"))}
     if with_logs:
+        recording = os.path.join(folder, "recording", RECORDING)
+        if os.path.isfile(recording) and os.path.getsize(recording) <= _LONGEST_RECORDING:
+            with open(recording, "rb") as stream:
+                found[RECORDING] = stream.read()
         logs = sorted(glob.glob(os.path.join(folder, "log", "**", "*.log"), recursive=True),
                       key=os.path.getsize, reverse=True)
         for path in logs[:_MOST_LOGS]:

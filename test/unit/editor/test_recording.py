@@ -270,3 +270,12 @@ def test_recording_imports_nothing_that_serves_pages(tmp_path):
                "assert not {'aiohttp', 'asyncio', 'numpy', 'trimesh', 'lxml'} & set(sys.modules), "
                "sorted(sys.modules)")
     subprocess.run([sys.executable, "-B", "-c", program, *sys.path], timeout=60, check=True)
+
+
+def test_a_variable_makes_each_server_record(monkeypatch):
+    monkeypatch.setenv("MY_SIMULATIONS_RECORD", "/somewhere")
+    found = parse([]).recording
+    assert (found.on, found.path) == (True, "/somewhere")
+    assert parse(["--record_path", "/elsewhere"]).recording.path == "/elsewhere"
+    monkeypatch.setenv("MY_SIMULATIONS_RECORD", "")
+    assert not parse([]).recording.on

@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import argparse
+import os
 from dataclasses import dataclass, field
 from math import isfinite
 from typing import List, Optional, Sequence
@@ -14,6 +15,9 @@ DEFAULT_WORLD = "worlds/empty.world"
 ENGINES = ("ode", "bullet", "dart", "simbody")
 """Values of Gazebo's option `-e`."""
 
+
+RECORD_VARIABLE = "MY_SIMULATIONS_RECORD"
+"""Environment variable with the folder in which each server records a state log."""
 
 RECORD_ENCODINGS = ("zlib", "bz2", "txt")
 """Values of Gazebo's option `--record_encoding`."""
@@ -160,6 +164,9 @@ def parse(argv: Sequence[str], program: str = "gzserver") -> ServerOptions:
         reader.exit(0, f"my_simulations {__version__}\n")
     if given.play:
         reader.error(f"argument -p/--play: not supported; open {given.play} in the world editor")
+    folder = os.environ.get(RECORD_VARIABLE, "")
+    if folder:
+        given.record, given.record_path = True, given.record_path or folder
     recording = Recording(
         given.record, given.record_encoding, given.record_path, given.record_period,
         given.record_filter, given.record_resources)
