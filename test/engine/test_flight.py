@@ -1,17 +1,18 @@
-"""hector's quadrotor with real physics: hovering, velocity commands, terminal velocities."""
+"""Quadrotors with real physics: hovering, commands, terminal velocities."""
 from __future__ import annotations
 
 import math
 
+import numpy as np
 import pytest
 from plugin_case import PluginCase, kept
 from wheeled_robots import plugin
 
-from my_simulations.description.model import Inertial, Link, Model
+from my_simulations.description.model import Inertial, Joint, JointAxis, Link, Model
 from my_simulations.description.shapes import Box, Collision
 from my_simulations.description.world import World
 from my_simulations.engine.bullet.backend import BulletBackend
-from my_simulations.geometry import Pose, rpy_from_quat
+from my_simulations.geometry import Pose, rotate, rpy_from_quat
 from my_simulations.plugins.testing import Message
 
 MASS, G = 1.5, 9.8
@@ -129,3 +130,94 @@ def test_a_falling_quadrotor_reaches_the_velocity_at_which_drag_carries_it(case)
     one.hear("/wind", x=0.0, y=0.0, z=terminal)
     one.sim.clock.advance(6000)
     assert one.sim.states.model_state("quadrotor")[1].linear[2] == pytest.approx(0.0, abs=0.02)
+
+
+# -- RotorS --------------------------------------------------------------------------------------
+
+THRUST, MOMENT, ARM, ROTOR_MASS = 8.54858e-06, 0.016, 0.2, 0.005
+ARMS = ((ARM, 0.0), (0.0, ARM), (-ARM, 0.0), (0.0, -ARM))
+WAYS = (1.0, -1.0, 1.0, -1.0)   # counter-clockwise and clockwise
+TOTAL = MASS + 4 * ROTOR_MASS
+
+
+def rotors_model():
+    """A body with four rotors, and the plugins of RotorS."""
+    body = Link("base_link", inertial=Inertial(MASS, ixx=0.03, iyy=0.03, izz=0.06),
+                collisions=[Collision("c", Box((0.3, 0.3, 0.1)))])
+    links, joints, plugins = [body], [], []
+    for number, ((x, y), way) in enumerate(zip(ARMS, WAYS)):
+        links.append(Link(f"rotor_{number}", Pose((x, y, 0.0)),
+                          Inertial(ROTOR_MASS, ixx=1e-6, iyy=4e-5, izz=4e-5)))
+        joints.append(Joint(f"rotor_{number}_joint", "continuous", "base_link", f"rotor_{number}",
+                            axis=JointAxis((0.0, 0.0, 1.0))))
+        plugins.append(plugin(
+            "librotors_gazebo_motor_model.so",
+            f"<robotNamespace>mav</robotNamespace><jointName>rotor_{number}_joint</jointName>"
+            f"<linkName>rotor_{number}</linkName><motorNumber>{number}</motorNumber>"
+            f"<turningDirection>{'ccw' if way > 0.0 else 'cw'}</turningDirection>"
+            "<commandSubTopic>gazebo/command/motor_speed</commandSubTopic>"
+            f"<motorSpeedPubTopic>motor_speed/{number}</motorSpeedPubTopic>"))
+    plugins.append(plugin("librotors_gazebo_odometry_plugin.so",
+                          "<robotNamespace>mav</robotNamespace><linkName>base_link</linkName>"))
+    return Model("mav", Pose((0.0, 0.0, 0.06)), links=links, joints=joints, plugins=plugins)
+
+
+def rotor_speeds(told, velocity, position=None, heading=0.0):
+    """Speeds that make a multirotor move at a velocity, or stay at a position, by its odometry.
+
+    A geometric controller (Lee, Leok, McClamroch 2010): the thrust is the wanted force along the
+    axis of the body, the torque turns that axis towards the force.
+    """
+    at, turn = told.pose.pose.position, told.pose.pose.orientation
+    turn = (turn.x, turn.y, turn.z, turn.w)
+    linear, angular = told.twist.twist.linear, told.twist.twist.angular
+    moving = np.array(rotate(turn, (linear.x, linear.y, linear.z)))
+    lack = 2.5 * (np.array(velocity) - moving)
+    if position is not None:
+        lack = lack + 2.0 * (np.array(position) - np.array((at.x, at.y, at.z)))
+    force = TOTAL * (lack + np.array((0.0, 0.0, G)))
+    body = np.array([rotate(turn, axis) for axis in ((1, 0, 0), (0, 1, 0), (0, 0, 1))]).T
+    up = force / np.linalg.norm(force)
+    left = np.cross(up, (math.cos(heading), math.sin(heading), 0.0))
+    left /= np.linalg.norm(left)
+    wanted = np.array([np.cross(left, up), left, up]).T
+    skew = wanted.T @ body - body.T @ wanted
+    error = 0.5 * np.array((skew[2, 1], skew[0, 2], skew[1, 0]))
+    rate = np.array((angular.x, angular.y, angular.z))
+    torque = -np.array((0.03, 0.03, 0.06)) * (60.0 * error + 14.0 * rate)
+    thrusts = np.linalg.solve(np.array([(1.0, y, -x, -way * MOMENT)
+                                        for (x, y), way in zip(ARMS, WAYS)]).T,
+                              (force @ body[:, 2], *torque))
+    return [math.sqrt(max(0.0, value) / THRUST) for value in thrusts]
+
+
+def steer(one, seconds, **wanted):
+    """Have a controller fly at 100 Hz by what the odometry says."""
+    for _ in range(round(seconds * 100)):
+        told = one.last("mav/odometry", one.now())
+        one.graph.sent.clear()
+        one.hear("mav/gazebo/command/motor_speed",
+                 angular_velocities=rotor_speeds(told, **wanted))
+        one.sim.clock.advance(10)
+    return one.last("mav/odometry", one.now())
+
+
+def test_a_multirotor_of_rotors_hovers_where_its_controller_says_and_follows_velocities(case):
+    one = case(rotors_model())
+    one.graph.ignored |= {"mav/pose", "mav/pose_with_covariance", "mav/position", "mav/transform"}
+    one.sim.clock.advance(10)
+    still = (0.0, 0.0, 0.0)
+    steer(one, 8.0, velocity=still, position=(0.5, -0.5, 1.0))
+    pose, twist = one.sim.states.model_state("mav")
+    assert pose.position == pytest.approx((0.5, -0.5, 1.0), abs=0.01)
+    assert twist.linear == pytest.approx(still, abs=0.01)
+    # Each rotor carries a quarter of the weight.
+    speeds = [one.graph.on(f"mav/motor_speed/{number}")[-1].data * 10.0 for number in range(4)]
+    hover = math.sqrt(TOTAL * G / 4.0 / THRUST)
+    assert [abs(speed) for speed in speeds] == pytest.approx([hover] * 4, rel=5e-3)
+    assert [math.copysign(1.0, speed) for speed in speeds] == list(WAYS)
+    steer(one, 5.0, velocity=(1.0, 0.5, 0.2))
+    _, twist = one.sim.states.model_state("mav")
+    # The drag of the rotors along the ground, 4 k w v, is what the controller's gain leaves.
+    left = 2.5 * TOTAL / (2.5 * TOTAL + 4.0 * 1e-4 * hover)
+    assert twist.linear == pytest.approx((1.0 * left, 0.5 * left, 0.2), abs=0.02)

@@ -83,6 +83,15 @@ BUILT_IN: Mapping[str, str] = {
     "libhector_gazebo_quadrotor_propulsion.so": "flight.quadrotor_propulsion:QuadrotorPropulsion",
     "libhector_gazebo_quadrotor_aerodynamics.so":
         "flight.quadrotor_aerodynamics:QuadrotorAerodynamics",
+    "librotors_gazebo_motor_model.so": "flight.motor_model:MotorModel",
+    "librotors_gazebo_multirotor_base_plugin.so": "flight.multirotor_base:MultirotorBase",
+    "librotors_gazebo_controller_interface.so": "flight.multirotor_base:ControllerInterface",
+    "librotors_gazebo_odometry_plugin.so": "flight.rotors_odometry:RotorsOdometry",
+    "librotors_gazebo_imu_plugin.so": "flight.rotors_sensors:RotorsImu",
+    "librotors_gazebo_magnetometer_plugin.so": "flight.rotors_sensors:RotorsMagnetometer",
+    "librotors_gazebo_pressure_plugin.so": "flight.rotors_sensors:RotorsPressure",
+    "librotors_gazebo_gps_plugin.so": "flight.rotors_sensors:RotorsGps",
+    "librotors_gazebo_wind_plugin.so": "flight.rotors_wind:RotorsWind",
     "libmy_simulations_segmentation_camera.so": "sensors.segmentation:SegmentationCamera",
     "libmy_simulations_gps.so": "sensors.environment:GpsSensor",
     "libmy_simulations_magnetometer.so": "sensors.environment:MagnetometerSensor",
@@ -94,7 +103,7 @@ PROVIDED = ("libgazebo_ros_api_plugin.so", "libgazebo_ros_paths_plugin.so",
             "libgazebo_ros_init.so", "libgazebo_ros_factory.so",
             "libroboticsgroup_gazebo_disable_link_plugin.so",
             "libroboticsgroup_upatras_gazebo_disable_link_plugin.so",
-            "libgazebo_ros_template.so")
+            "libgazebo_ros_template.so", "librotors_gazebo_ros_interface_plugin.so")
 """What these libraries do, the simulator itself does, or it is nothing here."""
 
 _EXPORT = re.compile(r"<my_simulations\b([^>]*)>")

@@ -14,6 +14,7 @@ class Graph:
     def __init__(self, parameters=None):
         self.parameters = parameters or {}
         self.sent, self.heard, self.transforms = [], {}, []
+        self._calls = {}
         self.ignored, self._listeners = set(), []
 
     def message(self, kind):
@@ -39,12 +40,16 @@ class Graph:
         return Topic()
 
     def subscribe(self, name, kind, call, queue):
-        self.heard[name] = call
-        heard = self.heard
+        heard, calls = self.heard, self._calls.setdefault(name, [])
+        calls.append(call)
+        heard[name] = call if len(calls) == 1 else (
+            lambda *messages: [one(*messages) for one in list(calls)])
 
         class Closing:
             def close(self):
-                heard.pop(name, None)
+                calls.remove(call)
+                if not calls:
+                    heard.pop(name, None)
         return Closing()
 
     def serve(self, name, kind, call):

@@ -1,0 +1,148 @@
+"""librotors_gazebo_motor_model.so: a rotor of a multirotor.
+
+Parameters, defaults, topics and laws are those of rotors_gazebo_plugins; the drag of a rotor is
+that of Martin and Salaun, The True Role of Accelerometer Feedback in Quadrotor Control, ICRA 2010.
+Where it differs: the motor that turns the rotor acts back on the body that carries it; nothing acts
+before the first command.
+"""
+from __future__ import annotations
+
+import math
+from typing import Any, Callable, Optional, Sequence
+
+from ...engine.drive_commands import JointServo, PidGains
+from ...geometry import Vec3, add, dot, rotate, scale, subtract
+from ..base import Plugin
+from ..context import Ending, PluginError
+from ..finite_messages import finite_only
+from ..parameters import namespace_or
+
+ACTUATORS = "mav_msgs/Actuators"
+_MOTOR_EFFORT = 1e3   # N m: the motor follows its speed in one step
+_TURNS = {"ccw": 1.0, "cw": -1.0}
+
+
+class MotorModel(Plugin):
+    """Turns `<jointName>`; thrust and drag act on `<linkName>`, moments on its parent."""
+
+    def load(self) -> None:
+        """Read parameters; offer topics."""
+        context, p = self.context, self.context.parameters
+        context.use_namespace(namespace_or(p, ""))
+        for name in ("jointName", "linkName", "motorNumber"):
+            if not p.text(name):
+                raise PluginError(f"it has no <{name}>")
+        self._joint, self._link = context.joint(p.text("jointName")), context.link(
+            p.text("linkName"))
+        self._parent = context.link(self._joint.parent)
+        self._number = p.integer("motorNumber", 0)
+        self._direction = p.choice("turningDirection", _TURNS, -1.0)
+        self._kind = p.text("motorType", "velocity")
+        if self._kind not in ("velocity", "position", "force"):
+            raise PluginError(f"<motorType> must be velocity, position or force, it is"
+                              f" '{self._kind}'")
+        self._most_speed = p.number("maxRotVelocity", 838.0)
+        self._thrust_constant = p.number("motorConstant", 8.54858e-06)
+        self._moment_constant = p.number("momentConstant", 0.016)
+        self._drag = p.number("rotorDragCoefficient", 1.0e-4)
+        self._rolling = p.number("rollingMomentCoefficient", 1.0e-6)
+        self._up_time = p.positive("timeConstantUp", 1.0 / 80.0)
+        self._down_time = p.positive("timeConstantDown", 1.0 / 40.0)
+        self._slowdown = p.positive("rotorVelocitySlowdownSim", 10.0)
+        command = p.text("commandSubTopic", "command/motor_speed")
+        context.subscribe(command, ACTUATORS, finite_only(context, command, self._hear))
+        self._offer_wind(p.text("windSpeedSubTopic", "wind_speed"))
+        self._offer_states()
+        self._timer: Optional[Ending] = None
+        self.reset()
+
+    def _offer_wind(self, topic: str) -> None:
+        self._wind: Vec3 = (0.0, 0.0, 0.0)
+        try:
+            self.context.subscribe(topic, "rotors_comm/WindSpeed",
+                                   finite_only(self.context, topic, self._hear_wind))
+        except PluginError as missing:
+            self.context.info(f"no wind by a topic: {missing}")
+
+    def _offer_states(self) -> None:
+        """Speed, and with a topic also position and effort, in every step with a subscriber."""
+        p, joint = self.context.parameters, self._joint
+        self._offer(p.text("motorSpeedPubTopic", "motor_speed"), lambda: joint.velocity)
+        if p.text("motorPositionPubTopic"):
+            self._offer(p.text("motorPositionPubTopic"), lambda: joint.position)
+        if p.text("motorForcePubTopic"):
+            self._offer(p.text("motorForcePubTopic"),
+                        lambda: self.context.efforts([joint.name])[0], [joint.name])
+
+    def _offer(self, name: str, read: Callable[[], float], efforts: Sequence[str] = ()) -> None:
+        topic = self.context.publish(name, "std_msgs/Float32")
+
+        def publish() -> None:
+            message = self.context.message("std_msgs/Float32")
+            message.data = read()
+            topic.publish(message)
+
+        self.context.observe(0.0, publish, [topic], efforts=efforts)
+
+    def reset(self) -> None:
+        """The rotor stands."""
+        if self._timer is not None:
+            self._timer.end()
+            self._timer = None
+        self._wanted = self._speed = 0.0
+        self.clock_set()
+
+    def clock_set(self) -> None:
+        """Lags count from here."""
+        self._last_ns = self.context.now_ns
+
+    def _hear_wind(self, message: Any) -> None:
+        self._wind = (message.velocity.x, message.velocity.y, message.velocity.z)
+
+    def _hear(self, message: Any) -> None:
+        values = message.angular_velocities
+        if self._number >= len(values):
+            self.context.warn(f"a command for {len(values)} motors has none for motor"
+                              f" {self._number}")
+            return
+        wanted = float(values[self._number])
+        if self._kind == "velocity":
+            self._wanted = min(wanted, self._most_speed)
+            if self._timer is None:
+                self.clock_set()
+                self._timer = self.context.every(0.0, self.update)
+        elif self._kind == "force":
+            self._joint.steer(JointServo(0, "effort", target=wanted))
+        else:
+            self._joint.steer(self._position_servo(wanted))
+
+    def _position_servo(self, angle: float) -> JointServo:
+        found = self.context.parameters.children("joint_control_pid")
+        if not found:
+            raise PluginError("it has no <joint_control_pid>")
+        pid = found[0]
+        most = pid.number("cmdMax", 0.0)
+        return JointServo(
+            0, "effort", target=angle, wraps=True, most_effort=most if most > 0.0 else math.inf,
+            gains=PidGains(pid.number("p", 0.0), pid.number("i", 0.0), pid.number("d", 0.0),
+                           -abs(pid.number("iMin", 0.0)), abs(pid.number("iMax", 0.0))))
+
+    def update(self) -> None:
+        """Before each step."""
+        dt = (self.context.now_ns - self._last_ns) * 1e-9
+        self._last_ns = self.context.now_ns
+        speed = self._joint.velocity * self._slowdown
+        thrust = self._direction * math.copysign(speed * speed, speed) * self._thrust_constant
+        turn = self._link.pose.orientation
+        axis = rotate(turn, (0.0, 0.0, 1.0))
+        air = subtract(self._link.twist.linear, self._wind)
+        across = subtract(air, scale(axis, dot(air, axis)))
+        self.context.push(self._link.name,
+                          add(scale(axis, thrust), scale(across, -abs(speed) * self._drag)),
+                          (0.0, 0.0, 0.0))
+        self.context.push(self._parent.name, (0.0, 0.0, 0.0), add(
+            scale(axis, -self._direction * thrust * self._moment_constant),
+            scale(across, -abs(speed) * self._rolling)))
+        lag = self._up_time if self._wanted > self._speed else self._down_time
+        self._speed = self._wanted + (self._speed - self._wanted) * math.exp(-dt / lag)
+        self._joint.drive(self._direction * self._speed / self._slowdown, _MOTOR_EFFORT)

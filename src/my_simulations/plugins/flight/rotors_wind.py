@@ -1,0 +1,78 @@
+"""librotors_gazebo_wind_plugin.so: a constant force and a gust on a link, and the wind's speed.
+
+Parameters, defaults and topics are those of rotors_gazebo_plugins. Where it differs: fields of wind
+in files (`<useCustomStaticWindField>`) are not supported.
+"""
+from __future__ import annotations
+
+from typing import Optional
+
+from ...geometry import Vec3, add, cross, norm, rotate, scale, subtract
+from ..base import Plugin
+from ..context import PluginError, Publication
+from ..frames import stamped
+from ..parameters import namespace_or
+from .body_wrench import fill_wrench
+
+
+class RotorsWind(Plugin):
+    """Acts on `<linkName>` at `<xyzOffset>`."""
+
+    def load(self) -> None:
+        """Read parameters; offer topics."""
+        context, p = self.context, self.context.parameters
+        context.use_namespace(namespace_or(p, ""))
+        self._link = context.link(p.text("linkName", "base_link"))
+        self._offset, self._frame = p.vector("xyzOffset"), p.text("frameId", "world")
+        if p.flag("useCustomStaticWindField", False):
+            context.warn("<useCustomStaticWindField> is not supported; the wind has the speed"
+                         " <windSpeedMean> everywhere")
+        way = _unit(p.vector("windDirection", (1.0, 0.0, 0.0)))
+        self._steady = scale(way, p.number("windForceMean", 0.0))
+        self._gust = scale(_unit(p.vector("windGustDirection", (0.0, 1.0, 0.0))),
+                           p.number("windGustForceMean", 0.0))
+        self._velocity = scale(way, p.number("windSpeedMean", 0.0))
+        start = p.number("windGustStart", 10.0)
+        self._gust_ns = (round(start * 1e9),
+                         round((start + p.number("windGustDuration", 0.0)) * 1e9))
+        self._force = context.publish(p.text("windForcePubTopic", "external_force"),
+                                      "geometry_msgs/WrenchStamped")
+        context.observe(0.0, self._publish_force, [self._force])
+        self._speed: Optional[Publication] = None
+        try:
+            self._speed = context.publish(p.text("windSpeedPubTopic", "wind_speed"),
+                                          "rotors_comm/WindSpeed")
+            context.observe(0.0, self._publish_speed, [self._speed])
+        except PluginError as missing:
+            context.info(f"the speed of the wind is not published: {missing}")
+        if any(self._steady) or any(self._gust):
+            context.every(0.0, self.update)
+
+    def force(self) -> Vec3:
+        """On the link now, N, world axes."""
+        start, end = self._gust_ns
+        blows = start <= self.context.now_ns < end
+        return add(self._steady, self._gust) if blows else self._steady
+
+    def update(self) -> None:
+        """Before each step."""
+        arm = rotate(self._link.pose.orientation,
+                     subtract(self._offset, self._link.inertial.pose.position))
+        force = self.force()
+        self.context.push(self._link.name, force, cross(arm, force))
+
+    def _publish_force(self) -> None:
+        message = stamped(self.context, "geometry_msgs/WrenchStamped", self._frame)
+        fill_wrench(message.wrench, (self.force(), (0.0, 0.0, 0.0)))
+        self._force.publish(message)
+
+    def _publish_speed(self) -> None:
+        assert self._speed is not None
+        message = stamped(self.context, "rotors_comm/WindSpeed", self._frame)
+        message.velocity.x, message.velocity.y, message.velocity.z = self._velocity
+        self._speed.publish(message)
+
+
+def _unit(vector: Vec3) -> Vec3:
+    size = norm(vector)
+    return scale(vector, 1.0 / size) if size > 0.0 else vector
