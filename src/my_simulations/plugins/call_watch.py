@@ -29,6 +29,10 @@ class CallOverdue(BaseException):
     """Raised in a thread whose call is overdue; no `except Exception` of a plugin stops it."""
 
 
+class ThreadAbandoned(BaseException):
+    """Raised in a thread that returns from a call after it was abandoned: it must end."""
+
+
 class Patience(NamedTuple):
     """How long a call may take.
 
@@ -41,8 +45,8 @@ class Patience(NamedTuple):
     waiting: float = 30.0
 
     def longer(self) -> "Patience":
-        """For work that may take five times as long."""
-        return Patience(5.0 * self.computing, 5.0 * self.waiting)
+        """For a call that may compute twice as long."""
+        return Patience(2.0 * self.computing, self.waiting)
 
 
 PATIENCE = Patience()
@@ -56,6 +60,7 @@ class _Call:
         looked: whether it was looked at. Its times count from the first look on, so that the many
             calls that come back before it cost nothing.
         interrupted: monotonic time; 0 before.
+        abandoned: another thread has taken over.
     """
 
     def __init__(self, subject: Any, patience: Patience) -> None:
@@ -63,6 +68,7 @@ class _Call:
         self.thread = threading.get_ident()
         self.looked = False
         self.interrupted = 0.0
+        self.abandoned = False
         self.where = ""
         self.why = ""
 
@@ -105,7 +111,13 @@ class CallWatch:
 
     def run(self, subject: Any, patience: Patience, call: Callable[..., Any],
             *arguments: Any) -> None:
-        """Call; raises CallOverdue, with the reason, where the call had to be ended."""
+        """Make a call.
+
+        Raises:
+            CallOverdue: the call had to be ended; its text is the reason.
+            ThreadAbandoned: the call has returned, or raised an exception, after its thread
+                was abandoned.
+        """
         if self._watcher is None:
             self._watcher = threading.Thread(target=self._watch, name="plugin-watch", daemon=True)
             self._watcher.start()
@@ -115,28 +127,27 @@ class CallWatch:
             try:
                 call(*arguments)
             finally:
-                abandoned = False
-                if mine.looked:
-                    abandoned = self._end(mine)
-                else:  # a look comes long before an interruption: most calls need no lock
-                    self._call = None
+                self._finish(mine)
         except CallOverdue:
             with self._lock:
                 if self._call is mine:
                     self._call = None
+            if mine.abandoned:
+                raise ThreadAbandoned(mine.why) from None
             raise CallOverdue(f"{mine.why}{mine.where}") from None
-        if abandoned:
-            raise CallOverdue(mine.why)
 
-    def _end(self, mine: _Call) -> bool:
-        """A call has come back; whether its thread was left behind."""
+    def _finish(self, mine: _Call) -> None:
+        """End the watch of a call that has returned. Raises ThreadAbandoned."""
+        if not mine.looked:  # a look comes long before an interruption: most calls need no lock
+            self._call = None
+            return
         with self._lock:
-            abandoned = self._call is not mine
-            if not abandoned:
+            if self._call is mine:
                 self._call = None
             if mine.interrupted:
                 _forget_interruptions()  # it has come back by itself in this moment
-            return abandoned
+        if mine.abandoned:
+            raise ThreadAbandoned(mine.why)
 
     def _watch(self) -> None:
         while not self._stop.wait(_LOOK_S):
@@ -150,6 +161,7 @@ class CallWatch:
                 if time.monotonic() - call.interrupted < _GRACE_S:
                     continue
                 self._call = None
+                call.abandoned = True
             self._abandon(call.subject, call.why + call.where)
             _forget_interruptions()
 

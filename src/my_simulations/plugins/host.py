@@ -9,31 +9,32 @@ from __future__ import annotations
 
 import contextlib
 import threading
-import traceback
 from collections import deque
-from typing import Any, Callable, Deque, Dict, List, Optional, Tuple
+from typing import Callable, Deque, Dict, List, Optional, Tuple
 
-from ..errors import CommandError, Issue, Severity, warning
+from ..errors import CommandError, Issue, error, warning
 from ..simulator.entity import Entity
 from ..simulator.scene_sensing import SceneSensing
 from ..simulator.simulator import Simulator
 from ..simulator.sync_points import Moment
-from .call_watch import PATIENCE, CallOverdue, CallWatch, Patience
-from .context import PluginError
+from .base import Plugin
+from .call_watch import PATIENCE, Patience, ThreadAbandoned
 from .found_plugins import Found
 from .graph import Graph, TopicUse
 from .observations import Observation, Observations, StepView
 from .order_sender import send_orders
 from .outgoing import Outgoing
+from .plugin_faults import describe_fault
+from .plugin_guard import PluginGuard
 from .record_handover import RecordHandover
-from .registry import PluginRegistry, UnknownPluginError, library_name
+from .registry import PluginRegistry, UnknownPluginError, library_name, plugin_class
 from .running import ModelPlugins, Running
 from .schedule import Schedule, ScheduledCall
 from .simulated_context import Shared, SimulatedContext
 from .step_readings import StepReadings
 
 _LOOK_S = 0.5      # between two looks while nothing rings
-_SETTLE_S = 30.0   # how long a caller waits for plugins to be loaded
+_SETTLE_S = 60.0   # how long a caller waits for plugins to be loaded
 _END_S = 2.0
 
 
@@ -45,7 +46,7 @@ class PluginHost:
         graph: how plugins reach ROS.
         registry: finds their classes.
         log: hears of plugins that are unknown or fail.
-        patience: how long a call of a plugin may take; loading may take five times as long.
+        patience: how long a call of a plugin may take; loading may compute twice as long.
     """
 
     def __init__(self, simulator: Simulator, graph: Graph, registry: PluginRegistry,
@@ -76,7 +77,7 @@ class PluginHost:
         self._settings: Optional[int] = None
         self._moment: Optional[Moment] = None
         self._patience = patience
-        self._watch = CallWatch(self._go_on_without)
+        self._guard = PluginGuard(log, patience, self._touch, self._go_on_without)
         self._overdue: Deque[Tuple[Running, str]] = deque()
         self._thread = self._new_thread()
 
@@ -96,13 +97,20 @@ class PluginHost:
         self._sync.attach(self._deliver_all)
         self._thread.start()
 
-    def settle(self) -> None:
-        """Wait until the plugins of all models that are in the world now are loaded."""
+    def settle(self) -> bool:
+        """Wait until the plugins of all models that are in the world now are loaded.
+
+        Returns whether that happened within `_SETTLE_S`.
+        """
         wanted = self._simulator.models.revision
         self.wake()
         with self._settled:
-            self._settled.wait_for(lambda: self._revision >= wanted or self._stop.is_set(),
-                                   _SETTLE_S)
+            return self._settled.wait_for(
+                lambda: self._revision >= wanted or self._stop.is_set(), _SETTLE_S)
+
+    def faults(self, model: str) -> List[Issue]:
+        """Why plugins of a model do not work; from any thread."""
+        return [one.fault for one in self._models.of(model) if one.fault is not None]
 
     def wake(self) -> None:
         """Have the thread look at what has changed."""
@@ -142,23 +150,30 @@ class PluginHost:
     def _run(self) -> None:
         try:
             while not self._stop.is_set():
-                try:
-                    self._turn()
-                except CommandError as fault:  # the engine is being replaced, or the world ends
-                    self._log(warning("plugin-turn", f"plugins missed their turn: {fault}"))
-                    self._end_deliveries(settled=False)
+                self._guarded_turn()
                 self._rest()
             self._models.end_all()
             self._end_leaving()
-        except CallOverdue:
-            return  # this thread was left behind; another one goes on
-        finally:
-            if threading.current_thread() is self._thread:
-                self._clean_up()
+        except ThreadAbandoned:
+            return  # another thread has taken over
+        except BaseException:
+            self._clean_up()
+            raise
+        self._clean_up()
+
+    def _guarded_turn(self) -> None:
+        try:
+            self._turn()
+        except CommandError as fault:  # the engine is being replaced, or the world ends
+            self._log(warning("plugin-turn", f"plugins missed their turn: {fault}"))
+            self._end_deliveries(settled=False)
+        except Exception as fault:  # a defect here must not end the plugins of all models
+            self._log(error("plugin-turn", f"plugins missed their turn: {describe_fault(fault)}"))
+            self._end_deliveries(settled=False)
 
     def _clean_up(self) -> None:
         self._stop.set()
-        self._watch.stop()
+        self._guard.stop()
         self._scene.close()
         self._outgoing.stop()
         self._sync.detach()
@@ -180,7 +195,7 @@ class PluginHost:
         """Look at the world once, and do what is due."""
         while self._overdue:
             running, why = self._overdue.popleft()
-            self._switch_off(running, f"{why}; its thread was left behind")
+            self._guard.switch_off(running, f"{why}; its thread was left behind")
         if self._by_hand != self._simulator.clock.by_hand:   # observations may depend on it
             self._by_hand = not self._by_hand
             self._observations.changed = True
@@ -216,7 +231,7 @@ class PluginHost:
     def _hand_over(self, observation: Observation) -> None:
         running = self._running.get(observation.owner)
         if running is not None and running.plugin is not None:
-            self._guarded(running, observation.call)
+            self._guard.call(running, observation.call)
 
     def _at_work(self) -> List[Running]:
         return [one for one in self._models.all() if one.plugin is not None]
@@ -230,7 +245,7 @@ class PluginHost:
             if running is not None and running.plugin is not None and not scheduled.ended:
                 if scheduled.single:
                     scheduled.end()
-                self._guarded(running, scheduled.call)
+                self._guard.call(running, scheduled.call)
 
     def _give_orders(self) -> None:
         """What plugins have ordered, in one command, for the models that there are now."""
@@ -255,7 +270,7 @@ class PluginHost:
 
     def _publish(self) -> None:
         touched, self._touched = self._touched, {}
-        self._outgoing.send(touched, self._guarded, self._failing)
+        self._outgoing.send(touched, self._guard.call, self._failing)
 
     def _ring(self, running: Running) -> None:
         """Have the thread look into a plugin's inbox."""
@@ -275,7 +290,7 @@ class PluginHost:
     def _deliver(self, running: Running) -> None:
         inbox = running.context.inbox
         while inbox and running.plugin is not None:
-            self._guarded(running, inbox.popleft())
+            self._guard.call(running, inbox.popleft())
 
     def _notice_resets(self, moment: Moment) -> None:
         """Tell plugins of resets and of another clock."""
@@ -297,7 +312,7 @@ class PluginHost:
         for call in calls:
             for running in self._at_work():
                 if running.plugin is not None:
-                    self._guarded(running, getattr(running.plugin, call))
+                    self._guard.call(running, getattr(running.plugin, call))
 
     # -- models ------------------------------------------------------------------------------------
 
@@ -313,7 +328,7 @@ class PluginHost:
 
     def _rebind(self, running: Running, entity: Entity) -> None:
         if running.plugin is not None:
-            self._guarded(running, running.context.bind, entity)
+            self._guard.call(running, running.context.bind, entity)
 
     def _load(self, entity: Entity, into: List[Running], found: Found) -> None:
         context = SimulatedContext(self._shared, entity, found, lambda: self._ring(running))
@@ -322,28 +337,37 @@ class PluginHost:
         if self._registry.is_provided(found.spec.filename):
             return
         try:
-            running.plugin = self._registry.find(found.spec.filename)(context)
+            where = self._registry.locate(found.spec.filename)
         except UnknownPluginError as unknown:
-            self._tell_unknown(found, entity, str(unknown))
+            running.fault = self._tell_unknown(found, entity, str(unknown))
             return
-        self._schedule.set_moment(self._sync.now())
-        self._guarded(running, running.plugin.load, patience=self._patience.longer())
 
-    def _tell_unknown(self, found: Found, entity: Entity, text: str) -> None:
+        made: List[Plugin] = []
+        patience = self._patience.longer()
+        if not self._guard.call(running, lambda: made.append(plugin_class(where)(context)),
+                                patience=patience):
+            return
+        running.plugin = made[0]
+        self._schedule.set_moment(self._sync.now())
+        self._guard.call(running, running.plugin.load, patience=patience)
+
+    def _tell_unknown(self, found: Found, entity: Entity, text: str) -> Issue:
+        issue = warning("plugin-unknown", f"{text}; '{found.spec.name}' of model"
+                        f" '{entity.model.name}' does nothing", file=found.spec.file,
+                        line=found.spec.line,
+                        hint="a package can bring one: see doc/plugins.md")
         name = library_name(found.spec.filename)
         if name not in self._told:
             self._told[name] = True
-            self._log(warning("plugin-unknown", f"{text}; '{found.spec.name}' of model"
-                              f" '{entity.model.name}' does nothing", file=found.spec.file,
-                              line=found.spec.line,
-                              hint="a package can bring one: see doc/plugins.md"))
+            self._log(issue)
+        return issue
 
     def _end_leaving(self) -> None:
         leaving = self._models.leaving
         while leaving:
             running = leaving.popleft()
             if running.plugin is not None:
-                self._guarded(running, running.plugin.close)
+                self._guard.call(running, running.plugin.close)
             context = running.context
             context.close()
             with contextlib.suppress(CommandError):  # the engine ends as well
@@ -352,35 +376,7 @@ class PluginHost:
             del self._running[context]
             self._touched.pop(context, None)
 
-    def _guarded(self, running: Running, call: Callable[..., None], *arguments: Any,
-                 patience: Optional[Patience] = None) -> bool:
-        """Call a plugin; one that raises, or does not come back, is reported and switched off."""
-        self._touched[running.context] = running
-        try:
-            self._watch.run(running, patience or self._patience, call, *arguments)
-            return True
-        except CallOverdue as overdue:
-            if threading.current_thread() is not self._thread:
-                raise
-            self._switch_off(running, str(overdue))
-        except PluginError as fault:
-            self._switch_off(running, str(fault))
-        except Exception as fault:  # whatever a plugin does wrong, the world goes on
-            frame = traceback.extract_tb(fault.__traceback__)[-1]
-            self._switch_off(running, f"{type(fault).__name__}: {fault} (in {frame.name}, "
-                             f"{frame.filename}:{frame.lineno})")
-        return False
-
-    def _switch_off(self, running: Running, why: str) -> None:
-        spec, context = running.found.spec, running.context
-        self._log(Issue(Severity.ERROR, "plugin-failed", f"plugin '{spec.name}'"
-                        f" ({library_name(spec.filename)}) of model '{context.model}' is switched"
-                        f" off: {why}", spec.file, spec.line))
-        running.plugin = None
-        context.close()
-        if context in self._running:
-            self._touched[context] = running
-        try:
-            context.stop()
-        except CommandError as fault:
-            self._log(warning("plugin-order", f"its motors could not be switched off: {fault}"))
+    def _touch(self, running: Running) -> None:
+        """Have the orders and messages of a plugin collected."""
+        if running.context in self._running:
+            self._touched[running.context] = running

@@ -16,6 +16,7 @@ from typing import Callable, Dict, Iterable, List, Mapping, Optional, Type
 
 from ..errors import SimulationError
 from .base import Plugin
+from .context import PluginError
 
 BUILT_IN: Mapping[str, str] = {
     "libgazebo_ros_diff_drive.so": "drive.diff_drive:DiffDrive",
@@ -146,10 +147,10 @@ class PluginRegistry:
         return (name in PROVIDED or name in self._extra or name in BUILT_IN
                 or name in self._of_packages())
 
-    def find(self, filename: str) -> Type[Plugin]:
-        """The class for a library.
+    def locate(self, filename: str) -> str:
+        """The class for a library as `package.module:Class`; nothing is imported.
 
-        Raises UnknownPluginError: there is none, or its module cannot be imported.
+        Raises UnknownPluginError.
         """
         name = library_name(filename)
         where = self._extra.get(name)
@@ -159,7 +160,7 @@ class PluginRegistry:
             where = self._of_packages().get(name)
         if where is None:
             raise UnknownPluginError(f"there is no plugin for {name or 'a library without a name'}")
-        return _imported(where, name)
+        return where
 
     def _of_packages(self) -> Dict[str, str]:
         if self._exported is None:
@@ -182,14 +183,17 @@ def exports(manifest: str) -> List[Dict[str, str]]:
     return [attributes for attributes in found if attributes.get("plugin")]
 
 
-def _imported(where: str, library: str) -> Type[Plugin]:
+def plugin_class(where: str) -> Type[Plugin]:
+    """Import `package.module:Class`.
+
+    Raises PluginError for an object that is not a plugin, and what the module raises.
+    """
     module, _, name = where.partition(":")
-    try:
-        found = getattr(importlib.import_module(module), name)
-    except (ImportError, AttributeError, ValueError) as fault:
-        raise UnknownPluginError(f"the plugin {where} for {library} cannot be imported: "
-                                 f"{fault}") from fault
+    importlib.invalidate_caches()   # the file may be newer than the last look at its folder
+    imported = importlib.import_module(module)
+    found = getattr(imported, name, None)
+    if found is None:
+        raise PluginError(f"{imported.__file__} has no class '{name}'")
     if not (isinstance(found, type) and issubclass(found, Plugin)):
-        raise UnknownPluginError(f"the plugin {where} for {library} is not a class derived from "
-                                 f"{Plugin.__module__}.Plugin")
+        raise PluginError(f"{where} is not a class derived from {Plugin.__module__}.Plugin")
     return found

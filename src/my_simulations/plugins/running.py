@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import Callable, Deque, Dict, Iterator, List, Optional, Tuple
 
 from ..description.model import WORLD, Model
+from ..errors import Issue
 from ..geometry import IDENTITY
 from ..simulator.entity import Entity
 from ..simulator.simulator import Simulator
@@ -19,11 +20,17 @@ WORLD_SCOPE = ""
 
 @dataclass
 class Running:
-    """A plugin at work; `plugin` None for one that is unknown or was switched off."""
+    """A plugin at work.
+
+    Attributes:
+        plugin: None for one that is unknown or was switched off.
+        fault: why it is unknown or was switched off.
+    """
 
     found: Found
     context: SimulatedContext
     plugin: Optional[Plugin]
+    fault: Optional[Issue] = None
 
 
 class ModelPlugins:
@@ -49,6 +56,11 @@ class ModelPlugins:
         """All plugins of models that are there; from any thread."""
         for _, running in list(self._models.values()):
             yield from list(running)
+
+    def of(self, model: str) -> List[Running]:
+        """The plugins of a model, as far as they are loaded; from any thread."""
+        _, running = self._models.get(model, (None, []))
+        return list(running)
 
     def look(self) -> None:
         """Note which plugins are to be loaded and ended; tell of other rows those that stay."""

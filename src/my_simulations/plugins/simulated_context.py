@@ -19,6 +19,7 @@ from ..sensing.api import Mount, Pictures, RayFan, RayReturns
 from ..simulator.entity import Entity
 from ..simulator.scene_sensing import SceneSensing
 from ..simulator.simulator import Simulator
+from .checked_arguments import finite, vector
 from .context import PluginError, Publication, View
 from .found_plugins import Found
 from .graph import Graph, TopicUse
@@ -250,7 +251,8 @@ class SimulatedContext(GraphUser):
 
     def drive_level(self, x: float, y: float, yaw_rate: float) -> None:
         """Move level from now on."""
-        self.orders.planar = self._level = PlanarVelocity(self.entity.model_id, x, y, yaw_rate)
+        self.orders.planar = self._level = PlanarVelocity(
+            self.entity.model_id, finite(x, "x"), finite(y, "y"), finite(yaw_rate, "yaw_rate"))
 
     @property
     def description(self) -> Model:
@@ -266,7 +268,7 @@ class SimulatedContext(GraphUser):
         """A wrench from now on."""
         if "::" not in link or self._rows.has_link(link):
             link = self.scoped(link)
-        self.orders.pushes[link] = (force, torque)
+        self.orders.pushes[link] = (vector(force, "force"), vector(torque, "torque"))
 
     def scoped(self, link: str) -> str:
         """The name that a link of the model has in the world."""

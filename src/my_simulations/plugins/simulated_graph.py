@@ -6,6 +6,7 @@ from collections import deque
 from typing import Any, Callable, Deque, Dict, List, Optional, Tuple
 
 from ..geometry import Pose
+from .checked_arguments import pose_of
 from .context import PluginError, RequestError
 from .graph import Closing, Graph, MissingTypeError, ServiceTakenError, Topic, TransformOf
 from .message_maker import Later
@@ -215,7 +216,7 @@ class PluginGraph:
 
     def transform(self, parent: str, child: str, pose: Pose, ns: int) -> None:
         """Broadcast to tf, as of a sim time."""
-        self.transforms.append((ns, (parent, child, pose)))
+        self.transforms.append((ns, (str(parent), str(child), pose_of(pose, "a transform"))))
 
 
 class GraphUser:

@@ -8,6 +8,7 @@ from ..description.model import Inertial
 from ..description.model import Joint as JointSpec
 from ..engine.drive_commands import JointMotor, JointServo, PlanarVelocity
 from ..geometry import Pose, Twist, Vec3
+from .checked_arguments import finite, number
 from .observations import StepView
 
 
@@ -76,7 +77,8 @@ class SimulatedJoint:
 
     def drive(self, rate: float, effort: float) -> None:
         """Turn the motor."""
-        self.motor = JointMotor(self.row, rate, effort)
+        self.motor = JointMotor(self.row, finite(rate, "the rate of a motor"),
+                                number(effort, "the effort of a motor"))
         self._orders.motors[self.row] = self.motor
 
     def steer(self, servo: JointServo) -> None:

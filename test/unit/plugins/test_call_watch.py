@@ -3,10 +3,21 @@ from __future__ import annotations
 
 import subprocess
 import sys
+import threading
+
+import pytest
+from plugin_case import until
+
+from my_simulations.plugins.call_watch import (
+    CallOverdue,
+    CallWatch,
+    Patience,
+    ThreadAbandoned,
+)
 
 TRACED = """
 import sys, threading
-from my_simulations.plugins.call_watch import CallOverdue, CallWatch, Patience
+from my_simulations.plugins.call_watch import CallWatch, Patience, ThreadAbandoned
 
 left, back = threading.Event(), threading.Event()
 watch = CallWatch(lambda subject, why: left.set())
@@ -14,8 +25,8 @@ watch = CallWatch(lambda subject, why: left.set())
 def call():
     try:
         watch.run("plugin", Patience(0.1, 0.1), back.wait)
-    except CallOverdue as overdue:
-        print("ended:", overdue)
+    except ThreadAbandoned as abandoned:
+        print("ended:", abandoned)
 
 thread = threading.Thread(target=call)
 thread.start()
@@ -37,3 +48,40 @@ def test_functions_can_be_traced_after_a_thread_was_left_behind():
     told, traced = done.stdout.splitlines()
     assert told.startswith("ended: it waited for more than 0.1 s")
     assert traced == "traced"
+
+
+def in_a_thread(watch, call):
+    """What `watch.run` raises in a thread of its own, once the thread has ended."""
+    raised = []
+
+    def run():
+        try:
+            watch.run("plugin", Patience(0.1, 0.1), call)
+        except BaseException as one:  # the thread of a host sees all of them
+            raised.append(type(one))
+
+    thread = threading.Thread(target=run)
+    thread.start()
+    thread.join(60.0)
+    assert not thread.is_alive()
+    watch.stop()
+    return raised
+
+
+@pytest.mark.parametrize("fault", [None, ValueError, SystemExit, CallOverdue])
+def test_a_call_that_returns_while_its_thread_is_abandoned_ends_the_thread(fault):
+    """Another thread takes over: this one must not call further plugins, however the call ends."""
+    back = threading.Event()
+
+    def abandon(subject, why):
+        back.set()
+        until(lambda: not thread_of_call[0].is_alive())
+
+    def call():
+        thread_of_call.append(threading.current_thread())
+        back.wait()
+        if fault is not None:
+            raise fault
+
+    thread_of_call = []
+    assert in_a_thread(CallWatch(abandon), call) == [ThreadAbandoned]

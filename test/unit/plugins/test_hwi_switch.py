@@ -9,7 +9,7 @@ from my_simulations.plugins.context import PluginError
 from my_simulations.plugins.control.gazebo_ros_control import GazeboRosControl
 from my_simulations.plugins.control.hwi_switch import HwiSwitchGazeboRosControl
 from my_simulations.plugins.control.initial_hold import PATIENCE_S
-from my_simulations.plugins.registry import PluginRegistry
+from my_simulations.plugins.registry import PluginRegistry, plugin_class
 from my_simulations.plugins.testing import FakeContext
 
 ALL = ("hardware_interface/PositionJointInterface hardware_interface/VelocityJointInterface"
@@ -31,7 +31,8 @@ def drive_of(robot, name="one"):
 
 
 def test_the_registry_has_the_library():
-    assert PluginRegistry().find("libhwi_switch_gazebo_ros_control.so") is HwiSwitchGazeboRosControl
+    found = PluginRegistry().locate("libhwi_switch_gazebo_ros_control.so")
+    assert plugin_class(found) is HwiSwitchGazeboRosControl
 
 
 def test_a_joint_is_driven_by_the_interface_that_its_controller_claims():

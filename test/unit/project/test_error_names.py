@@ -15,7 +15,7 @@ ROOT = "SimulationError"
 STANDALONE = {"resources/database/archive_worker.py"}
 """Runs in an isolated interpreter, without the package."""
 
-SIGNALS = {"_StopParsing", "CallOverdue"}
+SIGNALS = {"_StopParsing", "CallOverdue", "ThreadAbandoned"}
 """Control flow, no error (PEP 8 asks for the suffix where the exception is an error)."""
 
 

@@ -1,0 +1,65 @@
+"""Calls plugins; one that raises an exception or does not return is reported and switched off."""
+from __future__ import annotations
+
+from typing import Any, Callable, Optional
+
+from ..errors import CommandError, Issue, Severity, warning
+from .call_watch import CallOverdue, CallWatch, Patience, ThreadAbandoned
+from .plugin_faults import describe_fault
+from .registry import library_name
+from .running import Running
+
+
+class PluginGuard:
+    """Makes the calls of the host's thread into plugins.
+
+    Args:
+        log: receives the faults.
+        patience: how long a call may take.
+        touched: called before each call into a plugin, and after it was switched off.
+        abandon: called, in another thread, with a plugin that does not return, and the reason. The
+            thread that called it will raise `ThreadAbandoned` if it returns.
+    """
+
+    def __init__(self, log: Callable[[Issue], None], patience: Patience,
+                 touched: Callable[[Running], None],
+                 abandon: Callable[[Running, str], None]) -> None:
+        self._log, self._patience, self._touched = log, patience, touched
+        self._watch = CallWatch(abandon)
+
+    def stop(self) -> None:
+        """End the watch."""
+        self._watch.stop()
+
+    def call(self, running: Running, call: Callable[..., None], *arguments: Any,
+             patience: Optional[Patience] = None) -> bool:
+        """Call a function of a plugin; returns whether the plugin still works.
+
+        Raises ThreadAbandoned in a thread that must end.
+        """
+        self._touched(running)
+        try:
+            self._watch.run(running, patience or self._patience, call, *arguments)
+            return True
+        except ThreadAbandoned:
+            raise
+        except CallOverdue as overdue:
+            self.switch_off(running, str(overdue))
+        except BaseException as fault:  # sys.exit() of a plugin, too: the others continue
+            self.switch_off(running, describe_fault(fault))
+        return False
+
+    def switch_off(self, running: Running, why: str) -> None:
+        """Report a plugin, and end what it does; the world continues."""
+        spec, context = running.found.spec, running.context
+        running.fault = Issue(
+            Severity.ERROR, "plugin-failed", f"plugin '{spec.name}' ({library_name(spec.filename)})"
+            f" of model '{context.model}' is switched off: {why}", spec.file, spec.line)
+        self._log(running.fault)
+        running.plugin = None
+        context.close()
+        self._touched(running)
+        try:
+            context.stop()
+        except CommandError as fault:
+            self._log(warning("plugin-order", f"its motors could not be switched off: {fault}"))
