@@ -55,7 +55,8 @@ class Node:
         self._parameters = _private_parameters()
         self._network = _flag(self._parameters, "enable_ros_network", True)
         self._extensions = _flag(self._parameters, "extensions", True)
-        self._plugins = PluginStarter(simulator, log_issue, _plugin_classes(self._parameters))
+        self._plugins = PluginStarter(simulator, simulator.report,
+                                      _plugin_classes(self._parameters))
         if self._network:
             simulator.sync_points.on_plugins(self._plugins.expect)
         self._engine_pid = 0

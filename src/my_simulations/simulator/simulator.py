@@ -101,6 +101,10 @@ class Simulator:
         """Process id of the engine."""
         return self._session.supervisor.engine.pid
 
+    def report(self, issue: Issue) -> None:
+        """Report an issue to the receivers of the simulator's own issues, from any thread."""
+        self._session.log(issue)
+
     def start(self) -> None:
         """Set the physics, load all models, and run unless paused.
 

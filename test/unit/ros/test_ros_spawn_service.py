@@ -14,6 +14,7 @@ from my_simulations.engine.kinematic_backend import KinematicBackend
 from my_simulations.errors import CommandError, InputError
 from my_simulations.resources.package_files import own_directory
 from my_simulations.resources.resolver import Resolver
+from my_simulations.ros.plugins.plugin_starter import PluginStarter
 from my_simulations.ros.services.model_services import ModelServices
 from my_simulations.simulator.simulator import Simulator
 
@@ -30,13 +31,34 @@ def request(name="a", xml=BOX, **fields):
 
 @pytest.fixture
 def services():
+    issues, reported = [], []
     simulator = Simulator(World(), engine_factory=lambda: InlineEngine(KinematicBackend),
-                          paused=True, log=lambda issue: None)
+                          paused=True, log=reported.append)
     simulator.start()
-    issues = []
     made = ModelServices(simulator, Resolver(), issues.append, launcher=41)
-    yield SimpleNamespace(spawn=made, simulator=simulator, issues=issues)
+    yield SimpleNamespace(spawn=made, simulator=simulator, issues=issues,
+                          reported=reported)
     simulator.close()
+
+
+BAD = ("<sdf version='1.6'><model name='m'><link name='l'/><plugin name='p' filename='libbad.so'/>"
+       "<plugin name='q' filename='libmystery.so'/></model></sdf>")
+
+
+def test_the_reply_says_which_plugins_do_not_work_and_why(services, tmp_path, monkeypatch):
+    monkeypatch.syspath_prepend(str(tmp_path))
+    (tmp_path / "plugin_with_a_typo.py").write_text("\nundefined_name\n")
+    starter = PluginStarter(services.simulator, services.simulator.report,
+                            {"libbad.so": "plugin_with_a_typo:Bad"})
+    spawn = ModelServices(services.simulator, Resolver(), services.issues.append,
+                          changed=starter.settle)
+    try:
+        said = spawn.spawn_object(request(xml=BAD, file="/tmp/m.sdf"), None)
+    finally:
+        starter.stop()
+    assert "2 problems" in said and "/tmp/m.sdf:1: plugin 'p' (libbad.so) of model 'a'" in said
+    assert f"NameError: name 'undefined_name' is not defined (in <module>, {tmp_path}" in said
+    assert [issue.code for issue in services.reported] == ["plugin-failed", "plugin-unknown"]
 
 
 def test_a_model_is_replaced_only_on_request(services):

@@ -4,7 +4,7 @@ from __future__ import annotations
 import threading
 from typing import Any, Callable, List, Mapping, Optional
 
-from ...errors import Issue
+from ...errors import Issue, warning
 from ...simulator.simulator import Simulator
 
 LOOK_SECONDS = 0.5
@@ -28,23 +28,35 @@ class PluginStarter:
         self._seen = -1
         self._ended = False
 
-    def settle(self) -> None:
-        """Have the plugins of all models run; returns when they do.
+    def settle(self, model: str = "") -> List[Issue]:
+        """Start the plugins of all models; return when they run.
 
         Cheap where no model has a plugin, and where nothing has changed.
+
+        Returns:
+            Why plugins of `model` do not work.
         """
+        settled = self._settle()
+        host = self._host
+        faults: List[Issue] = host.faults(model) if host is not None and model else []
+        if not settled:
+            faults.append(warning("plugin-loading", "plugins are still being loaded"))
+        return faults
+
+    def _settle(self) -> bool:
+        """Start the plugins; returns whether they all run, or were switched off."""
         models, world = self._simulator.models, self._simulator.world
         with self._lock:
             revision = models.revision
             if self._ended or revision == self._seen:
-                return
+                return True
             self._seen = revision
             if self._host is None and not (
                     models.with_plugins()[1] or world.plugins
                     or any(actor.plugins for actor in world.actors)):
-                return
+                return True
             host = self._begun()
-        host.settle()
+        return bool(host.settle())
 
     def _begun(self) -> Any:
         """The host; started if it does not run. The world waits while it loads plugins."""

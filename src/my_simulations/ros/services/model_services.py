@@ -38,7 +38,7 @@ class ModelServices:
 
     def __init__(self, simulator: Simulator, resolver: Resolver,
                  log: Callable[[Issue], None], launcher: int = 0,
-                 changed: Callable[[], None] = lambda: None) -> None:
+                 changed: Callable[[str], List[Issue]] = lambda model: []) -> None:
         """Take over a simulator.
 
         Args:
@@ -46,7 +46,8 @@ class ModelServices:
             resolver: resolves URIs in models.
             log: receives issues.
             launcher: process id of the roslaunch that started the simulator; 0 for none.
-            changed: called after a model was spawned or deleted, before the response.
+            changed: called with the name of a model that was spawned or deleted, before the
+                response; returns why plugins of it do not work.
         """
         self._launcher = launcher
         self._changed = changed
@@ -154,10 +155,10 @@ class ModelServices:
         within(where.position, LENGTH, "m", "position of the model")
         with gazebo_prefix("", NO_FRAME), told_if_taken(f"model {model.name!r}"):
             self._simulator.models.spawn(model, where, frame, meshes, replace, launched=launched)
-        self._changed()
+        faults = self._changed(model.name)   # the plugin host has logged them
         self._report(arrival_advice(self._simulator, model.name, meshes,
                                     document.written(entity.name)))
-        return "Successfully spawned entity" + _warnings_in_status(issues)
+        return "Successfully spawned entity" + _warnings_in_status([*faults, *issues])
 
     def _is_the_worlds(self, name: str) -> bool:
         """Whether the world file contains a model of that name that still exists."""
@@ -193,16 +194,17 @@ class ModelServices:
         """Delete a model; it is gone when this returns."""
         with gazebo_prefix("model does not exist"):
             self._simulator.models.delete(request.model_name)
-        self._changed()
+        self._changed(request.model_name)
         return "successfully deleted model"
 
 
 def _warnings_in_status(issues: List[Issue]) -> str:
-    """The first warning and the number of all, for a status message; "" for none."""
+    """The first warning or error and the number of all, for a status message; "" for none."""
     warned = [issue for issue in issues if issue.severity is not Severity.NOTE]
     if not warned:
         return ""
-    many = f"{len(warned)} warnings, see log; the first" if len(warned) > 1 else "1 warning"
+    kind = "problem" if errors_of(warned) else "warning"
+    many = f"{len(warned)} {kind}s, see log; the first" if len(warned) > 1 else f"1 {kind}"
     first = warned[0]
     where, what = f"{first.location}: " if first.location else "", first.message
     return f" ({many}: {where}{what}" + (f"; {first.hint})" if first.hint else ")")
