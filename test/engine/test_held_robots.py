@@ -24,7 +24,7 @@ from my_simulations.geometry import Pose, Twist
 
 
 def _holds(lab: Lab) -> bool:
-    return any(tree.held is not None for tree in lab.backend._helpers._settling._trees.values())
+    return any(tree.held is not None for tree in lab.backend._helpers.settling._trees.values())
 
 
 def _standing(lab: Lab) -> int:
@@ -87,7 +87,7 @@ def test_a_robot_that_was_held_moves_as_far_as_one_that_was_not(lab: Lab):
     held, free = lab.load(_robot(), (0, 0, 0)), lab.load(_robot(), (0, 2, 0))
     for _ in range(20):
         lab.seconds(0.2)
-        lab.backend._helpers._settling.touched(lab.backend._rows[lab.rows[free, "body"]][0])
+        lab.backend._helpers.settling.touched(lab.backend._rows[lab.rows[free, "body"]][0])
     starts = [lab.pose(robot, "body").position for robot in (held, free)]
     for robot in (held, free):
         lab.apply(AddTimedForces(tuple(TimedEffort(
@@ -111,7 +111,7 @@ def test_a_robot_that_was_held_drives_along_a_spline_as_one_that_was_not(lab: La
                               for robot in (held, free) for row in _wheels(lab, robot))))
     for _ in range(19):
         lab.seconds(0.2)
-        lab.backend._helpers._settling.touched(lab.backend._rows[lab.rows[free, "body"]][0])
+        lab.backend._helpers.settling.touched(lab.backend._rows[lab.rows[free, "body"]][0])
     assert _holds(lab)
     lab.seconds(3.2)
     one, other = (lab.pose(robot, "body").position[0] for robot in (held, free))

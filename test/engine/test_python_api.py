@@ -314,12 +314,13 @@ def test_a_saved_motion_stays_with_its_model(saved_world):
 
 
 def test_a_wrench_lasts_as_long_after_time_was_put_back(world):
-    start = world.save()
+    states = world.simulator.states
+    start = states.capture()
     world.step(500)
     world.spawn(BALL, pose=[0, 0, 50])
     world.apply_wrench("ball::link", (10, 0, 0), duration=0.5)
     world.step(100)
-    world.restore(start)
+    states.restore(start)
     world.step(1000)
     assert world.states().twist["ball"][0] == pytest.approx(2.5, rel=1e-6)   # F t / m
 

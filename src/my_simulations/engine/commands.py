@@ -286,9 +286,11 @@ class Restart(Command):
 
     Attributes:
         models: ids and world poses of the model frames. Other models are not added.
+        states: for each of these models the state in which it begins; empty for the initial ones.
     """
 
     models: Tuple[Tuple[int, Pose], ...]
+    states: Tuple[ModelState, ...] = ()
 
 
 @dataclass(frozen=True)

@@ -40,6 +40,7 @@ from .drive_commands import (
 )
 from .ring import JOINT_WIDTH, LINK_WIDTH
 from .ring_rows import axis_rows
+from .run_state import ReadRunState, RunState, SetRunState
 from .timed_forces import AddTimedForces, ClearTimedForces
 
 _LINK = struct.Struct(f"={LINK_WIDTH}d")
@@ -79,6 +80,8 @@ class KinematicBackend:
             SetWheelSlips: lambda c: self.wheel_slips.update(
                 {wheel.row: wheel for wheel in c.wheels}),
             ReadContacts: lambda _: (),
+            ReadRunState: lambda _: RunState(),
+            SetRunState: lambda _: None,
             ConnectModels: lambda c: self.connected.update({c.joint.name: c}),
             DisconnectModels: lambda c: [self.connected.pop(name, None) for name in c.names],
             ReadJointWrenches: lambda command: tuple(
@@ -178,9 +181,10 @@ class KinematicBackend:
     def _restart(self, command: Restart) -> None:
         before = {number: self.models[number] for number, _ in command.models}
         self._clear(Clear())
-        for number, pose in command.models:
+        states = command.states or (None,) * len(command.models)
+        for (number, pose), state in zip(command.models, states):
             model, first_link, first_joint, _ = before[number]
-            self._load(LoadModel(number, model, pose, first_link, first_joint))
+            self._load(LoadModel(number, model, pose, first_link, first_joint, state=state))
 
     def _set_planar(self, command: SetPlanarVelocities) -> None:
         self.planar = {one.model_id: one for one in command.velocities}

@@ -9,6 +9,7 @@ import math
 from typing import Callable, Optional, Tuple
 
 from .drive_commands import JointServo, PidGains
+from .run_state import LoopMemory, ServoMemory
 from .spline import follower
 
 _TWO_PI = 2.0 * math.pi
@@ -40,6 +41,15 @@ class Pid:
         self.gains = gains
         self.integral = 0.0
         self.error: Optional[float] = None
+
+    @property
+    def memory(self) -> LoopMemory:
+        """Its state, for `resume`."""
+        return LoopMemory(self.integral, self.error)
+
+    def resume(self, memory: LoopMemory) -> None:
+        """Continue from a state."""
+        self.integral, self.error = memory.integral, memory.error
 
     def disturbed(self) -> None:
         """What is measured has jumped: its difference is no rate."""
@@ -109,6 +119,21 @@ class ServoLaw:
     def moves(self, step: int) -> bool:
         """Whether the position that is wanted at a step count is on its way."""
         return self.servo.spline is not None and self._target(step)[1] != 0.0
+
+    @property
+    def memory(self) -> ServoMemory:
+        """Its state, for `resume`."""
+        loop, inner = (LoopMemory() if pid is None else pid.memory
+                       for pid in (self.loop, self._inner))
+        return ServoMemory(loop, inner, self.servo.target, self.before, self.last)
+
+    def resume(self, memory: ServoMemory) -> None:
+        """Continue from the state of a servo with the same loops."""
+        self.change(self.servo.held_at(memory.target))
+        for pid, state in ((self.loop, memory.loop), (self._inner, memory.inner)):
+            if pid is not None:
+                pid.resume(state)
+        self.before, self.last = memory.before, memory.last
 
     def disturbed(self) -> None:
         """The joint was put somewhere."""

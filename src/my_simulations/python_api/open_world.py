@@ -340,12 +340,15 @@ class OpenWorld:
     # -- keeping -----------------------------------------------------------------------------------
 
     def save(self) -> SavedState:
-        """Keep the states of all models; see `SavedState` for what that is."""
-        return SavedState(self.time, self._whole().states.capture())
+        """Return the state of the world, and build the world again from it; see `SavedState`."""
+        return SavedState(self.time, self._whole().exact_states.save())
 
     def restore(self, saved: SavedState) -> None:
-        """Put time and all models that still exist back to where they were."""
-        self._whole().states.restore(saved.state)
+        """Put the world back to a state, which any world returned; see `SavedState`.
+
+        Models that were spawned since are removed, and removed ones come back. Raises CommandError.
+        """
+        self._whole().exact_states.restore(saved.state)
 
     def save_world(self, path: FilePath, *, overwrite: bool = False, state: bool = False) -> str:
         """Write the world to a .world file; returns its absolute path.

@@ -10,7 +10,7 @@ from ..engine.commands import Contact
 from ..engine.ring import LINK_WIDTH, Snapshot
 from ..geometry import IDENTITY, Pose, Twist
 from ..simulator.entity import Entity
-from ..simulator.world_state import WorldState
+from ..simulator.exact_states import ExactState
 
 POSE_WIDTH, TWIST_WIDTH = 7, 6
 
@@ -112,18 +112,22 @@ class ContactReading:
 class SavedState:
     """What `OpenWorld.save` keeps.
 
-    Kept: sim time, and of each model that exists the pose, the twists of its links, and the
-    positions and rates of its joint axes. Not kept: contact forces that the solver starts from,
-    which bodies sleep, wrenches and efforts that act for a time, and descriptions. So what follows
-    a `restore` is equal from one restore to the next, and close to what followed the `save`;
-    `OpenWorld.reset` repeats the whole run bit for bit.
+    Included: sim time, step size, solver and gravity; the models with their poses, twists and
+    joints; which bodies sleep; motors, servos with their integrals, planar velocities and wheel
+    slips; wrenches and efforts that act for a time; joints between models, and pins. Not included:
+    lights, scene and wind. It can be pickled, and restored in a world of another process.
+
+    What follows a `restore` is equal, bit for bit, to what followed the `save` with the same
+    calls. PyBullet cannot store the impulses from which its contact solver starts. So both calls
+    build the world again, and the solver starts without them: a body in contact moves some
+    micrometres that it would not have moved without the call.
 
     Attributes:
         time: sim time in s.
     """
 
     time: float
-    state: WorldState
+    state: ExactState
 
 
 def model_readings(entities: Sequence[Entity], snapshot: Snapshot) -> Readings:

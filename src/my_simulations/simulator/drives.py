@@ -2,7 +2,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Any, Dict, List, Optional, Sequence, Tuple
 
 from ..engine.commands import Batch, Command
@@ -21,6 +21,29 @@ from ..errors import CommandError
 from ..geometry import is_finite
 from .entity import Entity
 from .session import Session
+
+
+@dataclass(frozen=True)
+class DriveSettings:
+    """All drives: joint motors, planar velocities, joint servos and wheel slips."""
+
+    motors: Tuple[JointMotor, ...] = ()
+    planar: Tuple[PlanarVelocity, ...] = ()
+    servos: Tuple[JointServo, ...] = ()
+    slips: Tuple[WheelSlip, ...] = ()
+
+    def commands(self) -> List[Command]:
+        """Commands that set the drives in an engine without any."""
+        commands: List[Command] = []
+        if self.motors:
+            commands.append(SetMotors(self.motors))
+        if self.planar:
+            commands.append(SetPlanarVelocities(self.planar))
+        if self.servos:
+            commands.append(SetServos(self.servos))
+        if self.slips:
+            commands.append(SetWheelSlips(self.slips))
+        return commands
 
 
 class Drives:
@@ -154,18 +177,22 @@ class Drives:
 
     # -- for the other parts, which hold the structure lock ----------------------------------------
 
+    @property
+    def settings(self) -> DriveSettings:
+        """All drives as they are now."""
+        return DriveSettings(tuple(self._motors.values()), tuple(self._planar.values()),
+                             tuple(self._servos.values()), tuple(self._slips.values()))
+
+    def replace_all(self, settings: DriveSettings) -> None:
+        """Keep other drives, which the engine has now."""
+        self._motors = {motor.row: motor for motor in settings.motors}
+        self._planar = {one.model_id: one for one in settings.planar}
+        self._servos = {servo.row: servo for servo in settings.servos}
+        self._slips = {wheel.row: wheel for wheel in settings.slips}
+
     def restore_commands(self) -> List[Command]:
         """Commands that set the drives in a new engine."""
-        commands: List[Command] = []
-        if self._motors:
-            commands.append(SetMotors(tuple(self._motors.values())))
-        if self._planar:
-            commands.append(SetPlanarVelocities(tuple(self._planar.values())))
-        if self._servos:
-            commands.append(SetServos(tuple(self._servos.values())))
-        if self._slips:
-            commands.append(SetWheelSlips(tuple(self._slips.values())))
-        return commands
+        return self.settings.commands()
 
     def forget_entity(self, entity: Entity) -> None:
         """Remove the drives of a model that was deleted from the engine."""

@@ -29,6 +29,7 @@ from .entity import Entity
 from .initial_state import initial_commands
 from .inter_model_joints import DeletedModel, InterModelJoints
 from .known_models import KnownModels
+from .model_links import ModelLinks
 from .order_slot import OrderSlot
 from .registry import NameTakenError
 from .session import Session, check_name
@@ -402,6 +403,17 @@ class Models(KnownModels):
     def detach_commands(self) -> List[Command]:
         """Commands that remove the joints of `attach` from the engine."""
         return [DisconnectModels(tuple(self._attached))] if self._attached else []
+
+    @property
+    def model_links(self) -> ModelLinks:
+        """Joints between models and pins, as they are now."""
+        return ModelLinks(self._between, tuple(self._attached), tuple(self._pinned),
+                          tuple(self._held))
+
+    def adopt_links(self, links: ModelLinks) -> None:
+        """Keep other joints and pins, which the engine has now."""
+        self._between, self._attached = links.between, list(links.attached)
+        self._pinned, self._held = list(links.pinned), list(links.held)
 
     def forget_attached(self) -> None:
         """Forget the joints of `attach`, after the engine has removed them."""

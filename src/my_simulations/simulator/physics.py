@@ -67,6 +67,10 @@ class WorldPhysics:
         """Take over the settings of a world that has just been read."""
         self._settings, self._gravity = self._session.world.physics, self._session.world.gravity
 
+    def adopt(self, settings: Physics, gravity: Vec3) -> None:
+        """Keep settings that the engine has now."""
+        self._settings, self._gravity = settings, gravity
+
     def command(self, settings: Optional[Physics] = None,
                 gravity: Optional[Vec3] = None) -> SetPhysics:
         """The command that gives the engine these settings; None for those last set."""

@@ -161,6 +161,13 @@ class Registry:
                 self._plain_links[link].items(),
                 key=lambda pair: places[pair[1][0].model.name]))
 
+    def replace_all(self, entities: Iterable[Entity]) -> None:
+        """Replace all models."""
+        for name in self.names():
+            self.remove(name)
+        for entity in entities:
+            self.add(entity)
+
     def remove(self, name: str) -> Entity:
         """Remove a model."""
         entity = self._entities.pop(name)

@@ -26,6 +26,14 @@ class RowAllocator:
                 return start
         return None
 
+    def claim(self, start: int, count: int) -> None:
+        """Take `count` free rows from `start` on."""
+        for n, (first, length) in enumerate(self._free):
+            if count and first <= start and start + count <= first + length:
+                around = [(first, start - first), (start + count, first + length - start - count)]
+                self._free[n:n + 1] = [part for part in around if part[1]]
+                return
+
     def give(self, start: int, count: int) -> None:
         """Free `count` rows from `start` on."""
         if count == 0:

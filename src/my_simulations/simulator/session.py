@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import threading
 from dataclasses import replace
-from typing import Any, Callable, List, Optional
+from typing import Any, Callable, Iterable, List, Optional, Sequence
 
 from ..description.model import Model
 from ..description.shapes import MeshTable
@@ -158,6 +158,22 @@ class Session:
         """Free the rows of an entity that was deleted from the engine. Requires both locks."""
         self._link_rows.give(entity.first_link_row, len(entity.link_names))
         self._joint_rows.give(entity.first_joint_row, len(entity.joint_names))
+
+    def replace_entities(self, entities: Sequence[Entity]) -> None:
+        """Replace all entities by others with ids and rows of this or another session.
+
+        Requires both locks.
+        """
+        for entity in self.registry.entities():
+            self.free_rows(entity)
+        for entity in entities:
+            self._link_rows.claim(entity.first_link_row, len(entity.link_names))
+            self._joint_rows.claim(entity.first_joint_row, len(entity.joint_names))
+        self.registry.replace_all(entities)
+
+    def reserve_ids(self, used: Iterable[int]) -> None:
+        """Let `new_id` return larger ids than these. Requires `structure_lock`."""
+        self._last_id = max((self._last_id, *used))
 
     def check_name_is_free(self, name: str) -> None:
         """Raises CommandError if a model or light has that name. Requires `registry_lock`."""

@@ -17,6 +17,7 @@ from ..errors import CommandError, Issue, Severity, error, warning
 from .clock import SimClock
 from .convex_meshes import ConvexParts
 from .drives import Drives
+from .exact_states import ExactStates
 from .feeds import StateFeed
 from .joints import Joints
 from .lights import Lights
@@ -38,6 +39,7 @@ class Simulator:
         models: spawn, delete, edit, pin; descriptions by name.
         joints: find, read, set and edit joints.
         states: poses, twists and contacts; capture and restore.
+        exact_states: save and restore the world so that runs repeat bit for bit.
         drives: motors of joints, planar velocities of models.
         sync_points: exact steps for plugins and sensors.
         wrenches: timed wrenches on links, timed efforts and PID controllers on joints.
@@ -73,6 +75,8 @@ class Simulator:
             log, lambda text: log(Issue(Severity.NOTE, "meshes", text))))
         self.joints = Joints(session, self.models)
         self.states = States(session, self.clock, self.wrenches)
+        self.exact_states = ExactStates(session, self.models, self.states, self.drives,
+                                        self.wrenches, self.clock, self.physics)
         self.lights = Lights(session)
         self.scene = SceneSettings(session)
         self.resets = Resets(session, self.models, self.wrenches, self.drives, self.clock)

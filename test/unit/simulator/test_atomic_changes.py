@@ -153,6 +153,7 @@ OPERATIONS = {
     "reset time": (nothing, lambda case: case.sim.resets.reset_time()),
     "reset poses": (nothing, lambda case: case.sim.resets.reset_world()),
     "reset all": (nothing, lambda case: case.sim.resets.reset_simulation()),
+    "exact save": (nothing, lambda case: case.sim.exact_states.save()),
     "restore": (nothing, lambda case: case.sim.states.restore(case.sim.states.capture())),
     "step size": (nothing, lambda case: case.sim.physics.set(replace(
         case.sim.physics.settings, max_step_size=0.002), case.sim.physics.gravity)),

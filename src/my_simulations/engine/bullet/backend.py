@@ -2,7 +2,8 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Any, Callable, Dict, Iterable, List, Optional, Tuple, Type
+from itertools import zip_longest
+from typing import Any, Callable, Dict, Iterable, List, Optional, Sequence, Tuple, Type
 
 import pybullet
 
@@ -30,6 +31,7 @@ from ..commands import (
 )
 from ..drive_commands import ReadEfforts, SetMotors, SetPlanarVelocities, SetServos, SetWheelSlips
 from ..ring import JOINTS, LINKS
+from ..run_state import ReadRunState, SetRunState
 from ..timed_forces import AddTimedForces, ClearTimedForces
 from . import bodies
 from .bodies import Body, Part
@@ -41,6 +43,7 @@ from .helper_set import HelperSet
 from .initial_state_cache import InitialStateCache, Start
 from .joint_constraints import Constraints
 from .row_reader import RowReader
+from .run_states import RunStates
 from .state_restore import Entry, inherited, restore
 
 
@@ -60,6 +63,7 @@ class BulletBackend:
         self._mover, self._notices = self._helpers.mover, self._helpers.notices
         self._row_reader = RowReader(self._readout, self._rows, self._axes)
         self._starts = InitialStateCache(self._readout)
+        run_states = RunStates(self._helpers, self._bodies, self._rows)
         self._put_off: Optional[List[Start]] = None
         self._is_fresh = True   # nothing has moved since the world began
         self._appliers: Dict[Type[Command], Callable[[Any], object]] = {
@@ -82,6 +86,8 @@ class BulletBackend:
             ReadEfforts: lambda command: self._forces.servos.efforts(command.rows),
             AddTimedForces: self._add_timed_forces,
             ClearTimedForces: self._clear_timed_forces,
+            ReadRunState: run_states.read,
+            SetRunState: run_states.set,
         }
         self._helpers.configure(self._helpers.settings)
 
@@ -112,6 +118,7 @@ class BulletBackend:
         self._settle()
         self._is_fresh = False
         self._readout.stepped()
+        self._helpers.restored_sleep.stepped()
         run, wrenches = self._loop.run, self._helpers.wrenches
         dt, gravity = self._helpers.settings.step_size, self._helpers.settings.gravity
         if wrenches.idle:
@@ -206,7 +213,9 @@ class BulletBackend:
         """
         self._notices.forget_all()
         starts = [(self._entry(number), pose) for number, pose in command.models]
-        if len(starts) == len(self._models) and self._starts.show(starts):
+        if command.states:
+            self._build_again(starts, command.states)
+        elif len(starts) == len(self._models) and self._starts.show(starts):
             self._put_off = starts
         else:
             self._build_again(starts)
@@ -217,11 +226,13 @@ class BulletBackend:
         if self._put_off is not None:
             self._build_again(self._put_off)
 
-    def _build_again(self, starts: List[Start]) -> None:
+    def _build_again(self, starts: List[Start], states: Sequence[ModelState] = ()) -> None:
         self._clear(Clear())
         try:
-            for entry, pose in starts:
-                self._enter(entry.builder, entry.model, pose)
+            for (entry, pose), state in zip_longest(starts, states):
+                built = self._enter(entry.builder, entry.model, pose)
+                if state is not None:
+                    restore(built, state)
         except (CommandRefusedError, pybullet.error) as fault:
             # What could be built before: files have gone.
             raise EngineBrokenError(f"the world could not be built again: {fault}") from fault

@@ -31,6 +31,7 @@ from typing import Any, Callable, Dict, List, Optional, Sequence, Set, Tuple
 import pybullet
 
 from ...geometry import Pose, Vec3
+from ..run_state import PARTING_NOT_BEGUN
 from .bodies import Body
 from .step_helper import FAR, next_multiple
 
@@ -153,6 +154,19 @@ class ContactSettling:
             tree.looks, tree.clear = 0, 0
             if held is not None:
                 self._on_held(body, False)
+
+    @property
+    def parting_end(self) -> Optional[int]:
+        """See `RunState.parting_end`."""
+        return PARTING_NOT_BEGUN if self._new else self._until
+
+    def resume_parting(self, end: Optional[int]) -> None:
+        """Part overlaps as at the time of a saved state, not as of models just put in."""
+        if end == PARTING_NOT_BEGUN:
+            return
+        self._new, self._until = False, end
+        self._arrived.clear()
+        self._split(end is not None)
 
     def solve_impact(self, impact: bool) -> None:
         """Solve the next step with many iterations, or (False) as is usual.

@@ -8,7 +8,7 @@ the limit.
 from __future__ import annotations
 
 from math import sqrt
-from typing import Callable, Dict, List, NamedTuple, Optional, Set
+from typing import Callable, Dict, Iterable, List, NamedTuple, Optional, Set
 
 import pybullet
 
@@ -81,6 +81,16 @@ class DivergenceStop:
             self._stops.pop(body.uid, None)
             self._new[body.uid] = body
 
+    @property
+    def stopped(self) -> List[Body]:
+        """The stopped bodies."""
+        return [stop.body for stop in self._stops.values()]
+
+    def stop(self, bodies: Iterable[Body]) -> None:
+        """Keep bodies in place, at rest."""
+        for body in bodies:
+            self._stops[body.uid] = _stop_of(body)
+
     def forget(self, body: Body) -> None:
         """Forget a removed body."""
         for table in (self._bodies, self._starts, self._stops, self._new):
@@ -126,8 +136,7 @@ class DivergenceStop:
         else:
             return
         cause = self._cause(body, start, now.linear, (step - start.step) * dt, gravity)
-        stop = _Stop(body, Pose(*pybullet.getBasePositionAndOrientation(body.uid)),
-                     [pybullet.getJointState(body.uid, axis.index)[0] for axis in body.axes])
+        stop = _stop_of(body)
         self._stops[body.uid] = stop
         _put(stop)
         self._moved(body)
@@ -148,6 +157,11 @@ class DivergenceStop:
         if body.uid in self._loaded():
             return "a force that acts on it is too strong, as of a plugin with too high a gain"
         return "it overlapped another body, or what touches it is driven too fast"
+
+
+def _stop_of(body: Body) -> _Stop:
+    return _Stop(body, Pose(*pybullet.getBasePositionAndOrientation(body.uid)),
+                 [pybullet.getJointState(body.uid, axis.index)[0] for axis in body.axes])
 
 
 def _put(stop: _Stop) -> None:

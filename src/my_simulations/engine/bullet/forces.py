@@ -9,6 +9,7 @@ from typing import Callable, Dict, FrozenSet, List, Optional, Sequence, Set, Tup
 import pybullet
 
 from ...geometry import Quat, Vec3, add, conjugate, cross, rotate, scale
+from ..run_state import DamperMemory, LoopMemory
 from ..timed_forces import TimedEffort, TimedForce, TimedWrench
 from .bodies import Axis, Body, Part, set_sleep
 from .force_dependent_slip import ForceDependentSlip
@@ -41,6 +42,7 @@ class Forces:
         self._timed: Dict[int, TimedForce] = {}
         self._acting: Dict[int, TimedForce] = {}
         self._loops: Dict[int, PidController] = {}
+        self._resumed: Dict[int, LoopMemory] = {}   # of loops that act from the next step on
         self._parts: Dict[int, Tuple[Body, Part]] = {}
         self._axes: Dict[int, Tuple[Body, Axis]] = {}
         self._weightless: Dict[int, Tuple[Body, Part]] = {}
@@ -137,13 +139,31 @@ class Forces:
     def clear(self) -> None:
         """All bodies are gone, and every timed force with them."""
         ended = bool(self._loops)
-        for table in (self._timed, self._acting, self._loops, self._parts, self._axes,
-                      self._weightless, self._implicit, self._resting, self._limits):
+        for table in (self._timed, self._acting, self._loops, self._resumed, self._parts,
+                      self._axes, self._weightless, self._implicit, self._resting, self._limits):
             table.clear()
         self.slip.clear()
         self.servos.clear()
         if ended:
             self._tell_loops()
+
+    def loop_memories(self) -> Tuple[Tuple[int, LoopMemory], ...]:
+        """The states of the PID loops by force id, for `resume_loops`."""
+        return tuple((number, loop.memory) for number, loop in self._loops.items())
+
+    def resume_loops(self, memories: Sequence[Tuple[int, LoopMemory]]) -> None:
+        """Let PID loops that begin to act continue from these states, by force id."""
+        self._resumed = dict(memories)
+
+    def damper_memories(self) -> Tuple[Tuple[int, DamperMemory], ...]:
+        """What springs and dampers have measured, by the first joint row of a body."""
+        return tuple((axes.first_row, axes.memory)
+                     for table in (self._implicit, self._resting) for axes in table.values())
+
+    def resume_dampers(self, memories: Sequence[Tuple[int, DamperMemory]]) -> None:
+        """Let springs and dampers continue from what they measured."""
+        for row, memory in memories:
+            self._implicit[self._axes[row][0].uid].resume(memory)
 
     @property
     def wrenched_links(self) -> Set[int]:
@@ -242,6 +262,8 @@ class Forces:
                 self._acting[force_id] = force
                 if isinstance(force, TimedEffort) and force.pid is not None:
                     self._loops[force_id] = PidController(force.pid)
+                    if force_id in self._resumed:
+                        self._loops[force_id].resume(self._resumed.pop(force_id))
                 beginning.append(force)
         if len(self._loops) != loops:
             self._tell_loops()

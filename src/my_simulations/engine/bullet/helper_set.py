@@ -26,6 +26,7 @@ from .pair_restitution import PairRestitution
 from .pinned_bodies import PinnedBodies
 from .planar_motion import PlanarMotion
 from .residual_friction import ResidualFriction
+from .restored_sleep import RestoredSleep
 from .rolling_contacts import RollingContacts
 from .seam_contacts import SeamContacts
 from .sliding import Sliding
@@ -51,6 +52,7 @@ class HelperSet:
         mover: puts models, links and joints elsewhere.
         book: the constraints of joints.
         forces, motors, planar, holds, sliding, ties, wrenches: what commands set and read.
+        settling, divergence, restored_sleep: have a part of the run state (`RunStates`).
 
     Args:
         models: by id.
@@ -80,42 +82,43 @@ class HelperSet:
         self._bounces = PairRestitution(self.notices.odd_bounce)
         self._spin = GyroscopicRigid(lambda: self.forces.wrenched_links)
         self.holds = PinnedBodies(self.waker.around)
+        self.restored_sleep = RestoredSleep()
         self.book = ConstraintBook()
         self.ties = InterModelJoints(self.book)
         self._decay = VelocityDecay()
-        self._settling = ContactSettling(
+        self.settling = ContactSettling(
             lambda: self.forces.loaded_bodies,
             lambda row: self.motors.rate_of(row) or self.forces.servos.rate_of(row),
             self._on_held)
-        self._landing = LandingContacts(self._rolling.landed, self._settling.solve_impact)
+        self._landing = LandingContacts(self._rolling.landed, self.settling.solve_impact)
         self._stop = SurfaceStop()
-        self._divergence = DivergenceStop(self.notices.stopped, lambda: self.forces.loaded_bodies,
+        self.divergence = DivergenceStop(self.notices.stopped, lambda: self.forces.loaded_bodies,
                                           self.readout.touch)
         self.mover = StateSetter(rows, axes, self.readout, self.waker, self.forces, self._spin,
-                                 (self.holds.moved, self._divergence.put))
+                                 (self.holds.moved, self.divergence.put))
         self.motors = JointMotors(axes, driver.around)
         self.planar = PlanarMotion(models, self.mover.model_pose, driver.around)
         self.wrenches = JointWrenches(models, self.forces, self.sliding)
         # What acts around the steps, in the order in which it does.
-        helpers = (self._friction, self._bounces, self._settling, self._decay, self.forces,
+        helpers = (self._friction, self._bounces, self.settling, self._decay, self.forces,
                    self.planar, self._rolling, self._spin, self._residual, self.sliding,
                    self.holds, self._stop, self._landing, self._level, self._seams,
-                   self._divergence)
+                   self.divergence, self.restored_sleep)
         self.loop = StepLoop(helpers, pybullet.stepSimulation)
         # Everything that remembers bodies one by one.
         self._keepers = (*helpers, self.ties, self.motors, self.wrenches, self.readout, self.loop)
         # Helpers notified when a command moves a body, or a force or motor command acts on it.
         self._hearers = tuple(part.touched for part in (
-            self.loop, self._friction, self._settling, self._spin, self._residual, self._rolling,
-            self._stop, self._landing, self._seams))
+            self.loop, self._friction, self.settling, self._spin, self._residual, self._rolling,
+            self._stop, self._landing, self._seams, self.restored_sleep))
 
     def configure(self, settings: PhysicsSettings) -> None:
         """Use these settings from the next step on, and have Bullet use them."""
         self.settings = settings
         configure_solver(settings)
-        self._settling.configure(settings.iterations, settings.step_size)
+        self.settling.configure(settings.iterations, settings.step_size)
         self.sliding.configure(settings.cone)
-        self._divergence.configure(settings.step_size)
+        self.divergence.configure(settings.step_size)
 
     def add(self, body: Body, model: Model) -> None:
         """A body of a model is there."""
@@ -125,9 +128,9 @@ class HelperSet:
         self._bounces.add(body)
         self._spin.add(body)
         self._residual.add(body)
-        self._settling.add(body)
+        self.settling.add(body)
         self._stop.add(body)
-        self._divergence.add(body)
+        self.divergence.add(body)
         self.readout.add(body)
         dt = self.settings.step_size
         self._decay.add(body, dt)

@@ -21,6 +21,7 @@ import numpy as np
 import pybullet
 
 from ...description.model import JointAxis
+from ..run_state import DamperMemory
 from .bodies import Axis, Body
 from .mass_matrix import MassMatrix
 
@@ -60,6 +61,22 @@ class ImplicitAxes:
         self._other = [0.0] * len(self._rows)
         self._rates: Optional[List[float]] = None
         self._given: List[float] = []
+
+    @property
+    def first_row(self) -> int:
+        """The first joint row."""
+        return self._rows[0]
+
+    @property
+    def memory(self) -> DamperMemory:
+        """What was measured, for `resume`."""
+        return DamperMemory(tuple(self._other), None if self._rates is None else tuple(self._rates),
+                            tuple(self._given))
+
+    def resume(self, memory: DamperMemory) -> None:
+        """Continue from what was measured."""
+        self._other, self._given = list(memory.other), list(memory.given)
+        self._rates = None if memory.rates is None else list(memory.rates)
 
     def add_to(self, efforts: Dict[int, float]) -> None:
         """Add the efforts of the next step, N m or N by row, to those that act anyway."""

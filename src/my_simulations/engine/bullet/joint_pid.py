@@ -3,6 +3,7 @@ from __future__ import annotations
 
 from typing import Optional
 
+from ..run_state import LoopMemory
 from ..timed_forces import JointPid
 
 MOST_EFFORT = 1000.0
@@ -21,6 +22,15 @@ class PidController:
         self._servo = servo
         self._integral = 0.0
         self._last: Optional[float] = None
+
+    @property
+    def memory(self) -> LoopMemory:
+        """Its state, for `resume`."""
+        return LoopMemory(self._integral, self._last)
+
+    def resume(self, memory: LoopMemory) -> None:
+        """Continue from a state."""
+        self._integral, self._last = memory.integral, memory.error
 
     def effort(self, position: float, rate: float, dt: float, most: float) -> float:
         """What to drive the axis with in the next step, N m or N.

@@ -9,6 +9,7 @@ import pybullet
 from ...description.model import Model
 from ..api import CommandRefusedError
 from ..drive_commands import JointServo
+from ..run_state import ServoMemory
 from ..servo_law import FOLLOW, Advance, ServoLaw
 from .bodies import Axis, Body
 from .joint_axes import specs_of
@@ -133,6 +134,17 @@ class JointServos:
         if woken:
             self._wake(list(woken.values()))
 
+    def memories(self) -> Tuple[Tuple[int, ServoMemory], ...]:
+        """The states of all servos by joint row, for `resume`."""
+        return tuple((row, law.memory) for row, law in self._laws.items())
+
+    def resume(self, memories: Iterable[Tuple[int, ServoMemory]]) -> None:
+        """Continue from the states of servos, which were set again."""
+        for row, memory in memories:
+            self._laws[row].resume(memory)
+            self._drive(*self._axes[row])
+        self._sort()
+
     def set_up(self, body: Body, model: Model, dt: float) -> None:
         """The axes of a body got their limits and friction (anew): servos go on."""
         for axis, _ in specs_of(body, model):
@@ -165,6 +177,7 @@ class JointServos:
         self._laws.clear()
         self._busy.clear()
         self._yielding.clear()
+        self._step = -1
 
     def act(self, efforts: Dict[int, float], shared: AbstractSet[int], step: int) -> None:
         """Act in the step that begins at a count.

@@ -1,0 +1,91 @@
+"""What the engine has learned from earlier steps, besides poses, velocities and commands."""
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Optional, Tuple
+
+from .commands import Command
+
+PARTING_NOT_BEGUN = -1
+"""For `RunState.parting_end`: no step was made since models were loaded."""
+
+
+@dataclass(frozen=True)
+class LoopMemory:
+    """State of a PID loop: the integral of its error, and its last error (None for none)."""
+
+    integral: float = 0.0
+    error: Optional[float] = None
+
+
+@dataclass(frozen=True)
+class ServoMemory:
+    """State of a joint servo.
+
+    Attributes:
+        loop, inner: of the loops about the target and of the drive.
+        target: as in `JointServo`; of a servo that holds, the position that it holds.
+        before: the position commanded in the last step; None for none.
+        last: the effort (N m or N) or rate commanded in the last step.
+    """
+
+    loop: LoopMemory
+    inner: LoopMemory
+    target: float
+    before: Optional[float]
+    last: float
+
+
+@dataclass(frozen=True)
+class DamperMemory:
+    """What springs and dampers of a body have measured on its axes.
+
+    Attributes:
+        other: rad/s^2 or m/s^2, the accelerations by everything else.
+        rates: rad/s or m/s in the last step; None for not measured.
+        given: rad/s^2 or m/s^2, the accelerations by springs and dampers in the last step.
+    """
+
+    other: Tuple[float, ...]
+    rates: Optional[Tuple[float, ...]]
+    given: Tuple[float, ...]
+
+
+@dataclass(frozen=True)
+class RunState:
+    """What a run needs to continue besides poses, velocities and commands.
+
+    The impulses from which the contact solver starts are not included: PyBullet cannot set them.
+
+    Attributes:
+        asleep: link rows of the rigid bodies that sleep.
+        servos: by joint row.
+        loops: PID loops of timed efforts, by force id.
+        dampers: by the first joint row of the body.
+        parting_end: the step at which overlaps of loaded models are no longer parted without
+            velocity; None if they are not now, PARTING_NOT_BEGUN before the first step.
+        stopped: first link rows of bodies that were stopped because they went too far.
+    """
+
+    asleep: Tuple[int, ...] = ()
+    servos: Tuple[Tuple[int, ServoMemory], ...] = ()
+    loops: Tuple[Tuple[int, LoopMemory], ...] = ()
+    dampers: Tuple[Tuple[int, DamperMemory], ...] = ()
+    parting_end: Optional[int] = None
+    stopped: Tuple[int, ...] = ()
+
+
+@dataclass(frozen=True)
+class ReadRunState(Command):
+    """Reply value: the `RunState`."""
+
+
+@dataclass(frozen=True)
+class SetRunState(Command):
+    """Continue from a `RunState`, after the same models, drives and forces were loaded again.
+
+    Bodies that slept stay awake for some steps in which the solver finds their contact forces. Then
+    they are put back to where they are now, asleep, unless something has moved them.
+    """
+
+    state: RunState
