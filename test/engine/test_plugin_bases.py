@@ -25,9 +25,9 @@ RADIUS = 0.1
 class Case(PluginCase):
     """A base named `robot` whose controller `drive` runs."""
 
-    def __init__(self, model, **settings):
+    def __init__(self, model, hardware=None, **settings):
         super().__init__(World(models=[ground(), model]), BulletBackend,
-                         parameters={"robot": {"drive": settings}})
+                         parameters={"robot": {"drive": settings, **(hardware or {})}})
         assert self.ask("robot/controller_manager/load_controller", name="drive").ok, self.issues
         assert self.ask("robot/controller_manager/switch_controller", start_controllers=["drive"],
                         stop_controllers=[], strictness=2).ok, self.issues
@@ -52,22 +52,27 @@ def case():
     yield from kept(Case)
 
 
-def robot(links, joints, driven):
+def robot(links, joints, driven, hardware=""):
     return Model("robot", links=links, joints=joints, transmissions=[
         Transmission(f"{joint}_trans", joints=[TransmissionJoint(joint, [interface])])
         for joint, interface in driven.items()],
-        plugins=[plugin("libgazebo_ros_control.so", "")])
+        plugins=[plugin("libgazebo_ros_control.so", hardware)])
+
+
+def fork(name, x, y):
+    """A steering axis on the base, right above its wheel."""
+    return (Link(f"{name}_fork", Pose((x, y, RADIUS)), Inertial(0.5, ixx=0.01, iyy=0.01, izz=0.01)),
+            Joint(f"{name}_steer", "revolute", "base", f"{name}_fork",
+                  axis=JointAxis((0.0, 0.0, 1.0), effort=100.0, velocity=10.0)))
 
 
 def four_wheel_steering():
     """Each wheel stands right below its steering axis."""
     links, joints, driven = [base()], [], {}
     for name, (x, y) in CORNERS.items():
-        links += [Link(f"{name}_fork", Pose((x, y, RADIUS)),
-                       Inertial(0.5, ixx=0.01, iyy=0.01, izz=0.01)), wheel(name, x, y)]
-        joints += [Joint(f"{name}_steer", "revolute", "base", f"{name}_fork",
-                         axis=JointAxis((0.0, 0.0, 1.0), effort=100.0, velocity=10.0)),
-                   axle(f"{name}_axle", name, f"{name}_fork")]
+        carrier, steering = fork(name, x, y)
+        links += [carrier, wheel(name, x, y)]
+        joints += [steering, axle(f"{name}_axle", name, f"{name}_fork")]
         driven.update({f"{name}_steer": POSITION, f"{name}_axle": VELOCITY})
     pairs = {f"{end}_{kind}": [f"{end}_{side}_{joint}" for side in ("left", "right")]
              for end in ("front", "rear") for kind, joint in (("wheel", "axle"),
@@ -149,3 +154,80 @@ def test_mecanum_wheels_go_each_way_that_is_commanded(case, x, y, yaw):
         (before, one.truth()), (told_before, one.told())))
     assert told == pytest.approx([2.0 * x, 2.0 * y, 2.0 * yaw], abs=0.01)
     assert true == pytest.approx(told, abs=0.03)  # between two balls a wheel slips
+
+
+def rover():
+    """Six wheels, of which the four at the corners are steered."""
+    places = {name.replace("rear", "back"): at for name, at in CORNERS.items()}
+    links, joints, driven, settings = [base(20.0)], [], {}, {}
+    for name, (x, y) in {**places, "mid_left": (0.0, 0.45), "mid_right": (0.0, -0.45)}.items():
+        settings[f"{name}_wheel"] = f"{name}_axle"
+        driven[f"{name}_axle"] = VELOCITY
+        links.append(wheel(name, x, y))
+        if name in places:
+            carrier, steering = fork(name, x, y)
+            links.append(carrier)
+            joints.append(steering)
+            settings[f"{name}_steer"], driven[f"{name}_steer"] = f"{name}_steer", POSITION
+        joints.append(axle(f"{name}_axle", name, f"{name}_fork" if name in places else "base"))
+    return robot(links, joints, driven), {
+        "type": "ackermann_drive_controller/AckermannDriveController", "wheel_radius": RADIUS,
+        "mid_wheel_lat_separation": 0.9, "front_wheel_lat_separation": 0.8,
+        "front_wheel_lon_separation": 0.5, "back_wheel_lat_separation": 0.8,
+        "back_wheel_lon_separation": 0.5, **settings}
+
+
+@pytest.mark.parametrize("x, yaw", [(0.5, 0.4), (-0.4, 0.3), (0.0, 0.5)])
+def test_a_rover_drives_the_circle_of_the_twist(case, x, yaw):
+    model, settings = rover()
+    one = case(model, **settings)
+    one.drive(1.0, x=x, yaw=yaw)   # the wheels are steered while it moves
+    before = one.truth()
+    one.drive(3.0, x=x, yaw=yaw)
+    x1, y1, heading = one.truth()
+    turned = heading - before[2]
+    assert turned == pytest.approx(3.0 * yaw, rel=0.02)
+    chord = 2.0 * abs(x / yaw) * math.sin(turned / 2.0)
+    assert math.hypot(x1 - before[0], y1 - before[1]) == pytest.approx(chord, rel=0.02, abs=0.02)
+
+
+def car(width=0.1):
+    """A narrow car: two driven wheels, two steered ones, as one of steer_drive_ros."""
+    names = {"rear_right": (-0.5, -width / 2.0), "rear_left": (-0.5, width / 2.0),
+             "front_right": (0.5, -width / 2.0), "front_left": (0.5, width / 2.0)}
+    links, joints = [base()], []
+    for name, (x, y) in names.items():
+        links.append(wheel(name, x, y))
+        carrier = "base"
+        if name.startswith("front"):
+            link, steering = fork(name, x, y)
+            links.append(link)
+            joints.append(steering)
+            carrier = link.name
+        joints.append(axle(f"{name}_axle", name, carrier))
+    model = robot(links, joints, {}, "<robotSimType>steer_bot_hardware_gazebo/"
+                                     "SteerBotHardwareGazebo</robotSimType>")
+    axles = [f"{name}_axle" for name in names]
+    return model, {"steer_bot_hardware_gazebo": {
+        "rear_wheel": "rear_wheel_joint", "front_steer": "front_steer_joint",
+        "virtual_rear_wheels": axles[:2],
+        "virtual_front_steers": ["front_right_steer", "front_left_steer"],
+        "enable_ackermann_link": True, "wheel_separation_w": width, "wheel_separation_h": 1.0}}, {
+        "type": "steer_drive_controller/SteerDriveController", "rear_wheel": "rear_wheel_joint",
+        "front_steer": "front_steer_joint", "wheel_separation_h": 1.0, "wheel_radius": RADIUS}
+
+
+def test_a_car_drives_the_circle_of_its_steering_angle(case):
+    model, hardware, settings = car()
+    one = case(model, hardware, **settings)
+    one.drive(1.0, x=0.4, yaw=0.4)   # angular.z is the angle
+    before, told = one.truth(), one.told()
+    one.drive(4.0, x=0.4, yaw=0.4)
+    x, y, heading = one.truth()
+    turned = heading - before[2]
+    radius = math.hypot(x - before[0], y - before[1]) / (2.0 * math.sin(turned / 2.0))
+    # The driven wheels turn alike without a differential, so they slip by the width.
+    middle = 1.0 / math.tan(0.4)
+    assert radius == pytest.approx(math.hypot(middle, 0.5), rel=0.03)
+    assert one.told()[2] - told[2] == pytest.approx(4.0 * 0.4 / middle, rel=0.02)
+    assert turned == pytest.approx(4.0 * 0.4 / middle, rel=0.03)

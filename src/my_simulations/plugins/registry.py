@@ -33,6 +33,8 @@ BUILT_IN: Mapping[str, str] = {
     "libgazebo_ros_control.so": "control.gazebo_ros_control:GazeboRosControl",
     "libhwi_switch_gazebo_ros_control.so": "control.hwi_switch:HwiSwitchGazeboRosControl",
     "libgazebo_ros_p3d.so": "state.p3d:P3d",
+    "libgazebo_world_odometry.so": "state.world_odometry:PalWorldOdometry",
+    "librobotnik_gazebo_ground_truth_odom.so": "state.world_odometry:RobotnikGroundTruthOdometry",
     "libgazebo_ros_force.so": "state.force:Force",
     "libgazebo_ros_joint_pose_trajectory.so": "state.joint_pose_trajectory:JointPoseTrajectory",
     "libgazebo_ros_joint_trajectory.so": "state.joint_pose_trajectory:JointPoseTrajectory",

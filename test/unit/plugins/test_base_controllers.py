@@ -285,3 +285,84 @@ def test_messages_that_are_not_installed_leave_the_rest_working():
     assert "cmd_vel only" in robot.context.said[-1]
     go(robot, 0.2, x=0.5)
     assert isinstance(robot.published("drive/odom")[-1], Message)
+
+
+# -- cars and rovers -----------------------------------------------------------------------------
+
+ROVER = {"front_left": (0.3, 0.25), "front_right": (0.3, -0.25), "mid_left": (0.0, 0.3),
+         "mid_right": (0.0, -0.3), "back_left": (-0.25, 0.25), "back_right": (-0.25, -0.25)}
+
+
+def rover(**settings):
+    wheels = [f"{name}_wheel_joint" for name in ROVER]
+    steers = [f"{name}_steer_joint" for name in ROVER if not name.startswith("mid")]
+    robot = Arm(axis=FREE, names=(*wheels, *steers),
+                interfaces=[VELOCITY] * 6 + [POSITION] * 4,
+                drive={"type": "ackermann_drive_controller/AckermannDriveController",
+                       "wheel_radius": 0.1, "mid_wheel_lat_separation": 0.6,
+                       "front_wheel_lat_separation": 0.5, "front_wheel_lon_separation": 0.3,
+                       "back_wheel_lat_separation": 0.5, "back_wheel_lon_separation": 0.25,
+                       **settings})
+    robot.run("drive")
+    return robot
+
+
+@pytest.mark.parametrize("speed, yaw", [(0.5, 0.5), (-0.5, 0.5), (0.1, -1.0), (0.0, 1.0),
+                                        (0.5, 0.0)])
+def test_all_wheels_of_a_rover_roll_about_one_centre(speed, yaw):
+    robot = rover()
+    go(robot, 0.5, x=speed, yaw=yaw)
+    for name, (x, y) in ROVER.items():
+        steer = robot.context.joints.get(f"{name}_steer_joint")
+        angle = 0.0 if steer is None else steer.position
+        assert abs(angle) <= math.pi / 2.0 + 1e-9
+        rim = robot.context.joints[f"{name}_wheel_joint"].velocity * 0.1
+        # the velocity of the ground below the wheel
+        assert (rim * math.cos(angle), rim * math.sin(angle)) == pytest.approx(
+            (speed - yaw * y, yaw * x), abs=1e-6)
+    twist = robot.published("drive/odom")[-1].twist.twist
+    assert (twist.linear.x, twist.angular.z) == pytest.approx((speed, yaw), abs=0.02)
+
+
+def steer_bot(**settings):
+    names = ("rear_right", "rear_left", "front_right", "front_left", "steer_right", "steer_left")
+    robot = Arm(axis=FREE, names=names, interfaces=[VELOCITY] * 4 + [POSITION] * 2,
+                inside="<robotSimType>steer_bot_hardware_gazebo/SteerBotHardwareGazebo"
+                       "</robotSimType>",
+                steer_bot_hardware_gazebo={
+                    "rear_wheel": "rear_wheel_joint", "front_steer": "front_steer_joint",
+                    "virtual_rear_wheels": list(names[:2]),
+                    "virtual_front_wheels": list(names[2:4]),
+                    "virtual_front_steers": list(names[4:]), "enable_ackermann_link": True,
+                    "wheel_separation_w": 0.6, "wheel_separation_h": 1.0, **settings},
+                drive={"type": "steer_drive_controller/SteerDriveController",
+                       "rear_wheel": "rear_wheel_joint", "front_steer": "front_steer_joint",
+                       "wheel_separation_h": 1.0, "wheel_radius": 0.1})
+    robot.run("drive")
+    return robot
+
+
+def test_the_wheels_of_a_car_stand_across_the_lines_to_the_centre_of_its_turn():
+    robot = steer_bot()
+    go(robot, 1.0, x=0.5, yaw=0.4)
+    radius = 1.0 / math.tan(0.4)
+    assert robot.at("steer_left") == pytest.approx(math.atan(1.0 / (radius - 0.3)), abs=1e-6)
+    assert robot.at("steer_right") == pytest.approx(math.atan(1.0 / (radius + 0.3)), abs=1e-6)
+    for name in ("rear_right", "rear_left", "front_right", "front_left"):
+        assert robot.context.joints[name].velocity == pytest.approx(5.0)
+    assert robot.published("drive/odom")[-1].twist.twist.linear.x == pytest.approx(0.5, rel=1e-3)
+    robot.switch(stop=["drive"])
+    robot.context.advance(0.1)
+    assert robot.context.joints["rear_left"].velocity == 0.0
+
+
+def test_a_car_without_ackermanns_link_steers_both_wheels_alike():
+    robot = steer_bot(enable_ackermann_link=False)
+    go(robot, 1.0, x=0.5, yaw=0.4)
+    assert robot.at("steer_left") == pytest.approx(0.4, abs=1e-6)
+    assert robot.at("steer_right") == pytest.approx(0.4, abs=1e-6)
+
+
+def test_a_car_needs_two_steered_wheels():
+    with pytest.raises(PluginError, match="right and left"):
+        steer_bot(virtual_front_steers=["steer_right"])

@@ -12,6 +12,10 @@ from my_simulations.plugins.state.hand_of_god import HandOfGod
 from my_simulations.plugins.state.initial_velocity import InitialVelocity
 from my_simulations.plugins.state.joint_pose_trajectory import JointPoseTrajectory
 from my_simulations.plugins.state.mimic_joint import MimicJoint
+from my_simulations.plugins.state.world_odometry import (
+    PalWorldOdometry,
+    RobotnikGroundTruthOdometry,
+)
 from my_simulations.plugins.testing import FakeContext, Message
 from my_simulations.plugins.transforms import Transforms
 
@@ -196,3 +200,51 @@ def test_an_initial_velocity_comes_back_with_a_reset():
     context.twist = Twist((0.0,) * 3, (0.0,) * 3)
     plugin.reset()
     assert context.twist == Twist((1.0, 2.0, 3.0), (0.0, 0.0, 1.0))
+
+
+# -- odometry of other packages ------------------------------------------------------------------
+
+def test_pals_odometry_is_that_of_the_world():
+    context = FakeContext("<plugin><bodyName>base</bodyName><topicName>truth</topicName><frameName>"
+                          "map</frameName></plugin>")
+    PalWorldOdometry(context).load()
+    context.link("base").pose = Pose((1.0, 2.0, 3.0), quat_from_rpy(0.0, 0.0, math.pi / 2))
+    context.link("base").twist = Twist((0.5, 0.0, 0.0), (0.2, 0.0, 0.3))
+    context.advance(0.001)
+    (told,) = context.published["truth"]
+    assert (told.header.frame_id, told.child_frame_id) == ("map", "base")
+    assert told.pose.pose.position.y == 2.0
+    twist = told.twist.twist
+    assert (twist.linear.x, twist.angular.y, twist.angular.z) == pytest.approx((0.5, -0.2, 0.3))
+
+
+def test_noise_of_pals_odometry_adds_up():
+    context = FakeContext("<plugin><bodyName>base</bodyName><topicName>truth</topicName>"
+                          "<gaussianNoise>0.01</gaussianNoise></plugin>")
+    plugin = PalWorldOdometry(context)
+    plugin.load()
+    context.advance(4.0)
+    places = [one.pose.pose.position.x for one in context.published["truth"]]
+    steps = [after - before for before, after in zip(places, places[1:])]
+    assert math.sqrt(sum(step * step for step in steps) / len(steps)) == pytest.approx(
+        0.01, rel=0.05)
+    plugin.reset()
+    context.advance(0.001)
+    assert abs(context.published["truth"][-1].pose.pose.position.x) < 0.05
+
+
+def test_robotniks_odometry_has_velocities_in_the_axes_of_the_link():
+    context = FakeContext("<plugin><bodyName>base</bodyName><topicName>truth</topicName>"
+                          "<frameName>base_truth</frameName><worldFrameName>odom</worldFrameName>"
+                          "<broadcastTF>True</broadcastTF><xyzOffset>0 0 1</xyzOffset></plugin>")
+    RobotnikGroundTruthOdometry(context).load()
+    context.link("base").pose = Pose((1.0, 2.0, 3.0), quat_from_rpy(0.0, 0.0, math.pi / 2))
+    context.link("base").twist = Twist((0.5, 0.0, 0.0), (0.0, 0.0, 0.3))
+    context.advance(0.001)
+    (told,) = context.published["truth"]
+    assert (told.header.frame_id, told.child_frame_id) == ("odom", "base_truth")
+    assert told.pose.pose.position.z == 4.0 and told.pose.covariance[0] == 0.1
+    assert told.twist.twist.linear.y == pytest.approx(-0.5)
+    assert context.transforms[-1][:2] == ("odom", "base_truth")
+    with pytest.raises(PluginError, match="topicName"):
+        RobotnikGroundTruthOdometry(FakeContext("<plugin><bodyName>base</bodyName></plugin>")).load()

@@ -1,15 +1,16 @@
-"""ackermann_steering_controller: a driven rear axle and a steered front axle, as one wheel each.
+"""ackermann_steering_controller and steer_drive_controller: a driven rear axle and a steered one.
 
-`angular.z` of a command is the steering angle, rad, as in the original. Where it differs: with
-`open_loop` the base turns as that angle says (there the angle counts as a yaw rate). Multipliers
-correct the odometry alone.
+Each axle is one wheel; the second controller is the older form of the first. `angular.z` of a
+command is the steering angle, rad, as in the original. Where it differs: with `open_loop` the base
+turns as that angle says (there the angle counts as a yaw rate). Multipliers correct the odometry
+alone.
 """
 from __future__ import annotations
 
 import math
 
 from .base_controller import BaseController, Planar
-from .hardware import POSITION, VELOCITY
+from .hardware import POSITION, VELOCITY, HardwareJoint
 
 
 class AckermannSteeringController(BaseController):
@@ -20,18 +21,21 @@ class AckermannSteeringController(BaseController):
         s = self.settings
         self._wheel = self.take(VELOCITY, s.text("rear_wheel", "rear_wheel_joint"))
         self._steer = self.take(POSITION, s.text("front_steer", "front_steer_joint"))
-        wheel, steer = (self.context.joint(one.name).spec for one in (self._wheel, self._steer))
         base, radius = s.number("wheel_separation_h", 0.0), s.number("wheel_radius", 0.0)
         if s.get("wheel_separation_h") is None:
-            base = abs(self.place(steer)[0] - self.place(wheel)[0])
+            base = abs(self._place(self._steer) - self._place(self._wheel))
         if s.get("wheel_radius") is None:
-            radius = self.radius_of(wheel)
+            radius = self.radius_of(self.context.joint(self._wheel.name).spec)
         self._base = base * s.number("wheel_separation_h_multiplier", 1.0)
         self._radius = radius
         self._counted_radius = radius * s.number("wheel_radius_multiplier", 1.0)
         self._scale = s.number("steer_pos_multiplier", 1.0)
         self.positive(wheel_separation_h=self._base,
                       wheel_radius=min(self._radius, self._counted_radius))
+
+    def _place(self, joint: HardwareJoint) -> float:
+        """Along x of the model, m."""
+        return self.place(self.context.joint(joint.name).spec)[0]
 
     def drive(self, velocity: Planar) -> None:
         """The rear wheel rolls, the front one is steered."""

@@ -9,10 +9,13 @@ from ..context import PluginError
 from .hardware import Hardware, SwitchingHardware
 from .initial_hold import InitialHold
 from .manager import ControllerManager
+from .steer_bot_hardware import SteerBotHardware
 
 DEFAULT, SWITCHING = ("gazebo_ros_control/DefaultRobotHWSim",
                       "cob_gazebo_ros_control/HWISwitchRobotHWSim")
-_HARDWARE: Mapping[str, Type[Hardware]] = {DEFAULT: Hardware, SWITCHING: SwitchingHardware}
+_HARDWARE: Mapping[str, Type[Hardware]] = {
+    DEFAULT: Hardware, SWITCHING: SwitchingHardware,
+    "steer_bot_hardware_gazebo/SteerBotHardwareGazebo": SteerBotHardware}
 
 
 class GazeboRosControl(Plugin):
@@ -33,8 +36,9 @@ class GazeboRosControl(Plugin):
         if kind not in _HARDWARE:
             context.warn(f"<robotSimType> {kind} is not simulated; {DEFAULT} is used")
         hardware = _HARDWARE.get(kind, Hardware)
-        transmissions = context.transmissions(p.text("robotParam") or "robot_description")
-        if not transmissions:
+        transmissions = context.transmissions(p.text("robotParam") or "robot_description") \
+            if hardware.needs_transmissions else []
+        if hardware.needs_transmissions and not transmissions:
             raise PluginError("the robot has no <transmission>: no joint can be controlled")
         self._hardware = hardware(context, self.controllable(transmissions))
         period = p.number("controlPeriod", 0.0)

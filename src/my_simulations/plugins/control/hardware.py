@@ -112,9 +112,11 @@ class Hardware:
     Attributes:
         switches: whether a joint offers all interfaces of its transmission and moves by the one
             that was claimed last; else it has the first one only, as in gazebo_ros_control.
+        needs_transmissions: whether the joints are those of transmissions.
     """
 
     switches = False
+    needs_transmissions = True
 
     def __init__(self, context: Context, transmissions: Sequence[Transmission]) -> None:
         self._context = context

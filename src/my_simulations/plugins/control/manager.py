@@ -34,6 +34,10 @@ TYPES: Mapping[str, str] = {
     "diff_drive_controller/DiffDriveController": "diff_drive_controller:DiffDriveController",
     "ackermann_steering_controller/AckermannSteeringController":
         "ackermann_steering_controller:AckermannSteeringController",
+    "steer_drive_controller/SteerDriveController":
+        "ackermann_steering_controller:AckermannSteeringController",
+    "ackermann_drive_controller/AckermannDriveController":
+        "ackermann_drive_controller:AckermannDriveController",
     "four_wheel_steering_controller/FourWheelSteeringController":
         "four_wheel_steering_controller:FourWheelSteeringController",
     "mecanum_drive_controller/MecanumDriveController":

@@ -1,0 +1,122 @@
+"""steer_bot_hardware_gazebo: a car that a controller drives as one wheel and one steering axis.
+
+Parameters are those of steer_drive_ros, below `steer_bot_hardware_gazebo`: the joint `rear_wheel`
+stands for `virtual_rear_wheels` and `virtual_front_wheels`, which all turn at its rate, the joint
+`front_steer` for `virtual_front_steers`, right before left. Where it differs: with
+`enable_ackermann_link` the wheels are steered by the geometry of Ackermann, tan(angle) = h tan(a) /
+(h +- w/2 tan(a)), else both by the commanded angle (the original steers them by half of the
+difference, and without the link the left one by twice the angle); `gains` are not used, a motor
+turns the wheels.
+"""
+from __future__ import annotations
+
+import math
+from typing import Callable, Dict, List, Sequence, Tuple
+
+from ...description.transmission import Transmission
+from ..context import Context, PluginError
+from .hardware import POSITION, VELOCITY, Hardware, HardwareJoint
+from .limits import JointLimits, holding_effort, limits_of
+from .settings import Settings
+
+_NAMESPACE = "steer_bot_hardware_gazebo"
+
+Part = Tuple[HardwareJoint, Callable[[float], float]]
+"""A joint, and its command by that of the joint that it is a part of."""
+
+
+class JointGroup(HardwareJoint):
+    """Several joints that follow one command; its state is the mean of the first `counted`."""
+
+    def __init__(self, name: str, interface: str, parts: Sequence[Part], counted: int) -> None:
+        self.name, self.interface, self.limits = name, interface, JointLimits()
+        self.halted = self.is_held = False
+        self._parts = list(parts)
+        self._counted = [joint for joint, _ in parts[:counted]]
+
+    @property
+    def position(self) -> float:
+        """rad."""
+        return sum(joint.position for joint in self._counted) / len(self._counted)
+
+    @property
+    def velocity(self) -> float:
+        """rad/s."""
+        return sum(joint.velocity for joint in self._counted) / len(self._counted)
+
+    @property
+    def drive_gains(self) -> None:
+        """There are none."""
+        return None
+
+    def command(self, value: float) -> None:
+        """A rate or a position."""
+        if not self.halted:
+            for joint, share in self._parts:
+                joint.command(share(value))
+            self.is_held = False
+
+    def hold(self) -> None:
+        """Hold all where they are."""
+        for joint, _ in self._parts:
+            joint.hold()
+        self.is_held = True
+
+    def rest(self) -> None:
+        """Positions are held, rates are 0."""
+        if not self.halted:
+            for joint, _ in self._parts:
+                joint.rest()
+            self.is_held = False
+
+
+class SteerBotHardware(Hardware):
+    """The joints of the parameters; transmissions do not count."""
+
+    needs_transmissions = False
+
+    def __init__(self, context: Context, transmissions: Sequence[Transmission]) -> None:
+        super().__init__(context, [])
+        s = Settings(context, _NAMESPACE)
+        rear = [self._made(name, VELOCITY) for name in s.texts("virtual_rear_wheels")]
+        front = [self._made(name, VELOCITY) for name in s.texts("virtual_front_wheels", [])]
+        steers = [self._made(name, POSITION) for name in s.texts("virtual_front_steers")]
+        if len(steers) != 2:
+            raise PluginError(f"parameter {_NAMESPACE}/virtual_front_steers must name two joints,"
+                              f" right and left; it names {len(steers)}")
+        groups: Dict[str, JointGroup] = {}
+        name = s.text("rear_wheel")
+        groups[name] = JointGroup(name, VELOCITY, [(one, _same) for one in rear + front],
+                                  len(rear))
+        name = s.text("front_steer")
+        groups[name] = JointGroup(name, POSITION, list(zip(steers, _steering(s))), 2)
+        self.names = [one.name for one in rear + front + steers]
+        for name, group in groups.items():
+            self._all[(group.interface, name)] = group
+            self._active[name] = group
+
+    def _made(self, name: str, interface: str) -> HardwareJoint:
+        joint = self._context.joint(name)
+        return HardwareJoint(joint, interface, limits_of(joint.spec, self._context), None,
+                             holding_effort(self._context.description, joint.spec,
+                                            self._context.gravity))
+
+
+def _same(value: float) -> float:
+    return value
+
+
+def _steering(s: Settings) -> List[Callable[[float], float]]:
+    """The angles of the right and the left wheel by that of the middle of the axle."""
+    if not s.flag("enable_ackermann_link", False):
+        return [_same, _same]
+    base, width = s.number("wheel_separation_h", 0.0), s.number("wheel_separation_w", 0.0)
+    if base <= 0.0:
+        raise PluginError(f"parameter {_NAMESPACE}/wheel_separation_h must be above 0 m, it is"
+                          f" {base:g}")
+
+    def turned(side: float) -> Callable[[float], float]:
+        return lambda angle: math.atan2(base * math.sin(angle), base * math.cos(angle)
+                                        + side * width / 2.0 * math.sin(angle))
+
+    return [turned(1.0), turned(-1.0)]

@@ -1,0 +1,128 @@
+"""libgazebo_world_odometry.so and librobotnik_gazebo_ground_truth_odom.so: truth as odometry.
+
+Parameters, defaults and topics are those of pal_gazebo_plugins (melodic) and of
+robotnik_gazebo_plugins. Where they differ: noise of the first adds up at the rate of the plugin,
+whether or not there are subscribers, and is drawn from the seed of the world; its offsets, which
+dynamic_reconfigure sets there, are 0. The second gives a velocity in the axes that the link has now
+(there those of the message before), and rotates in the frame of `<worldBodyName>` the right way.
+"""
+from __future__ import annotations
+
+from typing import Any, Optional
+
+from ...geometry import (
+    Pose,
+    Twist,
+    add,
+    compose,
+    conjugate,
+    inverse,
+    multiply,
+    normalised,
+    quat_from_rpy,
+    rotate,
+    rpy_from_quat,
+    subtract,
+)
+from ..base import Plugin
+from ..context import Link, PluginError
+from ..drive.odometry import diagonal, fill_pose
+from ..frames import prefixed, stamped
+from ..noise import WhiteNoise
+from ..parameters import namespace_or
+
+_WORLD = ("", "world", "/world", "map", "/map")
+_ROBOTNIK_VARIANCE = 0.1
+
+
+class PalWorldOdometry(Plugin):
+    """Publishes nav_msgs/Odometry of `<bodyName>` in the world."""
+
+    def load(self) -> None:
+        """Read parameters."""
+        context, p = self.context, self.context.parameters
+        context.use_namespace(namespace_or(p, ""))
+        self._frame = p.text("frameName", "world")
+        self._link = context.link(p.text("bodyName", self._frame))
+        self._noise = WhiteNoise(context.seed, f"{context.model}::{self._link.name}::odometry",
+                                 p.number("gaussianNoise", 0.0))
+        self._topic = context.publish(p.text("topicName", "ft_data"), "nav_msgs/Odometry", 100)
+        self.reset()
+        context.observe(p.number("updateRate", 1000.0), self.update, [self._topic],
+                        remembers=p.number("gaussianNoise", 0.0) > 0.0)
+
+    def reset(self) -> None:
+        """There is no error yet."""
+        self._error = (0.0, 0.0, 0.0)
+
+    def update(self) -> None:
+        """Publish."""
+        context, pose, twist = self.context, self._link.pose, self._link.twist
+        x, y, yaw = self._noise.draw(3, context.now_ns)
+        self._error = add(self._error, (x, y, yaw))
+        roll, pitch, heading = rpy_from_quat(pose.orientation)
+        here = Pose(add(pose.position, (self._error[0], self._error[1], 0.0)),
+                    quat_from_rpy(roll, pitch, heading + self._error[2]))
+        spin = rotate(conjugate(pose.orientation), twist.angular)
+        self._topic.publish(odometry_message(context, self._frame, self._link.name, here,
+                                             Twist(twist.linear, spin), 0.0))
+
+
+class RobotnikGroundTruthOdometry(Plugin):
+    """Publishes nav_msgs/Odometry of `<bodyName>`, and with `<broadcastTF>` its transform."""
+
+    def load(self) -> None:
+        """Read parameters."""
+        context, p = self.context, self.context.parameters
+        context.use_namespace(namespace_or(p, ""))
+        for name in ("bodyName", "topicName"):
+            if name not in p:
+                raise PluginError(f"it has no <{name}>")
+        self._link = context.link(p.text("bodyName"))
+        world = p.text("worldBodyName", "world")
+        self._parent: Optional[Link] = None if world in _WORLD else context.link(world)
+        self._child_id = p.text("frameName", self._link.name)
+        self._frame_id = prefixed(context, p.text("worldFrameName", world))
+        self._offset = Pose(p.vector("xyzOffset"), p.turn("rpyOffset"))
+        self._noise = WhiteNoise(context.seed, f"{context.model}::{self._link.name}::truth",
+                                 p.number("gaussianNoise", 0.0))
+        self._broadcasts = p.flag("broadcastTF", False)
+        topic = p.text("topicName")
+        self._topic = context.publish(topic, "nav_msgs/Odometry")
+        if topic:
+            context.observe(p.number("updateRate", 0.0), self.update, [self._topic],
+                            transforms=self._broadcasts)
+
+    def update(self) -> None:
+        """Publish."""
+        context, pose, twist = self.context, self._link.pose, self._link.twist
+        back = conjugate(pose.orientation)
+        linear, angular = twist.linear, twist.angular
+        if self._parent is not None:
+            motion = self._parent.twist
+            linear, angular = (subtract(linear, motion.linear), subtract(angular, motion.angular))
+            pose = compose(inverse(self._parent.pose), pose)
+        pose = Pose(add(pose.position, self._offset.position),
+                    normalised(multiply(self._offset.orientation, pose.orientation)))
+        noise = self._noise.draw(6, context.now_ns)
+        moving = Twist(add(rotate(back, linear), (noise[0], noise[1], noise[2])),
+                       add(rotate(back, angular), (noise[3], noise[4], noise[5])))
+        if self._topic.wanted:
+            self._topic.publish(odometry_message(context, self._frame_id, self._child_id, pose,
+                                                 moving, _ROBOTNIK_VARIANCE))
+        if self._broadcasts:
+            context.transform(self._frame_id, self._child_id, pose)
+
+
+def odometry_message(context: Any, frame: str, child: str, pose: Pose, twist: Twist,
+                     variance: float) -> Any:
+    """A nav_msgs/Odometry whose covariances have one number on their diagonals."""
+    message = stamped(context, "nav_msgs/Odometry", frame)
+    message.child_frame_id = child
+    fill_pose(message.pose.pose, pose)
+    linear, angular = message.twist.twist.linear, message.twist.twist.angular
+    linear.x, linear.y, linear.z = twist.linear
+    angular.x, angular.y, angular.z = twist.angular
+    message.pose.covariance = diagonal((variance,) * 6)
+    message.twist.covariance = diagonal((variance,) * 6)
+    return message
