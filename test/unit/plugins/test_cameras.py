@@ -21,6 +21,7 @@ from my_simulations.plugins.sensors.camera import (
 from my_simulations.plugins.sensors.depth_camera import DepthCamera, OpenniKinect
 from my_simulations.plugins.sensors.image_messages import encoded
 from my_simulations.plugins.sensors.realsense import RealSense
+from my_simulations.plugins.sensors.thermal_camera import ThermalCamera
 from my_simulations.plugins.testing import FakeContext, Message
 from my_simulations.sensing.api import DEPTH, RGB, Distortion, Pictures, WideLens
 
@@ -428,3 +429,14 @@ def test_only_a_wide_angle_camera_has_a_lens():
 def test_a_lens_that_there_is_not_is_told(lens, words):
     with pytest.raises(PluginError, match=words):
         wide(**lens)
+
+
+def test_pure_red_is_hot_and_all_else_is_cold():
+    context = camera(cls=ThermalCamera)
+    picture = np.zeros((6, 8, 3), np.uint8)
+    picture[0, 0], picture[0, 1], picture[0, 2] = (255, 0, 0), (255, 1, 0), (255, 255, 255)
+    context.pictures = [Pictures(picture, None)]
+    context.advance(0.15)
+    told = context.published[RAW][-1]
+    assert (told.encoding, told.step) == ("mono8", 8)
+    assert list(told.data[:4]) == [255, 256 // 8, 3 * 255 // 8, 0]

@@ -5,11 +5,13 @@ import math
 
 import pytest
 
-from my_simulations.description.model import Inertial, Link
+from my_simulations.description.model import Inertial, Link, Model
+from my_simulations.description.plugin import PluginSpec
 from my_simulations.description.shapes import Box, Collision, Cylinder, Mesh, Sphere
-from my_simulations.geometry import Pose, Twist, quat_from_rpy
+from my_simulations.geometry import Pose, Twist, cross, quat_from_rpy
 from my_simulations.plugins.testing import FakeContext
 from my_simulations.plugins.world.buoyancy import Buoyancy
+from my_simulations.plugins.world.dipole_magnet import DipoleMagnet, field_of, force_between
 from my_simulations.plugins.world.lift_drag import LiftDrag
 
 WING = """<plugin><link_name>wing</link_name><cla>4.75</cla><cda>0.6</cda>
@@ -124,3 +126,53 @@ def test_a_given_volume_counts_and_turns_with_the_link():
 def test_a_mesh_without_a_volume_is_told():
     context = buoy("", Collision("a", geometry=Mesh("model://boat.dae")))
     assert not context.pushes and "give its <volume>" in context.said[0]
+
+
+# -- magnets -------------------------------------------------------------------------------------
+
+def magnet(moment, inside=""):
+    return (f"<plugin><bodyName>bar</bodyName><dipole_moment>{moment}</dipole_moment>{inside}"
+            "</plugin>")
+
+
+def beside(moment, other, arm, **poses):
+    """A magnet at `arm` from another one."""
+    context = FakeContext(magnet(moment, "<shouldPublish>true</shouldPublish>"), model="one")
+    context.link("bar").pose = Pose(arm, **poses)
+    context.link("bar").inertial = Inertial(1.0)
+    context.others = {"one": Model("one"), "two": Model("two", plugins=[
+        PluginSpec("m", "libgazebo_dipole_magnet.so", magnet(other))])}
+    DipoleMagnet(context).load()
+    context.advance(0.001)
+    return context
+
+
+def test_magnets_in_a_row_attract():
+    context = beside("0 0 2", "0 0 3", (0.0, 0.0, 0.1))
+    force, torque = context.pushes["bar"]
+    # 6 mu0 m1 m2 / (4 pi r^4), and the field on the axis is mu0 2 m / (4 pi r^3)
+    assert force == pytest.approx((0.0, 0.0, -6e-7 * 2.0 * 3.0 / 0.1 ** 4))
+    assert torque == pytest.approx((0.0, 0.0, 0.0))
+    assert context.published["bar/mfs"][-1].magnetic_field.z == pytest.approx(2e-7 * 3.0 / 1e-3)
+    assert context.published["bar/wrench"][-1].wrench.force.z == pytest.approx(force[2])
+
+
+def test_magnets_side_by_side_repel_and_a_crossed_one_turns():
+    force, _ = beside("0 0 2", "0 0 3", (0.1, 0.0, 0.0)).pushes["bar"]
+    assert force == pytest.approx((3e-7 * 6.0 / 0.1 ** 4, 0.0, 0.0))
+    _, torque = beside("0 0 2", "0 0 3", (0.0, 0.0, 0.1),
+                       orientation=quat_from_rpy(math.pi / 2, 0.0, 0.0)).pushes["bar"]
+    # the moment is (0, -2, 0), the field (0, 0, 6e-4)
+    assert torque == pytest.approx((-2.0 * 6e-4, 0.0, 0.0), abs=1e-12)
+
+
+def test_forces_between_magnets_are_opposite():
+    one, two, arm = (1.0, -2.0, 0.5), (0.3, 0.4, -2.0), (0.1, 0.2, -0.05)
+    there = force_between(one, two, arm)
+    back = force_between(two, one, tuple(-part for part in arm))
+    assert there == pytest.approx(tuple(-part for part in back))
+    # No torque about any point is left: m1 x B2 + m2 x B1 + arm x F = 0.
+    around = [sum(parts) for parts in zip(
+        cross(one, field_of(two, arm)),
+        cross(two, field_of(one, tuple(-part for part in arm))), cross(arm, there))]
+    assert around == pytest.approx([0.0] * 3, abs=1e-12)

@@ -6,7 +6,7 @@ with. Where they are drawn slower than the rate asks for, some are left out, and
 """
 from __future__ import annotations
 
-from typing import Any, Callable, List
+from typing import Any, Callable, List, Type
 
 from ..base import Plugin
 from ..context import Context
@@ -17,7 +17,13 @@ _TRIGGERS = 100
 
 
 class Camera(Plugin):
-    """Image, compressed image and CameraInfo of a camera."""
+    """Image, compressed image and CameraInfo of a camera.
+
+    Attributes:
+        stream_type: makes the messages.
+    """
+
+    stream_type: Type[PictureStream] = PictureStream
 
     def load(self) -> None:
         """Read parameters."""
@@ -25,9 +31,9 @@ class Camera(Plugin):
         block, sensor = blocks_of(context, "camera")[0], context.sensor
         assert sensor is not None
         enter_namespace(context)
-        self._stream = PictureStream(context, sensor, context.sensor_link, block,
-                                     topics_of(context), p.number("hackBaseline", 0.0),
-                                     p.flag("borderCrop", True))
+        self._stream = self.stream_type(context, sensor, context.sensor_link, block,
+                                        topics_of(context), p.number("hackBaseline", 0.0),
+                                        p.flag("borderCrop", True))
         ImagerRate(context, [self._stream.topics.base], self.update, lambda: self._stream.wanted,
                    self._stream.publications)
 

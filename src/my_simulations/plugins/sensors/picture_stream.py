@@ -38,7 +38,12 @@ class PictureStream:
         baseline: of a stereo pair, m; for `CameraInfo.P`.
         crop: no empty borders where the lens has a barrel distortion.
         calibrated: offer `set_camera_info`.
+
+    Attributes:
+        encoding: of its pictures; "" if the format of the sensor decides.
     """
+
+    encoding = ""
 
     def __init__(self, context: Context, sensor: Sensor, link: str, block: CameraBlock,
                  topics: CameraTopics, baseline: float = 0.0, crop: bool = True,
@@ -49,7 +54,7 @@ class PictureStream:
         self._link, self._pose = link, place_of(sensor, block)
         self._who = "::".join((context.model, link, sensor.name, block.name))
         self._noise = block.noise
-        self._encoding = ENCODINGS.get(block.format, "")
+        self._encoding = self.encoding or ENCODINGS.get(block.format, "")
         if not self._encoding:
             context.warn(f"there is no image format {block.format!r}; bgr8 is published")
             self._encoding = "bgr8"
@@ -91,12 +96,18 @@ class PictureStream:
             self._info.publish(self.calibration.message(head))
         if rgb is None or not self.wanted:
             return
-        seed, encoding = context.seed, self._encoding
-        # The sim time counts the samples: a picture that is left out shifts no other's noise.
-        noisy = Once(lambda: noisy_picture(rgb, self._noise, seed, self._who, ns))
+        encoding = self._encoding
+        noisy = Once(lambda: self._picture(rgb, ns))
         if self._image.wanted:
             self._image.publish_later(
                 lambda: image(context, head, encoded(noisy.get(), encoding), encoding))
         if self._compressed.wanted:
             self._compressed.publish_later(lambda: compressed(
                 context, head, noisy.get(), encoding, self._form, self._quality))
+
+    def _picture(self, rgb: Any, ns: int) -> Any:
+        """The picture with its noise; another thread calls this.
+
+        The sim time counts the samples: a picture that is left out shifts no other's noise.
+        """
+        return noisy_picture(rgb, self._noise, self._context.seed, self._who, ns)
