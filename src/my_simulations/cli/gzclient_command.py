@@ -8,6 +8,7 @@ from typing import Any, List, Optional
 
 from ..program_end import program
 from ..ros.lifecycle import master_api
+from ..ros.own_server import EDITOR_REQUESTED
 from .web_browser import show
 
 PROGRAM = "gzclient"
@@ -82,8 +83,7 @@ class _Client:
                     return url
             if time.monotonic() > until:
                 _complain(f"no world editor: the node {self._server} on {self._master} "
-                          + ("was started without `gui` and without extensions"
-                             if server is not None else "is not running"))
+                          + ("did not open one" if server is not None else "is not running"))
                 return None
             if not told:
                 told = True
@@ -100,6 +100,9 @@ class _Client:
         """Have the server start its editor, if it supports that; returns the URL."""
         service = f"{self._server}/open_editor"
         if not master_api.call(self._master, "lookupService", self._name, service):
+            # Without extensions there is no such service: the server reads this parameter.
+            master_api.call(self._master, "setParam", self._name,
+                            f"{self._server}/{EDITOR_REQUESTED}", True)
             return ""
         import rospy
         from my_simulations_msgs.srv import OpenEditor

@@ -16,6 +16,7 @@ from .issue_logging import log_issue
 from .lifecycle import abandoned
 from .lifecycle.launch_info import Launch
 from .lifecycle.master_membership import Membership
+from .own_server import EDITOR_REQUESTED
 from .plugins.plugin_starter import PluginStarter
 from .services.editor_service import Open
 from .services.world_services import WorldServices
@@ -194,10 +195,23 @@ class Node:
             if self._membership is not None and not self._membership.keep_up():
                 return
             self._keep_engine_pid()
+            if not (self._network and self._extensions):
+                self._open_requested_editor()
             if self._reconfigure is not None:
                 self._reconfigure.keep_up()
         except OSError as fault:
             rospy.logdebug("the ROS master does not respond: %s", fault)
+
+    def _open_requested_editor(self) -> None:
+        """Open the editor if a client has requested it by a parameter."""
+        name = f"~{EDITOR_REQUESTED}"
+        if self._open_editor is None or not rospy.get_param(name, False):
+            return
+        rospy.delete_param(name)
+        try:
+            self._open_editor()
+        except CommandError as fault:
+            rospy.logerr("the world editor cannot be opened: %s", fault)
 
     def _keep_engine_pid(self) -> None:
         pid = self._simulator.engine_pid

@@ -6,6 +6,9 @@ from typing import Any, Callable
 VERSION = "my_simulations/version"
 """Parameter below the node's name that only our server has."""
 
+EDITOR_REQUESTED = "my_simulations/editor_requested"
+"""Parameter by which a client requests the editor of a server without the service open_editor."""
+
 
 def spawns_objects(get: Callable[[str], Any], node: str) -> bool:
     """Whether a node offers `spawn_object`: it is ours, and its extensions are on.

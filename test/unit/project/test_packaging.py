@@ -19,7 +19,8 @@ ARGUMENTS = {
 }
 """Arguments of gazebo_ros' empty_world.launch, with their defaults."""
 
-OURS = {"extensions": "true", "manual_stepping": "false", "lockstep": "", "editor_port": "11346",
+OURS = {"extensions": "$(eval gui or manual_stepping or lockstep == True)",
+        "manual_stepping": "false", "lockstep": "", "editor_port": "11346",
         "editor_host": "127.0.0.1", "editor_token": "true"}
 """What Gazebo's has not."""
 
