@@ -20,7 +20,8 @@ STUDENTS = ('<sdf version="1.5"><world name="default">'
 SPAWNERS = """<launch>
   <param name="robot_description" textfile="{robot}"/>
   <include file="$(find gazebo_ros)/launch/empty_world.launch">
-    <arg name="gui" value="false"/><arg name="extensions" value="true"/><arg name="paused" value="true"/>
+    <arg name="gui" value="false"/><arg name="extensions" value="true"/>
+    <arg name="paused" value="true"/>
     <arg name="world_name" value="{world}"/>
   </include>
   <node name="spawner" pkg="gazebo_ros" type="spawn_model" output="screen"
