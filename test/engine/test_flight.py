@@ -132,6 +132,70 @@ def test_a_falling_quadrotor_reaches_the_velocity_at_which_drag_carries_it(case)
     assert one.sim.states.model_state("quadrotor")[1].linear[2] == pytest.approx(0.0, abs=0.02)
 
 
+AXIS = {"p": 2.0, "i": 1.0, "d": 0.0, "antiwindup": True, "i_clamp": 5.0}
+CHAIN = {
+    "position": {"type": "hector_quadrotor_controllers/PositionController",
+                 **{axis: {"p": 2.0, "i": 0.0, "d": 0.0} for axis in ("x", "y", "z", "yaw")}},
+    "velocity": {"type": "hector_quadrotor_controllers/VelocityController", "max_xy": 10.0,
+                 "x": AXIS, "y": AXIS, "z": {**AXIS, "p": 5.0, "max": 5.0}},
+    "attitude": {"type": "hector_quadrotor_controllers/AttitudeController", "max_roll_pitch": 0.8,
+                 "roll": {"p": 100.0, "i": 0.0, "d": 20.0},
+                 "pitch": {"p": 100.0, "i": 0.0, "d": 20.0},
+                 "yawrate": {"p": 5.0, "i": 0.0, "d": 0.5, "max": 3.14}}}
+
+
+def controlled():
+    """A quadrotor with the chain of controllers of hector_quadrotor, and its motors running."""
+    return quadrotor(plugin("libgazebo_ros_control.so", "<robotNamespace>/</robotNamespace>"
+                            "<controlPeriod>0.01</controlPeriod><robotSimType>hector_quadrotor_"
+                            "controller_gazebo/QuadrotorHardwareSim</robotSimType>"))
+
+
+@pytest.fixture
+def flying(case):
+    one = case(controlled(), parameters={
+        "controller": CHAIN, "world_frame": "world", "command_timeout": 0.5,
+        "wrench_limits": {"force": {"z": {"min": 0.0, "max": 30.0}}}})
+    names = [f"controller/{name}" for name in CHAIN]
+    for name in names:
+        assert one.ask("/controller_manager/load_controller", name=name).ok, one.issues
+    assert one.ask("/controller_manager/switch_controller", start_controllers=names,
+                   stop_controllers=[], strictness=2).ok, one.issues
+    assert one.ask("/enable_motors", enable=True).success
+    return one
+
+
+def turned(yaw):
+    return {"x": 0.0, "y": 0.0, "z": math.sin(yaw / 2.0), "w": math.cos(yaw / 2.0)}
+
+
+def test_hectors_controllers_hover_at_a_pose_and_follow_velocities(flying):
+    flying.hear("/command/pose", header={"frame_id": "world", "stamp": Stamp()},
+                pose={"position": {"x": 1.0, "y": -0.5, "z": 2.0}, "orientation": turned(0.7)})
+    flying.sim.clock.advance(10000)
+    pose, twist = flying.sim.states.model_state("quadrotor")
+    assert pose.position == pytest.approx((1.0, -0.5, 2.0), abs=0.02)
+    assert rpy_from_quat(pose.orientation) == pytest.approx((0.0, 0.0, 0.7), abs=0.01)
+    assert twist.linear == pytest.approx((0.0, 0.0, 0.0), abs=0.01)
+    force = flying.graph.on("/command/wrench")[-1].wrench.force
+    assert force.z == pytest.approx(MASS * G, rel=1e-3)
+    for _ in range(25):   # ends position control; commands last for 0.5 s
+        flying.hear("/cmd_vel", linear={"x": 1.0, "y": 0.0, "z": 0.2},
+                    angular={"x": 0.0, "y": 0.0, "z": 0.0})
+        flying.sim.clock.advance(200)
+    _, twist = flying.sim.states.model_state("quadrotor")
+    assert twist.linear == pytest.approx((math.cos(0.7), math.sin(0.7), 0.2), abs=0.03)
+    before = twist.linear[2]
+    flying.sim.clock.advance(1500)   # 0.3 s later the command is too old, and it sinks
+    pose, twist = flying.sim.states.model_state("quadrotor")
+    assert twist.linear[2] == pytest.approx(before - 0.5 * 1.2 ** 2, abs=0.05)
+    assert rpy_from_quat(pose.orientation)[:2] == pytest.approx((0.0, 0.0), abs=0.05)
+    assert flying.ask("/enable_motors", enable=False).success
+    flying.sim.clock.advance(1000)
+    assert flying.sim.states.model_state("quadrotor")[1].linear[2] == pytest.approx(
+        twist.linear[2] - G, abs=0.05)
+
+
 # -- RotorS --------------------------------------------------------------------------------------
 
 THRUST, MOMENT, ARM, ROTOR_MASS = 8.54858e-06, 0.016, 0.2, 0.005

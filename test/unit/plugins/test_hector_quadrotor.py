@@ -4,6 +4,7 @@ from __future__ import annotations
 import math
 
 import pytest
+from robot_control import Arm
 
 from my_simulations.description.model import Inertial
 from my_simulations.geometry import Pose, Twist, quat_from_rpy
@@ -241,3 +242,105 @@ def test_drag_is_that_of_the_axes_of_the_body():
     context.advance(0.001)
     assert push(context)[0] == pytest.approx((0.0, -0.1 * 4.0, 0.0), abs=1e-12)
     assert context.published["aerodynamics/wrench"][-1].wrench.force.z == pytest.approx(0.4)
+
+
+# -- the chain of controllers --------------------------------------------------------------------
+
+LOOPS = {
+    "position": {"type": "hector_quadrotor_controllers/PositionController",
+                 **{axis: {"p": 2.0} for axis in ("x", "y", "z", "yaw")}},
+    "velocity": {"type": "hector_quadrotor_controllers/VelocityController",
+                 **{axis: {"p": 2.0} for axis in "xyz"}},
+    "attitude": {"type": "hector_quadrotor_controllers/AttitudeController",
+                 "max_roll_pitch": 0.5, "roll": {"p": 100.0}, "pitch": {"p": 100.0},
+                 "yawrate": {"p": 5.0, "max": 1.0}}}
+
+
+def chain(*names, inside="<robotSimType>hector_quadrotor_controller_gazebo/QuadrotorHardwareSim"
+          "</robotSimType><controlPeriod>0.01</controlPeriod>", **parameters):
+    robot = Arm(inside=inside, parameters={"world_frame": "world", **parameters}, **LOOPS)
+    robot.context.link("").inertial = Inertial(MASS, ixx=0.01, iyy=0.02, izz=0.03)
+    robot.run(*names)
+    return robot
+
+
+def start(robot, running=True):
+    response = Message()
+    robot.context.services["robot/enable_motors"](Message(enable=running), response)
+    assert response.success
+
+
+def test_nothing_pushes_until_the_motors_run():
+    robot = chain("velocity", "attitude")
+    robot.hear("cmd_vel", **command(z=1.0))
+    robot.context.advance(0.1)
+    assert not robot.context.pushes
+    start(robot)
+    robot.context.advance(0.1)
+    assert push(robot.context)[0][2] == pytest.approx(MASS * 9.8065)
+    robot.hear("cmd_vel", **command(z=1.0))
+    robot.context.advance(0.1)
+    assert push(robot.context)[0][2] == pytest.approx(MASS * (2.0 + 9.8065))
+    start(robot, False)
+    assert push(robot.context)[0][2] == 0.0
+
+
+def test_a_velocity_is_given_in_the_axes_of_the_heading():
+    robot = chain("velocity", "attitude")
+    robot.context.link("").pose = Pose(orientation=quat_from_rpy(0.0, 0.0, math.pi / 2))
+    start(robot)
+    robot.hear("cmd_vel", **command(x=1.0))
+    robot.context.advance(0.1)
+    pitch = math.asin(2.0 / 9.8065)
+    # a torque about the y axis of the body, which is -x of the world
+    assert push(robot.context)[1] == pytest.approx((-0.02 * 100.0 * math.sin(pitch), 0.0, 0.0),
+                                                   abs=1e-9)
+
+
+def test_tilt_and_yaw_rate_are_limited():
+    robot = chain("attitude")
+    start(robot)
+    for name, value in (("attitude", {"roll": 0.0, "pitch": 2.0}), ("yawrate", {"turnrate": 9.0}),
+                        ("thrust", {"thrust": 7.0})):
+        robot.hear(f"command/{name}", header={"stamp": Stamp()}, **value)
+    robot.context.advance(0.1)
+    force, torque = push(robot.context)
+    assert force == (0.0, 0.0, 7.0)
+    assert torque == pytest.approx((0.0, 0.02 * 100.0 * math.sin(0.5), 0.03 * 5.0 * 1.0))
+    robot.hear("estop", data=True)
+    robot.context.advance(1.0)
+    assert push(robot.context)[0][2] == pytest.approx(7.0 - MASS * 1.0, abs=0.05)
+
+
+def test_a_velocity_ends_position_control_and_standing_still_does_not():
+    robot = chain("position", "velocity", "attitude")
+    start(robot)
+    robot.hear("command/pose", header={"frame_id": "world", "stamp": Stamp()}, pose={
+        "position": {"x": 0.0, "y": 0.0, "z": 1.0},
+        "orientation": {"x": 0.0, "y": 0.0, "z": 0.0, "w": 1.0}})
+    robot.hear("cmd_vel", **command())
+    robot.context.advance(0.1)
+    assert push(robot.context)[0][2] == pytest.approx(MASS * (2.0 * 2.0 + 9.8065))
+    robot.hear("command/twist_limit", **command(z=0.5))
+    robot.context.advance(0.1)
+    assert push(robot.context)[0][2] == pytest.approx(MASS * (0.5 * 2.0 + 9.8065))
+    robot.hear("cmd_vel", **command(z=-0.5))
+    robot.context.advance(0.1)
+    assert push(robot.context)[0][2] == pytest.approx(MASS * (-0.5 * 2.0 + 9.8065))
+
+
+def test_commands_in_other_frames_are_ignored():
+    robot = chain("position", "velocity", "attitude")
+    start(robot)
+    robot.hear("command/pose", header={"frame_id": "map", "stamp": Stamp()}, pose={
+        "position": {"x": 0.0, "y": 0.0, "z": 1.0},
+        "orientation": {"x": 0.0, "y": 0.0, "z": 0.0, "w": 1.0}})
+    robot.context.advance(0.1)
+    assert push(robot.context)[0][2] == pytest.approx(MASS * 9.8065)
+    assert any("world" in text and "map" in text for text in robot.context.said)
+
+
+def test_controllers_of_quadrotors_need_their_hardware():
+    robot = Arm(**LOOPS)
+    assert not robot.load("attitude")
+    assert any("QuadrotorHardwareSim" in text for text in robot.context.said)

@@ -9,13 +9,15 @@ from ..context import PluginError
 from .hardware import Hardware, SwitchingHardware
 from .initial_hold import InitialHold
 from .manager import ControllerManager
+from .quadrotor_hardware import QuadrotorHardware
 from .steer_bot_hardware import SteerBotHardware
 
 DEFAULT, SWITCHING = ("gazebo_ros_control/DefaultRobotHWSim",
                       "cob_gazebo_ros_control/HWISwitchRobotHWSim")
 _HARDWARE: Mapping[str, Type[Hardware]] = {
     DEFAULT: Hardware, SWITCHING: SwitchingHardware,
-    "steer_bot_hardware_gazebo/SteerBotHardwareGazebo": SteerBotHardware}
+    "steer_bot_hardware_gazebo/SteerBotHardwareGazebo": SteerBotHardware,
+    "hector_quadrotor_controller_gazebo/QuadrotorHardwareSim": QuadrotorHardware}
 
 
 class GazeboRosControl(Plugin):

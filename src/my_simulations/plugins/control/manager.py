@@ -46,6 +46,9 @@ TYPES: Mapping[str, str] = {
         "mecanum_drive_controller:MecanumDriveController",
     "cob_omni_drive_controller/WheelController": "omni_drive_controllers:WheelController",
     "cob_omni_drive_controller/OdometryController": "omni_drive_controllers:OdometryController",
+    "hector_quadrotor_controllers/PositionController": "quadrotor_controllers:PositionController",
+    "hector_quadrotor_controllers/VelocityController": "quadrotor_controllers:VelocityController",
+    "hector_quadrotor_controllers/AttitudeController": "quadrotor_controllers:AttitudeController",
     "imu_sensor_controller/ImuSensorController": "sensor_controllers:ImuSensorController",
     "force_torque_sensor_controller/ForceTorqueSensorController":
         "sensor_controllers:ForceTorqueSensorController",

@@ -1,0 +1,196 @@
+"""hector_quadrotor_controller_gazebo: a flying body that controllers push by a wrench.
+
+Parameters, topics, service and laws are those of hector_quadrotor. Position, velocity and attitude
+controllers form a chain: each one gives the next its command, and the last one gives the wrench, in
+the axes of the first link. Where it differs: states are always the true ones (`state_topic`,
+`imu_topic`); without the package hector_uav_msgs there is no service `enable_motors`, and the
+motors run from the start.
+"""
+from __future__ import annotations
+
+import math
+from typing import Any, Callable, Dict, NamedTuple, Optional, Sequence
+
+from ...description.transmission import Transmission
+from ...geometry import Vec3, conjugate, norm, rotate, rpy_from_quat, scale
+from ..context import Context, Ending, PluginError
+from ..flight.body_wrench import NO_WRENCH, Wrench, fill_wrench, push_at_origin
+from ..frames import prefixed, stamped
+from .hardware import Hardware
+from .settings import Settings
+
+
+class TwistCommand(NamedTuple):
+    """A velocity, m/s, and a yaw rate, rad/s; `in_world`, else in axes that turn with the yaw."""
+
+    linear: Vec3 = (0.0, 0.0, 0.0)
+    yaw_rate: float = 0.0
+    stamp_ns: int = 0
+    in_world: bool = True
+
+
+class AttitudeCommand(NamedTuple):
+    """Roll and pitch, rad, yaw rate, rad/s, and thrust, N."""
+
+    roll: float = 0.0
+    pitch: float = 0.0
+    yaw_rate: float = 0.0
+    thrust: float = 0.0
+    stamp_ns: int = 0
+
+
+class Limits(NamedTuple):
+    """Of a number; none are infinite. Source: hector_quadrotor_interface, FieldLimiter."""
+
+    least: float
+    most: float
+
+    def applied(self, value: float) -> float:
+        """The value within them."""
+        return max(self.least, min(self.most, value))
+
+
+def limits_at(s: Settings, path: str) -> Limits:
+    """Read `min` and `max` below a path; `min` is the opposite of `max` by default."""
+    most = s.number(f"{path}/max", math.inf)
+    return Limits(s.number(f"{path}/min", -most), most)
+
+
+class VectorLimits:
+    """Of a vector: of x, y, z, of its size, and of that across. Source: Vector3Limiter."""
+
+    def __init__(self, s: Settings, path: str = "") -> None:
+        below = f"{path}/" if path else ""
+        self._axes = [limits_at(s, f"{below}{axis}") for axis in "xyz"]
+        self._most = s.number(f"{below}max", math.inf)
+        self._most_across = s.number(f"{below}max_xy", math.inf)
+
+    def applied(self, vector: Vec3) -> Vec3:
+        """The vector within them."""
+        x, y, z = (limits.applied(value) for limits, value in zip(self._axes, vector))
+        across = math.hypot(x, y)
+        found: Vec3 = (x, y, z)
+        if across > self._most_across:
+            found = scale(found, self._most_across / across)
+        size = norm(found)
+        return scale(found, self._most / size) if size > self._most else found
+
+
+class QuadrotorHardware(Hardware):
+    """The chain of commands; it is worked off while the motors run.
+
+    Attributes:
+        link: the body.
+        twist: the command of a position controller; None without one.
+        attitude: the command of a velocity controller; None without one.
+        preempted: a velocity command has come that ends position control.
+        running: whether the motors run.
+    """
+
+    needs_transmissions = False
+
+    def __init__(self, context: Context, transmissions: Sequence[Transmission]) -> None:
+        super().__init__(context, [])
+        self.link = context.link("")
+        self.twist: Optional[TwistCommand] = None
+        self.attitude: Optional[AttitudeCommand] = None
+        self.preempted = self.running = False
+        self._updates: Dict[int, Callable[[float], None]] = {}
+        self._begins: Dict[int, Callable[[], None]] = {}
+        self._timer: Optional[Ending] = None
+        self._wrench = NO_WRENCH
+        self._period_ns = 0
+        limits = Settings(context, "wrench_limits")
+        self._limits = (VectorLimits(limits, "force"), VectorLimits(limits, "torque"))
+        self._frame = prefixed(context, str(context.parameter("base_link_frame", "base_link")))
+        self._wrenches = context.publish("command/wrench", "geometry_msgs/WrenchStamped")
+        for name in ("state_topic", "imu_topic"):
+            if context.parameter(name, ""):
+                context.warn(f"parameter {name} is ignored; controllers use the true state")
+        try:
+            context.serve("enable_motors", "hector_uav_msgs/EnableMotors", self._enable_asked)
+        except PluginError as missing:
+            context.warn(f"the motors run, they cannot be stopped: {missing}")
+            self.running = True
+
+    # -- state -----------------------------------------------------------------------------------
+
+    @property
+    def yaw(self) -> float:
+        """rad."""
+        return rpy_from_quat(self.link.pose.orientation)[2]
+
+    def to_body(self, vector: Vec3) -> Vec3:
+        """A vector of the world in the axes of the body."""
+        return rotate(conjugate(self.link.pose.orientation), vector)
+
+    # -- the chain -------------------------------------------------------------------------------
+
+    def join(self, place: int, update: Callable[[float], None], begin: Callable[[], None],
+             period: float) -> None:
+        """Add a controller to the chain.
+
+        Args:
+            place: its place in the chain.
+            update: called with the time in s since its last call.
+            begin: called when the motors start.
+            period: s of sim time between calls of `update`; 0 for each step.
+        """
+        self._updates[place], self._begins[place] = update, begin
+        self._period_ns = round(period * 1e9)
+        self._begin()
+
+    def leave(self, place: int) -> None:
+        """Remove a controller from the chain."""
+        self._updates.pop(place, None)
+        self._begins.pop(place, None)
+        if not self._updates:
+            self._end()
+
+    def command(self, value: Wrench) -> None:
+        """Push the body with a wrench, within the limits, until the next one."""
+        force, torque = (limits.applied(part) for limits, part in zip(self._limits, value))
+        self._wrench = (force, torque)
+
+    def _enable_asked(self, request: Any, response: Any) -> None:
+        self.run_motors(bool(request.enable))
+        response.success = True
+
+    def run_motors(self, running: bool) -> None:
+        """Start or stop the motors."""
+        if running == self.running:
+            return
+        self.running = running
+        if running:
+            for begin in self._begins.values():
+                begin()
+            self._begin()
+        else:
+            self._end()
+
+    def _begin(self) -> None:
+        if self.running and self._updates and self._timer is None:
+            self._last_ns = self._context.now_ns
+            self._timer = self._context.every(0.0, self._step)
+
+    def _end(self) -> None:
+        if self._timer is not None:
+            self._timer.end()
+            self._timer = None
+            self._wrench = NO_WRENCH
+            push_at_origin(self._context, self.link, self._wrench)
+
+    def _step(self) -> None:
+        now = self._context.now_ns
+        elapsed = now - self._last_ns
+        if elapsed < 0:
+            self._last_ns = now   # time was set back
+        elif elapsed >= self._period_ns and elapsed > 0:
+            self._last_ns = now
+            for place in sorted(self._updates):
+                self._updates[place](elapsed * 1e-9)
+            if self._wrenches.wanted:
+                message = stamped(self._context, "geometry_msgs/WrenchStamped", self._frame)
+                fill_wrench(message.wrench, self._wrench)
+                self._wrenches.publish(message)
+        push_at_origin(self._context, self.link, self._wrench)
