@@ -115,8 +115,12 @@ _TABLE: Tuple[Tuple[str, Tuple[Tuple[str, str, str, str], ...]], ...] = (
         ("include-empty", ERROR, "The included file contains no model and no light.",
          "Correct the URI."),
         ("include-cycle", ERROR, "Models include each other in a cycle.", "Remove one include."),
-        ("include-many", ERROR, "The limit of includes was reached; the rest is skipped.",
-         "Use fewer includes, or <population>."),
+        ("model-too-large", ERROR, "The model has more links, collisions, triangles or pairs of "
+         "links than a model may have.", "Divide it, or use simpler collisions."),
+        ("world-too-large", ERROR, "The models of the world together exceed a limit; the rest is "
+         "skipped.", "Remove models, or use simpler ones."),
+        ("include-many", ERROR, "The model has more includes than a model may have.",
+         "Use fewer includes, or divide the model."),
         ("include-flag", NOTE, "A flag of an included model applies to the whole model.", "None."),
         ("model-not-found", EITHER, "An included model was not found.",
          "Add its folder to GAZEBO_MODEL_PATH, or correct the URI."),

@@ -66,7 +66,7 @@ def advice_issues(models: Sequence[Model], meshes: Mapping[str, MeshTable],
     """
     found = findings(models, meshes, only)
     listed = list(found if limit is None else islice(found, limit + 1))
-    issues = [_issue(one, [model for model in models if only in ("", model.name)], written)
+    issues = [located_issue(one, [model for model in models if only in ("", model.name)], written)
               for one in listed[:limit]]
     if len(listed) > len(issues):
         # What is spawned is called by more than its file's name.
@@ -76,7 +76,7 @@ def advice_issues(models: Sequence[Model], meshes: Mapping[str, MeshTable],
     return issues
 
 
-def _issue(fault: Fault, models: Sequence[Model], written: Written) -> Issue:
+def located_issue(fault: Fault, models: Sequence[Model], written: Written) -> Issue:
     """The finding as an issue, located at its element or at the `<include>` of the model."""
     where: Dict[str, Any] = {"file": written.file}
     element = _element_of(fault.subject, models, written) if written.root is not None else None

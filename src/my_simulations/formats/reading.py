@@ -126,7 +126,7 @@ def _loaded_world(root: Any, source: Source, parsed: World, advice_limit: Option
     meshes: Dict[str, MeshTable] = {}
     for number, model in enumerate(world.models):
         progress(model.name, number, len(world.models))
-        meshes[model.name], faults = collision_meshes(model)
+        meshes[model.name], faults = collision_meshes(model, Written(source.file, root))
         issues += faults
     progress("", len(world.models), len(world.models))
     issues += visual_file_issues(world.models, source.resolver)
@@ -239,7 +239,7 @@ def read_any(text: Text, resolver: Resolver,
     if isinstance(entity, Model):
         issues += visual_file_issues([entity], resolver)
         issues += decoded_visual_issues([entity], issues)
-        meshes, faults = collision_meshes(entity)
+        meshes, faults = collision_meshes(entity, Written(file, root))
         issues += faults
         issues += advice_issues([entity], {entity.name: meshes}, Written(file, root), limit=None)
     return entity, issues

@@ -6,6 +6,7 @@ from functools import cached_property
 from typing import Iterator, List, Optional, Tuple
 
 from ..description.advice import reach_of
+from ..description.cost_budget import Cost
 from ..description.model import Model
 from ..description.model_plugins import has_plugins
 from ..description.saved_state import InitialState
@@ -31,6 +32,7 @@ class Entity:
         launched: spawned by the launch file that started the simulator, and spawned again by it at
             the next start.
         start: how it moves at its start, from a saved state; None for at rest.
+        cost: its part of the world's budget.
     """
 
     model_id: int
@@ -43,6 +45,7 @@ class Entity:
     articulated: bool = False
     launched: bool = False
     start: Optional[InitialState] = None
+    cost: Cost = Cost()
 
     def __post_init__(self) -> None:
         self.pose = self.initial_pose

@@ -6,6 +6,7 @@ import threading
 from dataclasses import replace
 from typing import Any, Callable, Iterable, List, Optional, Sequence
 
+from ..description.cost_budget import Cost, budget_faults, cost_of, world_excess
 from ..description.model import Model
 from ..description.shapes import MeshTable
 from ..description.world import World
@@ -59,6 +60,7 @@ class Session:
         self._link_rows = RowAllocator(LINKS)
         self._joint_rows = RowAllocator(JOINTS)
         self._last_id = 0
+        self._cost = Cost()
 
     def call(self, command: Command) -> Reply:
         """Send an engine command and wait for its reply; see `Supervisor.call` for errors."""
@@ -141,8 +143,15 @@ class Session:
                    articulated: bool) -> Entity:
         """A new entity with its id and rows, not yet in the registry.
 
-        Requires both locks. Raises CommandError if the ring has no free rows.
+        Requires both locks. Raises CommandError if the ring has no free rows, or if the model or
+        the world would exceed its budget (`description.cost_budget`).
         """
+        cost = cost_of(model, meshes)
+        for fault in budget_faults(cost, model):
+            raise CommandError(f"{fault.message} ({fault.hint})")
+        excess = world_excess(self._cost + cost)
+        if excess:
+            raise CommandError(excess)
         links, joints = len(model.links), len(axis_rows(model))
         first_link = self._link_rows.take(links)
         first_joint = self._joint_rows.take(joints)
@@ -151,11 +160,13 @@ class Session:
                 self._link_rows.give(first_link, links)
             raise CommandError(f"limit of {LINKS} links and {JOINTS} joint axes per world "
                                "exceeded")
+        self._cost += cost
         return Entity(self.new_id(), model, initial_pose, first_link, first_joint, meshes,
-                      articulated=articulated)
+                      articulated=articulated, cost=cost)
 
     def free_rows(self, entity: Entity) -> None:
         """Free the rows of an entity that was deleted from the engine. Requires both locks."""
+        self._cost -= entity.cost
         self._link_rows.give(entity.first_link_row, len(entity.link_names))
         self._joint_rows.give(entity.first_joint_row, len(entity.joint_names))
 

@@ -100,6 +100,8 @@ def checked(model: Model) -> Tuple[MeshTable, List[Issue]]:
     if errors_of(found):
         raise InputError(found)
     meshes, issues = collision_meshes(flattened(model))
+    if errors_of(issues):
+        raise InputError(issues)
     return meshes, issues
 
 

@@ -7,10 +7,12 @@ import os
 from dataclasses import replace
 from typing import Any, Callable, Iterator, List, Optional, Tuple
 
+from ...description.cost_budget import Cost, budget_faults
 from ...description.model import Link, Model
 from ...description.shapes import SOLIDS, Collision, Mesh, MeshData, MeshTable, Solid, mesh_key
 from ...errors import InputError, Issue, Severity, error
 from ...resources.lfs_pointer import LFS_HINT, LFS_POINTER, is_lfs_pointer
+from ..loading_advice import UNKNOWN, Written, located_issue
 from ..reader_process import read_elsewhere
 from ..xml.binding import closest
 from .collada_encoding import encoding_issues
@@ -68,31 +70,49 @@ def load_solid(solid: Solid) -> MeshData:
                      f"{type(fault).__name__}: {fault}", getattr(solid, "path", "")) from fault
 
 
-def collision_meshes(model: Model) -> Tuple[MeshTable, List[Issue]]:
+def collision_meshes(model: Model, written: Written = UNKNOWN) -> Tuple[MeshTable, List[Issue]]:
     """Meshes of a model's collisions by `mesh_key`, and a warning for each that cannot be loaded.
 
     Collisions without their mesh cannot be simulated; `without_missing_meshes` removes them, as
     Gazebo does. Nested models are included. A mesh whose size suggests a wrong unit gets the
-    warning `mesh-size-odd`.
+    warning `mesh-size-odd`. If all have more triangles than a model may have, the error
+    `model-too-large` names the collision at which that is so, and the rest is not loaded.
+
+    Args:
+        model: the model, flattened or not.
+        written: where it is written, for the error.
     """
     table: MeshTable = {}
     issues: List[Issue] = []
+    triangles = 0
     for scope, link, collision in _collisions(model, ""):
         mesh = collision.geometry
-        if not isinstance(mesh, SOLIDS) or mesh_key(mesh) in table:
+        if not isinstance(mesh, SOLIDS):
             continue
-        found: List[Issue] = []
-        try:
-            data = load_solid(mesh)
+        if mesh_key(mesh) not in table:
+            where = f"collision {collision.name!r} of link {scope + link.name!r}"
+            data, found = _collision_mesh(mesh, not model.static)
+            issues += [replace(issue, message=f"{where}: {issue.message}") for issue in found]
+            if data is None:
+                continue
             table[mesh_key(mesh)] = data
-            if isinstance(mesh, Mesh):
-                found = [*odd_size(mesh, data, moves=not model.static), *encoding_issues(mesh)]
-        except InputError as fault:
-            found = [replace(issue, message=f"{issue.message}; it is skipped", tolerated=True,
-                             severity=Severity.WARNING) for issue in fault.issues]
-        where = f"collision {collision.name!r} of link {scope + link.name!r}"
-        issues += [replace(issue, message=f"{where}: {issue.message}") for issue in found]
+        triangles += len(table[mesh_key(mesh)].triangles)
+        for fault in budget_faults(Cost(triangles=triangles), model):
+            issues.append(located_issue(replace(fault, subject=collision), [model], written))
+            return table, issues
     return table, issues
+
+
+def _collision_mesh(mesh: Solid, moves: bool) -> Tuple[Optional[MeshData], List[Issue]]:
+    """The mesh of a collision, None if it cannot be loaded; and warnings."""
+    try:
+        data = load_solid(mesh)
+    except InputError as fault:
+        return None, [replace(issue, message=f"{issue.message}; it is skipped", tolerated=True,
+                              severity=Severity.WARNING) for issue in fault.issues]
+    if not isinstance(mesh, Mesh):
+        return data, []
+    return data, [*odd_size(mesh, data, moves=moves), *encoding_issues(mesh)]
 
 
 def without_missing_meshes(model: Model, table: MeshTable) -> Model:

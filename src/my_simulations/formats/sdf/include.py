@@ -7,6 +7,7 @@ from dataclasses import replace
 from typing import Any, Callable, Optional, Sequence, Union
 
 from ...description.actor import Actor
+from ...description.cost_budget import MODEL_BUDGET
 from ...description.light import Light
 from ...errors import InputError
 from ...geometry import IDENTITY
@@ -25,7 +26,8 @@ from .upgrade import upgrade
 from .world_scene import read_actor
 
 _DEEPEST = 20
-_MOST = 20000
+_MOST = MODEL_BUDGET.links
+"""Most includes of one model: nearly each of a useful model adds a link."""
 
 Included = Union[ParsedModel, LightPlacement, Actor]
 ModelReader = Callable[..., ParsedModel]
@@ -75,7 +77,7 @@ def read_include(element: Any, source: Source, read_model: ModelReader, static: 
             source.report(FaultLevel.ERROR, "model-not-found", f"the included model {text}",
                           element, hint)
         return None
-    return _read_file(path, element, source, changes, read, probe.uri)
+    return _read_file(path, element, source, changes, read, probe.uri, not outer)
 
 
 class _Include:
@@ -89,16 +91,19 @@ class _Include:
 
 
 def _read_file(path: str, element: Any, source: Source, changes: IncludeOverrides,
-               read: ModelReader, uri: str) -> Optional[Included]:
+               read: ModelReader, uri: str, alone: bool) -> Optional[Included]:
     if path in source.trail or len(source.trail) >= _DEEPEST:
         chain = " -> ".join(os.path.basename(os.path.dirname(p)) for p in (*source.trail, path))
         source.report(FaultLevel.ERROR, "include-cycle", f"models include each other: {chain}",
                       element)
         return None
+    if alone and not source.trail:
+        source.log.includes = 0
     source.log.includes += 1
     if source.log.includes > _MOST:
-        source.report(FaultLevel.ERROR, "include-many", f"more than {_MOST} includes; the rest is"
-                      " skipped", element)
+        if source.log.includes == _MOST + 1:
+            source.report(FaultLevel.FATAL, "include-many", "the model has more than"
+                          f" {_MOST} includes", element)
         return None
     inner = replace(source, file=path, base_dir=os.path.dirname(path),
                     trail=(*source.trail, path))

@@ -5,6 +5,7 @@ import enum
 from dataclasses import replace
 from typing import Any, List, Optional, Sequence, Set, Tuple
 
+from ...description.cost_budget import budget_faults, cost_of
 from ...description.model import WORLD, Link, Model
 from ...description.validate import link_names, own_faults, place_faults
 from ...errors import Issue, Severity
@@ -67,6 +68,8 @@ class _ModelReader:
 
     def read(self) -> ParsedModel:
         element, source, changes = self._element, self._source, self._changes
+        if not (self._outer or source.trail):
+            source.log.includes = 0
         model = Model(element.get("name", ""))
         self._elements[id(model)] = element
         found = fill(model, element, MODEL, source, model.extra)
@@ -345,7 +348,8 @@ class _ModelReader:
     def _check(self, model: Model) -> None:
         """Report the faults of the complete model, located at their elements."""
         found = [*own_faults(model, self._outer_static),
-                 *(fault for nested in model.models for fault in place_faults(nested))]
+                 *(fault for nested in model.models for fault in place_faults(nested)),
+                 *([] if self._outer else budget_faults(cost_of(model), model))]
         for fault in found:
             element = self._elements.get(id(fault.subject))
             if element is None:

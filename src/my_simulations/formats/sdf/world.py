@@ -5,13 +5,14 @@ import copy
 from typing import Any, Callable, Dict, List, Sequence, Set, Tuple
 
 from ...description.actor import Actor
+from ...description.cost_budget import Cost, cost_of, world_excess
 from ...description.light import Light
 from ...description.model import Link, Model
 from ...description.validate import link_names
 from ...description.world import Physics, World
 from ...geometry import is_finite
 from ..xml.binding import Found, fill, to_xml
-from ..xml.source import Source
+from ..xml.source import FaultLevel, Source
 from ..xml.values import BOOL
 from .frame_graph import FrameError, FrameTree
 from .include import read_include
@@ -60,6 +61,8 @@ class _Entities:
         self._found = found
         self._inner: List[Tuple[ParsedModel, Any]] = []
         self._pending: List[UnresolvedJoint] = []
+        self._cost = Cost()
+        self._full = False
 
     def read(self, element: Any) -> None:
         readers: Dict[str, Callable[[Any], Any]] = {
@@ -70,7 +73,7 @@ class _Entities:
         }
         for child in element:
             reader = readers.get(child.tag)
-            if reader is None:
+            if reader is None or (self._full and child.tag != "light"):
                 continue
             before = self._source.log.fatal
             entity = reader(child)
@@ -89,7 +92,8 @@ class _Entities:
             self._world.actors.append(entity)
         elif isinstance(entity, ParsedModel):
             model = entity.model
-            if self._is_new(model.name, self._models, "model", element):
+            if (self._is_new(model.name, self._models, "model", element)
+                    and self._fits(model, element)):
                 self._world.models.append(model)
                 self._frames.add(model.name, model.pose, entity.relative_to, element)
                 self._inner.append((entity, element))
@@ -104,6 +108,18 @@ class _Entities:
                     self._frames.add(f"(light) {light.name}", light.pose, entity.relative_to,
                                      element)
                     self._waiting.append((light, element))
+
+    def _fits(self, model: Model, element: Any) -> bool:
+        """Whether the world has room for the model; otherwise no further one is read."""
+        cost = self._cost + cost_of(model)
+        excess = world_excess(cost)
+        if not excess:
+            self._cost = cost
+        elif not self._full:
+            self._full = True
+            self._source.report(FaultLevel.ERROR, "world-too-large", f"{excess}; this model and"
+                                " the following ones are skipped", element)
+        return not excess
 
     def _is_new(self, name: str, names: Set[str], kind: str, element: Any) -> bool:
         if name in names:

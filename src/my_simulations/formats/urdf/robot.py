@@ -3,6 +3,7 @@ from __future__ import annotations
 
 from typing import Any, Dict, List, Optional, Union
 
+from ...description.cost_budget import budget_faults, cost_of
 from ...description.model import WORLD, Joint, JointAxis, Link, Model
 from ...description.validate import faults
 from ...errors import Issue, Severity
@@ -285,7 +286,7 @@ class _RobotReader:
                 self._source.warn("mimic-joint-unknown", f"joint {joint.name!r} follows"
                                   f" {mimic.joint!r}, which is not a joint of the model",
                                   self._elements[id(joint)], closest(mimic.joint, known))
-        for fault in faults(self._model):
+        for fault in (*faults(self._model), *budget_faults(cost_of(self._model), self._model)):
             element = self._elements.get(id(fault.subject), self._element)
             self._source.log.add(
                 Issue(fault.severity, fault.code, fault.message, hint=fault.hint,

@@ -36,7 +36,7 @@ class IssueCollector:
 
     Attributes:
         fatal: number of issues that make their entity unusable.
-        includes: number of includes followed.
+        includes: number of includes followed for the model that is being read.
         told: kinds of elements that were already reported as not simulated.
         unknown: number of unknown elements and attributes.
     """

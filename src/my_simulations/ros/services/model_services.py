@@ -144,7 +144,7 @@ class ModelServices:
             self._report(issues)
             return self._spawn_light(entity, name, initial, frame)
         model = named(entity, name if name is not None else entity.name, namespace)
-        meshes, mesh_issues = collision_meshes(model)
+        meshes, mesh_issues = collision_meshes(model, document.written(entity.name))
         issues = [*issues, *mesh_issues]
         self._report(issues)
         if errors_of(issues):
