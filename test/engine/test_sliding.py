@@ -3,13 +3,22 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
 import pytest
 from conftest import Lab, box, ground, inertial_of_box, link_of, slab
 from laws import Laws
 
 from my_simulations.description.model import Inertial, Link, Model
-from my_simulations.description.shapes import Box, Collision, Cylinder, Surface
-from my_simulations.geometry import Pose
+from my_simulations.description.shapes import (
+    Box,
+    Collision,
+    Cylinder,
+    Heightmap,
+    MeshData,
+    Surface,
+    mesh_key,
+)
+from my_simulations.geometry import Pose, quat_from_rpy
 
 G = 9.8
 CUBE, FLAT = (1.0, 1.0, 1.0), (1.0, 1.0, 0.1)
@@ -131,6 +140,47 @@ def test_an_upright_cylinder_slides_on_a_floor_not_in_it(lab: Lab, laws: Laws, s
         way = speed if mu == 0.0 else speed ** 2 / (2 * mu * G)
         laws.near("upright cylinders that slide at 0.3 to 2.7 m/s: way in 1 s, m",
                   lab.pose(can).position[0], way, rel=0.02)
+
+
+@pytest.mark.parametrize("speed", [0.3, 2.7])
+def test_upright_cylinders_slide_and_wheels_roll_on_triangles_in_one_world(lab: Lab, laws: Laws,
+                                                                           speed: float):
+    """Both need other contact points than usual, which Bullet finds by one world-wide rule."""
+    _floor(lab, "plane")
+    x, y = np.meshgrid(np.arange(14.0), np.arange(3.0))
+    points = np.stack([x.ravel(), y.ravel(), np.zeros(x.size)], axis=1)
+    at = (np.arange(2)[:, None] * 14 + np.arange(13)).ravel()
+    faces = np.concatenate([np.stack([at, at + 1, at + 14], 1),
+                            np.stack([at + 1, at + 15, at + 14], 1)]).astype(np.int32)
+    terrain = Heightmap("terrain", "/terrain")
+    lab.load(Model("terrain", static=True, links=[Link("link", collisions=[
+        Collision("c", terrain, surface=Surface(mu=1.0))])]), (0, 20, 0.5),
+        meshes={mesh_key(terrain): MeshData(points, faces)})
+    across = (3 * 0.1 ** 2 + 0.3 ** 2) / 12
+    wheel = lab.load(Model("wheel", allow_auto_disable=False, links=[link_of(
+        Cylinder(0.1, 0.3), Inertial(1.0, ixx=across, iyy=across, izz=0.005), Surface(mu=1.0))]),
+        (0.3, 20.9, 0.6), quat_from_rpy(math.pi / 2, 0, 0))
+    for tile in range(8):
+        lab.load(slab(f"tile{tile}", (1.0, 4.0, 0.2)), (tile - 0.5, -9.5, -0.08))
+    cans = [(lab.load(_upright(radius, height, 0.0), (0, n + y, height / 2 + base)),
+             height / 2 + base, deepest) for n, (radius, height) in enumerate(CANS)
+            for y, base, deepest in ((0, 0.0, 3e-4), (-10, 0.02, 1e-3))]
+    lab.seconds(0.5)
+    lab.push(wheel, (0.5, 0, 0), (0, 5.0, 0))
+    lab.seconds(0.5)
+    for can, *_ in cans:
+        lab.push(can, (speed, 0, 0))
+    start = lab.pose(wheel).position[0]
+    for _ in range(150):
+        lab.steps(10)
+        for can, half, deepest in cans:
+            laws.at_most("upright cylinders beside a wheel on triangles: depth, m",
+                         half - lab.pose(can).position[2], deepest)
+    for can, *_ in cans:
+        laws.near("upright cylinders beside a wheel on triangles: speed, m/s",
+                  lab.twist(can).linear[0], speed, rel=0.02)
+    laws.near("a wheel on triangles beside upright cylinders that slide: speed, m/s",
+              (lab.pose(wheel).position[0] - start) / 1.5, 0.5, rel=0.005)
 
 
 @pytest.mark.parametrize("speed", [0.3137, 0.7071, 1.618, 2.718])

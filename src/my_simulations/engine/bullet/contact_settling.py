@@ -34,6 +34,7 @@ from ...geometry import Pose, Vec3
 from ..run_state import PARTING_NOT_BEGUN
 from .bodies import Body
 from .step_helper import FAR, next_multiple
+from .world_parameters import USUAL_ACCURACY, Accuracy, WorldParameters
 
 JointStates = Sequence[Any]  # as PyBullet tells them
 
@@ -50,9 +51,8 @@ _ON_ITS_WAY = 0.1     # share of the rate that is wanted of an axis
 _LEANS = 0.02         # friction by normal force
 _NONE = (0.0, 0.0, 0.0)
 _SMALL = 0.06         # m, radius: such a body creeps on the level too
-_RESIDUALS = (1e-7, 1e-11, 1e-15)  # PyBullet's own; for leaning bodies; for standing robots
-_MORE_ITERATIONS = 4
-_IMPACT_ITERATIONS = 10
+_FOR_LEANING_BODIES = Accuracy(residual=1e-11)
+_FOR_STANDING_ROBOTS = Accuracy(4, 1e-15)
 _PARTING = 1.0        # s, at most
 _LEAST = 0.1          # s, at least: what is put down a little higher has landed
 _SHALLOW = 1e-4       # m: overlaps that may part with velocity
@@ -83,35 +83,28 @@ class ContactSettling:
     """Chooses how exactly Bullet solves, and holds robots that stand.
 
     Args:
+        parameters: of the world.
         loaded: tells the bodies that timed forces act on in this step.
         driven: tells the rate to which the axis of a row is driven; 0 for none.
         on_held: hears which body is held from now on (True), or is not any more.
     """
 
-    def __init__(self, loaded: Callable[[], Set[int]], driven: Callable[[int], float],
-                 on_held: Callable[[Body, bool], None]) -> None:
+    def __init__(self, parameters: WorldParameters, loaded: Callable[[], Set[int]],
+                 driven: Callable[[int], float], on_held: Callable[[Body, bool], None]) -> None:
+        self._parameters = parameters
         self._loaded, self._driven, self._on_held = loaded, driven, on_held
         self._trees: Dict[int, _Tree] = {}
         self._moving: Set[int] = set()
         self._rigid: Dict[int, Body] = {}     # awake, or reached by a command since the last look
-        self._level = 0
         self._leaning = False
-        self._iterations = 50
         self._parting_steps, self._least_steps = 1000, 100
         self._new = False                     # something was put in since the last look
         self._arrived: List[_Tree] = []       # of that, what has axes
         self._until: Optional[int] = None     # the step at which split impulses end
 
-    def configure(self, iterations: int, dt: float) -> None:
-        """Tell PyBullet, also after its world was reset; `iterations` are those of the file.
-
-        `dt`: the step size, s.
-        """
-        self._iterations = iterations
+    def configure(self, dt: float) -> None:
+        """Use steps of `dt` s."""
         self._parting_steps, self._least_steps = round(_PARTING / dt), round(_LEAST / dt)
-        pybullet.setPhysicsEngineParameter(splitImpulsePenetrationThreshold=0.0)
-        self._split(self._new or self._until is not None)
-        self._use(self._level)
 
     def add(self, body: Body) -> None:
         """Know a body; only articulated ones and those that may not sleep matter."""
@@ -133,7 +126,7 @@ class ContactSettling:
         self._rigid.pop(body.uid, None)
         if not self._trees and not self._rigid:
             self._leaning = False
-            self._change(0)
+            self._parameters.request_accuracy(USUAL_ACCURACY)
 
     def clear(self) -> None:
         """All bodies are gone."""
@@ -141,7 +134,7 @@ class ContactSettling:
         self._arrived.clear()
         self._moving.clear()
         self._rigid.clear()
-        self._level, self._leaning = 0, False
+        self._leaning = False
         self._new, self._until = False, None
 
     def touched(self, body: Body) -> None:
@@ -166,19 +159,7 @@ class ContactSettling:
             return
         self._new, self._until = False, end
         self._arrived.clear()
-        self._split(end is not None)
-
-    def solve_impact(self, impact: bool) -> None:
-        """Solve the next step with many iterations, or (False) as is usual.
-
-        An impact of 10 m/s needs them: after 50 a block ten times as high as wide turns on.
-        """
-        if impact:
-            pybullet.setPhysicsEngineParameter(
-                numSolverIterations=_IMPACT_ITERATIONS * self._iterations,
-                solverResidualThreshold=_RESIDUALS[-1])
-        else:
-            self._use(self._level)
+        self._parameters.split_impulses(end is not None)
 
     def due(self, step: int) -> int:
         """At once when something was put in, else the next look."""
@@ -195,7 +176,7 @@ class ContactSettling:
         """See now and then whether something stands."""
         if self._new:
             self._new, self._until = False, step + self._parting_steps
-            self._split(True)
+            self._parameters.split_impulses(True)
             # At once: an arm whose zero pose is past its stops may stand in the ground there.
             for tree in self._arrived if step % EVERY else ():
                 _put_back(tree.body, _states(tree))
@@ -205,7 +186,7 @@ class ContactSettling:
         if self._until is not None and (step >= self._until or (
                 step % _OVERLAPS_EVERY == 0 and self._is_parted(step))):
             self._until = None
-            self._split(False)
+            self._parameters.split_impulses(False)
         if step % _RIGID_EVERY == 0:
             self._rigid = {uid: body for uid, body in self._rigid.items() if not body.sleeps}
             self._leaning = any(_creeps(body) for body in self._rigid.values())
@@ -218,7 +199,9 @@ class ContactSettling:
             standing = self._stands(tree, states) or standing
             if held != (tree.held is not None):
                 self._on_held(tree.body, not held)
-        self._change(2 if standing else int(self._leaning))
+        self._parameters.request_accuracy(
+            _FOR_STANDING_ROBOTS if standing else
+            _FOR_LEANING_BODIES if self._leaning else USUAL_ACCURACY)
 
     def _is_parted(self, step: int) -> bool:
         """Whether nothing lies deep in anything else any more."""
@@ -271,20 +254,6 @@ class ContactSettling:
             if wanted and abs(rate) > _ON_ITS_WAY * abs(wanted):
                 return True
         return False
-
-    @staticmethod
-    def _split(wanted: bool) -> None:
-        pybullet.setPhysicsEngineParameter(useSplitImpulse=int(wanted))
-
-    def _change(self, level: int) -> None:
-        if level != self._level:
-            self._level = level
-            self._use(level)
-
-    def _use(self, level: int) -> None:
-        pybullet.setPhysicsEngineParameter(
-            solverResidualThreshold=_RESIDUALS[level],
-            numSolverIterations=self._iterations * (_MORE_ITERATIONS if level == 2 else 1))
 
 
 def _states(tree: _Tree) -> JointStates:

@@ -30,7 +30,6 @@ from .restored_sleep import RestoredSleep
 from .rolling_contacts import RollingContacts
 from .seam_contacts import SeamContacts
 from .sliding import Sliding
-from .solver_settings import configure_solver
 from .state_readout import StateReadout
 from .state_restore import Entry
 from .state_setter import StateSetter
@@ -38,6 +37,7 @@ from .step_helper import StepLoop
 from .surface_stop import SurfaceStop
 from .velocity_decay import VelocityDecay
 from .wake_up import WakeUp
+from .world_parameters import WorldParameters
 
 
 class HelperSet:
@@ -66,20 +66,21 @@ class HelperSet:
                  axes: Dict[int, Tuple[Body, bodies.Axis]]) -> None:
         self.settings = PhysicsSettings()
         self.notices = Notices(models, bodies_by_uid)
+        self._parameters = WorldParameters()
         self.readout = StateReadout(self._on_diverged, self._on_raced)
         self._residual = ResidualFriction(lambda uid: self._rolling.rolls(uid))
         self._rolling = RollingContacts(lambda links, step: self._landing.see_rolling(links, step),
                                         lambda: self.forces.loaded_bodies,
                                         lambda uid, step: self._landing.flies(uid, step))
-        self._seams = SeamContacts(self._rolling)
-        self._level = LevelSeams(lambda: self._residual.fast)
+        self._seams = SeamContacts(self._rolling, self._parameters)
+        self._level = LevelSeams(lambda: self._residual.fast, self._parameters)
         self.sliding = Sliding()
         self.waker = WakeUp(bodies_by_uid, self._touched)
         driver = WakeUp(bodies_by_uid, self._driven)
         self.forces = Forces(driver.around, lambda rows: self.motors.yield_to(rows),
                              lambda body, axis: self.motors.restore(body, axis))
         self._friction = FrictionBalance(self.notices.misfit)
-        self._bounces = PairRestitution(self.notices.odd_bounce)
+        self._bounces = PairRestitution(self._parameters, self.notices.odd_bounce)
         self._spin = GyroscopicRigid(lambda: self.forces.wrenched_links)
         self.holds = PinnedBodies(self.waker.around)
         self.restored_sleep = RestoredSleep()
@@ -87,10 +88,10 @@ class HelperSet:
         self.ties = InterModelJoints(self.book)
         self._decay = VelocityDecay()
         self.settling = ContactSettling(
-            lambda: self.forces.loaded_bodies,
+            self._parameters, lambda: self.forces.loaded_bodies,
             lambda row: self.motors.rate_of(row) or self.forces.servos.rate_of(row),
             self._on_held)
-        self._landing = LandingContacts(self._rolling.landed, self.settling.solve_impact)
+        self._landing = LandingContacts(self._rolling.landed, self._parameters)
         self._stop = SurfaceStop()
         self.divergence = DivergenceStop(self.notices.stopped, lambda: self.forces.loaded_bodies,
                                           self.readout.touch)
@@ -104,7 +105,7 @@ class HelperSet:
                    self.planar, self._rolling, self._spin, self._residual, self.sliding,
                    self.holds, self._stop, self._landing, self._level, self._seams,
                    self.divergence, self.restored_sleep)
-        self.loop = StepLoop(helpers, pybullet.stepSimulation)
+        self.loop = StepLoop(helpers, pybullet.stepSimulation, self._parameters.apply)
         # Everything that remembers bodies one by one.
         self._keepers = (*helpers, self.ties, self.motors, self.wrenches, self.readout, self.loop)
         # Helpers notified when a command moves a body, or a force or motor command acts on it.
@@ -115,8 +116,8 @@ class HelperSet:
     def configure(self, settings: PhysicsSettings) -> None:
         """Use these settings from the next step on, and have Bullet use them."""
         self.settings = settings
-        configure_solver(settings)
-        self.settling.configure(settings.iterations, settings.step_size)
+        self._parameters.configure(settings)
+        self.settling.configure(settings.step_size)
         self.sliding.configure(settings.cone)
         self.divergence.configure(settings.step_size)
 
@@ -168,6 +169,7 @@ class HelperSet:
         for keeper in self._keepers:
             keeper.clear()
         self.book.clear()
+        self._parameters.clear()
 
     def _touched(self, body: Body) -> None:
         """A command reached a body: it may be elsewhere."""

@@ -42,6 +42,7 @@ from .approach import approach, extent, flies, speed_of
 from .bodies import Body, Part
 from .landing_points import MOST_TILT, Filters, LandingPoints, Touch, extents_across
 from .step_helper import FAR, looks_until_turn, turn_of
+from .world_parameters import Accuracy, WorldParameters
 
 EVERY = 16
 """Steps between two looks for bodies that fly."""
@@ -55,6 +56,8 @@ _SOFT = 2e-3       # m/s: what comes slower tilts nothing
 _SETTLES = 2.5     # steps of falling: what was put down at rest falls no longer
 _AHEAD = 16        # steps for which a flying body looks ahead, at most
 _NONE = (0.0, 0.0, 0.0)
+_FOR_IMPACTS = Accuracy(10, 1e-15)
+"""After 50 iterations a block ten times as high as wide that lands at 10 m/s turns on."""
 
 
 @dataclass
@@ -86,14 +89,13 @@ class LandingContacts:
 
     Args:
         landed: is told which body lands, and the normal of what it lands on.
-        solve_impact: is told whether the next step solves landings.
+        parameters: of the world.
     """
 
     def __init__(self, landed: Callable[[int, Vec3], None],
-                 solve_impact: Callable[[bool], None]) -> None:
+                 parameters: WorldParameters) -> None:
         self._landed = landed
-        self._solve_impact = solve_impact
-        self._impact = False
+        self._parameters = parameters
         self._bodies: Dict[int, Body] = {}
         self._meets: Dict[int, Filters] = {}
         self._points = LandingPoints(self._meets)
@@ -179,8 +181,8 @@ class LandingContacts:
                 touches += self._look(flight, step, dt, gravity)
         self._plan()
         if touches:
-            self._impact = True
-            self._solve_impact(True)
+            self._parameters.request_step_accuracy(_FOR_IMPACTS)
+            self._parameters.restore_spacing()
         while touches:
             # Two that land on each other would tilt together; so one after the other.
             now: Dict[int, Touch] = {}
@@ -191,10 +193,7 @@ class LandingContacts:
             touches = [touch for touch in touches if touch.uid not in now]
 
     def after(self, step: int, dt: float, gravity: Vec3) -> None:
-        """Solve the next steps as is usual."""
-        if self._impact:
-            self._impact = False
-            self._solve_impact(False)
+        """Do nothing after a step."""
 
     def _ask(self, uids: List[int]) -> None:
         """Find out which bodies may fly; what rests is asked less often."""

@@ -2,8 +2,8 @@
 
 Bullet drops a contact point once the two surfaces have slid apart by a fiftieth of the body's size,
 and finds one new point a step: what is fast stands on one or two, and sinks by up to 3 mm.
-So the points of what begins to slide are dropped, and the new ones may slide apart ten times as
-far.
+So the points of what begins to slide, or meets another floor, are dropped, and the new ones may
+slide apart ten times as far.
 
 Where such a body, a little in the floor, gets to the next box of the same height, less of it is in
 the side of that box than in its top, and Bullet pushes it back: a can of 0.7 m/s turned round at
@@ -27,11 +27,12 @@ from . import collision_groups
 from .bodies import Body, Part
 from .rolling_contacts import axis_of
 from .step_helper import FAR, next_multiple
+from .world_parameters import WorldParameters
 
 EVERY = 8
 """Steps between two looks at what slides."""
 
-_WIDE, _USUAL = 0.2, 0.02   # of a body's size: points that slid farther apart are dropped
+_WIDE = 0.2        # of a body's size: points that slid farther apart are dropped
 _FAST = 0.05       # m/s: what is slower does not sink
 _LEVEL = 1e-4      # m: two floors of one height differ by less
 _UP = 0.999        # of a normal, or an axis, along z: less is a side, or leans
@@ -45,17 +46,17 @@ class LevelSeams:
 
     Args:
         fast: tells the rigid bodies that slide just now.
+        parameters: of the world.
     """
 
-    def __init__(self, fast: Callable[[], Collection[int]]) -> None:
-        self._fast = fast
+    def __init__(self, fast: Callable[[], Collection[int]], parameters: WorldParameters) -> None:
+        self._fast, self._parameters = fast, parameters
         self._bodies: Dict[int, Tuple[collision_groups.Filter, Vec3]] = {}   # and their axis
         self._static: Set[int] = set()
         self._floors: Set[int] = set()         # those that have sides
-        self._sliding: Set[int] = set()
+        self._sliding: Dict[int, Set[int]] = {}   # and the floors on which its points are wide
         self._level: Dict[int, Set[int]] = {}  # floors of one height about those near a seam
         self._before: Dict[int, _Velocity] = {}
-        self._is_wide = False
 
     def add(self, body: Body, part: Part, link: Link) -> None:
         """Know one link of a body."""
@@ -73,17 +74,16 @@ class LevelSeams:
 
     def forget(self, body: Body) -> None:
         """A body is gone."""
-        for table in (self._bodies, self._level, self._before):
+        for table in (self._bodies, self._sliding, self._level, self._before):
             table.pop(body.uid, None)
-        self._sliding.discard(body.uid)
         self._static.difference_update(body.uids)
         self._floors.difference_update(body.uids)
 
     def clear(self) -> None:
         """All bodies are gone."""
-        for table in (self._bodies, self._level, self._before):
+        for table in (self._bodies, self._sliding, self._level, self._before):
             table.clear()
-        for group in (self._static, self._floors, self._sliding):
+        for group in (self._static, self._floors):
             group.clear()
 
     def due(self, step: int) -> int:
@@ -94,47 +94,43 @@ class LevelSeams:
 
     def before(self, step: int, dt: float, gravity: Vec3) -> None:
         """See now and then who slides; remember how fast those near a seam are."""
-        begins = step % EVERY == 0 and self._look(dt, gravity)
+        if step % EVERY == 0:
+            self._look(dt, gravity)
         self._before = {uid: pybullet.getBaseVelocity(uid) for uid in self._level}
-        if begins or self._level:
-            self._is_wide = True
-            pybullet.setPhysicsEngineParameter(contactBreakingThreshold=_WIDE)
+        for uid in self._level:
+            self._widen(uid, [contact[2] for contact in pybullet.getContactPoints(bodyA=uid)])
 
     def after(self, step: int, dt: float, gravity: Vec3) -> None:
         """Give the velocities of before the step back to those that a side pushed."""
-        if not self._is_wide:
-            return
-        self._is_wide = False
-        pybullet.setPhysicsEngineParameter(contactBreakingThreshold=_USUAL)
         for uid, ((x, y, z), (_, _, turn)) in self._before.items():
             if self._is_caught(uid, self._level[uid]):
                 pybullet.resetBaseVelocity(uid, (x, y, max(0.0, z)), (0.0, 0.0, turn))
 
-    def _look(self, dt: float, gravity: Vec3) -> bool:
-        """Find out who slides, and who will be at a seam before the next look.
-
-        Returns whether something began to slide: then its points are found anew.
-        """
+    def _look(self, dt: float, gravity: Vec3) -> None:
+        """Find out who slides, and who will be at a seam before the next look."""
         self._level.clear()
         fast = self._fast()
-        self._sliding.intersection_update(fast)
-        begins = False
+        self._sliding = {uid: self._sliding[uid] for uid in fast if uid in self._sliding}
         if gravity[0] == gravity[1] == 0.0:
             for uid in fast:
                 floors = self._floors_under(uid) if uid in self._bodies else []
                 if not floors:
-                    self._sliding.discard(uid)
+                    self._sliding.pop(uid, None)
                     continue
-                if uid not in self._sliding:
-                    self._sliding.add(uid)
-                    self._bodies[uid][0].set(uid, BASE)
-                    begins = True
+                self._widen(uid, floors)
                 if len(self._floors) > 1:
                     self._see_seam(uid, floors[0], EVERY * dt)
-        return begins
+
+    def _widen(self, uid: int, floors: Collection[int]) -> None:
+        """Drop the points of a body that met a floor, so that those of the next step are wide."""
+        wide = self._sliding.setdefault(uid, set())
+        if not wide.issuperset(floors):
+            self._bodies[uid][0].set(uid, BASE)
+            self._parameters.request_spacing(_WIDE)
+        self._sliding[uid] = set(floors)
 
     def _floors_under(self, uid: int) -> List[int]:
-        """What a body slides on, when it is upright and touches nothing that moves."""
+        """The floors that a body slides on, when it is upright and touches nothing that moves."""
         if norm((*pybullet.getBaseVelocity(uid)[0][:2], 0.0)) < _FAST:
             return []
         turn = pybullet.getBasePositionAndOrientation(uid)[1]
@@ -143,7 +139,10 @@ class LevelSeams:
         contacts = pybullet.getContactPoints(bodyA=uid)
         if any(contact[2] not in self._static for contact in contacts):
             return []
-        return [contact[2] for contact in contacts if contact[7][2] > _UP]
+        floors = {contact[2]: None for contact in contacts if contact[7][2] > _UP}
+        if floors:   # the sides that it meets come last
+            floors.update((contact[2], None) for contact in contacts)
+        return list(floors)
 
     def _see_seam(self, uid: int, floor: int, duration: float) -> None:
         """Remember the floors of one height that a body may reach within `duration`, s."""

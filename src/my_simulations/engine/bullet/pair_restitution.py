@@ -9,8 +9,7 @@ surfaces come first, and how far others are off is told once.
 
 A pair bounces where one of its thresholds lets it. Surfaces that never bounce by themselves (SDF's
 default threshold) do on those that do; where two such could meet, the moving one is stored as 0.
-PyBullet has one threshold for the world, below which nothing bounces: the smallest of all, and not
-below Bullet's own 0.2 m/s, at which a thing comes to rest.
+PyBullet has one threshold for the world, below which nothing bounces: the smallest of all.
 
 Something is worked out when a surface that bounces has come or gone, never in a usual step.
 """
@@ -27,10 +26,10 @@ from ...geometry import Vec3
 from . import surface_coefficients
 from .bodies import Body
 from .step_helper import FAR
+from .world_parameters import WorldParameters
 
 Node = Tuple[int, int]  # body uid, link index
 
-_LEAST_THRESHOLD = 0.2   # m/s
 _AMONG_MOVING = 0.05     # weight of a pair of moving surfaces; of one with a static surface: 1
 _MOST_KINDS = 60         # of more, pairs of moving surfaces are not looked at
 _TOLERATED = 0.05
@@ -48,11 +47,13 @@ class PairRestitution:
     """Keeps the stored restitutions right for the surfaces of the world.
 
     Args:
+        parameters: of the world.
         misfit: told, once, of a body and the share by which its restitution is off.
     """
 
-    def __init__(self, misfit: Callable[[int, float], None]) -> None:
-        self._misfit = misfit
+    def __init__(self, parameters: WorldParameters,
+                 misfit: Callable[[int, float], None]) -> None:
+        self._parameters, self._misfit = parameters, misfit
         self._told = False
         self._changed = False
         self._kinds: Dict[Node, _Kind] = {}
@@ -99,8 +100,7 @@ class PairRestitution:
         self._changed = False
         if not self._kinds:
             return
-        pybullet.setPhysicsEngineParameter(restitutionVelocityThreshold=max(
-            _LEAST_THRESHOLD, min(self._thresholds.values())))
+        self._parameters.set_slowest_bounce(min(self._thresholds.values()))
         values = self._solved()
         for node, kind in self._kinds.items():
             value = values.get(kind, 0.0)

@@ -24,8 +24,9 @@ from .bodies import Body
 from .link_states import place
 from .rolling_contacts import EVERY, Key, RollingContacts
 from .step_helper import FAR, next_multiple
+from .world_parameters import WorldParameters
 
-_APART, _USUAL = 5e-4, 0.02   # of a body's size: points that are nearer are one
+_APART = 5e-4  # of a body's size: points that are nearer are one; usually more
 _CHORD = 1.5   # of the way that lies in the floor: an edge farther off the axle is an obstacle
 _SAME = 0.95   # cosine between two normals of one surface
 _NONE = (0.0, 0.0, 0.0)
@@ -44,8 +45,8 @@ class _Push(NamedTuple):
 class SeamContacts:
     """Takes back what the edges of triangles do to what rolls over them."""
 
-    def __init__(self, rolling: RollingContacts) -> None:
-        self._rolling = rolling
+    def __init__(self, rolling: RollingContacts, parameters: WorldParameters) -> None:
+        self._rolling, self._parameters = rolling, parameters
         self._at: Dict[Key, Tuple[Vec3, Vec3]] = {}   # centre and axis before the step
         self._pushes: Dict[Key, List[_Push]] = {}
 
@@ -81,13 +82,12 @@ class SeamContacts:
             centre, turn = place(*key)
             self._at[key] = centre, rotate(turn, axis)
         if self._at:
-            pybullet.setPhysicsEngineParameter(contactBreakingThreshold=_APART)
+            self._parameters.request_spacing(_APART)
 
     def after(self, step: int, dt: float, gravity: Vec3) -> None:
         """See what went wrong in the step that began at count `step`."""
         if not self._at:
             return
-        pybullet.setPhysicsEngineParameter(contactBreakingThreshold=_USUAL)
         for key, (centre, axis) in self._at.items():
             ends: Dict[bool, List[Contact]] = {}
             for contact in pybullet.getContactPoints(bodyA=key[0], linkIndexA=key[1]):

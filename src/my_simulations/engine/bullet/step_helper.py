@@ -48,9 +48,11 @@ class StepHelper(BodyKeeper, Protocol):
 class StepLoop:
     """Makes steps and calls helpers around those where they are due, in their order."""
 
-    def __init__(self, helpers: Sequence[StepHelper], one: Callable[[], object]) -> None:
-        """`one` makes a step."""
+    def __init__(self, helpers: Sequence[StepHelper], one: Callable[[], object],
+                 prepare: Callable[[], None] = lambda: None) -> None:
+        """`one` makes a step; `prepare` is called before it, once all helpers have acted."""
         self._helpers = helpers
+        self._prepare = prepare
         self._befores = [helper.before for helper in helpers]
         self._afters = [helper.after for helper in helpers]
         self._one = one
@@ -96,6 +98,7 @@ class StepLoop:
             free = min(due, end) - step
             if free > 0:
                 # Bullet takes 13 us for a step of nothing, which a world at rest pays each time.
+                self._prepare()
                 if self._moving:
                     deque(starmap(one, repeat((), free)), maxlen=0)  # a loop without bytecode
                 step += free
@@ -122,6 +125,7 @@ class StepLoop:
     def _make_step(self, acting: List[int], step: int, dt: float, gravity: Vec3) -> None:
         self._touched = False
         self._call(self._befores, acting, step, dt, gravity)
+        self._prepare()
         self._one()
         self._call(self._afters, acting, step, dt, gravity)
 
