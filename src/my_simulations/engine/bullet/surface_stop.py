@@ -5,6 +5,10 @@ that fell 5 m was 6 mm deep in the floor for a step. So in the step in which a b
 than 1.8 mm, it is put back by as much of its way beforehand; its velocity stays. It arrives a part
 of a step later.
 
+A body that bounces is put back to the surface itself, with the velocity that it had there. Bullet
+pushes bodies out of overlaps at 5 m/s for each metre, and a body that is lifted by what it fell too
+deep gains energy: each bounce would be 0.2 % higher than the last one, from 5 m with steps of 1 ms.
+
 Bodies are asked for their speed no sooner than gravity can have made them fast, and those that are
 fast, what is ahead, no sooner than they can be there. Small balls are swept along their way (CCD).
 """
@@ -21,8 +25,10 @@ from ...geometry import Vec3, add, cross, dot, norm, scale, subtract
 from .approach import extent
 from .bodies import Body
 from .step_helper import FAR
+from .surface_coefficients import of_link, restitution
 
 _DEEP = 1.8e-3   # m: the depth that a body may reach in one step of 1 ms or less
+_LEAST = 3e-5    # m: bodies that overlap less may slow down by 1e-5 m a step before they touch
 _DEEPEST = 3.0   # times as deep in longer steps, at most: otherwise slow rolling counts as fast
 _AHEAD_S = 0.016 # s for which a fast body looks ahead
 _AHEAD = 16      # steps for which it does, at most
@@ -65,6 +71,7 @@ class SurfaceStop:
     def __init__(self) -> None:
         self._bodies: Dict[int, Body] = {}
         self._moving: Set[int] = set()
+        self._bouncing: Set[int] = set()
         self._radii: Dict[int, float] = {}        # of spheres that hold rigid bodies, m
         self._floors: Set[int] = set()            # the boxes below planes
         self._next: Dict[int, int] = {}           # the step of the next look, by body
@@ -82,6 +89,8 @@ class SurfaceStop:
         if body.base is not None and not (body.swept and body.is_ball):
             self._bodies[body.uid] = body
             self._plan(body.uid, 0)
+            if any(restitution(of_link(part.link)) > 0.0 for part in body.colliders):
+                self._bouncing.add(body.uid)
         if body.rigid:
             # The radius holds the corners of the box about a body: a ball's is shorter.
             self._radii[body.uid] = body.radius * (3.0 ** -0.5 if body.is_ball else 1.0)
@@ -92,13 +101,14 @@ class SurfaceStop:
         self._radii.pop(body.uid, None)
         self._next.pop(body.uid, None)
         self._moving.discard(body.uid)
+        self._bouncing.discard(body.uid)
         self._floors.difference_update(body.uids)
 
     def clear(self) -> None:
         """All bodies are gone."""
         for table in (self._bodies, self._next, self._radii):
             table.clear()
-        for group in (self._moving, self._floors):
+        for group in (self._moving, self._bouncing, self._floors):
             group.clear()
         self._looks.clear()
 
@@ -139,17 +149,22 @@ class SurfaceStop:
     def _look(self, body: Body, dt: float, gravity: Vec3) -> int:
         """Put a body back if need be. Returns how many steps later to look again."""
         linear, angular = pybullet.getBaseVelocity(body.uid)
-        deep = _DEEP * min(_DEEPEST, max(1.0, dt / 1e-3))
+        bounces = body.uid in self._bouncing
+        deep = _LEAST if bounces else _DEEP * min(_DEEPEST, max(1.0, dt / 1e-3))
         speed, fall, fast = norm(linear), norm(gravity) * dt, deep / dt
         ahead = max(1, min(_AHEAD, round(_AHEAD_S / dt)))
         if speed + fall < fast:
             return min(_SELDOM, max(ahead, int((fast - speed) / max(fall, 1e-9))))
         here = _Motion(pybullet.getBasePositionAndOrientation(body.uid)[0], linear, angular)
         ahead, late = self._way(body, here, ahead, deep, dt, gravity)
-        if late > 0.0:
+        if late > 0.0 or bounces and late > -1.0:
             at, turn = pybullet.getBasePositionAndOrientation(body.uid)
-            way = scale(add(linear, scale(gravity, dt)), late * dt)
-            pybullet.resetBasePositionAndOrientation(body.uid, subtract(at, way), turn)
+            end = add(at, scale(add(linear, scale(gravity, dt)), (1.0 - late) * dt))
+            if bounces:
+                # Restitution of an articulated body includes what gravity adds in the next step.
+                linear = subtract(linear, scale(gravity, late * dt + (0.0 if body.rigid else dt)))
+            start = subtract(end, scale(add(linear, scale(gravity, dt)), dt))
+            pybullet.resetBasePositionAndOrientation(body.uid, start, turn)
             pybullet.resetBaseVelocity(body.uid, linear, angular)  # placing a body stops it
             self._seen.pop(body.uid, None)
         return ahead
@@ -158,9 +173,10 @@ class SurfaceStop:
              ) -> Tuple[int, float]:
         """Steps (at most `ahead`) for which nothing is reached, and the share of this one to undo.
 
-        `deep`: what need not be undone, m.
+        `deep`: the depth to arrive at, m. The share is below 0 for a body that arrives less deep,
+        -inf for one that does not arrive in this step.
         """
-        uid, late, fall = body.uid, 0.0, norm(gravity) * dt
+        uid, late, fall = body.uid, -inf, norm(gravity) * dt
         speed = norm(here.linear) + ahead * fall   # the most that it has meanwhile
         reach, radius = speed * dt * (ahead + 2), self._radii.get(uid, 0.0)
         (x, y, z), around = here.centre, radius + reach
@@ -194,7 +210,8 @@ class SurfaceStop:
                 inward -= dot(gravity, normal) * dt
             if inward * dt > deep:
                 ahead = min(ahead, max(1, int(gap / (towards * dt))))
-                late = max(late, 1.0 - (gap + deep) / (inward * dt))
+                if gap < inward * dt:
+                    late = max(late, 1.0 - (gap + deep) / (inward * dt))
         return ahead, late
 
     def _motion(self, uid: int) -> _Motion:
