@@ -79,3 +79,33 @@ def test_a_loop_leaves_nothing_in_the_rows_of_the_next_model(world):
                 "</model></sdf>")
     assert told.position["m::j4"] != 0.0
     assert all(position == 0.0 for position in world.joints().position.values())
+
+
+def urdf_link(name):
+    return (f'<link name="{name}"><inertial><mass value="1"/><inertia ixx=".02" ixy="0" ixz="0"'
+            ' iyy=".02" iyz="0" izz=".02"/></inertial></link>')
+
+
+def urdf_joint(name, parent, child, xyz, kind="continuous"):
+    return (f'<joint name="{name}" type="{kind}"><parent link="{parent}"/><child link="{child}"/>'
+            f'<origin xyz="{xyz}"/><axis xyz="0 1 0"/></joint>')
+
+
+def test_a_plugin_closes_the_loop_of_a_robot(world):
+    """A parallelogram: bars `l` and `r` carry `top`, whose second end the plugin joins to `r`."""
+    loop = ('<gazebo><plugin name="p" filename="libpegasus_gazebo_closed_loop_plugin.so"><joint>j4'
+            "</joint><parent>r</parent><child>top</child><position>1 0 0</position></plugin>"
+            "</gazebo>")
+    free = "".join(f'<gazebo reference="{name}"><gravity>false</gravity></gazebo>'
+                   for name in ("l", "r", "top"))
+    world.spawn('<robot name="m"><link name="world"/>' + "".join(map(
+        urdf_link, ("base", "l", "r", "top")))
+        + urdf_joint("fix", "world", "base", "0 0 1", "fixed")
+        + urdf_joint("j1", "base", "l", "0 0 0") + urdf_joint("j2", "base", "r", "1 0 0")
+        + urdf_joint("j3", "l", "top", "0 0 1") + loop + free + "</robot>")
+    world.apply_effort("m::j1", 0.3, duration=0.5)
+    world.step(400)
+    told = world.joints()
+    assert told.position["m::j1"] > 0.01
+    for name, sign in (("j2", 1), ("j3", -1), ("j4", -1)):
+        assert told.position[f"m::{name}"] == pytest.approx(sign * told.position["m::j1"], abs=1e-3)

@@ -84,6 +84,29 @@ def test_a_joint_of_sdf_may_name_links_with_the_robot_before_them():
     assert [(one.parent, one.child) for one in model.joints] == [("world", "base")]
 
 
+LOOP = ('<gazebo><plugin name="p" filename="libpegasus_gazebo_closed_loop_plugin.so">{}</plugin>'
+        "</gazebo>")
+
+
+def test_a_plugin_that_closes_a_loop_is_a_joint():
+    model, issues = robot_of(
+        ARM + robot_link("rod") + robot_joint("turn", "base", "rod", "continuous", xyz="0 0 5")
+        + LOOP.format("<joint>loop</joint><parent>hand</parent><child>rod</child>"
+                      "<position>1 0 0</position><rotation>0 0 0</rotation>"))
+    assert errors(issues) == [] and model.plugins == []
+    loop = next(joint for joint in model.joints if joint.name == "loop")
+    assert (loop.type, loop.parent, loop.child) == ("revolute", "base", "rod")
+    assert loop.pose.position == pytest.approx((1, 0, 0)) and loop.axis.xyz == (0, 1, 0)
+
+
+def test_a_plugin_that_closes_a_loop_to_no_link_is_reported():
+    model, issues = robot_of(ARM + LOOP.format("<joint>loop</joint><parent>rod</parent>"
+                                               "<child>hand</child>"))
+    assert "joint-link-unknown" in tolerated(issues)
+    model, issues = robot_of(ARM + LOOP.format("<joint>loop</joint><child>hand</child>"))
+    assert issues != [] and "loop" not in [joint.name for joint in model.joints]
+
+
 def test_mimic_is_read_and_kept_with_its_numbers():
     model, issues = robot_of(
         robot_link("a") + robot_link("b") + robot_link("c") + robot_joint(

@@ -18,6 +18,7 @@ from ..xml.source import FaultLevel, Source
 from ..xml.tables import Value
 from ..xml.values import BOOL, FLOAT, POSE
 from .kinematic_tree import Body, Connection
+from .loop_plugin import loop_joint
 from .urdf_tables import (
     GAZEBO_COLLISION,
     GAZEBO_JOINT,
@@ -51,8 +52,12 @@ class Extensions:
             found = fill(model, block, GAZEBO_MODEL, self._source, model.extra)
             self.links += found.get("link", [])
             self.joints += found.get("joint", [])
-            model.plugins += [read_plugin(child, self._source)
-                              for child in found.get("plugin", ())]
+            for child in found.get("plugin", ()):
+                joint = loop_joint(child)
+                if joint is None:
+                    model.plugins.append(read_plugin(child, self._source))
+                else:
+                    self.joints.append(joint)
 
     def to_link(self, body: Body) -> None:
         """Apply extensions of a link and of its collisions and visuals; call before lumping."""
