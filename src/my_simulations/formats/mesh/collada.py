@@ -9,10 +9,9 @@ import io
 import math
 from typing import Any, Iterator, List, Tuple
 
-from .collada_cleanup import tidied
+from .collada_cleanup import MOST_COLLADA_NODES, tidied
 from .part import MeshError, MeshPart, bounded
 
-_MOST_INSTANCES = 100000
 _DEEPEST = 100
 
 
@@ -105,7 +104,7 @@ def instances(document: Any) -> Iterator[Tuple[Tuple[str, ...], Any]]:
     while waiting:
         node, above, names, depth = waiting.pop()
         count += 1
-        if count > _MOST_INSTANCES or depth > _DEEPEST:
+        if count > MOST_COLLADA_NODES or depth > _DEEPEST:
             raise MeshError("its nodes form a cycle or are nested too deeply")
         if isinstance(node, GeometryNode):
             for bound in node.objects("geometry", above):

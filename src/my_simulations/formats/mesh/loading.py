@@ -16,6 +16,7 @@ from ..loading_advice import UNKNOWN, Written, located_issue
 from ..reader_process import read_elsewhere
 from ..xml.binding import closest
 from .collada_encoding import encoding_issues
+from .declared_size import check_declared_size
 from .part import MeshError, MeshPart
 from .suspicious_units import odd_size
 from .terrain import solid_mesh
@@ -29,6 +30,8 @@ _PLAIN_BYTES = {".dae": 4 << 20, ".stl": 8 << 20, ".stla": 8 << 20, ".stlb": 8 <
 _MOST_COPIES, _MOST_COPIED = 10_000, 128 << 20
 _MOST_PRIMITIVES = 2000
 _PRIMITIVES = (b"<tri", b"<pol", b"<p>")
+_MOST_TAGS = 20_000
+"""Most tags of a COLLADA file that is read in this process: each element takes about 1.6 kB."""
 
 
 def load_mesh(mesh: Mesh) -> MeshData:
@@ -146,6 +149,12 @@ def _fault(code: str, message: str, path: str, line: int = 0, hint: str = "") ->
 def _loaded(path: str, changed: int, size: int, scale: Tuple[float, float, float], submesh: str,
             center: bool) -> MeshData:
     """Cached by time and size of the file, so that another spawn of an object is fast."""
+    try:
+        check_declared_size(path, size)
+    except OSError as fault:
+        raise _fault("mesh-unreadable", f"cannot be read: {fault.strerror}", path) from None
+    except MeshError as fault:
+        raise _fault(fault.code, f"the mesh cannot be read: {fault}", path) from None
     read = _read_elsewhere if _is_costly(path, size) else triangles_of
     return _to_data(*read(path, submesh), path, scale, bool(submesh and center))
 
@@ -162,7 +171,8 @@ def _is_costly(path: str, size: int) -> bool:
             data = stream.read(size)
             copies = data.count(b"instance_geometry") << min(data.count(b"<instance_node"), 32)
             return (copies > _MOST_COPIES or copies * size > _MOST_COPIED
-                    or max(map(data.count, _PRIMITIVES)) > _MOST_PRIMITIVES)
+                    or max(map(data.count, _PRIMITIVES)) > _MOST_PRIMITIVES
+                    or data.count(b"<") > _MOST_TAGS)
     return size > _PLAIN_BYTES.get(extension, -1)
 
 
@@ -195,7 +205,9 @@ def _reader(path: str, extension: str) -> Optional[Reader]:
         from .collada import read_collada
 
         return read_collada
-    from .trimesh_formats import extensions, read_obj, read_other, read_stl
+    from .obj import read_obj
+    from .stl import read_stl
+    from .trimesh_formats import extensions, read_other
 
     if extension in (".stl", ".stla", ".stlb"):
         return read_stl
@@ -261,10 +273,17 @@ def _joined(parts: List[MeshPart]) -> Tuple[Any, Any]:
 
     vertices, triangles, first = [], [], 0
     for part in parts:
-        used, inverse = np.unique(part.triangles, return_inverse=True)
-        if len(used) and (used[0] < 0 or used[-1] >= len(part.vertices)):
+        corners = part.triangles
+        if len(corners) and (corners.min() < 0 or corners.max() >= len(part.vertices)):
             raise MeshError("a triangle names a vertex that does not exist")
+        if corners.size < len(part.vertices):
+            used, numbers = np.unique(corners, return_inverse=True)
+            numbers = numbers.reshape(-1, 3)
+        else:  # in proportion to the number of vertices, without sorting
+            used = np.zeros(len(part.vertices), dtype=bool)
+            used[corners.reshape(-1)] = True
+            numbers = (np.cumsum(used) - 1)[corners]
         vertices.append(part.vertices[used])
-        triangles.append(inverse.reshape(-1, 3) + first)
-        first += len(used)
+        triangles.append(numbers + first)
+        first += len(vertices[-1])
     return np.concatenate(vertices), np.concatenate(triangles)

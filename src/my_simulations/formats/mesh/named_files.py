@@ -15,7 +15,7 @@ from ...resources.lfs_pointer import LFS_POINTER, is_lfs_pointer
 from ...resources.limited_file import at_most
 from .gltf import gltf_tree, named_in_gltf
 from .part import MeshError
-from .trimesh_formats import binary_stl_end
+from .stl import binary_stl_end
 
 LARGEST = 64 << 20
 """Bytes; larger files are not checked."""

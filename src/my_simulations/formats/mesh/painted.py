@@ -228,7 +228,7 @@ def _shapes(mesh: Mesh, extension: str) -> "Iterator[Tuple[Any, Array, Array, Op
     import trimesh
     from trimesh.resolvers import FilePathResolver
 
-    from .trimesh_formats import positive_obj
+    from .obj import positive_obj
 
     source: Any = mesh.path
     if extension == ".obj":
