@@ -366,3 +366,49 @@ def test_a_car_without_ackermanns_link_steers_both_wheels_alike():
 def test_a_car_needs_two_steered_wheels():
     with pytest.raises(PluginError, match="right and left"):
         steer_bot(virtual_front_steers=["steer_right"])
+
+
+# -- PAL and Robotnik ----------------------------------------------------------------------------
+
+def test_pals_base_goes_in_any_direction():
+    names = ("left_front", "left_back", "right_back", "right_front")
+    places = {"left_front": (0.3, 0.2, 0.1), "left_back": (-0.3, 0.2, 0.1),
+              "right_back": (-0.3, -0.2, 0.1), "right_front": (0.3, -0.2, 0.1)}
+    robot = Arm(axis=FREE, names=names, interfaces=[VELOCITY] * 4, places=places,
+                drive={"type": "omni_drive_controller/OmniDriveController", "wheel_radius": 0.1,
+                       "axis_separation_multiplier": 2.0, "wheel_radius_multiplier": 0.5,
+                       **{f"{name}_wheel": name for name in names}})
+    robot.run("drive")
+    go(robot, 1.0, x=0.3, y=0.2, yaw=0.5)
+    arm = (0.6 * 2.0 + 0.4) / 2.0
+    rims = [robot.context.joints[name].velocity * 0.05 for name in names]
+    assert rims == pytest.approx([0.3 - 0.2 - arm * 0.5, 0.3 + 0.2 - arm * 0.5,
+                                  0.3 - 0.2 + arm * 0.5, 0.3 + 0.2 + arm * 0.5])
+    twist = robot.published("drive/odom")[-1].twist.twist
+    assert (twist.linear.x, twist.linear.y, twist.angular.z) == pytest.approx((0.3, 0.2, 0.5))
+
+
+def test_limits_of_currents_must_name_all_actuators():
+    robot = Arm(limits={"type": "pal_ros_controllers/CurrentLimitController",
+                        "actuators": ["a", "b"]})
+    robot.run("limits")
+    robot.hear("limits/command", actuator_names=["b", "a"], current_limits=[1.0, 1.0])
+    assert robot.context.said == []
+    robot.hear("limits/command", actuator_names=["b"], current_limits=[1.0])
+    assert any("actuators a, b" in text for text in robot.context.said)
+
+
+def test_commands_of_joints_are_published_by_their_interfaces():
+    robot = Arm(names=("turn", "roll", "push"), interfaces=(POSITION, VELOCITY, EFFORT), axis=FREE,
+                read={"type": "joint_read_command_controller/JointReadCommandController"},
+                turning={"type": "position_controllers/JointPositionController", "joint": "turn"},
+                rolling={"type": "velocity_controllers/JointVelocityController", "joint": "roll"},
+                pushing={"type": "effort_controllers/JointEffortController", "joint": "push"})
+    robot.run("read", "turning", "rolling", "pushing")
+    for name, value in (("turning", 0.5), ("rolling", -2.0), ("pushing", 3.0)):
+        robot.hear(f"{name}/command", data=value)
+    robot.context.advance(0.02)
+    told = robot.published("joint_commands")[-1]
+    assert told.name == ["turn", "roll", "push"]
+    assert (told.position, told.velocity, told.effort) == (
+        [0.5, 0.0, 0.0], [0.0, -2.0, 0.0], [0.0, 0.0, 3.0])

@@ -62,6 +62,15 @@ class HardwareJoint:
         if not self.halted:
             self._steer(replace(self._servo, target=value))
 
+    def commanded(self, step: int, step_size: float) -> Optional[float]:
+        """What the interface is commanded at a step; None if a loop of the engine commands it."""
+        ordered = self._ordered
+        if ordered.gains is not None:
+            return None
+        if ordered.spline is not None:
+            return ordered.spline.at_step(step, step_size)[0]
+        return ordered.target
+
     def follow(self, target: float = 0.0, *, spline: Optional[Spline] = None,
                gains: Optional[PidGains] = None, target_rate: float = 0.0, of_rate: bool = False,
                by_rates: bool = False, feedforward: float = 0.0,
@@ -173,6 +182,11 @@ class Hardware:
     def has(self, interface: str, name: str) -> bool:
         """Whether `joint` would find one."""
         return (interface, name) in self._all
+
+    @property
+    def joints(self) -> List[HardwareJoint]:
+        """The joints, each through the interface that moves it."""
+        return list(self._active.values())
 
     def state(self, name: str) -> Joint:
         """The state of a joint that has a transmission. Raises PluginError."""

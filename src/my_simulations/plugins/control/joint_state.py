@@ -6,6 +6,10 @@ from typing import List, Tuple
 from ..context import PluginError
 from ..frames import stamped
 from .controller import Controller
+from .hardware import EFFORT, POSITION, VELOCITY
+
+_ORDER = (POSITION, VELOCITY, EFFORT)   # of the joints in a message
+_UPDATE_HZ = 100.0                      # without a rate
 
 
 class JointStateController(Controller):
@@ -53,4 +57,33 @@ class JointStateController(Controller):
         message.position = [joint.position for joint in self._joints] + [one[1] for one in extra]
         message.velocity = [joint.velocity for joint in self._joints] + [one[2] for one in extra]
         message.effort = efforts + [one[3] for one in extra]
+        self._topic.publish(message)
+
+
+class JointReadCommandController(Controller):
+    """Publishes on `joint_commands` what joints are commanded, by their interfaces.
+
+    Source: joint_read_command_controller of Robotnik. Where it differs: it reads all joints,
+    through any interface; a joint that a loop of the engine commands has 0.
+    """
+
+    def load(self) -> None:
+        """Read the rate."""
+        self._rate = self.settings.number("publish_rate", 0.0)
+        self._topic = self.context.publish("joint_commands", "sensor_msgs/JointState", 4)
+        self.keep(self._topic)
+
+    def start(self) -> None:
+        """Publish from now on."""
+        self.observe(self._rate if self._rate > 0.0 else _UPDATE_HZ, self._tell, [self._topic])
+
+    def _tell(self) -> None:
+        context, joints = self.context, sorted(
+            self.hardware.joints, key=lambda joint: (_ORDER.index(joint.interface), joint.name))
+        message = stamped(context, "sensor_msgs/JointState")
+        message.name = [joint.name for joint in joints]
+        commands = [joint.commanded(context.step, context.step_size) or 0.0 for joint in joints]
+        message.position, message.velocity, message.effort = (
+            [value if joint.interface == interface else 0.0
+             for joint, value in zip(joints, commands)] for interface in _ORDER)
         self._topic.publish(message)

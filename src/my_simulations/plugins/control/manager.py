@@ -44,6 +44,10 @@ TYPES: Mapping[str, str] = {
         "four_wheel_steering_controller:FourWheelSteeringController",
     "mecanum_drive_controller/MecanumDriveController":
         "mecanum_drive_controller:MecanumDriveController",
+    "omni_drive_controller/OmniDriveController": "mecanum_drive_controller:OmniDriveController",
+    "joint_read_command_controller/JointReadCommandController":
+        "joint_state:JointReadCommandController",
+    "pal_ros_controllers/CurrentLimitController": "current_limit:CurrentLimitController",
     "cob_omni_drive_controller/WheelController": "omni_drive_controllers:WheelController",
     "cob_omni_drive_controller/OdometryController": "omni_drive_controllers:OdometryController",
     "hector_quadrotor_controllers/PositionController": "quadrotor_controllers:PositionController",

@@ -1,13 +1,16 @@
-"""mecanum_drive_controller: four wheels whose rollers stand at 45 degrees.
+"""mecanum_drive_controller and PAL's omni_drive_controller: wheels with rollers at 45 degrees.
 
-Joints, parameters, topics and laws are those of the package of that name for ROS 1. The odometry is
-on `odom`, and on `odomTopic` as in the original.
+Joints, parameters, topics and laws of the first are those of the package of that name for ROS 1.
+The odometry is on `odom`, and on `odomTopic` as in the original. Joints and parameters of the
+second are those of omni_base_controller_configuration; its source is not public, and limits of
+`space` have no effect.
 """
 from __future__ import annotations
 
 import math
-from typing import List, Tuple
+from typing import List, Sequence, Tuple
 
+from ...description.model import Joint
 from ..context import PluginError, Publication
 from .base_controller import BaseController, Planar
 from .hardware import VELOCITY
@@ -25,7 +28,7 @@ class MecanumDriveController(BaseController):
     def load_wheels(self) -> None:
         """Four wheels of one radius."""
         s = self.settings
-        self._wheels = [self.take(VELOCITY, s.text(f"{corner}_wheel_joint"))
+        self._wheels = [self.take(VELOCITY, s.text(self.wheel_parameter(corner)))
                         for corner in _CORNERS]
         joints = [self.context.joint(wheel.name).spec for wheel in self._wheels]
         if s.get("wheel_radius") is not None:
@@ -37,17 +40,27 @@ class MecanumDriveController(BaseController):
                 raise PluginError(f"{self.name}: the wheels' radii are not equal:"
                                   f" {', '.join(f'{one:g} m' for one in radii)}")
             self._radius = radii[0]
-        if s.get("wheel_separation_x") is not None or s.get("wheel_separation_y") is not None:
-            self._arm = (s.number("wheel_separation_x", 0.0)
-                         + s.number("wheel_separation_y", 0.0)) / 2.0
-        else:
-            places = [self.place(joint) for joint in joints]
-            xs, ys = ([place[axis] for place in places] for axis in (0, 1))
-            self._arm = (xs[0] - xs[1] - xs[2] + xs[3] + ys[0] + ys[1] - ys[2] - ys[3]) / 4.0
+        self._radius *= s.number("wheel_radius_multiplier", 1.0)
+        along, across = self._separations(joints)
+        self._arm = (along * s.number("axis_separation_multiplier", 1.0)
+                     + across * s.number("wheel_separation_multiplier", 1.0)) / 2.0
         self.positive(wheel_radius=self._radius, wheel_separation=self._arm)
         self._offset = tuple(s.number(f"base_frame_offset/{axis}", 0.0)
                              for axis in ("x", "y", "theta"))
         self._more = self.publish("odomTopic", "nav_msgs/Odometry", 100)
+
+    def wheel_parameter(self, corner: str) -> str:
+        """The name of the parameter with the joint of a wheel."""
+        return f"{corner}_wheel_joint"
+
+    def _separations(self, joints: Sequence[Joint]) -> Tuple[float, float]:
+        """Of the axles, and of the wheels of an axle, m."""
+        s = self.settings
+        if s.get("wheel_separation_x") is not None or s.get("wheel_separation_y") is not None:
+            return s.number("wheel_separation_x", 0.0), s.number("wheel_separation_y", 0.0)
+        places = [self.place(joint) for joint in joints]
+        xs, ys = ([place[axis] for place in places] for axis in (0, 1))
+        return (xs[0] - xs[1] - xs[2] + xs[3]) / 2.0, (ys[0] + ys[1] - ys[2] - ys[3]) / 2.0
 
     def drive(self, velocity: Planar) -> None:
         """Rollers roll freely, so each wheel sees the part of the motion along its own diagonal."""
@@ -83,3 +96,12 @@ class MecanumDriveController(BaseController):
         """The same odometry under its other name."""
         if self._more.wanted:
             self._more.publish(self._odometry())
+
+
+class OmniDriveController(MecanumDriveController):
+    """Joints `left_front_wheel`, `left_back_wheel` and those on the right."""
+
+    def wheel_parameter(self, corner: str) -> str:
+        """The name of the parameter with the joint of a wheel."""
+        end, side = corner.split("_")
+        return f"{side}_{end}_wheel"

@@ -31,7 +31,7 @@ class JointGroup(HardwareJoint):
     def __init__(self, name: str, interface: str, parts: Sequence[Part], counted: int) -> None:
         self.name, self.interface, self.limits = name, interface, JointLimits()
         self.halted = self.is_held = False
-        self._parts = list(parts)
+        self._parts, self._value = list(parts), 0.0
         self._counted = [joint for joint, _ in parts[:counted]]
 
     @property
@@ -52,9 +52,13 @@ class JointGroup(HardwareJoint):
     def command(self, value: float) -> None:
         """A rate or a position."""
         if not self.halted:
+            self._value, self.is_held = value, False
             for joint, share in self._parts:
                 joint.command(share(value))
-            self.is_held = False
+
+    def commanded(self, step: int, step_size: float) -> float:
+        """The last command."""
+        return self._value
 
     def hold(self) -> None:
         """Hold all where they are."""
