@@ -15,6 +15,7 @@ from my_simulations.plugins.drive.force_based_move import (
     RidgebackForceBasedMove,
     RobotnikForceBasedMove,
 )
+from my_simulations.plugins.drive.limo_ackermann import LimoAckermann
 from my_simulations.plugins.drive.planar_move import PlanarMove
 from my_simulations.plugins.drive.skid_steer_drive import SkidSteerDrive
 from my_simulations.plugins.drive.tricycle_drive import TricycleDrive
@@ -407,3 +408,38 @@ def test_a_wheel_that_cannot_slip_leaves_the_others_slipping(bad):
     good = '<wheel link_name="rear"><wheel_normal_force>77</wheel_normal_force></wheel>'
     for both in (bad + good, good + bad):
         assert slipping(both) == {"rear": ("axle", 0.3, 77.0, 0.0, 0.0)}
+
+
+# -- a car with four driven wheels ---------------------------------------------------------------
+
+CAR = ("left_front_joint", "right_front_joint", "left_rear_joint", "right_rear_joint")
+
+
+@pytest.mark.parametrize("speed, yaw", [(0.5, 0.4), (-0.5, 0.4), (0.4, -0.8), (0.5, 0.0)])
+def test_all_wheels_of_a_limo_roll_about_one_centre(speed, yaw):
+    context = FakeContext("<plugin><wheelDiameter>0.09</wheelDiameter></plugin>", joints=CAR)
+    LimoAckermann(context).load()
+    context.hear("cmd_vel", linear={"x": speed}, angular={"z": yaw})
+    context.advance(0.02)
+    angles = [context.published[f"limo_{side}_steering_hinge_controller/command"][-1].data
+              for side in ("fl", "fr")]
+    # Steering turns with the yaw rate; backwards, the robot turns the other way.
+    turn = yaw if speed >= 0.0 else -yaw
+    for y, front, rear, angle in zip((0.086, -0.086), CAR[:2], CAR[2:], angles):
+        assert context.joints[rear].motor[0] * 0.045 == pytest.approx(speed - turn * y)
+        rim = context.joints[front].motor[0] * 0.045
+        assert (rim * math.cos(angle), rim * math.sin(angle)) == pytest.approx(
+            (speed - turn * y, turn * 0.2))
+
+
+def test_a_limo_steers_no_further_than_it_can():
+    context = FakeContext("<plugin/>", joints=CAR)
+    LimoAckermann(context).load()
+    context.hear("cmd_vel", linear={"x": 0.1}, angular={"z": 9.0})
+    context.advance(0.02)
+    left = context.published["limo_fl_steering_hinge_controller/command"][-1].data
+    assert left == pytest.approx(math.radians(30.0))
+    context.hear("cmd_vel", linear={"x": 0.0}, angular={"z": 9.0})
+    context.advance(0.02)
+    assert context.published["limo_fl_steering_hinge_controller/command"][-1].data == 0.0
+    assert context.joints["left_rear_joint"].motor[0] == 0.0

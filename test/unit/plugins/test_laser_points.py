@@ -8,6 +8,7 @@ import pytest
 
 from my_simulations.description.sensor import Ray, ScanAngles, Sensor
 from my_simulations.plugins.sensors.laser_points import BlockLaser, Velodyne
+from my_simulations.plugins.sensors.ray_sensor import RaySensor
 from my_simulations.plugins.sensors.rays import fan_of
 from my_simulations.plugins.testing import FakeContext
 from my_simulations.sensing.api import RayFan, RayReturns
@@ -122,3 +123,34 @@ def test_a_single_ray_looks_ahead_and_one_that_sees_visuals_along_the_minimum():
     assert fan_of(Ray(one, many, 0.1, 5.0)).min_angle == 0.0
     assert fan_of(Ray(one, one, 0.1, 5.0), visuals=True) == RayFan(
         1, -0.5, 0.5, 1, -0.5, 0.5, 0.1, 5.0)
+
+
+# -- rays of any output --------------------------------------------------------------------------
+
+def of_rays(kind, ranges, inside="", **options):
+    context = laser(RaySensor, ranges, f"<outputType>sensor_msgs/{kind}</outputType>{inside}",
+                    **options)
+    context.advance(0.1)
+    return context.published["points"][0]
+
+
+def test_rays_as_points_leave_out_what_is_not_met():
+    cloud = of_rays("PointCloud2", [1.0, math.inf, 0.05, 2.0], "<minIntensity>3</minIntensity>",
+                    retro=[1.0, 2.0, 3.0, 4.0])
+    points = velodyne_points(cloud)
+    assert away(points) == pytest.approx([1.0, 2.0]) and cloud.width == 2
+    assert points["intensity"].tolist() == [3.0, 4.0]
+    assert cloud.header.frame_id == "mast"
+
+
+def test_rays_as_a_scan_and_as_a_range():
+    assert of_rays("LaserScan", [1.0, 2.0, 3.0], rows=1).ranges == [1.0, 2.0, 3.0]
+    told = of_rays("Range", [1.0, 0.7, 3.0], "<radiationType>infrared</radiationType>", rows=1)
+    assert (told.range, told.radiation_type) == (0.7, 1)
+    assert told.field_of_view == pytest.approx(1.0)
+    assert len(of_rays("PointCloud", [1.0, 2.0]).points) == 2
+
+
+def test_an_unknown_output_of_rays_is_reported():
+    context = laser(RaySensor, [1.0, 2.0], "<outputType>Rays</outputType>")
+    assert any("outputType" in text for text in context.said)

@@ -11,6 +11,7 @@ from my_simulations.plugins.context import PluginError
 from my_simulations.plugins.state.hand_of_god import HandOfGod
 from my_simulations.plugins.state.initial_velocity import InitialVelocity
 from my_simulations.plugins.state.joint_pose_trajectory import JointPoseTrajectory
+from my_simulations.plugins.state.joint_springs import Differential, WarthogSuspension
 from my_simulations.plugins.state.mimic_joint import MimicJoint
 from my_simulations.plugins.state.world_odometry import (
     PalWorldOdometry,
@@ -248,3 +249,31 @@ def test_robotniks_odometry_has_velocities_in_the_axes_of_the_link():
     assert context.transforms[-1][:2] == ("odom", "base_truth")
     with pytest.raises(PluginError, match="topicName"):
         RobotnikGroundTruthOdometry(FakeContext("<plugin><bodyName>base</bodyName></plugin>")).load()
+
+
+# -- springs -------------------------------------------------------------------------------------
+
+def test_a_bar_turns_two_rockers_against_each_other():
+    context = FakeContext("<plugin><jointA>a</jointA><jointB>b</jointB><forceConstant>100"
+                          "</forceConstant></plugin>", joints=("a", "b"))
+    Differential(context).load()
+    context.joints["a"].position, context.joints["b"].position = 0.2, -0.1
+    context.advance(0.001)
+    assert context.joints["a"].servo.target == pytest.approx(-30.0)
+    assert context.joints["b"].servo.target == pytest.approx(30.0)
+    with pytest.raises(PluginError, match="jointB"):
+        Differential(FakeContext("<plugin><jointA>a</jointA></plugin>", joints=("a",))).load()
+
+
+def test_a_suspension_is_a_spring_and_a_damper():
+    names = ("left_diff_unit_joint", "right_diff_unit_joint")
+    context = FakeContext("<plugin><suspension_k>400</suspension_k><suspension_b>40</suspension_b>"
+                          "</plugin>", joints=names)
+    WarthogSuspension(context).load()
+    for name in names:
+        context.joints[name].position = 0.1
+    context.advance(0.05)
+    # 1 kg m^2, critically damped with 20 rad/s: x = x0 (1 + w t) exp(-w t)
+    for name in names:
+        assert context.joints[name].position == pytest.approx(
+            0.1 * (1.0 + 20.0 * 0.05) * math.exp(-20.0 * 0.05), rel=0.03)

@@ -18,7 +18,7 @@ _STEP = 22       # bytes of a Velodyne's point, as PointXYZIRT of its drivers
 _FURTHEST = float("inf")
 
 
-class _Points(RayPlugin):
+class Points(RayPlugin):
     """A fan of rays at the sensor's rate, while somebody listens."""
 
     usual_topic = "/world"
@@ -65,7 +65,7 @@ class _Points(RayPlugin):
         raise NotImplementedError
 
 
-class BlockLaser(_Points):
+class BlockLaser(Points):
     """sensor_msgs/PointCloud of all rays, between the sensor's ranges.
 
     A ray that meets nothing ends at the maximum range, without noise; one that meets something too
@@ -99,7 +99,7 @@ def _point(context: Any, x: float, y: float, z: float) -> Any:
     return made
 
 
-class Velodyne(_Points):
+class Velodyne(Points):
     """sensor_msgs/PointCloud2 of what is met: x, y, z, intensity, ring, time; column by column.
 
     All rays are of one moment, so `time` is 0. With `<organize_cloud>` a row of the cloud is a

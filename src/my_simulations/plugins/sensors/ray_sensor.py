@@ -1,0 +1,99 @@
+"""libgazebo_ros_ray_sensor.so: rays as a scan, as points or as a range, by `<outputType>`.
+
+Parameters, defaults and messages are those of gazebo_ros_ray_sensor for ROS 1. Where it differs:
+rays that meet nothing are left out of PointCloud2 (there their points are infinite), and points are
+row by row.
+"""
+from __future__ import annotations
+
+from typing import Any, Dict, Type
+
+from ..base import Plugin
+from ..context import PluginError
+from ..frames import stamped
+from ..parameters import namespace_or
+from .image_messages import FLOAT32, point_field
+from .laser import Laser
+from .laser_points import BlockLaser, Points
+from .rays import RayPlugin
+
+_ULTRASOUND, _INFRARED = 0, 1   # of sensor_msgs/Range
+_STEP = 16                      # bytes of a point
+
+
+class PointsOfRays(Points):
+    """sensor_msgs/PointCloud2 of what is met: x, y, z, intensity, at least `<minIntensity>`."""
+
+    message_type = "sensor_msgs/PointCloud2"
+
+    def _named(self, frame: str) -> str:
+        return frame.lstrip("/")
+
+    def _message(self, head: Any, ranges: Any, retro: Any, ns: int) -> Any:
+        import numpy as np
+
+        assert self._directions is not None
+        context, fan = self.context, self._fan
+        met = (ranges > fan.near) & (ranges < fan.far)
+        points = np.empty((int(met.sum()), 4), np.float32)
+        points[:, :3] = ranges[met, None] * self._directions[met]
+        points[:, 3] = np.maximum(retro[met], context.parameters.number("minIntensity", 0.0))
+        message = context.message(self.message_type)
+        message.header, message.height, message.width = head, 1, len(points)
+        message.fields = [point_field(context, name, 4 * number, FLOAT32)
+                          for number, name in enumerate(("x", "y", "z", "intensity"))]
+        message.is_bigendian, message.is_dense = False, True
+        message.point_step, message.row_step = _STEP, _STEP * len(points)
+        message.data = points.tobytes()
+        return message
+
+
+class NearestOfRays(RayPlugin):
+    """sensor_msgs/Range of the nearest of all rays."""
+
+    def load(self) -> None:
+        """Read parameters."""
+        context, p = self.context, self.context.parameters
+        self.take_ray()
+        context.use_namespace(namespace_or(p, ""))
+        self._frame = p.text("frameName", "/world").lstrip("/")
+        self._kind = _INFRARED if p.text("radiationType") in ("infrared", "infared") \
+            else _ULTRASOUND
+        self._topic = context.publish(p.text("topicName", "/world"), "sensor_msgs/Range")
+        assert context.sensor is not None
+        self.follow(context.sensor.update_rate)
+
+    def _publish(self, returns: Any, ns: int) -> None:
+        message = stamped(self.context, "sensor_msgs/Range", self._frame, ns)
+        flat, high = self._ray.horizontal, self._ray.vertical
+        message.radiation_type = self._kind
+        message.field_of_view = max(flat.max_angle - flat.min_angle,
+                                    high.max_angle - high.min_angle)
+        message.min_range, message.max_range = self._ray.min_range, self._ray.max_range
+        message.range = float(min(returns.ranges))
+        self._topic.publish(message)
+
+
+_KINDS: Dict[str, Type[Plugin]] = {
+    "sensor_msgs/LaserScan": Laser, "sensor_msgs/PointCloud": BlockLaser,
+    "sensor_msgs/PointCloud2": PointsOfRays, "sensor_msgs/Range": NearestOfRays}
+
+
+class RaySensor(Plugin):
+    """One of the four."""
+
+    def load(self) -> None:
+        """Choose by `<outputType>`; PointCloud2 by default."""
+        p = self.context.parameters
+        if p.text("topicName", "/world") == "":
+            raise PluginError("its <topicName> is empty")
+        self._one = p.choice("outputType", _KINDS, PointsOfRays)(self.context)
+        self._one.load()
+
+    def reset(self) -> None:
+        """Noise begins again."""
+        self._one.reset()
+
+    def clock_set(self) -> None:
+        """Noise begins again."""
+        self._one.clock_set()

@@ -1,0 +1,47 @@
+"""libleo_gazebo_differential_plugin.so and libwarthog_suspension_plugin.so: springs at joints.
+
+Parameters and laws are those of leo_gazebo_plugins and warthog_gazebo. The engine evaluates the
+springs of the second in every step.
+"""
+from __future__ import annotations
+
+from ...engine.drive_commands import JointServo, PidGains
+from ..base import Plugin
+from ..context import PluginError
+
+_SUSPENSIONS = ("left_diff_unit_joint", "right_diff_unit_joint")
+
+
+class Differential(Plugin):
+    """A bar between two rockers: efforts -k (a - b) on `<jointA>` and k (a - b) on `<jointB>`."""
+
+    def load(self) -> None:
+        """Read parameters."""
+        p = self.context.parameters
+        for name in ("jointA", "jointB", "forceConstant"):
+            if not p.text(name):
+                raise PluginError(f"it has no <{name}>")
+        self._one, self._other = (self.context.joint(p.text(name)) for name in ("jointA", "jointB"))
+        self._constant = p.number("forceConstant", 0.0)
+        self.context.every(0.0, self.update)
+
+    def update(self) -> None:
+        """Before each step."""
+        effort = self._constant * (self._one.position - self._other.position)
+        self._one.steer(JointServo(0, "effort", target=-effort))
+        self._other.steer(JointServo(0, "effort", target=effort))
+
+
+class WarthogSuspension(Plugin):
+    """Springs of `<suspension_k>` and dampers of `<suspension_b>` about 0."""
+
+    def load(self) -> None:
+        """Read parameters."""
+        p = self.context.parameters
+        gains = PidGains(p.number("suspension_k", 0.0), d=p.number("suspension_b", 0.0))
+        for name in _SUSPENSIONS:
+            self.context.joint(name).steer(JointServo(0, "effort", gains=gains, by_rates=True))
+
+    def reset(self) -> None:
+        """The springs act again."""
+        self.load()
