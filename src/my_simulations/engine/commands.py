@@ -89,6 +89,34 @@ class LoadModel(Command):
 
 
 @dataclass(frozen=True)
+class PrepareModel(Command):
+    """Begin to make the shapes of a static model that will be loaded; the world does not change.
+
+    Reply value: whether there is more to do, with `ContinuePreparation`. Each of both takes a
+    fraction of a second, and steps are made between them.
+
+    Attributes:
+        number: new id, for `ContinuePreparation`.
+        model: as in `LoadModel`.
+        meshes: as in `LoadModel`.
+    """
+
+    number: int
+    model: Model
+    meshes: Dict[str, MeshData]
+
+
+@dataclass(frozen=True)
+class ContinuePreparation(Command):
+    """Make further shapes. Reply value: whether there is more to do; False if `number` is unknown.
+
+    The number is unknown to an engine that was started after `PrepareModel`.
+    """
+
+    number: int
+
+
+@dataclass(frozen=True)
 class ConnectModels(Command):
     """Connect links of two models, or a link and the world, until either model is removed.
 

@@ -12,12 +12,14 @@ from .commands import (
     Clear,
     Command,
     ConnectModels,
+    ContinuePreparation,
     DisconnectModels,
     JointWrench,
     LinkState,
     LoadModel,
     PhysicsSettings,
     PinModels,
+    PrepareModel,
     ReadContacts,
     ReadJointWrenches,
     RemoveModel,
@@ -65,6 +67,8 @@ class KinematicBackend:
         self._dirty = True
         self._appliers: Dict[type, Callable[[Any], object]] = {
             LoadModel: self._load,
+            PrepareModel: lambda _: False,
+            ContinuePreparation: lambda _: False,
             RemoveModel: lambda c: self._remove(c.model_id),
             Clear: self._clear,
             Restart: self._restart,

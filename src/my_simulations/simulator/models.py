@@ -30,6 +30,7 @@ from .initial_state import initial_commands
 from .inter_model_joints import DeletedModel, InterModelJoints
 from .known_models import KnownModels
 from .model_links import ModelLinks
+from .model_preparation import prepare_shapes
 from .order_slot import OrderSlot
 from .registry import NameTakenError
 from .session import Session, check_name
@@ -99,6 +100,7 @@ class Models(KnownModels):
         session = self._session
         if has_plugins(model):
             session.before_plugins()
+        prepare_shapes(session, model, meshes)
         with session.structure_lock:
             session.await_posted()
             again = InterModelJoints() if deleted is None else deleted.joints

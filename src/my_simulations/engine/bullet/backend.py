@@ -15,11 +15,13 @@ from ..commands import (
     Clear,
     Command,
     ConnectModels,
+    ContinuePreparation,
     DisconnectModels,
     LoadModel,
     ModelState,
     PhysicsSettings,
     PinModels,
+    PrepareModel,
     ReadContacts,
     ReadJointWrenches,
     RemoveModel,
@@ -44,6 +46,7 @@ from .initial_state_cache import InitialStateCache, Start
 from .joint_constraints import Constraints
 from .row_reader import RowReader
 from .run_states import RunStates
+from .shape_preparation import ShapePreparation
 from .state_restore import Entry, inherited, restore
 
 
@@ -53,6 +56,7 @@ class BulletBackend:
     def __init__(self) -> None:
         self._client = pybullet.connect(pybullet.DIRECT)
         self._shapes = ShapeFactory()
+        self._preparation = ShapePreparation(self._shapes)
         self._models: Dict[int, Entry] = {}
         self._bodies: Dict[int, Body] = {}
         self._rows: Dict[int, Tuple[Body, Part]] = {}
@@ -69,6 +73,8 @@ class BulletBackend:
         self._appliers: Dict[Type[Command], Callable[[Any], object]] = {
             LoadModel: self._load, RemoveModel: self._remove, Clear: self._clear,
             Restart: self._restart,
+            PrepareModel: self._preparation.begin,
+            ContinuePreparation: self._preparation.go_on,
             SetModelState: self._set_model, SetLinkState: self._set_link,
             SetJoints: self._set_joints,
             SetAxes: self._set_axes, PinModels: self._hold,

@@ -29,6 +29,10 @@ _THIN = 2.2e-3
 """Thickness of such a box, m: Bullet's margin of 1 mm must fit on both sides."""
 
 
+_MOST_TRIANGLES = 500_000
+"""Larger meshes keep all their triangles: looking for flat faces takes 1 s for so many."""
+
+
 class FaceBoxes:
     """Knows the flat faces of meshes, by their keys. Height maps have none of their own."""
 
@@ -60,8 +64,9 @@ class FaceBoxes:
     def _known(self, key: str, meshes: MeshTable) -> Optional[FlatFaces]:
         """The flat faces of a mesh, None if it has none or was not loaded."""
         if key not in self._faces and key in meshes:
-            found = flat_faces(meshes[key])
-            self._faces[key] = found if found.rectangles else None
+            found = (flat_faces(meshes[key])
+                     if len(meshes[key].triangles) <= _MOST_TRIANGLES else None)
+            self._faces[key] = found if found is not None and found.rectangles else None
         return self._faces.get(key)
 
 
