@@ -12,9 +12,9 @@ from .context import Context
 class Plugin:
     """A plugin of a model or of a sensor.
 
-    An exception from any of its functions is reported with file and line of the `<plugin>` element,
-    and switches this one plugin off; the world goes on. Raise `PluginError` for what is the
-    user's fault: its message is shown without a traceback.
+    An exception from any of its functions is reported with file and line of the `<plugin>` element
+    and of the Python code, and switches this one plugin off; the world goes on. Raise `PluginError`
+    for what is the user's fault: its message is shown without a traceback.
     """
 
     def __init__(self, context: Context) -> None:

@@ -22,7 +22,8 @@ from typing import Any, Callable, NamedTuple, Optional, Tuple
 
 _LOOK_S = 0.25          # between two looks
 _GRACE_S = 1.0          # for the exception to arrive
-_OWN_PARTS = ("my_simulations.simulator", "my_simulations.engine")
+_OWN_PARTS = ("my_simulations.simulator", "my_simulations.engine",
+              "my_simulations.plugins.isolated")
 
 
 class CallOverdue(BaseException):

@@ -21,13 +21,21 @@ from .base import Plugin
 from .call_watch import PATIENCE, Patience, ThreadAbandoned
 from .found_plugins import Found
 from .graph import Graph, TopicUse
+from .isolated.isolated_plugin import IsolatedPlugin
+from .isolated.plugin_process import PluginProcesses
 from .observations import Observation, Observations, StepView
 from .order_sender import send_orders
 from .outgoing import Outgoing
 from .plugin_faults import describe_fault
 from .plugin_guard import PluginGuard
 from .record_handover import RecordHandover
-from .registry import PluginRegistry, UnknownPluginError, library_name, plugin_class
+from .registry import (
+    PluginRegistry,
+    UnknownPluginError,
+    is_built_in,
+    library_name,
+    plugin_class,
+)
 from .running import ModelPlugins, Running
 from .schedule import Schedule, ScheduledCall
 from .simulated_context import Shared, SimulatedContext
@@ -47,10 +55,12 @@ class PluginHost:
         registry: finds their classes.
         log: hears of plugins that are unknown or fail.
         patience: how long a call of a plugin may take; loading may compute twice as long.
+        isolate: run each plugin that is not of this package in a process of its own.
     """
 
     def __init__(self, simulator: Simulator, graph: Graph, registry: PluginRegistry,
-                 log: Callable[[Issue], None], patience: Patience = PATIENCE) -> None:
+                 log: Callable[[Issue], None], patience: Patience = PATIENCE,
+                 isolate: bool = False) -> None:
         self._simulator, self._graph, self._registry, self._log = simulator, graph, registry, log
         self._scene, self._schedule = SceneSensing(simulator, log), Schedule()
         self._sync, self._observations = simulator.sync_points, Observations()
@@ -77,6 +87,7 @@ class PluginHost:
         self._settings: Optional[int] = None
         self._moment: Optional[Moment] = None
         self._patience = patience
+        self._processes = PluginProcesses() if isolate else None
         self._guard = PluginGuard(log, patience, self._touch, self._go_on_without)
         self._overdue: Deque[Tuple[Running, str]] = deque()
         self._thread = self._new_thread()
@@ -174,6 +185,8 @@ class PluginHost:
     def _clean_up(self) -> None:
         self._stop.set()
         self._guard.stop()
+        if self._processes is not None:
+            self._processes.stop()
         self._scene.close()
         self._outgoing.stop()
         self._sync.detach()
@@ -344,12 +357,20 @@ class PluginHost:
 
         made: List[Plugin] = []
         patience = self._patience.longer()
-        if not self._guard.call(running, lambda: made.append(plugin_class(where)(context)),
+        if not self._guard.call(running, lambda: made.append(self._made(running, where)),
                                 patience=patience):
             return
         running.plugin = made[0]
         self._schedule.set_moment(self._sync.now())
         self._guard.call(running, running.plugin.load, patience=patience)
+
+    def _made(self, running: Running, where: str) -> Plugin:
+        """A plugin; one of a user in a process of its own, if this host isolates them."""
+        if self._processes is None or is_built_in(where):
+            return plugin_class(where)(running.context)
+        process = self._processes.start()
+        running.end = process.end
+        return IsolatedPlugin(running.context, where, process, self._patience)
 
     def _tell_unknown(self, found: Found, entity: Entity, text: str) -> Issue:
         issue = warning("plugin-unknown", f"{text}; '{found.spec.name}' of model"
@@ -373,6 +394,7 @@ class PluginHost:
             with contextlib.suppress(CommandError):  # the engine ends as well
                 context.let_go()
             running.plugin = None
+            running.end()
             del self._running[context]
             self._touched.pop(context, None)
 

@@ -16,11 +16,17 @@ _LIBRARIES = ("<frozen", os.path.join(sysconfig.get_path("stdlib"), ""))
 _INSTALLED = ("/site-packages/", "/dist-packages/")
 
 
+class DescribedFaultError(PluginError):
+    """An exception of another process; the message is that of `describe_fault` there."""
+
+
 def describe_fault(fault: BaseException) -> str:
     """Type, message, and the innermost function, file and line of the plugin.
 
     The message of a `PluginError` is one sentence for the user, and stands alone.
     """
+    if isinstance(fault, DescribedFaultError):
+        return str(fault)
     text = _message_of(fault)
     if isinstance(fault, PluginError):
         return text
@@ -31,11 +37,11 @@ def describe_fault(fault: BaseException) -> str:
     frames = traceback.extract_tb(fault.__traceback__)
     if not frames:
         return said
-    frame = _innermost_of_plugin(frames)
+    frame = innermost_of_plugin(frames)
     return f"{said} (in {frame.name}, {frame.filename}:{frame.lineno})"
 
 
-def _innermost_of_plugin(frames: Sequence[traceback.FrameSummary]) -> traceback.FrameSummary:
+def innermost_of_plugin(frames: Sequence[traceback.FrameSummary]) -> traceback.FrameSummary:
     """The innermost frame that is not in a library; else the innermost one outside this package."""
     outside = [one for one in frames if not one.filename.startswith(_OWN_FILES)]
     own = [one for one in outside if not one.filename.startswith(_LIBRARIES)

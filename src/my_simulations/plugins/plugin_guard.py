@@ -57,6 +57,7 @@ class PluginGuard:
             f" of model '{context.model}' is switched off: {why}", spec.file, spec.line)
         self._log(running.fault)
         running.plugin = None
+        running.end()
         context.close()
         self._touched(running)
         try:

@@ -193,6 +193,11 @@ def exports(manifest: str) -> List[Dict[str, str]]:
     return [attributes for attributes in found if attributes.get("plugin")]
 
 
+def is_built_in(where: str) -> bool:
+    """Whether `package.module:Class` is in this package."""
+    return where.startswith(f"{__package__}.")
+
+
 def plugin_class(where: str) -> Type[Plugin]:
     """Import `package.module:Class`.
 

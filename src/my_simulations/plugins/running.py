@@ -9,6 +9,7 @@ from ..description.model import WORLD, Model
 from ..errors import Issue
 from ..geometry import IDENTITY
 from ..simulator.entity import Entity
+from ..simulator.session import do_nothing
 from ..simulator.simulator import Simulator
 from .base import Plugin
 from .found_plugins import Found, plugins_of, world_plugins
@@ -25,12 +26,14 @@ class Running:
     Attributes:
         plugin: None for one that is unknown or was switched off.
         fault: why it is unknown or was switched off.
+        end: ends the process of the plugin, if it has one.
     """
 
     found: Found
     context: SimulatedContext
     plugin: Optional[Plugin]
     fault: Optional[Issue] = None
+    end: Callable[[], None] = do_nothing
 
 
 class ModelPlugins:
@@ -93,7 +96,7 @@ class ModelPlugins:
             known = [] if before is None else [
                 *(one.found for one in before[1]),
                 *(one for owner, one in self._to_load if owner == name)]
-            if before is not None and known == found:
+            if before is not None and before[0].spawn_id == entity.spawn_id and known == found:
                 self._models[name] = (entity, before[1])
                 for running in before[1]:
                     self._rebind(running, entity)

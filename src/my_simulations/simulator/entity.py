@@ -31,6 +31,7 @@ class Entity:
         articulated: built as an articulated body, for a prismatic joint to another model.
         launched: spawned by the launch file that started the simulator, and spawned again by it at
             the next start.
+        spawn_id: identifies its spawn; an edit of the model keeps it.
         start: how it moves at its start, from a saved state; None for at rest.
         cost: its part of the world's budget.
     """
@@ -49,6 +50,7 @@ class Entity:
 
     def __post_init__(self) -> None:
         self.pose = self.initial_pose
+        self.spawn_id = self.model_id
         self.link_names = [link.name for link in self.model.links]
         self.joint_names = [row.name for row in axis_rows(self.model)]
         self.has_plugins = has_plugins(self.model)

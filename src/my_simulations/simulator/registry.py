@@ -124,7 +124,8 @@ class Registry:
         self.revision += 1
 
     def swap(self, old: Entity, new: Entity) -> None:
-        """Replace an entity, at the same position in the order."""
+        """Replace an entity by its edited form, at the same position in the order."""
+        new.spawn_id = old.spawn_id
         self._entities = {(new if entity is old else entity).model.name:
                           new if entity is old else entity
                           for entity in self._entities.values()}

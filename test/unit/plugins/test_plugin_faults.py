@@ -35,14 +35,14 @@ GOOD = HEAD.replace("Bad", "Good") + """
 class Case(PluginCase):
     """A world with a plugin that works, and modules of plugins that a test writes."""
 
-    def __init__(self, folder, patience=PATIENCE):
+    def __init__(self, folder, patience=PATIENCE, isolate=False):
         number = next(NUMBERS)
         self.good, self.bad = f"good_{number}", f"bad_{number}"
         self.folder = folder
         (folder / f"{self.good}.py").write_text(GOOD)
         super().__init__(World(models=[model("works")]), KinematicBackend,
                          {"libgood.so": f"{self.good}:Good", "libbad.so": f"{self.bad}:Bad"},
-                         patience)
+                         patience, isolate=isolate)
 
     @property
     def file(self):
@@ -64,7 +64,7 @@ class Case(PluginCase):
 
 
 @pytest.fixture
-def case(tmp_path, monkeypatch):
+def case(tmp_path, monkeypatch, request):
     monkeypatch.syspath_prepend(str(tmp_path))
     yield from kept(lambda **options: Case(tmp_path, **options))
 
@@ -164,3 +164,13 @@ def test_a_loop_before_the_first_call_is_ended(case, source):
     (issue,) = one.failed()
     assert "0.2 s of processor time (in " in issue.message
     assert f"{one.file}:" in issue.message
+
+
+def test_a_replaced_model_has_new_plugins(case):
+    """Also if the host has seen no moment without the model."""
+    one = case()
+    one.spawn("undefined_name\n")
+    one.sim.models.spawn(model("bad"), replace=True)
+    assert one.host.settle()
+    one.sim.clock.advance(20)
+    until(lambda: len(one.graph.on("bad/alive")) == 2)

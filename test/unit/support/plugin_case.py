@@ -24,16 +24,18 @@ def until(condition, what="the condition never came true"):
 class PluginCase:
     """Begins paused, with the plugins of the world's models loaded; `backend` moves it.
 
-    `extra`: classes of plugins by library; `parameters`: of the graph, by namespace.
+    `extra`: classes of plugins by library; `parameters`: of the graph, by namespace; `isolate`: run
+    plugins in processes of their own.
     """
 
-    def __init__(self, world, backend, extra=None, patience=PATIENCE, parameters=None):
+    def __init__(self, world, backend, extra=None, patience=PATIENCE, parameters=None,
+                 isolate=False):
         self.issues, self.graph = [], Graph(parameters)
         self.sim = Simulator(world, engine_factory=lambda: InlineEngine(backend), paused=True,
                              log=self.issues.append)
         self.sim.start()
         self.host = PluginHost(self.sim, self.graph, PluginRegistry(extra), self.issues.append,
-                               patience)
+                               patience, isolate)
         self.host.start()
 
     def hear(self, topic, **fields):

@@ -94,4 +94,5 @@ class PluginStarter:
         from .ros_graph import RosGraph
 
         return PluginHost(self._simulator, RosGraph(),
-                          PluginRegistry(self._extra, PackageIndex().folders), self._log)
+                          PluginRegistry(self._extra, PackageIndex().folders), self._log,
+                          isolate=True)

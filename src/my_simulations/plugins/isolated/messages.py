@@ -1,0 +1,149 @@
+"""The messages between the node and the process of a plugin.
+
+The node sends a `Call`; the process answers with `Done` or `Raised`, and may send an `Ask` before,
+which the node answers with `Value` or `Refused`. Calls nest: a function that the node calls to
+answer an `Ask` belongs to the plugin, too.
+"""
+from __future__ import annotations
+
+import signal
+from typing import Any, Dict, List, NamedTuple, Optional, Tuple, Union
+
+from ...description.plugin import PluginSpec
+from ...description.sensor import Sensor
+
+TRACE_SIGNAL = signal.SIGRTMIN + 4
+"""Has the process write where it is, also while a C function runs."""
+
+CONTEXT = 0
+"""The number of the context among the handles."""
+
+PROPERTIES = frozenset((
+    "step_size", "by_hand", "pose", "twist", "gravity", "seed", "magnetic_field", "wind",
+    "place_on_earth", "description"))
+"""Properties of the context whose values are sent."""
+
+METHODS = frozenset((
+    "transmissions", "move", "hold", "scoped", "joint_spec", "slip", "mimic", "models", "attach",
+    "detach", "efforts", "set_joint_positions", "joint_wrench", "contacts", "scan", "photograph",
+    "sensors", "link_names", "use_namespace", "message", "stamp", "parameter", "search_parameter"))
+"""Methods of the context whose results are sent."""
+
+HANDLES = {"link": "link", "model_link": "link", "joint": "joint", "publish": "topic",
+           "subscribe": "end", "serve": "end", "every": "end", "observe": "end", "once": "end"}
+"""Methods of the context that return handles, and the kinds of these."""
+
+ORDERS = frozenset(("drive_level", "push", "transform", "info", "warn"))
+"""Methods of the context without a result."""
+
+HANDLE_ORDERS = {"link": frozenset(()), "joint": frozenset(("drive", "steer")),
+                 "topic": frozenset(("publish", "close")), "end": frozenset(("close", "end"))}
+"""Methods of the handles without a result, by kind."""
+
+
+class Start(NamedTuple):
+    """What a process must have before it makes the plugin.
+
+    Attributes:
+        where: `package.module:Class`.
+        spec: the element.
+        sensor, sensor_link, sensor_joint: as in `Context`.
+    """
+
+    where: str
+    spec: PluginSpec
+    sensor: Optional[Sensor]
+    sensor_link: str
+    sensor_joint: str
+
+
+class Readings(NamedTuple):
+    """The values that most calls read, as they are at the beginning of a call.
+
+    Attributes:
+        states: by the numbers of the handles: pose and twist of a link, position, velocity and
+            puts of a joint, whether a topic is wanted. None where reading raises an exception.
+    """
+
+    model: str
+    now_ns: int
+    step: int
+    states: Dict[int, Any]
+
+
+class Call(NamedTuple):
+    """Call a function of the plugin by its number, or a method of the plugin by its name."""
+
+    function: Union[int, str]
+    arguments: Tuple[Any, ...]
+    readings: Readings
+
+
+class Order(NamedTuple):
+    """Call a method of a handle; nothing is returned."""
+
+    handle: int
+    name: str
+    arguments: Tuple[Any, ...]
+
+
+class Ask(NamedTuple):
+    """Call a method of the context, or read a property; `orders` come first."""
+
+    orders: List[Order]
+    name: str
+    arguments: Tuple[Any, ...]
+    named: Dict[str, Any]
+
+
+class Value(NamedTuple):
+    """The answer to an `Ask`."""
+
+    value: Any
+
+
+class Refused(NamedTuple):
+    """The exception that answers an `Ask`."""
+
+    fault: Exception
+
+
+class Done(NamedTuple):
+    """A call has returned."""
+
+    orders: List[Order]
+    result: Any
+
+
+class Raised(NamedTuple):
+    """A call has raised an exception.
+
+    Attributes:
+        fault: the exception if it is one that the context defines, for callers that handle it.
+        text: the exception for the user, with function, file and line.
+    """
+
+    orders: List[Order]
+    fault: Optional[Exception]
+    text: str
+
+
+class Function(NamedTuple):
+    """Stands for a function of the plugin among the arguments of an `Ask`."""
+
+    number: int
+
+
+class Reference(NamedTuple):
+    """Stands for a handle among the arguments of an `Ask`."""
+
+    number: int
+
+
+class HandleMade(NamedTuple):
+    """A handle as the value of an `Ask`, with what never changes of it, and its state."""
+
+    number: int
+    kind: str
+    facts: Dict[str, Any]
+    state: Any

@@ -1,0 +1,181 @@
+"""The process of one plugin, seen from the node: start, messages with a deadline, end."""
+from __future__ import annotations
+
+import contextlib
+import os
+import re
+import select
+import signal
+import socket
+import subprocess
+import tempfile
+import threading
+import time
+import traceback
+from collections import deque
+from concurrent.futures import ThreadPoolExecutor
+from typing import Any, Deque, Optional
+
+from ...child_process import child_command, child_environment, signal_name
+from ...engine.message_pipe import Wire
+from ..call_watch import Patience
+from ..context import PluginError
+from ..plugin_faults import innermost_of_plugin, shortened
+from .messages import TRACE_SIGNAL
+
+_LOOK_S = 0.25      # between two looks at a process that does not answer
+_TRACE_S = 1.0      # for the trace to be written
+_END_S = 3.0        # for the process to end by itself
+_SCHEDULED_CLOCK = 2
+_FRAME = re.compile(r'^  File "(.*)", line (\d+) in (.*)$', re.MULTILINE)
+
+
+class ProcessEndedError(PluginError):
+    """The process of a plugin has ended, or had to be ended."""
+
+
+class PluginProcesses:
+    """Starts processes, from one thread that lives as long as they do.
+
+    The kernel ends a child with the thread that started it (`die_with_parent`).
+    """
+
+    def __init__(self) -> None:
+        self._starter = ThreadPoolExecutor(1, "plugin-processes")
+
+    def start(self) -> "PluginProcess":
+        """Start a process. Raises ProcessEndedError if the system refuses it."""
+        try:
+            return self._starter.submit(PluginProcess).result()
+        except OSError as fault:
+            raise ProcessEndedError(f"its process cannot be started: {fault}") from fault
+
+    def stop(self) -> None:
+        """End the thread; processes that still run end with it."""
+        self._starter.shutdown(wait=False)
+
+
+class PluginProcess:
+    """One process, and the socket to it; for one thread at a time."""
+
+    def __init__(self) -> None:
+        ours, theirs = socket.socketpair()
+        self._trace = tempfile.TemporaryFile()
+        self._ended = False
+        self._received: Deque[Any] = deque()
+        handed = (theirs.fileno(), self._trace.fileno())
+        with theirs:
+            self._child = subprocess.Popen(
+                child_command("plugins.isolated", *map(str, handed)), pass_fds=handed,
+                stdin=subprocess.DEVNULL, env=child_environment(), start_new_session=True)
+        self._wire = Wire(ours)
+        self._poll = select.poll()
+        self._poll.register(ours, select.POLLIN)
+
+    @property
+    def pid(self) -> int:
+        """The id of the process and of its group."""
+        return self._child.pid
+
+    def send(self, message: object) -> None:
+        """Send a message. Raises ProcessEndedError."""
+        try:
+            self._wire.send(message)
+        except OSError:
+            raise self._lost() from None
+
+    def receive(self, patience: Patience) -> Any:
+        """The next message; waits for it.
+
+        Raises ProcessEndedError if the process has ended, or takes too long and so was ended.
+        """
+        begun: Optional[float] = None
+        while not self._received:
+            if not self._poll.poll(1000.0 * _LOOK_S):
+                if begun is None:   # from the first look on, as all calls that are watched
+                    begun, used_before = time.monotonic(), self._used()
+                self._check(patience, time.monotonic() - begun, self._used() - used_before)
+                continue
+            try:
+                self._received += self._wire.receive(0.0)
+            except EOFError as fault:
+                raise self._lost(str(fault)) from None
+        return self._received.popleft()
+
+    def end(self) -> None:
+        """Have the process end; it is killed with all that it has started if it does not."""
+        if not self._ended:
+            self._ended = True
+            self._wire.hang_up()
+            threading.Thread(target=self._reap, name="plugin-end", daemon=True).start()
+
+    def _used(self) -> float:
+        """Processor time of the process, s."""
+        try:
+            return time.clock_gettime((~self.pid << 3) | _SCHEDULED_CLOCK)
+        except OSError:   # it has ended: the socket says so
+            return 0.0
+
+    def _check(self, patience: Patience, waited: float, used: float) -> None:
+        """Raise ProcessEndedError for a call that takes too long."""
+        why = ""
+        if used > patience.computing:
+            why = f"it did not return within {patience.computing:g} s of processor time"
+        elif waited > patience.waiting and used < 0.1 * waited:
+            why = f"it waited for more than {patience.waiting:g} s"
+        if why:
+            where = self._where()
+            self._kill()
+            raise ProcessEndedError(f"{why}{where}")
+
+    def _where(self) -> str:
+        """` (in f, file:line)` of the plugin's innermost function; "" if that cannot be read."""
+        before = os.fstat(self._trace.fileno()).st_size
+        os.kill(self.pid, TRACE_SIGNAL)
+        deadline = time.monotonic() + _TRACE_S
+        while time.monotonic() < deadline:
+            found = self._traced(before)
+            if found:
+                return found
+            time.sleep(0.01)
+        return ""
+
+    def _traced(self, since: int) -> str:
+        self._trace.seek(since)
+        text = self._trace.read().decode("utf-8", "replace")
+        frames = [traceback.FrameSummary(file, int(line), function)
+                  for file, line, function in reversed(_FRAME.findall(text))]
+        if not frames or not text.endswith("\n"):
+            return ""
+        frame = innermost_of_plugin(frames)
+        return f" (in {frame.name}, {frame.filename}:{frame.lineno})"
+
+    def _lost(self, damage: str = "") -> ProcessEndedError:
+        """Why the socket has ended."""
+        try:
+            status = self._child.wait(_TRACE_S)
+        except subprocess.TimeoutExpired:
+            self._kill()
+            return ProcessEndedError("its process closed the connection to the simulator"
+                                     + (f" ({shortened(damage)})" if damage else ""))
+        if status < 0:
+            hint = "; the memory of the machine may be exhausted" * (status == -signal.SIGKILL)
+            return ProcessEndedError(f"its process was ended by {signal_name(-status)}{hint}"
+                                     f"{self._traced(0)}")
+        return ProcessEndedError(f"its process ended with exit status {status}")
+
+    def _kill(self) -> None:
+        with contextlib.suppress(ProcessLookupError):
+            os.killpg(self.pid, signal.SIGKILL)
+
+    def _reap(self) -> None:
+        deadline = time.monotonic() + _END_S
+        # The id of the group must not be freed before the rest of the group is ended.
+        while self._child.returncode is None and time.monotonic() < deadline and os.waitid(
+                os.P_PID, self.pid, os.WEXITED | os.WNOWAIT | os.WNOHANG) is None:
+            time.sleep(0.02)
+        if self._child.returncode is None:
+            self._kill()
+            self._child.wait()
+        self._wire.sock.close()
+        self._trace.close()

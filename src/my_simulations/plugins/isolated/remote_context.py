@@ -1,0 +1,242 @@
+"""The context of a plugin in its own process (see `plugins.context.Context`)."""
+from __future__ import annotations
+
+import pickle
+from functools import partial
+from typing import Any, Callable, Dict, Sequence
+
+from ...geometry import Pose, Twist, Vec3
+from ..checked_arguments import finite, number, pose_of, vector
+from ..parameters import Parameters
+from .connection import Connection
+from .messages import CONTEXT, METHODS, PROPERTIES, HandleMade, Start
+
+
+class RemoteHandle:
+    """Something in the node that the plugin uses by its number."""
+
+    def __init__(self, connection: Connection, made: HandleMade) -> None:
+        self._connection, self.number = connection, made.number
+        connection.readings.states[made.number] = made.state
+
+    def _order(self, name: str, *arguments: Any) -> None:
+        self._connection.order(self.number, name, *arguments)
+
+
+class RemoteLink(RemoteHandle):
+    """A link."""
+
+    def __init__(self, connection: Connection, made: HandleMade) -> None:
+        super().__init__(connection, made)
+        self.name, self.inertial = made.facts["name"], made.facts["inertial"]
+
+    @property
+    def pose(self) -> Pose:
+        """World pose of the link frame."""
+        pose: Pose = self._connection.state(self.number)[0]
+        return pose
+
+    @property
+    def twist(self) -> Twist:
+        """Twist at the link's origin, world axes."""
+        twist: Twist = self._connection.state(self.number)[1]
+        return twist
+
+
+class RemoteJoint(RemoteHandle):
+    """A joint axis."""
+
+    def __init__(self, connection: Connection, made: HandleMade) -> None:
+        super().__init__(connection, made)
+        self.name, self.spec = made.facts["name"], made.facts["spec"]
+        self.parent, self.child = made.facts["parent"], made.facts["child"]
+
+    @property
+    def position(self) -> float:
+        """rad or m."""
+        return float(self._connection.state(self.number)[0])
+
+    @property
+    def velocity(self) -> float:
+        """rad/s or m/s."""
+        return float(self._connection.state(self.number)[1])
+
+    @property
+    def puts(self) -> float:
+        """How often it was put somewhere."""
+        return float(self._connection.state(self.number)[2])
+
+    def drive(self, rate: float, effort: float) -> None:
+        """Turn the motor."""
+        self._order("drive", finite(rate, "the rate of a motor"),
+                    number(effort, "the effort of a motor"))
+
+    def steer(self, servo: Any) -> None:
+        """Hand over to a servo."""
+        self._order("steer", servo)
+
+
+class RemoteTopic(RemoteHandle):
+    """A topic that the plugin publishes."""
+
+    @property
+    def wanted(self) -> bool:
+        """Whether it has a subscriber."""
+        return bool(self._connection.state(self.number))
+
+    def publish(self, message: Any) -> None:
+        """Publish."""
+        self._order("publish", message)
+
+    def publish_later(self, make: Callable[[], Any]) -> None:
+        """Publish what `make` returns. The process has one thread: it is called at once."""
+        self._order("publish", make())
+
+    def close(self) -> None:
+        """Take the topic off the graph."""
+        self._order("close")
+
+
+class RemoteEnd(RemoteHandle):
+    """A scheduled call, an observation, a subscription or a service."""
+
+    def end(self) -> None:
+        """End it."""
+        self._order("end")
+
+    def close(self) -> None:
+        """End it."""
+        self._order("close")
+
+
+_KINDS: Dict[str, Any] = {
+    "link": RemoteLink, "joint": RemoteJoint, "topic": RemoteTopic, "end": RemoteEnd}
+
+
+class RemoteContext:
+    """See `plugins.context.Context`. For the thread that calls the plugin."""
+
+    def __init__(self, connection: Connection, start: Start) -> None:
+        self._connection = connection
+        self.sensor, self.sensor_link = start.sensor, start.sensor_link
+        self.sensor_joint, self.spec = start.sensor_joint, start.spec
+        self.parameters = Parameters(start.spec.xml, self.warn)
+        self._found: Dict[str, RemoteHandle] = {}
+        self._messages: Dict[str, bytes] = {}
+
+    def __getattr__(self, name: str) -> Any:
+        if name in PROPERTIES:
+            return self._connection.ask(name)
+        if name in METHODS:
+            return partial(self._connection.ask, name)
+        raise AttributeError(f"the context has no '{name}'")
+
+    def _handle(self, name: str, *arguments: Any, **named: Any) -> Any:
+        made = self._connection.ask(name, *arguments, **named)
+        return _KINDS[made.kind](self._connection, made)
+
+    # -- time ------------------------------------------------------------------------------------
+
+    @property
+    def model(self) -> str:
+        """The model's name."""
+        return self._connection.readings.model
+
+    @property
+    def now_ns(self) -> int:
+        """Sim time of this step, ns."""
+        return self._connection.readings.now_ns
+
+    @property
+    def step(self) -> int:
+        """The step count."""
+        return self._connection.readings.step
+
+    def every(self, hertz: float, call: Callable[[], None]) -> RemoteEnd:
+        """Be called at a rate."""
+        return self._scheduled("every", hertz, call)
+
+    def observe(self, hertz: float, call: Callable[[], None], topics: Sequence[Any] = (),
+                **options: Any) -> RemoteEnd:
+        """Follow the world at a rate."""
+        return self._scheduled("observe", hertz, call, list(topics), **options)
+
+    def once(self, ns: int, call: Callable[[], None]) -> RemoteEnd:
+        """Be called once."""
+        return self._scheduled("once", ns, call)
+
+    def _scheduled(self, name: str, *arguments: Any, **named: Any) -> RemoteEnd:
+        made: RemoteEnd = self._handle(name, *arguments, **named)
+        return made
+
+    # -- the model -------------------------------------------------------------------------------
+
+    def link(self, name: str) -> RemoteLink:
+        """A link of the model."""
+        found: RemoteLink = self._once_for_all("link", name)
+        return found
+
+    def joint(self, name: str) -> RemoteJoint:
+        """A joint of the model that moves."""
+        found: RemoteJoint = self._once_for_all("joint", name)
+        return found
+
+    def _once_for_all(self, kind: str, name: str) -> Any:
+        key = f"{kind} {name}"
+        if key not in self._found:
+            self._found[key] = self._handle(kind, name)
+        return self._found[key]
+
+    def model_link(self, scoped: str) -> RemoteLink:
+        """A link of any model."""
+        found: RemoteLink = self._once_for_all("model_link", scoped)
+        return found
+
+    def drive_level(self, x: float, y: float, yaw_rate: float) -> None:
+        """Move level from now on."""
+        self._order("drive_level", finite(x, "x"), finite(y, "y"), finite(yaw_rate, "yaw_rate"))
+
+    def push(self, link: str, force: Vec3, torque: Vec3) -> None:
+        """A wrench from now on."""
+        self._order("push", link, vector(force, "force"), vector(torque, "torque"))
+
+    def _order(self, name: str, *arguments: Any) -> None:
+        self._connection.order(CONTEXT, name, *arguments)
+
+    # -- topics, services, log -------------------------------------------------------------------
+
+    def message(self, kind: str) -> Any:
+        """A new message."""
+        if kind not in self._messages:
+            self._messages[kind] = pickle.dumps(self._connection.ask("message", kind))
+        return pickle.loads(self._messages[kind])
+
+    def publish(self, name: str, kind: str, queue: int = 1, latch: bool = False) -> RemoteTopic:
+        """Offer a topic."""
+        topic: RemoteTopic = self._handle("publish", name, kind, queue, latch)
+        return topic
+
+    def subscribe(self, name: str, kind: str, call: Callable[[Any], None],
+                  queue: int = 1) -> RemoteEnd:
+        """Hear a topic."""
+        return self._scheduled("subscribe", name, kind, call, queue)
+
+    def serve(self, name: str, kind: str, call: Callable[[Any, Any], None]) -> RemoteEnd:
+        """Offer a service."""
+        def answer(request: Any, response: Any) -> Any:
+            call(request, response)
+            return response
+
+        return self._scheduled("serve", name, kind, answer)
+
+    def transform(self, parent: str, child: str, pose: Pose) -> None:
+        """Broadcast to tf."""
+        self._order("transform", str(parent), str(child), pose_of(pose, "a transform"))
+
+    def info(self, text: str) -> None:
+        """Inform the user."""
+        self._order("info", str(text))
+
+    def warn(self, text: str) -> None:
+        """Warn the user."""
+        self._order("warn", str(text))

@@ -1,0 +1,226 @@
+"""Plugins of users in processes of their own: what they can do, and what ends one of them only."""
+from __future__ import annotations
+
+import os
+
+import pytest
+from plugin_case import kept, until
+from test_plugin_faults import GOOD, HEAD, LOAD, Case
+
+from my_simulations.plugins.call_watch import Patience
+from my_simulations.plugins.context import Context
+from my_simulations.plugins.isolated.messages import HANDLES, METHODS, ORDERS, PROPERTIES
+from my_simulations.plugins.isolated.remote_context import RemoteContext
+from my_simulations.plugins.testing import Message
+
+CALL = LOAD + """        self.context.every(100.0, self.call)
+
+    def call(self):
+"""
+MOVES = LOAD + """        context = self.context
+        self.hinge, self.base = context.joint("hinge"), context.link("base")
+        self.said = context.publish("said", "std_msgs/Float64")
+        self.times = []
+        context.subscribe("rate", "std_msgs/Float64", self.hear)
+        context.serve("ask", "std_srvs/Trigger", self.answer)
+        context.once(15_000_000, lambda: self.times.append(context.now_ns))
+        context.every(100.0, self.call)
+        context.observe(50.0, self.watch, [self.said])
+        context.mark = (context.model, context.parameters.text("word"), self.hinge.parent,
+                        self.base.inertial.mass, context.step_size, context.gravity[2])
+
+    def hear(self, message):
+        self.hinge.drive(message.data, 10.0)
+
+    def call(self):
+        self.times.append(self.context.now_ns)
+
+    def watch(self):
+        message = self.context.message("std_msgs/Float64")
+        message.data = (self.context.now_ns, self.hinge.position, self.base.pose.position)
+        self.said.publish(message)
+
+    def answer(self, request, response):
+        from my_simulations.plugins.context import RequestError
+        if request.data == "bad":
+            raise RequestError("there is no such word")
+        response.message = (self.times, self.context.mark, self.context.link_names())
+"""
+
+
+@pytest.fixture
+def case(tmp_path, monkeypatch):
+    monkeypatch.syspath_prepend(str(tmp_path))
+    yield from kept(lambda **options: Case(tmp_path, isolate=True, **options))
+
+
+def test_a_plugin_uses_its_context_from_its_own_process(case):
+    one = case()
+    one.spawn(MOVES)
+    assert one.failed() == []
+    one.hear("rate", data=2.0)
+    one.sim.clock.advance(40)
+    until(lambda: len(one.graph.on("said")) == 2)
+    (first, place, base), (second, later, _) = (said.data for said in one.graph.on("said"))
+    assert (first, second) == (20_000_000, 40_000_000)
+    assert later - place == pytest.approx(0.04) and base == pytest.approx((0.0, 0.0, 0.0))
+    times, mark, names = one.ask("ask", data="good").message
+    assert times == [10_000_000, 15_000_000, 20_000_000, 30_000_000, 40_000_000]
+    assert mark[:3] == ("bad", "", "base") and mark[4:] == (0.001, pytest.approx(-9.8))
+    assert "bad::wheel" in names.values()
+
+
+def test_a_caller_of_a_service_is_told_why_its_request_is_refused(case):
+    one = case()
+    one.spawn(MOVES)
+    with pytest.raises(Exception, match="no such word"):
+        one.graph.heard["ask"](Message(data="bad"), Message())
+    assert one.ask("ask", data="good").message
+    assert one.failed() == []
+
+
+def test_a_fault_of_the_context_is_raised_where_the_plugin_has_asked(case):
+    one = case()
+    one.spawn(LOAD + """        from my_simulations.plugins.context import PluginError
+        try:
+            self.context.joint("nowhere")
+        except PluginError as fault:
+            self.context.warn(f"caught: {fault}")
+        self.context.joint("nothing")
+""")
+    warned, failed = one.issues
+    assert "caught: model 'bad' has no joint 'nowhere'" in warned.message
+    assert "has no joint 'nothing'" in failed.message
+
+
+ENDS = [
+    ("import os; os._exit(3)", "its process ended with exit status 3", False),
+    ("import os, signal; os.kill(os.getpid(), signal.SIGINT)", "KeyboardInterrupt", True),
+    ("import os, signal; os.kill(os.getpid(), signal.SIGKILL)", "ended by SIGKILL", False),
+    ("import ctypes; ctypes.string_at(0)", "ended by SIGSEGV", True),
+    ("import _thread; _thread.interrupt_main()", "KeyboardInterrupt", True),
+    ("import sys; sys.exit(5)", "SystemExit: 5", True),
+    ("bytearray(1 << 46)", "MemoryError", True),
+    ("import re; re.match(r'(a+)+$', 'a' * 60 + 'b')", "s of processor time", True),
+    ("while True: pass", "s of processor time", True),
+    ("import threading; threading.Event().wait()", "it waited for more than 8 s", True),
+    ("import os; os.close(int(__import__('sys').argv[1]))", "", False),
+    ("raise ValueError('x' * 50_000_000)", "49999500 more characters", True),
+    ("import threading; threading.Thread(target=self.context.models).start(); 1 / 0",
+     "ZeroDivisionError", True),
+]
+
+
+@pytest.mark.parametrize("when", ["import", "load", "call"])
+@pytest.mark.parametrize(("statement", "said", "located"), ENDS, ids=range(len(ENDS)))
+def test_nothing_that_a_plugin_does_ends_another_one(case, statement, said, located, when):
+    one = case(patience=Patience(0.5, 8.0))
+    if when == "import" and "self" in statement:
+        statement = "1 / 0"
+    source = {"import": "{}\n", "load": LOAD + "        {}\n", "call": CALL + "        {}\n"}
+    one.spawn(source[when].format(statement))
+    one.goes_on()
+    (issue,) = one.failed()
+    assert (issue.file, issue.line) == ("robot.urdf", 12) and said in issue.message
+    assert len(issue.message) < 1000
+    if located:
+        assert f"{one.file}:{ {'import': 1, 'load': 6, 'call': 9}[when]})" in issue.message
+
+
+def test_a_process_that_a_plugin_forks_does_not_serve_it(case, tmp_path):
+    one = case()
+    one.spawn(CALL + f"""        import os
+        child = os.fork()
+        if child == 0:
+            open({str(tmp_path / "forked")!r}, "w").close()
+            self.context.models()
+            open({str(tmp_path / "served")!r}, "w").close()
+        else:
+            os.waitpid(child, 0)
+""")
+    one.goes_on()
+    until((tmp_path / "forked").exists)
+    assert one.failed() == [] and not (tmp_path / "served").exists()
+
+
+def test_a_context_is_refused_in_a_thread_of_the_plugin(case):
+    one = case()
+    one.spawn(LOAD + """        import threading
+        said = []
+
+        def run():
+            try:
+                self.context.models()
+            except Exception as fault:
+                said.append(str(fault))
+
+        thread = threading.Thread(target=run)
+        thread.start()
+        thread.join()
+        self.context.warn(said[0])
+""")
+    (issue,) = one.issues
+    assert "'models' was used in a thread of the plugin" in issue.message
+
+
+def test_a_plugin_that_is_mended_works_with_the_next_spawn(case):
+    one = case()
+    for number, source in enumerate((
+            "x = (\n", "undefined_name\n", LOAD + "        1 / 0\n",
+            HEAD.replace("Bad", "Other"))):
+        one.spawn(source)
+        assert len(one.failed()) == number + 1
+        one.sim.models.delete("bad")
+    one.spawn(GOOD.replace("Good", "Bad"))
+    one.sim.clock.advance(20)
+    until(lambda: len(one.graph.on("bad/alive")) == 2)
+    assert len(one.failed()) == 4
+
+
+def test_a_helper_of_a_plugin_that_is_mended_is_read_again(case):
+    one = case()
+    helper = f"helper_of_{one.bad}"
+    source = f"from {helper} import RATE\n" + GOOD.replace("Good", "Bad").replace("100.0", "RATE")
+    (one.folder / f"{helper}.py").write_text("RATE = None\n")
+    one.spawn(source)
+    assert len(one.failed()) == 1
+    one.sim.models.delete("bad")
+    (one.folder / f"{helper}.py").write_text("RATE = 100.0\n")
+    one.spawn(source)
+    one.sim.clock.advance(20)
+    until(lambda: len(one.graph.on("bad/alive")) == 2)
+
+
+def is_running(pid):
+    """Whether a process runs; one that has ended and was not waited for does not."""
+    try:
+        with open(f"/proc/{pid}/stat") as stream:
+            return stream.read().rpartition(")")[2].split()[0] != "Z"
+    except OSError:
+        return False
+
+
+def test_the_process_ends_with_the_model_and_runs_its_exit_functions(case, tmp_path):
+    one = case()
+    pids, ended = tmp_path / "pids", tmp_path / "ended"
+    one.spawn(LOAD + f"""        import atexit, os, subprocess
+        other = subprocess.Popen(["sleep", "1000"])
+        open({str(pids)!r}, "w").write(f"{{os.getpid()}} {{other.pid}}")
+        atexit.register(lambda: open({str(ended)!r}, "w").close())
+""")
+    mine, started = map(int, pids.read_text().split())
+    assert is_running(mine) and is_running(started) and mine != os.getpid()
+    one.sim.models.delete("bad")
+    until(lambda: not is_running(mine))
+    until(ended.exists)
+    until(lambda: not is_running(started))
+    one.goes_on()
+
+
+def test_the_context_of_a_process_has_all_that_a_context_has():
+    wanted = {name for name in (*vars(Context), *Context.__annotations__)
+              if not name.startswith("_")}
+    given = {*METHODS, *PROPERTIES, *vars(RemoteContext), "parameters", "sensor", "sensor_link",
+             "sensor_joint"}
+    assert wanted - given == set()
+    assert {name for name in ORDERS | set(HANDLES) if name not in vars(RemoteContext)} == set()
