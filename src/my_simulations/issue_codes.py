@@ -222,7 +222,8 @@ _TABLE: Tuple[Tuple[str, Tuple[Tuple[str, str, str, str], ...]], ...] = (
         ("mesh-unreadable", EITHER, "The mesh file cannot be read.", "Use STL, OBJ, DAE or glTF."),
         ("mesh-empty", EITHER, "The mesh, or the named submesh, has no faces.",
          "Correct the file or the submesh name."),
-        ("mesh-not-finite", EITHER, "The mesh has NaN or infinite vertices.", "Export it again."),
+        ("mesh-not-finite", EITHER, "The mesh has vertices that are NaN, infinite or beyond "
+         "1e9 m.", "Export it again."),
         ("mesh-size-odd", WARNING, "The mesh is very large or small, as if in another unit.",
          "Scale it to metres."),
         ("mesh-open", WARNING, "An imported mesh is not closed; its inertia is that of its hull.",
@@ -283,6 +284,8 @@ _TABLE: Tuple[Tuple[str, Tuple[Tuple[str, str, str, str], ...]], ...] = (
         ("group-member", ERROR, "A member of a group is not text.", "Quote the name."),
         ("unknown-package", ERROR, "The ROS package was not found.",
          "Source its workspace, or correct the name."),
+        ("object-file-outside", ERROR, "An object names a file outside of its package.",
+         "Name the package that contains the file."),
         ("object-file-missing", ERROR, "The object's file does not exist.",
          "Create the file, or correct `model`."),
         ("object-unreadable", ERROR, "The object's file cannot be read.",

@@ -1,4 +1,4 @@
-"""Characters that XML cannot hold, found before they are in a world that is to be saved.
+"""Characters that XML or file names cannot hold, found before a world is saved with them.
 
 Source: XML 1.0 (fifth edition), section 2.2, production Char.
 """
@@ -10,6 +10,9 @@ from typing import Any, Iterator, Tuple
 from .errors import CommandError
 
 _FORBIDDEN = re.compile("[\0-\x08\x0b\x0c\x0e-\x1f\ud800-\udfff\ufffe\uffff]")
+
+_NOT_SHOWN = re.compile("[\0-\x1f\x7f-\x9f\u2028\u2029\u202a-\u202e\u2066-\u2069]")
+"""Control characters, ends of lines, and characters that change the direction of a text."""
 
 
 def forbidden_character(text: str) -> str:
@@ -36,6 +39,18 @@ def check_characters(text: str, what: str) -> str:
     if found:
         raise CommandError(f"{what} contains the character {found}, which an XML file cannot hold")
     return text
+
+
+def check_file_name(name: str) -> None:
+    """Refuse a file name that is not shown as it is: with line ends or changes of direction.
+
+    Raises:
+        CommandError: it contains such a character.
+    """
+    found = _NOT_SHOWN.search(name)
+    if found:
+        raise CommandError(f"the file name contains the character U+{ord(found.group()):04X} at"
+                           f" position {found.start() + 1}, which is not shown")
 
 
 def check_tree(tree: Any, what: str) -> None:

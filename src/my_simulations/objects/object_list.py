@@ -257,6 +257,13 @@ class _Reader:
                 "model-type", f"object '{name}': files of type '{ending}' cannot be spawned",
                 **self._source.where(path), hint=hint))
             return None
+        parts = [package, *inside.split("/")]
+        if ".." in parts or "." in parts[:1] or inside.startswith("/") or "\0" in inside:
+            self._fault(name, error(
+                "object-file-outside", f"object '{name}': '{package}/{inside}' is not inside of the"
+                " folder of its package", **self._source.where(path),
+                hint="name the package that contains the file, without '..'"))
+            return None
         return ObjectFile(package, inside, "xacro" in kind, "sdf" in kind)
 
     def _text(self, value: Mapping[Any, Any], path: KeyPath, name: str,

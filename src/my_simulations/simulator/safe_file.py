@@ -8,12 +8,14 @@ import tempfile
 from typing import Optional
 
 from ..errors import CommandError
+from ..resources.private_folder import make_private
 
 
-def write_whole(path: str, data: bytes, overwrite: bool) -> None:
+def write_whole(path: str, data: bytes, overwrite: bool, private: bool = False) -> None:
     """Write a file atomically; creates missing folders.
 
-    On any error an existing file is unchanged, and no partial file is left.
+    On any error an existing file is unchanged, and no partial file is left. If `private`, only the
+    user may read the file and enter its folder.
 
     Raises:
         CommandError: it exists and `overwrite` is False, or it cannot be written.
@@ -21,12 +23,15 @@ def write_whole(path: str, data: bytes, overwrite: bool) -> None:
     folder = os.path.dirname(path)
     temporary: Optional[str] = None
     try:
-        os.makedirs(folder, exist_ok=True)
+        if private:
+            make_private(folder)
+        else:
+            os.makedirs(folder, exist_ok=True)
         handle, temporary = tempfile.mkstemp(prefix=".", suffix=".part", dir=folder)
         with os.fdopen(handle, "wb") as stream:
             stream.write(data)
             stream.flush()
-            os.fchmod(stream.fileno(), _mode(path))
+            os.fchmod(stream.fileno(), 0o600 if private else _mode(path))
             os.fsync(stream.fileno())
         _put(temporary, path, overwrite)
         _sync_folder(folder)

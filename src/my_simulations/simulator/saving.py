@@ -24,6 +24,7 @@ from ..geometry import STILL, Pose, compose, inverse
 from ..resources.package_files import package_directories
 from ..resources.resolver import Resolver, ResourceNotFoundError
 from ..resources.world_lookup import ENDINGS, folder_of_users, ships, users_folder
+from ..xml_characters import check_file_name
 from .entity import Entity
 from .safe_file import write_whole
 from .simulator import Simulator
@@ -221,13 +222,15 @@ def allowed_path(path: str, roots: Sequence[str]) -> str:
     """The absolute path to write, with symbolic links in its folders resolved.
 
     Raises:
-        CommandError: not below a root, not a .world or .sdf file, or a link to another place.
+        CommandError: not below a root, not a .world or .sdf file, a link to another place, or a
+            character that is not shown.
     """
     path = os.path.expanduser(path.strip())
     if not roots:
         raise CommandError("no folder is allowed for saving worlds; set parameter ~save_roots")
     if "\0" in path or os.path.splitext(path)[1].lower() not in EXTENSIONS:
         raise CommandError(f"invalid file name {path!r}: it must end in .world or .sdf")
+    check_file_name(path)
     target = os.path.realpath(os.path.join(os.path.expanduser(roots[0]), path))
     for root in roots:
         real = os.path.realpath(os.path.expanduser(root))

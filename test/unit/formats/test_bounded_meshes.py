@@ -133,3 +133,14 @@ def test_collada_of_many_empty_nodes_is_read_elsewhere_and_beyond_a_limit_not_at
     path.write_bytes(nodes(150_000))
     with pytest.raises(InputError, match="more than 100000 nodes"):
         load_mesh(Mesh("nodes.dae", str(path)))
+
+
+@pytest.mark.parametrize("scale, center", [(1.0, False), (1.0, True), (1e300, True)])
+def test_coordinates_beyond_what_physics_can_use_are_refused(tmp_path, scale, center):
+    far = "1e308" if scale == 1.0 else "1"
+    path = tmp_path / "far.obj"
+    path.write_text(f"o a\nv -{far} 0 0\nv {far} 0 0\nv 0 {far} 0\nv 0 0 {far}\n"
+                    "f 1 2 3\nf 1 2 4\nf 2 3 4\nf 1 3 4\n")
+    with pytest.raises(InputError, match="vertices beyond 1e.09 m") as refused:
+        load_mesh(Mesh("far.obj", str(path), scale=(scale,) * 3, submesh="a", center=center))
+    assert refused.value.first.code == "mesh-not-finite"

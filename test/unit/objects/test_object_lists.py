@@ -103,6 +103,18 @@ def test_only_the_first_package_name_is_taken_off_a_path():
                                   xacro=False, sdf=True)
 
 
+@pytest.mark.parametrize("entry", [
+    {"model": "my_simulations/../../x.urdf.xacro"}, {"model": "my_simulations/a/../../../x.urdf"},
+    {"model": "../x.urdf"}, {"model": "./x.urdf"}, {"model": "my_simulations//etc/x.urdf"},
+    {"model": "../../x", "model_type": "urdf.xacro"}])
+def test_a_file_outside_of_its_package_is_refused(entry):
+    place = {"position": [0, 0, 0], "orientation": [0, 0, 0]}
+    found = parse_objects({"a": {**place, **entry}, "b": {**place, "model": "p/x..y.urdf"}},
+                          Source("/objects"))
+    assert [issue.code for issue in found.faults["a"]] == ["object-file-outside"]
+    assert list(found.objects) == ["b"]
+
+
 def test_one_faulty_object_leaves_the_others_usable():
     good = {"model": "p/o.urdf", "position": [0, 0, 0], "orientation": [0, 0, 0]}
     listing = parse_objects({"bad": {"model": 3}, "good": good}, Source("/objects"))

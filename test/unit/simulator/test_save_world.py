@@ -261,6 +261,13 @@ def test_a_path_outside_of_the_roots_is_refused(path, tmp_path):
         allowed_path(path, [str(root)])
 
 
+@pytest.mark.parametrize("character", ["\n", "\x1b", "\x85", "\u2028", "\u202e", "\u2066"])
+def test_a_file_name_with_a_character_that_is_not_shown_is_refused(character, tmp_path):
+    with pytest.raises(CommandError, match=f"U\\+{ord(character):04X} at position 2"):
+        allowed_path(f"a{character}b.world", [str(tmp_path)])
+    assert allowed_path("\u0645\u06cc\u200c\u062f.world", [str(tmp_path)])  # a joiner is no such
+
+
 def test_a_path_below_any_root_is_allowed(tmp_path):
     roots = [str(tmp_path / "a"), str(tmp_path / "b")]
     assert allowed_path("in/x.world", roots) == str(tmp_path / "a/in/x.world")

@@ -167,13 +167,13 @@ class Autosave:
         except (OSError, ValueError) as fault:
             raise CommandError(f"{about}: {fault}") from fault
         data["discarded"] = time.time()
-        write_whole(about, json.dumps(data).encode(), overwrite=True)
+        write_whole(about, json.dumps(data).encode(), overwrite=True, private=True)
 
     def _write(self) -> None:
-        write_whole(self._path(".world"), self._files.text(), overwrite=True)
+        write_whole(self._path(".world"), self._files.text(), overwrite=True, private=True)
         about = {"file": self._files.file, "time": time.time(), "process": self._process,
                  "world": self._name + ".world", "launched": self._files.launched()}
-        write_whole(self._path(".json"), json.dumps(about).encode(), overwrite=True)
+        write_whole(self._path(".json"), json.dumps(about).encode(), overwrite=True, private=True)
 
     def _path(self, extension: str) -> str:
         return os.path.join(self._folder, self._name + extension)

@@ -132,7 +132,7 @@ async def _body(request: web.Request, largest: int) -> bytes:
 
 def _written(path: str, data: bytes, overwrite: bool) -> web.StreamResponse:
     try:
-        write_whole(path, data, overwrite)
+        write_whole(path, data, overwrite, private=True)
     except CommandError as fault:
         raise web.HTTPInsufficientStorage(text=f"{fault}\n") from None
     return web.Response(status=204)

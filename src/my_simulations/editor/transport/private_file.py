@@ -4,6 +4,7 @@ from __future__ import annotations
 import os
 import tempfile
 
+from ...resources.private_folder import make_private
 from ..editor_options import cache_folder
 
 
@@ -15,8 +16,7 @@ def private_folder(cache_dir: str = "") -> str:
 def write_private(path: str, data: bytes) -> None:
     """Write a file whole, in a folder that is made for its user alone. Raises OSError."""
     folder = os.path.dirname(path)
-    os.makedirs(folder, mode=0o700, exist_ok=True)
-    os.chmod(folder, 0o700)
+    make_private(folder)
     handle, temporary = tempfile.mkstemp(dir=folder)  # readable by its user alone
     with os.fdopen(handle, "wb") as stream:
         stream.write(data)

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from typing import Any, List, Optional
 
 from ...description.shapes import MeshData
+from ...resources.private_folder import make_private
 
 _log = logging.getLogger(__name__)
 _SUFFIX = ".parts"
@@ -135,7 +136,7 @@ class PartsCache:
         """Store a decomposition atomically."""
         unfinished = ""
         try:
-            os.makedirs(self._folder, exist_ok=True)
+            make_private(self._folder)
             descriptor, unfinished = tempfile.mkstemp(suffix=_UNFINISHED, dir=self._folder)
             os.close(descriptor)
             save(unfinished, made)

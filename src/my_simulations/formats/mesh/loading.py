@@ -30,6 +30,9 @@ _PLAIN_BYTES = {".dae": 4 << 20, ".stl": 8 << 20, ".stla": 8 << 20, ".stlb": 8 <
 _MOST_COPIES, _MOST_COPIED = 10_000, 128 << 20
 _MOST_PRIMITIVES = 2000
 _PRIMITIVES = (b"<tri", b"<pol", b"<p>")
+_FARTHEST_M = 1e9
+"""Largest coordinate: volumes and moments of inertia of meshes beyond it lose all their digits."""
+
 _MOST_TAGS = 20_000
 """Most tags of a COLLADA file that is read in this process: each element takes about 1.6 kB."""
 
@@ -256,12 +259,15 @@ def _to_data(vertices: Any, triangles: Any, path: str, scale: Tuple[float, float
 
     if not np.isfinite(vertices).all():
         raise _fault("mesh-not-finite", "the mesh has vertices that are not finite numbers", path)
-    if center:
-        vertices = vertices - (vertices.min(axis=0) + vertices.max(axis=0)) / 2
-    vertices = vertices * np.array(scale)
+    with np.errstate(over="ignore", invalid="ignore"):
+        if center:
+            vertices = vertices - (vertices.min(axis=0) + vertices.max(axis=0)) / 2
+        vertices = vertices * np.array(scale)
     if scale[0] * scale[1] * scale[2] < 0:
         triangles = triangles[:, ::-1]  # mirrored: reverse the winding
     vertices = np.ascontiguousarray(vertices)
+    if not np.abs(vertices).max() <= _FARTHEST_M:
+        raise _fault("mesh-not-finite", f"the mesh has vertices beyond {_FARTHEST_M:g} m", path)
     triangles = np.ascontiguousarray(triangles, dtype=np.int32)
     vertices.flags.writeable = triangles.flags.writeable = False
     return MeshData(vertices, triangles)
