@@ -327,6 +327,7 @@ def test_all_wheels_of_a_rover_roll_about_one_centre(speed, yaw):
 def steer_bot(**settings):
     names = ("rear_right", "rear_left", "front_right", "front_left", "steer_right", "steer_left")
     robot = Arm(axis=FREE, names=names, interfaces=[VELOCITY] * 4 + [POSITION] * 2,
+                places={"steer_right": (0.5, -0.3, 0.1), "steer_left": (0.5, 0.3, 0.1)},
                 inside="<robotSimType>steer_bot_hardware_gazebo/SteerBotHardwareGazebo"
                        "</robotSimType>",
                 steer_bot_hardware_gazebo={
@@ -342,8 +343,9 @@ def steer_bot(**settings):
     return robot
 
 
-def test_the_wheels_of_a_car_stand_across_the_lines_to_the_centre_of_its_turn():
-    robot = steer_bot()
+@pytest.mark.parametrize("order", [("steer_right", "steer_left"), ("steer_left", "steer_right")])
+def test_the_wheels_of_a_car_stand_across_the_lines_to_the_centre_of_its_turn(order):
+    robot = steer_bot(virtual_front_steers=list(order))
     go(robot, 1.0, x=0.5, yaw=0.4)
     radius = 1.0 / math.tan(0.4)
     assert robot.at("steer_left") == pytest.approx(math.atan(1.0 / (radius - 0.3)), abs=1e-6)

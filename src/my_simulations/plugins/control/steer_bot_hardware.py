@@ -2,11 +2,11 @@
 
 Parameters are those of steer_drive_ros, below `steer_bot_hardware_gazebo`: the joint `rear_wheel`
 stands for `virtual_rear_wheels` and `virtual_front_wheels`, which all turn at its rate, the joint
-`front_steer` for `virtual_front_steers`, right before left. Where it differs: with
-`enable_ackermann_link` the wheels are steered by the geometry of Ackermann, tan(angle) = h tan(a) /
-(h +- w/2 tan(a)), else both by the commanded angle (the original steers them by half of the
-difference, and without the link the left one by twice the angle); `gains` are not used, a motor
-turns the wheels.
+`front_steer` for `virtual_front_steers`. Where it differs: the places of the steering axes tell
+left from right (there their order); with `enable_ackermann_link` the wheels are steered by the
+geometry of Ackermann, tan(angle) = h tan(a) / (h +- w/2 tan(a)), else both by the commanded angle
+(the original steers them by half of the difference, and without the link the left one by twice the
+angle); `gains` are not used, a motor turns the wheels.
 """
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from typing import Callable, Dict, List, Sequence, Tuple
 from ...description.transmission import Transmission
 from ..context import Context, PluginError
 from .hardware import POSITION, VELOCITY, Hardware, HardwareJoint
-from .limits import JointLimits, holding_effort, limits_of
+from .limits import JointLimits, holding_effort, joint_origin, limits_of
 from .settings import Settings
 
 _NAMESPACE = "steer_bot_hardware_gazebo"
@@ -88,6 +88,7 @@ class SteerBotHardware(Hardware):
         if len(steers) != 2:
             raise PluginError(f"parameter {_NAMESPACE}/virtual_front_steers must name two joints,"
                               f" right and left; it names {len(steers)}")
+        steers.sort(key=self._place)
         groups: Dict[str, JointGroup] = {}
         name = s.text("rear_wheel")
         groups[name] = JointGroup(name, VELOCITY, [(one, _same) for one in rear + front],
@@ -98,6 +99,10 @@ class SteerBotHardware(Hardware):
         for name, group in groups.items():
             self._all[(group.interface, name)] = group
             self._active[name] = group
+
+    def _place(self, joint: HardwareJoint) -> float:
+        """How far a joint is to the left in the model, m."""
+        return joint_origin(self._context.joint(joint.name).spec, self._context.description)[1]
 
     def _made(self, name: str, interface: str) -> HardwareJoint:
         joint = self._context.joint(name)
