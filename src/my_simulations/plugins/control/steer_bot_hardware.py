@@ -6,7 +6,7 @@ stands for `virtual_rear_wheels` and `virtual_front_wheels`, which all turn at i
 left from right (there their order); with `enable_ackermann_link` the wheels are steered by the
 geometry of Ackermann, tan(angle) = h tan(a) / (h +- w/2 tan(a)), else both by the commanded angle
 (the original steers them by half of the difference, and without the link the left one by twice the
-angle); `gains` are not used, a motor turns the wheels.
+angle); `gains` are not used, motors without limits of effort and rate turn the joints.
 """
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from typing import Callable, Dict, List, Sequence, Tuple
 from ...description.transmission import Transmission
 from ..context import Context, PluginError
 from .hardware import POSITION, VELOCITY, Hardware, HardwareJoint
-from .limits import JointLimits, holding_effort, joint_origin, limits_of
+from .limits import JointLimits, joint_origin, limits_of
 from .settings import Settings
 
 _NAMESPACE = "steer_bot_hardware_gazebo"
@@ -106,9 +106,8 @@ class SteerBotHardware(Hardware):
 
     def _made(self, name: str, interface: str) -> HardwareJoint:
         joint = self._context.joint(name)
-        return HardwareJoint(joint, interface, limits_of(joint.spec, self._context), None,
-                             holding_effort(self._context.description, joint.spec,
-                                            self._context.gravity))
+        limits = limits_of(joint.spec, self._context)
+        return HardwareJoint(joint, interface, JointLimits(limits.lower, limits.upper), None, 0.0)
 
 
 def _same(value: float) -> float:
