@@ -17,6 +17,7 @@ from ..simulator.entity import Entity
 from ..simulator.scene_sensing import SceneSensing
 from ..simulator.simulator import Simulator
 from ..simulator.sync_points import Moment
+from .barrier import Barrier
 from .base import Plugin
 from .call_watch import PATIENCE, Patience, ThreadAbandoned
 from .found_plugins import Found
@@ -49,6 +50,9 @@ _END_S = 2.0
 class PluginHost:
     """Starts plugins with their models, calls them, and ends them.
 
+    Attributes:
+        barrier: waits for all that is due, in a world that makes no steps.
+
     Args:
         simulator: the world; started.
         graph: how plugins reach ROS.
@@ -56,20 +60,25 @@ class PluginHost:
         log: hears of plugins that are unknown or fail.
         patience: how long a call of a plugin may take; loading may compute twice as long.
         isolate: run each plugin that is not of this package in a process of its own.
+        scene: casts rays and takes pictures; it is not closed. None for one of this host.
+        is_used: whether a plugin is loaded.
     """
 
     def __init__(self, simulator: Simulator, graph: Graph, registry: PluginRegistry,
                  log: Callable[[Issue], None], patience: Patience = PATIENCE,
-                 isolate: bool = False) -> None:
+                 isolate: bool = False, scene: Optional[SceneSensing] = None,
+                 is_used: Callable[[Found], bool] = lambda found: True) -> None:
         self._simulator, self._graph, self._registry, self._log = simulator, graph, registry, log
-        self._scene, self._schedule = SceneSensing(simulator, log), Schedule()
+        self._has_scene, self._is_used = scene is None, is_used
+        self._scene, self._schedule = scene or SceneSensing(simulator, log), Schedule()
         self._sync, self._observations = simulator.sync_points, Observations()
         view = StepView(simulator.states, simulator.feed.rows)
         self._records = RecordHandover(self._sync, self._observations, view, self._schedule)
         readings = StepReadings(simulator, self._schedule, view)
         self._shared = Shared(simulator, graph, log, self._scene, self._schedule, readings,
                               self._observations, view, self._look_at_subscribers)
-        self._outgoing = Outgoing(graph)
+        self.barrier = Barrier(self.wake)
+        self._outgoing = Outgoing(graph, self.wake)
         self._models = ModelPlugins(simulator, self._rebind)
         self._running: Dict[SimulatedContext, Running] = {}
         # Plugins that something has come for, and those whose orders and messages are to be taken.
@@ -156,12 +165,20 @@ class PluginHost:
         with self._settled:
             self._settled.wait_for(lambda: not self.unheard or self._stop.is_set(), _SETTLE_S)
 
+    def _is_quiet(self) -> bool:
+        """Whether all scans, pictures and messages are published that are due by now."""
+        return self._settings is not None and not (
+            self.unheard or self._rung or self._touched or self._due
+            or self._sync.records.first() is not None
+            or any(running.context.sensing.is_pending for running in self._models.all()))
+
     # -- the thread --------------------------------------------------------------------------------
 
     def _run(self) -> None:
         try:
             while not self._stop.is_set():
                 self._guarded_turn()
+                self.barrier.look(self._is_quiet)
                 self._rest()
             self._models.end_all()
             self._end_leaving()
@@ -187,9 +204,11 @@ class PluginHost:
         self._guard.stop()
         if self._processes is not None:
             self._processes.stop()
-        self._scene.close()
+        if self._has_scene:
+            self._scene.close()
         self._outgoing.stop()
         self._sync.detach()
+        self.barrier.end()
         with self._settled:
             self._settled.notify_all()
 
@@ -347,7 +366,7 @@ class PluginHost:
         context = SimulatedContext(self._shared, entity, found, lambda: self._ring(running))
         running = self._running[context] = Running(found, context, None)
         into.append(running)
-        if self._registry.is_provided(found.spec.filename):
+        if self._registry.is_provided(found.spec.filename) or not self._is_used(found):
             return
         try:
             where = self._registry.locate(found.spec.filename)

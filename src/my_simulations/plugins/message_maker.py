@@ -18,9 +18,14 @@ class Later(NamedTuple):
 
 
 class MessageMaker:
-    """Makes and publishes, in order. Its thread begins with the first message."""
+    """Makes and publishes, in order. Its thread begins with the first message.
 
-    def __init__(self) -> None:
+    Args:
+        sent: called, in that thread, after each message.
+    """
+
+    def __init__(self, sent: Callable[[], None] = lambda: None) -> None:
+        self._sent = sent
         self._queue: "queue.Queue[Optional[Tuple[Topic, Later, Callable[[Exception], None]]]]" \
             = queue.Queue()
         self._thread: Optional[threading.Thread] = None
@@ -51,3 +56,4 @@ class MessageMaker:
                 fail(fault)
             finally:
                 later.unsent.popleft()
+                self._sent()

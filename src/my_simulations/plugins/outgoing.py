@@ -14,10 +14,11 @@ class Outgoing:
 
     Args:
         graph: how they reach ROS.
+        sent: called, in another thread, when a message that took long has left.
     """
 
-    def __init__(self, graph: Graph) -> None:
-        self._graph, self._maker = graph, MessageMaker()
+    def __init__(self, graph: Graph, sent: Callable[[], None] = lambda: None) -> None:
+        self._graph, self._maker = graph, MessageMaker(sent)
 
     def stop(self) -> None:
         """End, after what is waiting."""

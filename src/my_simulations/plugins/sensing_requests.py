@@ -73,6 +73,11 @@ class SensingRequests:
         return self._scan is not None or bool(self._shots)
 
     @property
+    def is_pending(self) -> bool:
+        """Whether a scan, pictures or messages of pictures are not published yet."""
+        return self.is_busy or any(self._unsent.values())
+
+    @property
     def unsent(self) -> "Deque[None]":
         """A mark for each message that is being made of the stream that is handed over now."""
         return self._unsent.setdefault(self._stream, deque())

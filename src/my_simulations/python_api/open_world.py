@@ -1,18 +1,16 @@
 """A world that a Python program opens, steps and closes."""
 from __future__ import annotations
 
-import math
 import os
 from dataclasses import replace
 from types import TracebackType
-from typing import Callable, List, Optional, Sequence, Type, Union
+from typing import TYPE_CHECKING, Any, Callable, Dict, List, Mapping, Optional, Sequence, Type
 
 from ..description.model import Model
 from ..engine.api import Engine
 from ..engine.process_engine import ProcessEngine
 from ..errors import CommandError, EngineLostError, Issue
-from ..formats.reading import LoadedWorld, Text
-from ..geometry import ZERO3, Twist
+from ..formats.reading import LoadedWorld
 from ..resources.resolver import Resolver
 from ..sensing.api import CameraSpec
 from ..simulator.saving import save_world
@@ -21,7 +19,7 @@ from ..simulator.simulator import Simulator
 from ..workspace_python import require
 from .furnishing import Furnisher
 from .kept_files import KeptFiles
-from .plain_values import nanoseconds_of, pose_of, twist_of, vector_of, whole_number
+from .plain_values import pose_of, vector_of, whole_number
 from .readings import (
     ContactReading,
     JointReadings,
@@ -32,11 +30,16 @@ from .readings import (
     link_readings,
     model_readings,
 )
+from .robots import Plugins, RobotOptions, Robots
+from .world_changes import FilePath, WorldChanges
 from .world_choice import WorldChoice
 from .world_pictures import Photographer, Picture, camera_pose
 
+if TYPE_CHECKING:
+    from ..plugins.local_parameters import LocalParameters
+    from .topics import Topics
+
 Log = Callable[[Issue], None]
-FilePath = Union[str, "os.PathLike[str]"]
 
 _MOST_STEPS = 1_000_000
 _LOST = ("engine-died", "engine-lost", "engine-stalled")
@@ -44,6 +47,8 @@ _LOST = ("engine-died", "engine-lost", "engine-stalled")
 
 def open_world(world: FilePath = "worlds/empty.world", *, seed: int = 0, profile: str = "",
                objects: Sequence[str] = (), object_list: FilePath = "",
+               plugins: Plugins = True, sensors: bool = True,
+               parameters: Optional[Mapping[str, Any]] = None,
                resolver: Optional[Resolver] = None, log: Optional[Log] = None,
                engine: Callable[[], Engine] = ProcessEngine) -> OpenWorld:
     """Open a world; it stands at its start until `OpenWorld.step` is called.
@@ -55,6 +60,10 @@ def open_world(world: FilePath = "worlds/empty.world", *, seed: int = 0, profile
         objects: names, and groups, of the object list to spawn.
         object_list: the YAML file of objects; "" for config/WORLD/object_locations.yaml of this
             package, WORLD being the name of the world's file.
+        plugins: whether the robots' plugins run; or further classes of plugins by library, as
+            `{"libfoo.so": "package.module:Class"}`.
+        sensors: whether the plugins of `<sensor>` elements run.
+        parameters: of plugins and controllers by name, as on ROS's parameter server.
         resolver: finds what URIs name; None for Gazebo's variables, our models and ROS packages.
         log: hears of every issue; they are in `OpenWorld.issues`, too.
         engine: makes the engine, which is a process of its own.
@@ -64,10 +73,12 @@ def open_world(world: FilePath = "worlds/empty.world", *, seed: int = 0, profile
         CommandError: the engine cannot be started.
     """
     choice = WorldChoice(os.fspath(world), seed, profile, tuple(objects), os.fspath(object_list))
-    return OpenWorld(choice, resolver=resolver, log=log, engine=engine)
+    classes = {} if isinstance(plugins, bool) else dict(plugins)
+    robots = RobotOptions(plugins is not False, sensors, classes, parameters or {})
+    return OpenWorld(choice, resolver=resolver, log=log, engine=engine, robots=robots)
 
 
-class OpenWorld:
+class OpenWorld(WorldChanges):
     """An open world, for one thread; use it as a context manager, or call `close`.
 
     Names are Gazebo's: `model`, `model::link`, `model::joint`; link and joint names may stand
@@ -85,7 +96,8 @@ class OpenWorld:
 
     def __init__(self, choice: WorldChoice, *, resolver: Optional[Resolver] = None,
                  log: Optional[Log] = None, engine: Callable[[], Engine] = ProcessEngine,
-                 files: Optional[KeptFiles] = None) -> None:
+                 files: Optional[KeptFiles] = None,
+                 robots: RobotOptions = RobotOptions()) -> None:  # noqa: B008
         """See `open_world`; `files` reads the files instead of a reader of its own."""
         self.issues: List[Issue] = []
         self._listener = log
@@ -95,6 +107,7 @@ class OpenWorld:
         self._files = files or KeptFiles(resolver or Resolver.from_environment())
         self._furnisher = Furnisher(self._files, self._log)
         self._new_engine = engine
+        self._robots = Robots(robots, self._log, self.step, lambda: self.step_size)
         if engine is ProcessEngine:
             require("pybullet")
         self._start(self._furnisher.load(choice))
@@ -108,6 +121,7 @@ class OpenWorld:
 
     def close(self) -> None:
         """End the engine. Nothing else may be called afterwards."""
+        self._robots.close()
         self._photographer.close()
         self.simulator.close()
 
@@ -126,6 +140,7 @@ class OpenWorld:
     def step(self, steps: int = 1) -> None:
         """Make steps, as fast as possible; at most a million at a time.
 
+        When it returns, all messages that robots publish in these steps have arrived.
         An exception that interrupts it, such as that of Ctrl-C, ends it after the running step.
         """
         steps = whole_number(steps, "steps")
@@ -134,7 +149,9 @@ class OpenWorld:
         self._whole()
         if steps:
             try:
+                self._robots.settle()
                 self.simulator.clock.advance(steps)
+                self._robots.finish()
             except EngineLostError as fault:
                 self._lost = self._lost or str(fault)
             except CommandError:
@@ -152,9 +169,11 @@ class OpenWorld:
         again = self._choice.seed if seed is None else seed
         unchanged = self.simulator.models.revision == self._furnished and self._lost is None
         if again == self._choice.seed and unchanged:
+            self._robots.end()
             self.simulator.resets.reset_simulation(to_start=True)
             self._furnished = self.simulator.models.revision
             if self._lost is None:  # else the engine has died just now
+                self._robots.begin(self.simulator)
                 return
         self.open(replace(self._choice, seed=again))
 
@@ -180,6 +199,7 @@ class OpenWorld:
                 self.close()
                 self._start(loaded)
             else:
+                self._robots.end()
                 self.simulator.load_world(loaded.world, loaded.meshes)
                 self._furnish()
         except BaseException as fault:
@@ -245,97 +265,43 @@ class OpenWorld:
         """The description of a model, with all links and joints."""
         return self.simulator.models.get(name)
 
-    # -- changing ----------------------------------------------------------------------------------
+    # -- robots ------------------------------------------------------------------------------------
 
-    def spawn(self, document: Union[Text, FilePath], name: Optional[str] = None,
-              pose: Sequence[float] = ZERO3) -> str:
-        """Put a model into the world; returns its name.
+    @property
+    def topics(self) -> Topics:
+        """The topics of the robots' plugins by name; a look-up begins to listen to the topic."""
+        return self._robots.topics
 
-        Args:
-            document: path of a URDF or SDF file, or its text.
-            name: in the world; None for the document's own.
-            pose: of the model; a pose of the document's own comes on top, as in Gazebo.
+    @property
+    def services(self) -> Dict[str, str]:
+        """The types of the services that plugins offer, by name."""
+        return self._robots.services()
 
-        Raises:
-            InputError: the document has no usable model.
-        """
-        text = os.fspath(document)  # which leaves texts as they are
-        return self._furnisher.spawn(self._whole(), text, name, pose_of(pose), lambda model: model)
+    @property
+    def parameters(self) -> LocalParameters:
+        """The parameters of plugins and controllers; plugins read them when they are loaded."""
+        return self._robots.graph.parameters
 
-    def remove(self, name: str) -> None:
-        """Take a model out of the world."""
-        self._whole().models.delete(name)
-
-    def set_pose(self, name: str, pose: Sequence[float], twist: Optional[Sequence[float]] = None
-                 ) -> None:
-        """Move a model, or a link of one (`model::link`).
+    def publish(self, topic: str, message: Any) -> None:
+        """Send a message to the plugins that hear a topic; it acts from the next step on.
 
         Args:
-            name: of the model or link.
-            pose: of its frame.
-            twist: m/s and rad/s (vx vy vz wx wy wz) that it then has; None for at rest.
+            topic: its name.
+            message: of `my_simulations.messages` or of ROS, or a dictionary of its fields.
         """
-        speed = Twist() if twist is None else twist_of(twist)
-        states = self._whole().states
-        if self.simulator.models.has(name):
-            states.set_model_state(name, pose_of(pose), speed)
-        else:
-            states.set_link_state(name, pose_of(pose), speed)
+        self._whole()
+        self._robots.publish(topic, message)
 
-    def apply_wrench(self, link: str, force: Sequence[float] = ZERO3,
-                     torque: Sequence[float] = ZERO3, *, duration: Optional[float] = None,
-                     frame: str = "", point: Sequence[float] = ZERO3) -> None:
-        """Push and turn a link from the next step on.
+    def call(self, service: str, request: Any = None, **fields: Any) -> Any:
+        """Ask a service of a plugin; returns its response.
 
         Args:
-            link: the link.
-            force: N, at the centre of mass unless `point` says where else.
-            torque: N m.
-            duration: s of sim time; None for until the world is reset.
-            frame: model or link along whose axes all is given, and with which it turns then; ""
-                for the world.
-            point: m from the centre of mass, or from the frame's origin where one is given.
+            service: its name.
+            request: a message, or a dictionary of its fields.
+            fields: instead of `request`.
         """
-        self._whole().wrenches.apply_wrench(
-            link, vector_of(force, "force"), vector_of(torque, "torque"), frame=frame,
-            point=vector_of(point, "point"), duration_ns=nanoseconds_of(duration))
-
-    def apply_effort(self, joint: str, effort: float, *, duration: Optional[float] = None) -> None:
-        """Drive a joint axis by a torque (N m) or force (N) from the next step on.
-
-        Args:
-            joint: the joint.
-            effort: adds to others on the same axis.
-            duration: s of sim time; None for until the world is reset.
-        """
-        self._whole().wrenches.apply_effort(joint, float(effort),
-                                             duration_ns=nanoseconds_of(duration))
-
-    def drive_joint(self, joint: str, rate: float, effort: float) -> None:
-        """Drive a joint axis at a rate by a motor of limited effort, until another call.
-
-        Args:
-            joint: the joint.
-            rate: rad/s or m/s.
-            effort: most that the motor spends, N m or N.
-        """
-        self._whole().drives.drive_axis(joint, float(rate), float(effort))
-
-    def move_joint(self, joint: str, position: float, effort: float, rate: float = math.inf
-                   ) -> None:
-        """Move a joint axis to a position and hold it there, until another call.
-
-        Args:
-            joint: the joint.
-            position: rad or m.
-            effort: most that the motor spends, N m or N.
-            rate: fastest that it moves, rad/s or m/s.
-        """
-        self._whole().drives.hold_axis(joint, float(position), float(effort), float(rate))
-
-    def release_joint(self, joint: str) -> None:
-        """Switch off what `drive_joint` or `move_joint` has set."""
-        self._whole().drives.release_axis(joint)
+        self._whole()
+        return self._robots.call(service, fields if request is None else request)
 
     # -- keeping -----------------------------------------------------------------------------------
 
@@ -373,12 +339,14 @@ class OpenWorld:
             self.simulator.start()
             self._furnish()
         except BaseException:
+            self._robots.close()
             self.simulator.close()
             raise
 
     def _furnish(self) -> None:
         self._furnisher.furnish(self.simulator, self._choice)
         self._furnished = self.simulator.models.revision
+        self._robots.begin(self.simulator)
 
     def _log(self, issue: Issue) -> None:
         self.issues.append(issue)

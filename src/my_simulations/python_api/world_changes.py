@@ -1,0 +1,119 @@
+"""Changes of an open world: models that come, go and move; forces; joints that are driven."""
+from __future__ import annotations
+
+import math
+import os
+from typing import Optional, Sequence, Union
+
+from ..formats.reading import Text
+from ..geometry import ZERO3, Twist
+from ..simulator.simulator import Simulator
+from .furnishing import Furnisher
+from .plain_values import nanoseconds_of, pose_of, twist_of, vector_of
+from .robots import Robots
+
+FilePath = Union[str, "os.PathLike[str]"]
+
+
+class WorldChanges:
+    """The methods of `OpenWorld` that change the world."""
+
+    simulator: Simulator
+    _furnisher: Furnisher
+    _robots: Robots
+
+    def _whole(self) -> Simulator:
+        """The simulator, whose engine was not lost. Raises EngineLostError."""
+        raise NotImplementedError
+
+    def spawn(self, document: Union[Text, FilePath], name: Optional[str] = None,
+              pose: Sequence[float] = ZERO3) -> str:
+        """Put a model into the world, and load its plugins; returns its name.
+
+        Args:
+            document: path of a URDF or SDF file, or its text.
+            name: in the world; None for the document's own.
+            pose: of the model; a pose of the document's own comes on top, as in Gazebo.
+
+        Raises:
+            InputError: the document has no usable model.
+        """
+        text = os.fspath(document)  # which leaves texts as they are
+        name = self._furnisher.spawn(self._whole(), text, name, pose_of(pose), lambda model: model)
+        self._robots.settle()
+        return name
+
+    def remove(self, name: str) -> None:
+        """Take a model out of the world."""
+        self._whole().models.delete(name)
+
+    def set_pose(self, name: str, pose: Sequence[float], twist: Optional[Sequence[float]] = None
+                 ) -> None:
+        """Move a model, or a link of one (`model::link`).
+
+        Args:
+            name: of the model or link.
+            pose: of its frame.
+            twist: m/s and rad/s (vx vy vz wx wy wz) that it then has; None for at rest.
+        """
+        speed = Twist() if twist is None else twist_of(twist)
+        states = self._whole().states
+        if self.simulator.models.has(name):
+            states.set_model_state(name, pose_of(pose), speed)
+        else:
+            states.set_link_state(name, pose_of(pose), speed)
+
+    def apply_wrench(self, link: str, force: Sequence[float] = ZERO3,
+                     torque: Sequence[float] = ZERO3, *, duration: Optional[float] = None,
+                     frame: str = "", point: Sequence[float] = ZERO3) -> None:
+        """Push and turn a link from the next step on.
+
+        Args:
+            link: the link.
+            force: N, at the centre of mass unless `point` says where else.
+            torque: N m.
+            duration: s of sim time; None for until the world is reset.
+            frame: model or link along whose axes all is given, and with which it turns then; ""
+                for the world.
+            point: m from the centre of mass, or from the frame's origin where one is given.
+        """
+        self._whole().wrenches.apply_wrench(
+            link, vector_of(force, "force"), vector_of(torque, "torque"), frame=frame,
+            point=vector_of(point, "point"), duration_ns=nanoseconds_of(duration))
+
+    def apply_effort(self, joint: str, effort: float, *, duration: Optional[float] = None) -> None:
+        """Drive a joint axis by a torque (N m) or force (N) from the next step on.
+
+        Args:
+            joint: the joint.
+            effort: adds to others on the same axis.
+            duration: s of sim time; None for until the world is reset.
+        """
+        self._whole().wrenches.apply_effort(joint, float(effort),
+                                             duration_ns=nanoseconds_of(duration))
+
+    def drive_joint(self, joint: str, rate: float, effort: float) -> None:
+        """Drive a joint axis at a rate by a motor of limited effort, until another call.
+
+        Args:
+            joint: the joint.
+            rate: rad/s or m/s.
+            effort: most that the motor spends, N m or N.
+        """
+        self._whole().drives.drive_axis(joint, float(rate), float(effort))
+
+    def move_joint(self, joint: str, position: float, effort: float, rate: float = math.inf
+                   ) -> None:
+        """Move a joint axis to a position and hold it there, until another call.
+
+        Args:
+            joint: the joint.
+            position: rad or m.
+            effort: most that the motor spends, N m or N.
+            rate: fastest that it moves, rad/s or m/s.
+        """
+        self._whole().drives.hold_axis(joint, float(position), float(effort), float(rate))
+
+    def release_joint(self, joint: str) -> None:
+        """Switch off what `drive_joint` or `move_joint` has set."""
+        self._whole().drives.release_axis(joint)
