@@ -93,6 +93,7 @@ BUILT_IN: Mapping[str, str] = {
     "libhector_gazebo_quadrotor_propulsion.so": "flight.quadrotor_propulsion:QuadrotorPropulsion",
     "libhector_gazebo_quadrotor_aerodynamics.so":
         "flight.quadrotor_aerodynamics:QuadrotorAerodynamics",
+    "libArduPilotPlugin.so": "flight.ardupilot:ArduPilot",
     "librotors_gazebo_motor_model.so": "flight.motor_model:MotorModel",
     "librotors_gazebo_multirotor_base_plugin.so": "flight.multirotor_base:MultirotorBase",
     "librotors_gazebo_controller_interface.so": "flight.multirotor_base:ControllerInterface",
