@@ -2,7 +2,10 @@
 from __future__ import annotations
 
 import os
+import signal
+from concurrent.futures import Future
 
+import numpy as np
 import pytest
 from plugin_case import kept, until
 from test_plugin_faults import GOOD, HEAD, LOAD, Case
@@ -12,6 +15,7 @@ from my_simulations.plugins.context import Context
 from my_simulations.plugins.isolated.messages import HANDLES, METHODS, ORDERS, PROPERTIES
 from my_simulations.plugins.isolated.remote_context import RemoteContext
 from my_simulations.plugins.testing import Message
+from my_simulations.sensing.api import RayReturns
 
 CALL = LOAD + """        self.context.every(100.0, self.call)
 
@@ -105,6 +109,7 @@ ENDS = [
     ("while True: pass", "s of processor time", True),
     ("import threading; threading.Event().wait()", "it waited for more than 8 s", True),
     ("import os; os.close(int(__import__('sys').argv[1]))", "", False),
+    ("self.context.publish('t', 'std_msgs/Empty').publish(lambda: 1)", "pickle", True),
     ("raise ValueError('x' * 50_000_000)", "49999500 more characters", True),
     ("import threading; threading.Thread(target=self.context.models).start(); 1 / 0",
      "ZeroDivisionError", True),
@@ -116,7 +121,7 @@ ENDS = [
 def test_nothing_that_a_plugin_does_ends_another_one(case, statement, said, located, when):
     one = case(patience=Patience(0.5, 8.0))
     if when == "import" and "self" in statement:
-        statement = "1 / 0"
+        statement, said = "1 / 0", "ZeroDivisionError"
     source = {"import": "{}\n", "load": LOAD + "        {}\n", "call": CALL + "        {}\n"}
     one.spawn(source[when].format(statement))
     one.goes_on()
@@ -125,6 +130,38 @@ def test_nothing_that_a_plugin_does_ends_another_one(case, statement, said, loca
     assert len(issue.message) < 1000
     if located:
         assert f"{one.file}:{ {'import': 1, 'load': 6, 'call': 9}[when]})" in issue.message
+
+
+SCANS = LOAD + """        from my_simulations.sensing.api import RayFan
+        self.topic = self.context.publish("scan", "sensor_msgs/LaserScan")
+        place = "base", self.context.pose
+        self.context.observe(0.0, lambda: self.context.scan(
+            RayFan(3), False, self.publish, place), world=True)
+
+    def publish(self, found, ns):
+        message = self.context.message("sensor_msgs/LaserScan")
+        message.data = (ns, list(found.ranges))
+        self.topic.publish(message)
+"""
+
+
+def test_a_plugin_receives_scans_in_its_own_process(case):
+    one = case()
+
+    def cast(mount, fan, visuals, ns, rows):
+        cast = Future()
+        cast.set_result(RayReturns(np.arange(float(fan.samples)), np.zeros(3, np.float32),
+                                   np.zeros(3, np.int32)))
+        return cast
+
+    one.host._scene.cast = cast
+    one.spawn(SCANS)
+    for step in range(1, 4):
+        one.sim.clock.advance(1)
+        until(lambda step=step: len(one.graph.on("scan")) == step)
+    assert [said.data for said in one.graph.on("scan")] == [
+        (ns, [0.0, 1.0, 2.0]) for ns in (10 ** 6, 2 * 10 ** 6, 3 * 10 ** 6)]
+    assert one.failed() == []
 
 
 def test_a_process_that_a_plugin_forks_does_not_serve_it(case, tmp_path):
@@ -200,21 +237,31 @@ def is_running(pid):
         return False
 
 
-def test_the_process_ends_with_the_model_and_runs_its_exit_functions(case, tmp_path):
+@pytest.mark.parametrize("how", ["delete", "stop", "kill"])
+def test_a_process_ends_with_all_that_it_has_started(case, tmp_path, how):
     one = case()
     pids, ended = tmp_path / "pids", tmp_path / "ended"
     one.spawn(LOAD + f"""        import atexit, os, subprocess
         other = subprocess.Popen(["sleep", "1000"])
         open({str(pids)!r}, "w").write(f"{{os.getpid()}} {{other.pid}}")
+        self.context.subscribe("talk", "std_msgs/Empty", print)
         atexit.register(lambda: open({str(ended)!r}, "w").close())
 """)
     mine, started = map(int, pids.read_text().split())
     assert is_running(mine) and is_running(started) and mine != os.getpid()
-    one.sim.models.delete("bad")
+    if how == "delete":
+        one.sim.models.delete("bad")
+    elif how == "stop":
+        one.host.stop()
+    else:
+        os.kill(mine, signal.SIGKILL)
+        one.hear("talk")
     until(lambda: not is_running(mine))
-    until(ended.exists)
     until(lambda: not is_running(started))
-    one.goes_on()
+    if how == "kill":
+        until(one.failed)
+    else:
+        assert ended.exists()
 
 
 def test_the_context_of_a_process_has_all_that_a_context_has():

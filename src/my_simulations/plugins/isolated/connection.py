@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import os
+import pickle
 import threading
 from collections import deque
 from typing import Any, Callable, Deque, Dict, List, Set, Union
@@ -90,7 +91,7 @@ class Connection:
 
     def order(self, handle: int, name: str, *arguments: Any) -> None:
         """Have the node call a method of a handle, before the next answer or return."""
-        self._orders.append(Order(handle, name, arguments))
+        self._orders.append(Order(handle, name, pickle.dumps(arguments, pickle.HIGHEST_PROTOCOL)))
 
     def _taken_orders(self) -> List[Order]:
         orders, self._orders = self._orders, []

@@ -1,10 +1,10 @@
 """A plugin whose code runs in a process of its own: calls go there, and its requests come back."""
 from __future__ import annotations
 
+import pickle
 import sys
 from typing import Any, Callable, Dict, Optional, Tuple, Union
 
-from ...errors import SimulationError
 from ..base import Plugin
 from ..call_watch import Patience
 from ..context import PluginError
@@ -103,7 +103,7 @@ class IsolatedPlugin(Plugin):
         allowed = ORDERS if order.handle == CONTEXT else HANDLE_ORDERS.get(kind, frozenset())
         if order.name not in allowed:
             return   # a handle that has ended
-        getattr(handle, order.name)(*order.arguments)
+        getattr(handle, order.name)(*pickle.loads(order.arguments))
         if order.name in ("close", "end"):
             self._forget(order.handle)
 
@@ -116,7 +116,7 @@ class IsolatedPlugin(Plugin):
     def _answer(self, ask: Ask) -> Union[Value, Refused]:
         try:
             return Value(self._value(ask))
-        except (SimulationError, TypeError, ValueError, LookupError, AttributeError) as fault:
+        except Exception as fault:  # the plugin receives it, as from a context in its own process
             known = type(fault).__module__.startswith(("builtins", "my_simulations.plugins"))
             return Refused(fault if known else PluginError(describe_fault(fault)))
 

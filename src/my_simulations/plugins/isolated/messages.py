@@ -80,11 +80,15 @@ class Call(NamedTuple):
 
 
 class Order(NamedTuple):
-    """Call a method of a handle; nothing is returned."""
+    """Call a method of a handle; nothing is returned.
+
+    Attributes:
+        arguments: pickled, so that one that cannot be is reported in the line that passes it.
+    """
 
     handle: int
     name: str
-    arguments: Tuple[Any, ...]
+    arguments: bytes
 
 
 class Ask(NamedTuple):

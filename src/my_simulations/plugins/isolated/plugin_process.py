@@ -13,8 +13,8 @@ import threading
 import time
 import traceback
 from collections import deque
-from concurrent.futures import ThreadPoolExecutor
-from typing import Any, Deque, Optional
+from concurrent.futures import Future, ThreadPoolExecutor
+from typing import Any, Deque, List, Optional
 
 from ...child_process import child_command, child_environment, signal_name
 from ...engine.message_pipe import Wire
@@ -26,6 +26,7 @@ from .messages import TRACE_SIGNAL
 _LOOK_S = 0.25      # between two looks at a process that does not answer
 _TRACE_S = 1.0      # for the trace to be written
 _END_S = 3.0        # for the process to end by itself
+_SEND_S = 30.0      # for the process to receive a message
 _SCHEDULED_CLOCK = 2
 _FRAME = re.compile(r'^  File "(.*)", line (\d+) in (.*)$', re.MULTILINE)
 
@@ -37,22 +38,39 @@ class ProcessEndedError(PluginError):
 class PluginProcesses:
     """Starts processes, from one thread that lives as long as they do.
 
-    The kernel ends a child with the thread that started it (`die_with_parent`).
+    The kernel ends a child with the thread that started it (`die_with_parent`). After the first
+    start, one more process than there are plugins is kept ready: the next plugin need not wait for
+    its start.
     """
 
     def __init__(self) -> None:
         self._starter = ThreadPoolExecutor(1, "plugin-processes")
+        self._ready: "Optional[Future[PluginProcess]]" = None
+        self._started: List[PluginProcess] = []
 
     def start(self) -> "PluginProcess":
-        """Start a process. Raises ProcessEndedError if the system refuses it."""
+        """A process without a plugin. Raises ProcessEndedError if the system refuses it."""
+        ready, self._ready = self._ready or self._starter.submit(PluginProcess), None
         try:
-            return self._starter.submit(PluginProcess).result()
+            process = ready.result()
+            if not process.is_running:   # it was ended from outside meanwhile
+                process.end()
+                process = self._starter.submit(PluginProcess).result()
         except OSError as fault:
             raise ProcessEndedError(f"its process cannot be started: {fault}") from fault
+        self._ready = self._starter.submit(PluginProcess)
+        self._started = [one for one in self._started if one.is_running] + [process]
+        return process
 
     def stop(self) -> None:
-        """End the thread; processes that still run end with it."""
-        self._starter.shutdown(wait=False)
+        """End all processes; returns when they have ended."""
+        if self._ready is not None and self._ready.exception() is None:
+            self._started.append(self._ready.result())
+        for process in self._started:
+            process.end()
+        for process in self._started:
+            process.join()
+        self._starter.shutdown()
 
 
 class PluginProcess:
@@ -63,12 +81,14 @@ class PluginProcess:
         self._trace = tempfile.TemporaryFile()
         self._ended = False
         self._received: Deque[Any] = deque()
+        self._reaper = threading.Thread(target=self._reap, name="plugin-end", daemon=True)
         handed = (theirs.fileno(), self._trace.fileno())
         with theirs:
             self._child = subprocess.Popen(
                 child_command("plugins.isolated", *map(str, handed)), pass_fds=handed,
                 stdin=subprocess.DEVNULL, env=child_environment(), start_new_session=True)
         self._wire = Wire(ours)
+        ours.settimeout(_SEND_S)
         self._poll = select.poll()
         self._poll.register(ours, select.POLLIN)
 
@@ -81,6 +101,10 @@ class PluginProcess:
         """Send a message. Raises ProcessEndedError."""
         try:
             self._wire.send(message)
+        except socket.timeout:
+            self._kill()
+            raise ProcessEndedError(
+                f"its process received no messages for {_SEND_S:g} s") from None
         except OSError:
             raise self._lost() from None
 
@@ -107,7 +131,16 @@ class PluginProcess:
         if not self._ended:
             self._ended = True
             self._wire.hang_up()
-            threading.Thread(target=self._reap, name="plugin-end", daemon=True).start()
+            self._reaper.start()
+
+    def join(self) -> None:
+        """Wait for the end that `end` began."""
+        self._reaper.join()
+
+    @property
+    def is_running(self) -> bool:
+        """Whether the process runs, or has ended and `end` was not called."""
+        return not self._ended and not self._has_ended()
 
     def _used(self) -> float:
         """Processor time of the process, s."""
@@ -152,12 +185,12 @@ class PluginProcess:
 
     def _lost(self, damage: str = "") -> ProcessEndedError:
         """Why the socket has ended."""
-        try:
-            status = self._child.wait(_TRACE_S)
-        except subprocess.TimeoutExpired:
-            self._kill()
+        ended = self._await_end(_TRACE_S)
+        self._kill()
+        if not ended:
             return ProcessEndedError("its process closed the connection to the simulator"
                                      + (f" ({shortened(damage)})" if damage else ""))
+        status = self._child.wait()
         if status < 0:
             hint = "; the memory of the machine may be exhausted" * (status == -signal.SIGKILL)
             return ProcessEndedError(f"its process was ended by {signal_name(-status)}{hint}"
@@ -165,17 +198,29 @@ class PluginProcess:
         return ProcessEndedError(f"its process ended with exit status {status}")
 
     def _kill(self) -> None:
+        """Kill the process and all that it has started, unless it was waited for."""
+        if self._child.returncode is not None:
+            return
         with contextlib.suppress(ProcessLookupError):
             os.killpg(self.pid, signal.SIGKILL)
 
     def _reap(self) -> None:
-        deadline = time.monotonic() + _END_S
-        # The id of the group must not be freed before the rest of the group is ended.
-        while self._child.returncode is None and time.monotonic() < deadline and os.waitid(
-                os.P_PID, self.pid, os.WEXITED | os.WNOWAIT | os.WNOHANG) is None:
-            time.sleep(0.02)
-        if self._child.returncode is None:
-            self._kill()
-            self._child.wait()
+        self._await_end(_END_S)
+        self._kill()
+        self._child.wait()
         self._wire.sock.close()
         self._trace.close()
+
+    def _has_ended(self) -> bool:
+        """Whether the process has ended; its id is not freed, so that its group can be killed."""
+        return self._child.returncode is not None or os.waitid(
+            os.P_PID, self.pid, os.WEXITED | os.WNOWAIT | os.WNOHANG) is not None
+
+    def _await_end(self, seconds: float) -> bool:
+        """Wait for the end of the process; returns whether it came."""
+        deadline = time.monotonic() + seconds
+        while not self._has_ended():
+            if time.monotonic() > deadline:
+                return False
+            time.sleep(0.01)
+        return True
