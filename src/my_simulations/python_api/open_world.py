@@ -4,7 +4,7 @@ from __future__ import annotations
 import os
 from dataclasses import replace
 from types import TracebackType
-from typing import TYPE_CHECKING, Any, Callable, Dict, List, Mapping, Optional, Sequence, Type
+from typing import TYPE_CHECKING, Any, Callable, Dict, List, Optional, Sequence, Type
 
 from ..description.model import Model
 from ..engine.api import Engine
@@ -17,6 +17,7 @@ from ..simulator.saving import save_world
 from ..simulator.scene_sensing import SceneSensing
 from ..simulator.simulator import Simulator
 from ..workspace_python import require
+from .controllers import Controllers, Parameters, read_parameters
 from .furnishing import Furnisher
 from .kept_files import KeptFiles
 from .plain_values import pose_of, vector_of, whole_number
@@ -48,7 +49,7 @@ _LOST = ("engine-died", "engine-lost", "engine-stalled")
 def open_world(world: FilePath = "worlds/empty.world", *, seed: int = 0, profile: str = "",
                objects: Sequence[str] = (), object_list: FilePath = "",
                plugins: Plugins = True, sensors: bool = True,
-               parameters: Optional[Mapping[str, Any]] = None,
+               parameters: Parameters = {},  # noqa: B006
                resolver: Optional[Resolver] = None, log: Optional[Log] = None,
                engine: Callable[[], Engine] = ProcessEngine) -> OpenWorld:
     """Open a world; it stands at its start until `OpenWorld.step` is called.
@@ -63,7 +64,8 @@ def open_world(world: FilePath = "worlds/empty.world", *, seed: int = 0, profile
         plugins: whether the robots' plugins run; or further classes of plugins by library, as
             `{"libfoo.so": "package.module:Class"}`.
         sensors: whether the plugins of `<sensor>` elements run.
-        parameters: of plugins and controllers by name, as on ROS's parameter server.
+        parameters: of plugins and controllers by name, as on ROS's parameter server; or the path
+            of a YAML file of them.
         resolver: finds what URIs name; None for Gazebo's variables, our models and ROS packages.
         log: hears of every issue; they are in `OpenWorld.issues`, too.
         engine: makes the engine, which is a process of its own.
@@ -74,7 +76,7 @@ def open_world(world: FilePath = "worlds/empty.world", *, seed: int = 0, profile
     """
     choice = WorldChoice(os.fspath(world), seed, profile, tuple(objects), os.fspath(object_list))
     classes = {} if isinstance(plugins, bool) else dict(plugins)
-    robots = RobotOptions(plugins is not False, sensors, classes, parameters or {})
+    robots = RobotOptions(plugins is not False, sensors, classes, read_parameters(parameters))
     return OpenWorld(choice, resolver=resolver, log=log, engine=engine, robots=robots)
 
 
@@ -281,6 +283,11 @@ class OpenWorld(WorldChanges):
     def parameters(self) -> LocalParameters:
         """The parameters of plugins and controllers; plugins read them when they are loaded."""
         return self._robots.graph.parameters
+
+    @property
+    def controllers(self) -> Controllers:
+        """The controllers of ros_control."""
+        return Controllers(self._robots, lambda: self.issues)
 
     def publish(self, topic: str, message: Any) -> None:
         """Send a message to the plugins that hear a topic; it acts from the next step on.
