@@ -36,6 +36,7 @@ from .mass_matrix import MassMatrix
 from .rims import with_ends, with_rims
 
 _LIGHT = 1e-6  # share of a link's mass for the piece between the two axes it hangs on
+_OTHER = 2.0   # factor: closer moments count as those of the shape
 _JOINT_TYPES = {"revolute": pybullet.JOINT_REVOLUTE, "prismatic": pybullet.JOINT_PRISMATIC,
                 "fixed": pybullet.JOINT_FIXED, "ball": pybullet.JOINT_SPHERICAL}
 
@@ -145,12 +146,7 @@ class Builder:
         at = compose(pose, rigid.model_from_com)
         taken = tuple((piece, self._shapes.take(piece)) for piece in rigid.pieces)
         places = [(shape, piece_pose(at, piece)) for piece, shape in taken] or [(-1, at)]
-        uids = [
-            pybullet.createMultiBody(masses.mass, shape, self._shapes.unseen, stand.position,
-                                     stand.orientation,
-                                     useMaximalCoordinates=int(not self._articulated))
-            for shape, stand in places
-        ]
+        uids = [self._create(masses, shape, stand) for shape, stand in places]
         if not rigid.pieces:
             collision_groups.NOTHING.set(uids[0], BASE)  # else Bullet keeps a pair for any two
         filters = {role: (collision_groups.static(link, role) if rigid.static
@@ -174,6 +170,29 @@ class Builder:
         if body.rigid and body.moves and rigid.pieces:
             body.swept = sweep(uids[0])
         return body
+
+    def _create(self, masses: _Masses, shape: int, at: Pose) -> int:
+        """Create the body of a link in PyBullet; returns its number.
+
+        In its first step a rigid body has the inertia of its shape at the mass with which it was
+        created (measured): what `changeDynamics` sets counts from the second step on. So if the
+        moments of the file are others, the body is created with a mass that gives their mean.
+        """
+        def create(mass: float) -> int:
+            uid: int = pybullet.createMultiBody(
+                mass, shape, self._shapes.unseen, at.position, at.orientation,
+                useMaximalCoordinates=int(not self._articulated))
+            return uid
+
+        uid = create(masses.mass)
+        if self._articulated or masses.mass <= 0.0:
+            return uid
+        of_shape = pybullet.getDynamicsInfo(uid, BASE)[2]
+        if all(own <= _OTHER * found and found <= _OTHER * own
+               for own, found in zip(masses.moments, of_shape)) or sum(of_shape) <= 0.0:
+            return uid
+        pybullet.removeBody(uid)
+        return create(masses.mass * sum(masses.moments) / sum(of_shape))
 
     def _part(self, number: int, index: int, masses: _Masses, link: Link) -> Part:
         surface = surface_coefficients.of_link(link)
