@@ -26,6 +26,7 @@ from .approach import extent
 from .bodies import Body
 from .step_helper import FAR
 from .surface_coefficients import of_link, restitution
+from .world_parameters import LEAST_BOUNCE
 
 _DEEP = 1.8e-3   # m: the depth that a body may reach in one step of 1 ms or less
 _LEAST = 3e-5    # m: bodies that overlap less may slow down by 1e-5 m a step before they touch
@@ -151,7 +152,8 @@ class SurfaceStop:
         linear, angular = pybullet.getBaseVelocity(body.uid)
         bounces = body.uid in self._bouncing
         deep = _LEAST if bounces else _DEEP * min(_DEEPEST, max(1.0, dt / 1e-3))
-        speed, fall, fast = norm(linear), norm(gravity) * dt, deep / dt
+        speed, fall = norm(linear), norm(gravity) * dt
+        fast = max(deep / dt, LEAST_BOUNCE) if bounces else deep / dt
         ahead = max(1, min(_AHEAD, round(_AHEAD_S / dt)))
         if speed + fall < fast:
             return min(_SELDOM, max(ahead, int((fast - speed) / max(fall, 1e-9))))
