@@ -215,6 +215,20 @@ def test_what_slept_stays_where_it_is(world):
     assert world.states().pose["box_1"][2] < 0.15
 
 
+def test_a_robot_that_stood_still_stays_where_it_is(world):
+    world.spawn(ROBOT)
+    world.step(6400)
+    place = world.links().pose.array.copy()
+    saved = world.save()
+    world.step(4000)
+    assert world.links().pose.array == pytest.approx(place, abs=2e-6)   # held again
+    drive(world, 0)
+    world.step(500)
+    assert world.states().pose["robot"][0] > 0.1
+    world.restore(saved)
+    assert_repeats(world)
+
+
 def test_what_slept_sleeps_after_two_saves(world):
     world.spawn(BOX, pose=[0, 0, 0.1])
     world.step(4000)

@@ -4,6 +4,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Optional, Tuple
 
+from ..geometry import Pose
 from .commands import Command
 
 PARTING_NOT_BEGUN = -1
@@ -52,13 +53,27 @@ class DamperMemory:
 
 
 @dataclass(frozen=True)
+class RestPlace:
+    """Where a body rests.
+
+    Attributes:
+        base: pose of PyBullet's base; None for a fixed one.
+        positions: of its joint axes, rad or m.
+    """
+
+    base: Optional[Pose]
+    positions: Tuple[float, ...] = ()
+
+
+@dataclass(frozen=True)
 class RunState:
     """What a run needs to continue besides poses, velocities and commands.
 
     The impulses from which the contact solver starts are not included: PyBullet cannot set them.
 
     Attributes:
-        asleep: link rows of the rigid bodies that sleep.
+        resting: bodies that sleep, or that are held because they stand still: by their first link
+            row the place at which they rest.
         servos: by joint row.
         loops: PID loops of timed efforts, by force id.
         dampers: by the first joint row of the body.
@@ -67,7 +82,7 @@ class RunState:
         stopped: first link rows of bodies that were stopped because they went too far.
     """
 
-    asleep: Tuple[int, ...] = ()
+    resting: Tuple[Tuple[int, RestPlace], ...] = ()
     servos: Tuple[Tuple[int, ServoMemory], ...] = ()
     loops: Tuple[Tuple[int, LoopMemory], ...] = ()
     dampers: Tuple[Tuple[int, DamperMemory], ...] = ()
@@ -84,8 +99,8 @@ class ReadRunState(Command):
 class SetRunState(Command):
     """Continue from a `RunState`, after the same models, drives and forces were loaded again.
 
-    Bodies that slept stay awake for some steps in which the solver finds their contact forces. Then
-    they are put back to where they are now, asleep, unless something has moved them.
+    Bodies that rested stay awake for some steps in which the solver finds their contact forces.
+    Then they are put back to where they rested, unless something has moved them.
     """
 
     state: RunState

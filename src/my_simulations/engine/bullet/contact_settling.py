@@ -26,12 +26,12 @@ solved so 0.3 mm.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, Callable, Dict, List, Optional, Sequence, Set, Tuple
+from typing import Any, Callable, Dict, List, Optional, Sequence, Set
 
 import pybullet
 
 from ...geometry import Pose, Vec3
-from ..run_state import PARTING_NOT_BEGUN
+from ..run_state import PARTING_NOT_BEGUN, RestPlace
 from .bodies import Body
 from .step_helper import FAR, next_multiple
 from .world_parameters import USUAL_ACCURACY, Accuracy, WorldParameters
@@ -76,7 +76,7 @@ class _Tree:
     indices: List[int]
     looks: int = 0
     clear: int = 0
-    held: Optional[Tuple[Optional[Pose], List[float]]] = None
+    held: Optional[RestPlace] = None
 
 
 class ContactSettling:
@@ -161,6 +161,19 @@ class ContactSettling:
         self._arrived.clear()
         self._parameters.split_impulses(end is not None)
 
+    @property
+    def held(self) -> Dict[int, RestPlace]:
+        """Where bodies are held, by their first link rows."""
+        return {tree.body.lead_row: tree.held for tree in self._trees.values()
+                if tree.held is not None}
+
+    def hold(self, body: Body, place: RestPlace) -> None:
+        """Hold an articulated body at a place, like one that has stood still for long."""
+        tree = self._trees[body.uid]
+        tree.looks = _STANDS + 1
+        _hold(tree, place)
+        self._on_held(body, True)
+
     def due(self, step: int) -> int:
         """At once when something was put in, else the next look."""
         if self._new:
@@ -237,8 +250,7 @@ class ContactSettling:
               and not self._is_driven(body, states)):
             tree.looks += 1
             if tree.looks > _STANDS:
-                _hold(tree, (Pose(*pybullet.getBasePositionAndOrientation(body.uid))
-                             if body.base is not None else None, [state[0] for state in states]))
+                _hold(tree, place_of(body, states))
                 return False
         else:
             tree.looks = 0
@@ -270,14 +282,21 @@ def _put_back(body: Body, states: JointStates) -> None:
             pybullet.resetJointState(body.uid, axis.index, position - _PUT_BACK * past, rate)
 
 
-def _hold(tree: _Tree, held: Tuple[Optional[Pose], List[float]]) -> None:
+def place_of(body: Body, states: Optional[JointStates] = None) -> RestPlace:
+    """Where an articulated body is; `states` are those of its axes, if they are known already."""
+    if states is None:
+        states = pybullet.getJointStates(body.uid, [axis.index for axis in body.axes]) or ()
+    return RestPlace(Pose(*pybullet.getBasePositionAndOrientation(body.uid))
+                     if body.base is not None else None, tuple(state[0] for state in states))
+
+
+def _hold(tree: _Tree, held: RestPlace) -> None:
     """Put an articulated body, and its joints, back where they are held, at rest."""
     tree.held = held
-    pose, positions = held
-    if pose is not None:
-        pybullet.resetBasePositionAndOrientation(tree.body.uid, *pose)
+    if held.base is not None:
+        pybullet.resetBasePositionAndOrientation(tree.body.uid, *held.base)
         pybullet.resetBaseVelocity(tree.body.uid, _NONE, _NONE)
-    for index, position in zip(tree.indices, positions):
+    for index, position in zip(tree.indices, held.positions):
         pybullet.resetJointState(tree.body.uid, index, position, 0.0)
 
 

@@ -83,7 +83,6 @@ class HelperSet:
         self._bounces = PairRestitution(self._parameters, self.notices.odd_bounce)
         self._spin = GyroscopicRigid(lambda: self.forces.wrenched_links)
         self.holds = PinnedBodies(self.waker.around)
-        self.restored_sleep = RestoredSleep()
         self.book = ConstraintBook()
         self.ties = InterModelJoints(self.book)
         self._decay = VelocityDecay()
@@ -92,6 +91,7 @@ class HelperSet:
             lambda row: self.motors.rate_of(row) or self.forces.servos.rate_of(row),
             self._on_held)
         self._landing = LandingContacts(self._rolling.landed, self._parameters)
+        self.restored_sleep = RestoredSleep(self.settling.hold)
         self._stop = SurfaceStop()
         self.divergence = DivergenceStop(self.notices.stopped, lambda: self.forces.loaded_bodies,
                                           self.readout.touch)

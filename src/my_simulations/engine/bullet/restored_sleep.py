@@ -3,48 +3,63 @@
 A world that was built again has no contacts. A body that sleeps finds none, and what reads contacts
 would miss it. So it stays awake for some steps, in which Bullet finds its contacts and their
 forces, and is then put back to its pose, at rest and asleep. Bullet wakes it, as every sleeper, if
-something that moves touches it.
+something that moves touches it. Articulated bodies do not sleep; those that `ContactSettling` held
+are held again.
 """
 from __future__ import annotations
 
-from typing import Dict, Iterable, Optional, Set
+from typing import Callable, Dict, Iterable, NamedTuple, Optional, Set, Tuple
 
 import pybullet
 
-from ...geometry import Pose, Vec3, norm, subtract
+from ...geometry import Vec3, norm, subtract
 from ..body_plan import BASE
+from ..run_state import RestPlace
 from .bodies import Body
+from .contact_settling import place_of
 from .step_helper import FAR
 
-_AWAKE_STEPS = 16      # contact forces of a pile of ten boxes are right within 1 % after these
-_MOST_SHIFT = 1e-4     # m in these steps: a body that went farther was pushed
+_AWAKE_STEPS = 16      # contact forces of six boxes on each other are right within 5 % after these
+_MOST_SHIFT = 1e-4     # m, rad in these steps: a body that went farther was pushed
 _AT_REST = (0.0, 0.0, 0.0)
 
 
-class RestoredSleep:
-    """Knows which bodies sleep, and puts bodies to sleep."""
+class _Rest(NamedTuple):
+    body: Body
+    place: RestPlace
 
-    def __init__(self) -> None:
+
+class RestoredSleep:
+    """Finds out which bodies sleep, and puts bodies to rest.
+
+    Args:
+        hold: holds an articulated body at a place.
+    """
+
+    def __init__(self, hold: Callable[[Body, RestPlace], None]) -> None:
+        self._hold = hold
         self._commanded: Set[int] = set()      # reached by a command since the last step
-        self._poses: Dict[int, Pose] = {}      # by PyBullet's number
+        self._rests: Dict[int, _Rest] = {}     # by PyBullet's number
         self._sleep_step: Optional[int] = None
 
-    def put(self, bodies: Iterable[Body]) -> None:
-        """Put these bodies to sleep some steps from now on, where they are."""
-        self._poses = {body.uid: Pose(*pybullet.getBasePositionAndOrientation(body.uid))
-                       for body in bodies}
+    def put(self, rests: Iterable[Tuple[Body, RestPlace]]) -> None:
+        """Put these bodies to rest at these places some steps from now on."""
+        self._rests = {body.uid: _Rest(body, place) for body, place in rests}
         self._sleep_step = None
 
-    def is_asleep(self, body: Body) -> bool:
-        """Whether a body sleeps or is to sleep soon; or stands as still, which is the same.
+    def place_of(self, body: Body) -> Optional[RestPlace]:
+        """Where a body sleeps, or is to be put to rest soon; None for others.
 
-        PyBullet does not report sleep. A body that flies or was just put somewhere is awake.
+        PyBullet does not report sleep. A body that flies or was just put somewhere is awake. One
+        that stands as still as if it slept counts as asleep.
         """
-        uid = body.uid
-        return uid in self._poses or (
-            body.sleeps and uid not in self._commanded
-            and pybullet.getBaseVelocity(uid) == (_AT_REST, _AT_REST)
-            and bool(pybullet.getContactPoints(bodyA=uid)))
+        if body.uid in self._rests:
+            return self._rests[body.uid].place
+        if (body.sleeps and body.uid not in self._commanded
+                and pybullet.getBaseVelocity(body.uid) == (_AT_REST, _AT_REST)
+                and pybullet.getContactPoints(bodyA=body.uid)):
+            return place_of(body)
+        return None
 
     def stepped(self) -> None:
         """Steps are about to be made."""
@@ -52,42 +67,53 @@ class RestoredSleep:
 
     def touched(self, body: Body) -> None:
         """A command has reached a body: it stays awake."""
-        self._poses.pop(body.uid, None)
+        self._rests.pop(body.uid, None)
         self._commanded.add(body.uid)
 
     def forget(self, body: Body) -> None:
         """A body is gone."""
-        self._poses.pop(body.uid, None)
+        self._rests.pop(body.uid, None)
 
     def clear(self) -> None:
         """All bodies are gone."""
-        self._poses.clear()
+        self._rests.clear()
         self._commanded.clear()
 
     def due(self, step: int) -> int:
         """The next step, and the one in which they fall asleep."""
-        if not self._poses:
+        if not self._rests:
             return FAR
         return step if self._sleep_step is None else max(step, self._sleep_step)
 
     def before(self, step: int, dt: float, gravity: Vec3) -> None:
-        """Put the bodies to sleep once the time has come."""
-        if not self._poses:
+        """Put the bodies to rest once the time has come."""
+        if not self._rests:
             return
         if self._sleep_step is None:
             self._sleep_step = step + _AWAKE_STEPS
         elif step >= self._sleep_step:
-            poses, self._poses = self._poses, {}
-            for uid, pose in poses.items():
-                at = pybullet.getBasePositionAndOrientation(uid)[0]
-                if norm(subtract(at, pose.position)) <= _MOST_SHIFT:
-                    _put_to_sleep(uid, pose)
+            rests, self._rests = self._rests, {}
+            for body, place in rests.values():
+                if not _is_near(place, place_of(body)):
+                    continue
+                if body.rigid:
+                    _put_to_sleep(body.uid, place)
+                else:
+                    self._hold(body, place)
 
     def after(self, step: int, dt: float, gravity: Vec3) -> None:
         """Do nothing after a step."""
 
 
-def _put_to_sleep(uid: int, pose: Pose) -> None:
-    pybullet.resetBasePositionAndOrientation(uid, pose.position, pose.orientation)
+def _is_near(one: RestPlace, other: RestPlace) -> bool:
+    moved = (norm(subtract(one.base.position, other.base.position))
+             if one.base is not None and other.base is not None else 0.0)
+    turned = max([abs(a - b) for a, b in zip(one.positions, other.positions)], default=0.0)
+    return max(moved, turned) <= _MOST_SHIFT
+
+
+def _put_to_sleep(uid: int, place: RestPlace) -> None:
+    assert place.base is not None
+    pybullet.resetBasePositionAndOrientation(uid, place.base.position, place.base.orientation)
     pybullet.resetBaseVelocity(uid, _AT_REST, _AT_REST)
     pybullet.changeDynamics(uid, BASE, activationState=pybullet.ACTIVATION_STATE_SLEEP)

@@ -26,9 +26,13 @@ class RunStates:
     def read(self, _: ReadRunState) -> RunState:
         """The run state now."""
         helpers = self._helpers
+        resting = dict(helpers.settling.held)
+        for body in self._bodies.values():
+            place = helpers.restored_sleep.place_of(body)
+            if place is not None:
+                resting[body.lead_row] = place
         return RunState(
-            tuple(dict.fromkeys(body.lead_row for body in self._bodies.values()
-                                if helpers.restored_sleep.is_asleep(body))),
+            tuple(resting.items()),
             helpers.forces.servos.memories(), helpers.forces.loop_memories(),
             helpers.forces.damper_memories(), helpers.settling.parting_end,
             tuple(body.lead_row for body in helpers.divergence.stopped))
@@ -41,4 +45,5 @@ class RunStates:
         forces.resume_dampers(state.dampers)
         self._helpers.settling.resume_parting(state.parting_end)
         self._helpers.divergence.stop(self._rows[row][0] for row in state.stopped)
-        self._helpers.restored_sleep.put(self._rows[row][0] for row in state.asleep)
+        self._helpers.restored_sleep.put(
+            (self._rows[row][0], place) for row, place in state.resting)
