@@ -61,6 +61,14 @@ _TABLE: Tuple[Tuple[str, Tuple[Tuple[str, str, str, str], ...]], ...] = (
         ("study-expression", ERROR, "A measurement of a study file is not understood.",
          "Use the signals and functions of doc/studies.md."),
     )),
+    ("Assignments", (
+        ("grade-key", ERROR, "An assignment file has an unknown key, lacks one, or two of its "
+         "checks have one name.", "Use the keys of doc/grading.md."),
+        ("grade-value", ERROR, "A value of an assignment file has the wrong type or is out of "
+         "range.", "Write a value of the expected type."),
+        ("grade-expression", ERROR, "A condition or a partial mark of an assignment file is not "
+         "understood.", "Use the signals and functions of doc/studies.md."),
+    )),
     ("Elements and values", (
         ("attribute-deprecated", WARNING, "A root attribute of a spawn request is deprecated.",
          "Call the service `spawn_object`, whose request has a field for it."),

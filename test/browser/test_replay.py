@@ -7,8 +7,8 @@ import zlib
 import pytest
 from support import wait_for
 
-from my_simulations.cli.case_records import LogRecord
 from my_simulations.cli.replay_command import main
+from my_simulations.editor.logs.world_record import LogRecord
 from my_simulations.python_api import open_world
 
 OBJ = """mtllib stone.mtl

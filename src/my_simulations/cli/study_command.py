@@ -22,7 +22,7 @@ def _bag(path: str) -> Record:
 
 
 def _log(path: str) -> Record:
-    from .case_records import LogRecord
+    from ..editor.logs.world_record import LogRecord
 
     return LogRecord(path)
 

@@ -95,6 +95,11 @@ def _text(file: str) -> str:
 
 def _collect_lines(node: yaml.Node, path: KeyPath, lines: Dict[KeyPath, int],
                    issues: List[Issue], source: Source) -> None:
+    if isinstance(node, yaml.SequenceNode):
+        for index, item in enumerate(node.value):
+            if isinstance(item, yaml.MappingNode):
+                lines[(*path, str(index))] = item.start_mark.line + 1
+                _collect_lines(item, (*path, str(index)), lines, issues, source)
     if not isinstance(node, yaml.MappingNode):
         return
     for key, value in node.value:

@@ -1,0 +1,113 @@
+"""`grade`: marks submissions by an assignment file."""
+from __future__ import annotations
+
+import argparse
+import os
+import sys
+import threading
+from typing import List, Optional, Sequence
+
+from ..errors import CommandError, InputError
+from ..grading.assignment import Assignment
+from ..grading.assignment_file import read_assignment
+from ..grading.box_support import isolation
+from ..grading.grader import Grader
+from ..grading.lists import write_lists
+from ..grading.mark import GRADED, Mark
+from ..grading.pages import write_pages
+from ..grading.shipped import shipped_assignment
+from ..grading.submission import submissions_of
+from ..program_end import program
+from ..ros.arguments import Parser
+
+NAME = "grade"
+OK, NOT_ALL, INVALID = 0, 1, 2
+
+
+def parser() -> argparse.ArgumentParser:
+    """The command line."""
+    made = Parser(
+        prog=NAME, description="Grade submissions by an assignment file (doc/grading.md). Each one"
+        " runs isolated from the others and from this system.",
+        epilog="Exit code: 0 if every submission was graded, 1 if some were not, 2 for a faulty"
+        " assignment or command line, 130 if interrupted.")
+    made.add_argument("assignment", metavar="ASSIGNMENT",
+                      help="assignment file, or the name of a shipped one, such as lab_sheet")
+    made.add_argument("submissions", nargs="*", metavar="SUBMISSION",
+                      help="folder or file of each student; its name is that of the student")
+    made.add_argument("--out", default="marks", metavar="FOLDER",
+                      help="folder of the marks (default: %(default)s)")
+    made.add_argument("--jobs", type=int, default=os.cpu_count() or 1, metavar="N",
+                      help="submissions that are graded at a time (default: number of processors)")
+    made.add_argument("--check", action="store_true", help="only check the assignment file")
+    made.add_argument("--no-isolation", action="store_true", help="do not use namespaces: run"
+                      " submissions as ordinary processes; for your own programs only")
+    return made
+
+
+@program
+def main(argv: Optional[Sequence[str]] = None) -> int:
+    """Run the command.
+
+    Args:
+        argv: the whole command line, program name first; default `sys.argv`.
+
+    Returns:
+        0 if all were graded, 1 if some were not, 2 for an invalid assignment or command line.
+    """
+    made = parser()
+    options = made.parse_args((sys.argv if argv is None else list(argv))[1:])
+    if options.jobs < 1:
+        made.error("--jobs must be at least 1")
+    try:
+        assignment, issues = read_assignment(shipped_assignment(options.assignment))
+    except InputError as fault:
+        for issue in fault.issues:
+            print(issue, file=sys.stderr)
+        return INVALID
+    for issue in issues:
+        print(issue, file=sys.stderr)
+    if options.check:
+        print(f"{assignment.lab}: {len(assignment.checks)} checks, {assignment.points:g} points")
+        return OK
+    if not options.submissions:
+        made.error("the following arguments are required: SUBMISSION")
+    try:
+        return _grade(assignment, options)
+    except CommandError as fault:
+        print(f"{NAME}: {fault}", file=sys.stderr)
+        return INVALID
+
+
+def _grade(assignment: Assignment, options: argparse.Namespace) -> int:
+    submissions = submissions_of(options.submissions)
+    namespaces = not options.no_isolation and _isolation_is_there()
+    lock = threading.Lock()
+    count: List[Mark] = []
+
+    def told(mark: Mark, kept: bool) -> None:
+        with lock:
+            count.append(mark)
+            ending = ", unchanged" if kept else "" if mark.status == GRADED else f", {mark.status}"
+            print(f"{len(count)}/{len(submissions)} {mark.student}: {mark.points:g} of"
+                  f" {mark.most:g}{ending}", file=sys.stderr, flush=True)
+
+    grader = Grader(assignment, options.out, options.jobs, namespaces, told)
+    marks = grader.run(submissions)
+    files = [*write_lists(assignment, marks, options.out),
+             write_pages(assignment, marks, options.out)]
+    for path in files:
+        print(path, flush=True)
+    return OK if all(mark.status == GRADED for mark in marks) else NOT_ALL
+
+
+def _isolation_is_there() -> bool:
+    fault = isolation()
+    if fault:
+        print(f"{NAME}: warning: {fault}; a submission can read and change what you can, and see"
+              " the processes of other submissions", file=sys.stderr)
+    return not fault
+
+
+if __name__ == "__main__":
+    sys.exit(main())

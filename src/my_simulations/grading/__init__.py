@@ -1,0 +1,1 @@
+"""Grading: an assignment file, submissions in isolated processes, marks and pages."""

@@ -1,0 +1,124 @@
+"""Reads an assignment file: YAML, every fault with its line and key."""
+from __future__ import annotations
+
+import os
+from typing import Any, Dict, List, Mapping, Optional, Tuple
+
+from ..errors import CommandError, InputError, Issue, errors_of
+from ..geometry import Pose
+from ..objects.yaml_source import read_yaml
+from ..python_api.plain_values import pose_of
+from ..studies.value_reader import kind_of
+from .assignment import (
+    Assignment,
+    Check,
+    EntityCount,
+    Furniture,
+    GradeLimits,
+    SubmissionForm,
+    Timed,
+    ValidFile,
+)
+from .assignment_values import AssignmentValues
+from .check_reader import CheckReader
+
+_KEYS = ("lab", "submission", "world", "models", "sample", "limits", "checks")
+_LIMITS = ("seconds", "processor_seconds", "memory_mb", "processes", "file_mb")
+_LONGEST_S = 3600.0
+
+
+def read_assignment(file: str) -> Tuple[Assignment, List[Issue]]:
+    """Read an assignment file; relative paths in it start at its folder.
+
+    Returns:
+        The assignment, and warnings.
+
+    Raises:
+        InputError: the file has faults; all of them are named.
+    """
+    tree, source, issues = read_yaml(file, "")
+    reader = _AssignmentReader(source, os.path.dirname(os.path.abspath(file)))
+    reader.issues += issues
+    found = reader.assignment(tree, os.path.abspath(file))
+    if found is None or errors_of(reader.issues):
+        raise InputError(reader.issues)
+    return found, reader.issues
+
+
+class _AssignmentReader(AssignmentValues):
+    """Reads the top level of an assignment."""
+
+    def assignment(self, tree: Any, file: str) -> Optional[Assignment]:
+        """The assignment; None if it is not a mapping at all."""
+        if not isinstance(tree, Mapping):
+            self.fault((), f"an assignment must be a mapping, is {kind_of(tree)}",
+                       code="grade-value")
+            return None
+        top = self.mapping(tree, (), _KEYS)
+        form = self._form(top.get("submission"))
+        world = self.world(top["world"], ("world",)) if "world" in top else ""
+        if form.world and world:
+            self.fault(("world",), "the world is that of the submission or that of the assignment,"
+                                   " not both", code="grade-key")
+        checks = self._checks(top.get("checks"), bool(form.world or world), bool(form.run))
+        stem = os.path.splitext(os.path.basename(file))[0]
+        return Assignment(
+            self.text(top.get("lab", stem), ("lab",)), file, form, world,
+            self._models(top.get("models")),
+            self.number(top.get("sample", 0.01), ("sample",), above=0.0, most=_LONGEST_S),
+            self._limits(top.get("limits")), checks)
+
+    def _form(self, value: Any) -> SubmissionForm:
+        path = ("submission",)
+        inside = self.mapping(value, path, ("world", "run"))
+        return SubmissionForm(self.names(inside.get("world"), (*path, "world")),
+                              self.names(inside.get("run"), (*path, "run")))
+
+    def _models(self, value: Any) -> Tuple[Furniture, ...]:
+        found = []
+        for name, entry in self.mapping(value, ("models",)).items():
+            path = ("models", name)
+            inside = self.mapping(entry, path, ("file", "pose"))
+            pose = Pose()
+            if "pose" in inside:
+                try:
+                    pose = pose_of(self.numbers(inside["pose"], (*path, "pose"), (3, 6, 7)))
+                except CommandError as fault:
+                    self.fault((*path, "pose"), str(fault))
+            found.append(Furniture(name, self.file(inside.get("file"), (*path, "file")), pose))
+        return tuple(found)
+
+    def _limits(self, value: Any) -> GradeLimits:
+        inside = self.mapping(value, ("limits",), _LIMITS)
+        default = vars(GradeLimits())
+        numbers: Dict[str, float] = {
+            name: self.number(inside.get(name, default[name]), ("limits", name), above=0.0)
+            for name in _LIMITS if name != "processes"}
+        processes = self.whole(inside.get("processes", default["processes"]),
+                               ("limits", "processes"), 1, 10000)
+        return GradeLimits(processes=processes, **numbers)
+
+    def _checks(self, value: Any, world: bool, program: bool) -> Tuple[Check, ...]:
+        if not isinstance(value, list) or not value:
+            self.fault(("checks",), f"'checks' must be a list of checks, is {kind_of(value)}")
+            return ()
+        reader = CheckReader(self)
+        found = [reader.check(entry, ("checks", str(index)))
+                 for index, entry in enumerate(value)]
+        for index, check in enumerate(found):
+            path = ("checks", str(index))
+            if check is not None and not world and _needs_world(check):
+                self.fault(path, f"'{check.name}' needs a world",
+                           "add submission: {world: NAME}, or world: FILE", "grade-key")
+            if isinstance(check, Timed) and check.within == 0.0 and program:
+                self.fault(path, f"'{check.name}' of a program needs 'within', s of sim time",
+                           code="grade-key")
+        names = [check.name for check in found if check is not None]
+        for name in sorted({name for name in names if names.count(name) > 1}):
+            self.fault(("checks", str(names.index(name))), f"two checks have the name '{name}'",
+                       "give each a name of its own", "grade-key")
+        return tuple(check for check in found if check is not None)
+
+
+def _needs_world(check: Check) -> bool:
+    return isinstance(check, (Timed, EntityCount, ValidFile))

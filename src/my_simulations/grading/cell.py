@@ -1,0 +1,118 @@
+"""Runs the program of a submission in a cell within its box, with limits.
+
+    python3 -I cell.py SPECIFICATION
+
+SPECIFICATION is JSON:
+    parent    process id of the process that started this one
+    command, environment, cwd
+    user      user id that the program gets where the system permits it
+    private   folders that the program must not see
+    bytes, memory_bytes, processor_seconds, processes   limits of each process of the program
+
+Run as a file, it imports the standard library alone, and box.py beside it. Processes outside of
+the cell do not exist for the program; it has no capabilities and cannot gain any. When the first
+process ends, all others of the cell are killed. Exit status: as of box.py.
+"""
+from __future__ import annotations
+
+import contextlib
+import ctypes
+import importlib.util
+import json
+import os
+import resource
+import signal
+import subprocess
+import sys
+from typing import Any, Dict, List
+
+_PR_SET_PDEATHSIG, _PR_SET_CHILD_SUBREAPER, _PR_SET_NO_NEW_PRIVS, _PR_CAPBSET_DROP = 1, 36, 38, 24
+_LAST_CAPABILITY = 63
+_NEWNS, _NEWIPC, _NEWPID = 0x00020000, 0x08000000, 0x20000000
+_CAPABILITY_VERSION_3 = 0x20080522
+
+
+def _box() -> Any:
+    """The module box.py, without importing the package."""
+    place = os.path.join(os.path.dirname(os.path.abspath(__file__)), "box.py")
+    spec = importlib.util.spec_from_file_location("box", place)
+    if spec is None or spec.loader is None:
+        raise ImportError(place)
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+def main(words: List[str]) -> int:
+    """Run a specification; returns the exit status."""
+    spec: Dict[str, Any] = json.loads(words[1])
+    box = _box()
+    box.LIBC.prctl(_PR_SET_PDEATHSIG, signal.SIGKILL, 0, 0, 0)
+    if os.getppid() != spec["parent"]:
+        return 128 + signal.SIGKILL
+    isolated = box.LIBC.unshare(_NEWNS | _NEWPID | _NEWIPC) == 0
+    if not isolated:
+        box.LIBC.prctl(_PR_SET_CHILD_SUBREAPER, 1, 0, 0, 0)
+    ready, told = os.pipe()
+    child = os.fork()
+    if child == 0:
+        os.close(told)
+        box.LIBC.prctl(_PR_SET_PDEATHSIG, signal.SIGKILL, 0, 0, 0)
+        os.read(ready, 1)
+        os._exit(_inside(spec, isolated, box))
+    os.close(ready)
+    os.write(told, b".")
+    code: int = box.status_of(os.waitpid(child, 0)[1])
+    if not isolated:
+        box.kill_descendants()
+    return code
+
+
+def _inside(spec: Dict[str, Any], isolated: bool, box: Any) -> int:
+    if isolated:
+        _hide(spec["private"], box)
+    _limit(spec)
+    with contextlib.suppress(OSError):
+        os.setgroups([])
+    with contextlib.suppress(OSError):
+        os.setgid(spec["user"])
+        os.setuid(spec["user"])
+    _drop_capabilities(box.LIBC)
+    process = subprocess.Popen(spec["command"], env=spec["environment"], cwd=spec["cwd"],
+                               stdin=subprocess.DEVNULL, start_new_session=True)
+    while True:
+        pid, status = os.wait()
+        if pid == process.pid:
+            code: int = box.status_of(status)
+            return code
+
+
+def _hide(folders: List[str], box: Any) -> None:
+    box.mount("none", "/", "", box.MS_REC | box.MS_PRIVATE)
+    for folder in folders:
+        box.hide(folder)
+    with contextlib.suppress(OSError):
+        box.tmpfs("/dev/shm", 64 << 20)
+    with contextlib.suppress(OSError):
+        box.mount("proc", "/proc", "proc", box.MS_NOSUID | box.MS_NODEV)
+
+
+def _limit(spec: Dict[str, Any]) -> None:
+    for kind, most in ((resource.RLIMIT_CORE, 0), (resource.RLIMIT_FSIZE, spec["bytes"]),
+                       (resource.RLIMIT_AS, spec["memory_bytes"]),
+                       (resource.RLIMIT_CPU, spec["processor_seconds"]),
+                       (resource.RLIMIT_NPROC, spec["processes"])):
+        resource.setrlimit(kind, (most, most))
+
+
+def _drop_capabilities(libc: Any) -> None:
+    """Give up all capabilities for good: a namespace's root has them, too."""
+    for number in range(_LAST_CAPABILITY + 1):
+        libc.prctl(_PR_CAPBSET_DROP, number, 0, 0, 0)
+    header = (ctypes.c_uint32 * 2)(_CAPABILITY_VERSION_3, 0)
+    libc.capset(header, (ctypes.c_uint32 * 6)())
+    libc.prctl(_PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0)
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv))

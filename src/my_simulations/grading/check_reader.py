@@ -1,0 +1,187 @@
+"""Reads the checks of an assignment: the first key that is a kind of check decides which one."""
+from __future__ import annotations
+
+from typing import Any, Callable, Dict, Optional, Tuple
+
+from ..objects.yaml_source import KeyPath
+from ..studies.expressions import Expression, ExpressionError, parse
+from .assignment import (
+    COUNTED,
+    Check,
+    EntityCount,
+    Launch,
+    NoContact,
+    Place,
+    Requirement,
+    Rostest,
+    ServiceAnswer,
+    TopicRate,
+    ValidFile,
+)
+from .assignment_values import AssignmentValues
+
+SHAPES = ("box", "sphere", "cylinder", "plane", "mesh", "capsule", "ellipsoid", "cone",
+          "heightmap", "polyline")
+_COMMON = ("points", "name")
+_MOST_S = 3600.0
+
+Fields = Dict[str, Any]
+
+
+class CheckReader:
+    """Reads single checks; faults go to the reader of the file."""
+
+    def __init__(self, values: AssignmentValues) -> None:
+        self._values = values
+        self._kinds: Dict[str, Tuple[Tuple[str, ...], Callable[[Fields, KeyPath, Fields],
+                                                               Optional[Check]]]] = {
+            "check_model": ((), self._valid_file),
+            "count": (("not", "shape", "at_least", "at_most", "exactly", "partial"),
+                      self._count),
+            "place": (("at", "tolerance", "within", "partial"), self._place),
+            "require": (("within", "partial"), self._require),
+            "no_contact": (("within",), self._no_contact),
+            "topic": (("type", "rate", "within"), self._topic),
+            "service": (("type", "within"), self._service),
+            "launch": (("args", "seconds", "nodes"), self._launch),
+            "rostest": (("args", "seconds"), self._rostest)}
+
+    def check(self, value: Any, path: KeyPath) -> Optional[Check]:
+        """The check; None if it has a fault that leaves nothing to check."""
+        kinds = [kind for kind in self._kinds if isinstance(value, dict) and kind in value]
+        if len(kinds) != 1:
+            self._values.fault(path, "a check has exactly one of the keys "
+                               + ", ".join(self._kinds), code="grade-key")
+            return None
+        kind = kinds[0]
+        more, read = self._kinds[kind]
+        inside = self._values.mapping(value, path, (*_COMMON, kind, *more))
+        if "points" not in inside:
+            self._values.fault(path, "'points' is missing: what the check gives",
+                               code="grade-key")
+        points = self._values.number(inside.get("points", 1), (*path, "points"), least=0.0,
+                                     most=1e6)
+        shown = value[kind] if isinstance(value[kind], (str, int, float)) else ""
+        name = self._values.text(inside.get("name", f"{kind} {shown}".strip()), (*path, "name"))
+        line = self._values.line_of(path)
+        return read(inside, path, {"points": points, "name": name, "line": line})
+
+    # -- files -----------------------------------------------------------------------------------
+
+    def _valid_file(self, inside: Fields, path: KeyPath, common: Fields) -> Check:
+        strict = self._one_of(inside["check_model"], (*path, "check_model"),
+                              ("strict", "lenient"))
+        return ValidFile(**common, strict=strict == "strict")
+
+    def _count(self, inside: Fields, path: KeyPath, common: Fields) -> Check:
+        values = self._values
+        kind = self._one_of(inside["count"], (*path, "count"), COUNTED)
+        shape = self._one_of(inside["shape"], (*path, "shape"), SHAPES) if "shape" in inside else ""
+        if not {"at_least", "at_most", "exactly"} & set(inside):
+            values.fault(path, "'count' needs at_least, at_most or exactly", code="grade-key")
+        least = values.whole(inside.get("at_least", 0), (*path, "at_least"))
+        most = values.whole(inside["at_most"], (*path, "at_most")) if "at_most" in inside else None
+        if "exactly" in inside:
+            least = most = values.whole(inside["exactly"], (*path, "exactly"))
+        partial = inside.get("partial", False)
+        if not isinstance(partial, bool):
+            values.fault((*path, "partial"), "'partial' of a count must be true or false")
+        return EntityCount(**common, kind=kind, excluded=values.names(
+            inside.get("not"), (*path, "not")), shape=shape, least=least, most=most,
+            partial=partial is True)
+
+    # -- the running world -----------------------------------------------------------------------
+
+    def _place(self, inside: Fields, path: KeyPath, common: Fields) -> Check:
+        values = self._values
+        at = values.numbers(inside.get("at"), (*path, "at"), (2, 3))
+        return Place(
+            **common, within=self._within(inside, path),
+            model=values.text(inside["place"], (*path, "place")),
+            at=(at[0], at[1], at[2] if len(at) == 3 else None),
+            tolerance=values.number(inside.get("tolerance", 0.1), (*path, "tolerance"), above=0.0),
+            partial=values.number(inside.get("partial", 0.0), (*path, "partial"), least=0.0))
+
+    def _require(self, inside: Fields, path: KeyPath, common: Fields) -> Check:
+        return Requirement(
+            **common, within=self._within(inside, path, needed=True),
+            require=self._expression(inside["require"], (*path, "require"), True),
+            partial=self._expression(inside["partial"], (*path, "partial"), False)
+            if "partial" in inside else None)
+
+    def _no_contact(self, inside: Fields, path: KeyPath, common: Fields) -> Check:
+        names = self._values.names(inside["no_contact"], (*path, "no_contact"))
+        if len(names) != 2:
+            self._values.fault((*path, "no_contact"), "'no_contact' must name two models")
+            names = ("", "")
+        return NoContact(**common, within=self._within(inside, path, needed=True),
+                         first=names[0], second=names[1])
+
+    def _topic(self, inside: Fields, path: KeyPath, common: Fields) -> Check:
+        return TopicRate(
+            **common, within=self._within(inside, path, needed=True),
+            topic=self._ros_name(inside["topic"], (*path, "topic")),
+            type_name=self._type(inside, path),
+            rate=self._values.number(inside.get("rate", 0.0), (*path, "rate"), least=0.0))
+
+    def _service(self, inside: Fields, path: KeyPath, common: Fields) -> Check:
+        return ServiceAnswer(
+            **common, within=self._within(inside, path, needed=True),
+            service=self._ros_name(inside["service"], (*path, "service")),
+            type_name=self._values.text(inside.get("type"), (*path, "type")))
+
+    # -- programs of ROS -------------------------------------------------------------------------
+
+    def _launch(self, inside: Fields, path: KeyPath, common: Fields) -> Check:
+        values = self._values
+        return Launch(
+            **common, file=values.names(inside["launch"], (*path, "launch")),
+            arguments=values.names(inside.get("args"), (*path, "args")),
+            seconds=values.number(inside.get("seconds", 5.0), (*path, "seconds"), above=0.0,
+                                  most=_MOST_S),
+            nodes=values.names(inside.get("nodes"), (*path, "nodes")))
+
+    def _rostest(self, inside: Fields, path: KeyPath, common: Fields) -> Check:
+        values = self._values
+        return Rostest(
+            **common, file=values.file(inside["rostest"], (*path, "rostest")),
+            arguments=values.names(inside.get("args"), (*path, "args")),
+            seconds=values.number(inside.get("seconds", 300.0), (*path, "seconds"), above=0.0,
+                                  most=_MOST_S))
+
+    # -- values ----------------------------------------------------------------------------------
+
+    def _within(self, inside: Fields, path: KeyPath, needed: bool = False) -> float:
+        if needed and "within" not in inside:
+            self._values.fault(path, "'within' is missing: s of sim time", code="grade-key")
+        return self._values.number(inside.get("within", 0.0), (*path, "within"), least=0.0,
+                                   most=_MOST_S)
+
+    def _type(self, inside: Fields, path: KeyPath) -> str:
+        return self._values.text(inside["type"], (*path, "type")) if "type" in inside else ""
+
+    def _ros_name(self, value: Any, path: KeyPath) -> str:
+        name = self._values.text(value, path)
+        return name if name.startswith("/") else f"/{name}"
+
+    def _one_of(self, value: Any, path: KeyPath, known: Tuple[str, ...]) -> str:
+        if value in known:
+            return str(value)
+        self._values.fault(path, f"'{path[-1]}' must be one of {', '.join(known)}, is {value!r}")
+        return known[0]
+
+    def _expression(self, value: Any, path: KeyPath, condition: bool) -> Optional[Expression]:
+        text = self._values.text(value, path)
+        try:
+            found = parse(text) if text else None
+        except ExpressionError as fault:
+            self._values.fault(path, str(fault), "doc/studies.md lists what can be measured",
+                               "grade-expression")
+            return None
+        if found is not None and found.condition != condition:
+            wanted = "a condition" if condition else "a number from 0 to 1"
+            self._values.fault(path, f"'{path[-1]}' takes {wanted}", code="grade-expression")
+        if found is not None and any(signal.kind == "vary" for signal in found.signals):
+            self._values.fault(path, "an assignment varies nothing: there is no 'vary'",
+                               code="grade-expression")
+        return found

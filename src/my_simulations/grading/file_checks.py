@@ -1,0 +1,137 @@
+"""Checks of a world file: its faults, and the entities that it contains."""
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass
+from typing import Callable, Dict, List, Sequence
+
+from ..description.flatten import flattened
+from ..description.model import Model
+from ..description.world import World
+from ..errors import InputError, Issue, error, errors_of, strictly
+from ..formats.reading import read_any
+from ..formats.xml.parsing import content
+from ..resources.resolver import Resolver
+from .assignment import (
+    DYNAMIC,
+    JOINT,
+    LIGHT,
+    LINK,
+    MODEL,
+    PLUGIN,
+    STATIC,
+    Assignment,
+    EntityCount,
+    ValidFile,
+)
+from .mark import CheckResult, result
+
+MISSING = "the submission contains no world file"
+
+
+@dataclass(frozen=True)
+class WorldFile:
+    """A world file that was read.
+
+    Attributes:
+        name: path in the submission.
+        world: None if it cannot be used.
+        issues: all faults and advice.
+    """
+
+    name: str
+    world: "World | None"
+    issues: List[Issue]
+
+
+def read_world_file(folder: str, name: str, resolver: Resolver) -> WorldFile:
+    """Read a world file of a submission. Never raises for a fault of the file."""
+    path = os.path.join(folder, name)
+    try:
+        loaded, issues = read_any(content(path), resolver, path)
+    except InputError as fault:
+        return WorldFile(name, None, fault.issues)
+    except OSError as fault:
+        return WorldFile(name, None, [error(
+            "file-unreadable", f"cannot be read: {fault.strerror or fault}", file=path)])
+    return WorldFile(name, loaded if isinstance(loaded, World) else None, issues)
+
+
+def check_files(assignment: Assignment, file: "WorldFile | None") -> List[CheckResult]:
+    """The results of all checks of the world file; `file` None if there is none."""
+    found = [_valid(check, file) for check in assignment.of(ValidFile)]
+    return found + [_counted(check, file) for check in assignment.of(EntityCount)]
+
+
+def _valid(check: ValidFile, file: "WorldFile | None") -> CheckResult:
+    if file is None:
+        return result(check, 0.0, MISSING)
+    faults = errors_of(strictly(file.issues) if check.strict else file.issues)
+    if not faults and file.world is None:
+        return result(check, 0.0, "the file contains no <world>", file.name)
+    if not faults:
+        return result(check, 1.0)
+    first = faults[0]
+    more = f" ({len(faults) - 1} more)" if len(faults) > 1 else ""
+    hint = f"; {first.hint}" if first.hint else ""
+    return result(check, 0.0, f"{first.message}{hint}{more}", file.name, first.line)
+
+
+def _counted(check: EntityCount, file: "WorldFile | None") -> CheckResult:
+    if file is None:
+        return result(check, 0.0, MISSING)
+    if file.world is None:
+        first = errors_of(file.issues)[:1]
+        return result(check, 0.0, "the world file cannot be read", file.name,
+                      first[0].line if first else 0)
+    names = _NAMES[check.kind](file.world) if not check.shape else _shaped(check, file.world)
+    counted = [name for name in names if name not in check.excluded]
+    number = len(counted)
+    if number < check.least:
+        share = number / check.least if check.partial else 0.0
+        return result(check, share, f"{_of(number, check)}, {check.least} are needed", file.name)
+    if check.most is not None and number > check.most:
+        return result(check, 0.0, f"{_of(number, check)}, at most {check.most} are allowed",
+                      file.name)
+    return result(check, 1.0, f"found {_listed(counted)}" if counted else "")
+
+
+def _of(number: int, check: EntityCount) -> str:
+    shape = f" with the shape {check.shape}" if check.shape else ""
+    noun = f"{check.kind} model" if check.kind in (STATIC, DYNAMIC) else check.kind
+    excluded = f" besides {_listed(check.excluded)}" if check.excluded else ""
+    return f"the world has {number} {noun}{'' if number == 1 else 's'}{shape}{excluded}"
+
+
+def _listed(names: Sequence[str]) -> str:
+    shown = ", ".join(names[:8])
+    return f"{shown}, …" if len(names) > 8 else shown
+
+
+def _shaped(check: EntityCount, world: World) -> List[str]:
+    wanted = set(_NAMES[check.kind](world))
+    return [model.name for model in world.models if model.name in wanted
+            and check.shape in _shapes(model)]
+
+
+def _shapes(model: Model) -> List[str]:
+    found = []
+    for link in flattened(model).links:
+        found += [type(one.geometry).__name__.lower() for one in link.collisions]
+        found += [type(one.geometry).__name__.lower() for one in link.visuals]
+    return found
+
+
+def _flat(world: World) -> List[Model]:
+    return [flattened(model) for model in world.models]
+
+
+_NAMES: Dict[str, Callable[[World], List[str]]] = {
+    MODEL: lambda world: [model.name for model in world.models],
+    STATIC: lambda world: [model.name for model in world.models if model.static],
+    DYNAMIC: lambda world: [model.name for model in world.models if not model.static],
+    LIGHT: lambda world: [light.name for light in world.lights],
+    LINK: lambda world: [link.name for model in _flat(world) for link in model.links],
+    JOINT: lambda world: [joint.name for model in _flat(world) for joint in model.joints],
+    PLUGIN: lambda world: [plugin.name for model in _flat(world) for plugin in model.plugins]
+    + [plugin.name for plugin in world.plugins]}

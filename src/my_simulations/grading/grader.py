@@ -1,0 +1,123 @@
+"""Grades submissions, several side by side; those that have not changed keep their marks."""
+from __future__ import annotations
+
+import contextlib
+import os
+import queue
+import shutil
+import threading
+from concurrent.futures import ThreadPoolExecutor
+from typing import Callable, Dict, List, Optional, Sequence
+
+from .. import __version__
+from ..errors import CommandError
+from ..simulator.safe_file import write_whole
+from .assignment import Assignment, Rostest
+from .box_process import GradingStoppedError, grade_in_box
+from .mark import FAILED, Mark, all_failed, mark_of
+from .submission import Submission, content_key
+
+STUDENTS = "students"
+"""Folder of the students' folders."""
+
+MARK = "mark.json"
+
+Told = Callable[[Mark, bool], None]
+"""Called for each mark, with whether it was kept from a run before."""
+
+
+class Grader:
+    """Grades into a folder.
+
+    Args:
+        assignment: the assignment.
+        out: folder of the marks; created.
+        jobs: submissions that are graded at a time.
+        namespaces: whether to isolate submissions by namespaces.
+        told: called for each mark, in the order in which they come, from any thread.
+
+    Raises:
+        CommandError: the folder cannot be written.
+    """
+
+    def __init__(self, assignment: Assignment, out: str, jobs: int, namespaces: bool,
+                 told: Told) -> None:
+        self._assignment = assignment
+        self._out = os.path.abspath(out)
+        self._jobs = jobs
+        self._namespaces = namespaces
+        self._told = told
+        self._stop = threading.Event()
+        self._slots: "queue.Queue[int]" = queue.Queue()
+        for slot in range(jobs):
+            self._slots.put(slot)
+        self._base = self._key_of_assignment()
+        try:
+            os.makedirs(os.path.join(self._out, STUDENTS), exist_ok=True)
+        except OSError as fault:
+            raise CommandError(f"cannot write to {out}: {fault.strerror}") from None
+
+    def run(self, submissions: Sequence[Submission]) -> List[Mark]:
+        """The marks of all submissions, in order.
+
+        Raises:
+            KeyboardInterrupt: after all boxes have ended; marks so far are kept.
+        """
+        hidden = [self._out, *(submission.path for submission in submissions)]
+        with ThreadPoolExecutor(self._jobs, "grader") as pool:
+            waiting = [pool.submit(self._grade, one, hidden) for one in submissions]
+            try:
+                return [one.result() for one in waiting]
+            except BaseException:
+                self._stop.set()
+                for one in waiting:
+                    one.cancel()
+                raise
+
+    def folder_of(self, student: str) -> str:
+        """The folder of a student's mark."""
+        return os.path.join(self._out, STUDENTS, student)
+
+    def _grade(self, submission: Submission, hidden: Sequence[str]) -> Mark:
+        if self._stop.is_set():
+            raise GradingStoppedError
+        key = content_key(submission.path, self._base)
+        kept = self._kept(submission.student, key)
+        if kept is not None:
+            self._told(kept, True)
+            return kept
+        folder = self.folder_of(submission.student)
+        shutil.rmtree(folder, ignore_errors=True)
+        os.makedirs(folder, exist_ok=True)
+        slot = self._slots.get()
+        try:
+            mark = grade_in_box(self._assignment, submission, slot, hidden, folder,
+                                self._namespaces, self._stop)
+        except OSError as fault:   # such as that of a full disk: one submission, not all
+            mark = all_failed(self._assignment, submission.student, FAILED,
+                              f"the grading program failed: {fault}")
+        finally:
+            self._slots.put(slot)
+        mark = Mark(**{**vars(mark), "key": key})
+        write_whole(os.path.join(folder, MARK), mark.to_json().encode(), overwrite=True)
+        self._told(mark, False)
+        return mark
+
+    def _kept(self, student: str, key: str) -> Optional[Mark]:
+        """The mark of a run before, if it is of the same submission and was decided."""
+        with contextlib.suppress(OSError, ValueError, TypeError, KeyError):
+            with open(os.path.join(self.folder_of(student), MARK), encoding="utf-8") as stream:
+                mark = mark_of(stream.read())
+            if mark.key == key and mark.status != FAILED:
+                return mark
+        return None
+
+    def _key_of_assignment(self) -> str:
+        """Of all that decides a mark besides the submission."""
+        assignment = self._assignment
+        files: Dict[str, None] = dict.fromkeys(
+            [assignment.file, assignment.world, *(model.file for model in assignment.models),
+             *(check.file for check in assignment.of(Rostest))])
+        own = os.path.dirname(os.path.abspath(__file__))
+        keys = [content_key(path) for path in (*files, own) if path]
+        return "\0".join([__version__, str(self._namespaces), *keys])

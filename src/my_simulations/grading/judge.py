@@ -1,0 +1,163 @@
+"""Grades one submission inside of its box, and sends the results out of it.
+
+    python3 -m my_simulations.grading.judge TASK
+
+TASK is JSON: the path of the assignment file, the folder SCRATCH of the box with the submission in
+SCRATCH/submission, the file descriptor for the results, and the number of the slot.
+"""
+from __future__ import annotations
+
+import contextlib
+import json
+import os
+import sys
+from typing import Any, Dict, List, Optional
+
+from ..editor.logs.replay_page import write_replay
+from ..editor.logs.world_record import LogRecord
+from ..errors import InputError, SimulationError
+from ..python_api import OpenWorld
+from ..resources.resolver import Resolver
+from .assignment import Assignment, Launch, Rostest, Timed
+from .assignment_file import read_assignment
+from .file_checks import MISSING, WorldFile, check_files, read_world_file
+from .launch_checks import LaunchChecks
+from .mark import CheckResult, GradingError, result
+from .program import OUTPUT, Program
+from .program_graph import RosGraph, graph_environment
+from .result_stream import ResultWriter
+from .submission import matching
+from .world_run import WorldRun, choice_of
+
+_EVERY_S = 1.0 / 30.0   # between two states of the replay, s of sim time
+REPLAY = "replay.html"
+
+
+def main(words: List[str]) -> int:
+    """Grade; returns 0 if every check was decided."""
+    task: Dict[str, Any] = json.loads(words[1])
+    assignment, _ = read_assignment(task["assignment"])
+    writer = ResultWriter(task["descriptor"])
+    os.environ["ROS_HOME"] = os.path.join(task["scratch"], "judge", ".ros")
+    os.environ.pop("ROS_LOG_DIR", None)
+    writer.isolation(os.environ.get("BOX_ISOLATION", ""))
+    Judge(assignment, task["scratch"], task["slot"], writer).run()
+    writer.end()
+    return 0
+
+
+class ThinRecord:
+    """Records 30 states for each second of sim time."""
+
+    def __init__(self, record: LogRecord) -> None:
+        self._record = record
+        self._next = 0.0
+
+    def look(self, world: OpenWorld) -> None:
+        """Add the present state if it is due."""
+        if world.time >= self._next - 1e-9:
+            self._record.look(world)
+            self._next = world.time + _EVERY_S
+
+
+class Judge:
+    """Decides all checks of a submission.
+
+    Args:
+        assignment: the assignment.
+        scratch: folder of the box.
+        slot: number of the slot.
+        writer: gets the results.
+    """
+
+    def __init__(self, assignment: Assignment, scratch: str, slot: int,
+                 writer: ResultWriter) -> None:
+        self._assignment = assignment
+        self._scratch, self._slot = scratch, slot
+        self._folder = os.path.join(scratch, "submission")
+        self._own = os.path.join(scratch, "judge")
+        self._writer = writer
+        self._resolver = Resolver.from_environment()
+
+    def run(self) -> None:
+        """Decide all checks."""
+        form = self._assignment.form
+        file: Optional[WorldFile] = None
+        name = matching(self._folder, form.world) if form.world else ""
+        if name:
+            file = read_world_file(self._folder, name, self._resolver)
+        for found in check_files(self._assignment, file):
+            self._writer.result(found)
+        if self._assignment.of(Timed):
+            path = os.path.join(self._folder, name) if name else self._assignment.world
+            self._run_world(path, name)
+        launches = LaunchChecks(self._assignment, self._scratch, self._slot)
+        for launch in self._assignment.of(Launch):
+            self._writer.result(launches.launch(launch))
+        for test in self._assignment.of(Rostest):
+            self._writer.result(launches.rostest(test))
+
+    def _run_world(self, path: str, name: str) -> None:
+        if not path:
+            self._refuse_timed(MISSING)
+            return
+        log = os.path.join(self._own, "state.log")
+        try:
+            with OpenWorld(choice_of(self._assignment, path), resolver=self._resolver) as world:
+                with contextlib.closing(LogRecord(log)) as record:
+                    self._decide(world, name, ThinRecord(record))
+        except GradingError:
+            raise
+        except InputError as fault:
+            first = fault.first
+            self._refuse_timed(first.message if first else str(fault), name,
+                               first.line if first else 0)
+            return
+        except SimulationError as fault:
+            self._refuse_timed(str(fault), name)
+            return
+        self._send_replay(log)
+
+    def _decide(self, world: OpenWorld, name: str, record: ThinRecord) -> None:
+        """Run the world, with the program if the submission has one."""
+        patterns = self._assignment.form.run
+        file = matching(self._folder, patterns) if patterns else ""
+        if patterns and not file:
+            self._refuse_timed(f"the submission contains no {' or '.join(patterns)}")
+            return
+        if not patterns:
+            WorldRun(self._assignment, world, name).run(record, self._writer.result)
+            return
+        with contextlib.closing(RosGraph(self._assignment, world, self._resolver)) as graph:
+            with contextlib.closing(self._program(file, graph.uri)) as program:
+                graph.run(program)
+                WorldRun(self._assignment, world, name, graph).run(record, self._writer.result)
+                if program.why_ended():
+                    self._writer.note(program.why_ended())
+                self._writer.file(OUTPUT, program.output())
+
+    def _program(self, file: str, uri: str) -> Program:
+        path = os.path.join(self._folder, file)
+        command = [sys.executable, path] if file.endswith(".py") else [path]
+        return Program(command, os.path.dirname(path), self._scratch, self._assignment.limits,
+                       self._slot, graph_environment(uri))
+
+    def _refuse_timed(self, reason: str, file: str = "", line: int = 0) -> None:
+        found: List[CheckResult] = [result(check, 0.0, f"the world does not run: {reason}", file,
+                                           line) for check in self._assignment.of(Timed)]
+        for one in found:
+            self._writer.result(one)
+
+    def _send_replay(self, log: str) -> None:
+        page = os.path.join(self._own, REPLAY)
+        try:
+            write_replay(log, page, self._resolver, self._assignment.lab)
+        except SimulationError as fault:
+            self._writer.note(f"there is no replay: {fault}")
+            return
+        with open(page, "rb") as stream:
+            self._writer.file(REPLAY, stream.read())
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv))

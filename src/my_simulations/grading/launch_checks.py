@@ -1,0 +1,171 @@
+"""Checks that run launch files: one of the submission must start, a rostest must pass."""
+from __future__ import annotations
+
+import contextlib
+import os
+import re
+import shutil
+import time
+from typing import Dict, List, Sequence
+
+from ..errors import InputError
+from ..ros.lifecycle import master_api
+from ..studies.junit import results_below
+from ..studies.scenario_files import declared_arguments
+from .assignment import Assignment, Launch, Rostest
+from .mark import CheckResult, GradingError, result
+from .program import Program
+from .program_graph import free_port, graph_environment
+from .submission import matching
+
+_POLL_S = 0.1
+_START_S = 120.0      # until all nodes are there
+_END_S = 20.0         # roslaunch gives its nodes 15 s to end, then 2 s
+_LARGEST = 5 << 20     # bytes of a file beside a test
+_CALLER = "/grade"
+_DIED = re.compile(r"^.*(?:has died|cannot launch|Invalid <|RLException|error loading).*$",
+                   re.MULTILINE | re.IGNORECASE)
+_COLOUR = re.compile(r"\x1b\[[0-9;]*m|\x1b\][^\x07]*\x07")
+
+
+class LaunchChecks:
+    """Runs launch files of one submission.
+
+    Args:
+        assignment: the assignment.
+        scratch: folder of the box.
+        slot: number of the slot.
+    """
+
+    def __init__(self, assignment: Assignment, scratch: str, slot: int) -> None:
+        self._assignment = assignment
+        self._scratch = scratch
+        self._folder = os.path.join(scratch, "submission")
+        self._slot = slot
+
+    def launch(self, check: Launch) -> CheckResult:
+        """Start a launch file; it passes if its nodes run for the time of the check."""
+        name = matching(self._folder, check.file)
+        if not name:
+            return result(check, 0.0, f"the submission contains no {' or '.join(check.file)}")
+        port = free_port()
+        uri = f"http://127.0.0.1:{port}/"
+        words = ["roslaunch", "-p", str(port), os.path.join(self._folder, name),
+                 *check.arguments]
+        with contextlib.closing(self._program(words, uri)) as program:
+            missing = self._wait_for_nodes(program, uri, check.nodes)
+            fault = _fault(program)
+            until = time.monotonic() + check.seconds
+            while not (missing or fault) and time.monotonic() < until:
+                time.sleep(_POLL_S)
+                fault = _fault(program)
+            self._end(program)
+        if fault:
+            return result(check, 0.0, fault, name)
+        if missing:
+            return result(check, 0.0, f"no node {missing} within {_START_S:g} s", name)
+        return result(check, 1.0)
+
+    def rostest(self, check: Rostest) -> CheckResult:
+        """Run a rostest of the assignment; its argument `submission` is the folder, if declared."""
+        if shutil.which("rostest") is None:
+            raise GradingError("rostest is not installed")
+        file = self._copied(check.file)
+        words = [file, *check.arguments]
+        try:
+            declared = declared_arguments(file)
+        except InputError as fault:
+            raise GradingError(str(fault.first)) from None
+        if "submission" in declared:
+            words.append(f"submission:={self._folder}")
+        results = os.path.join(self._scratch, "home", "results")
+        command = ["rostest", "--pkgdir", os.path.dirname(file), "--package", "grade",
+                   "--results-base-dir", results, *words]
+        until = time.monotonic() + check.seconds
+        with contextlib.closing(self._program(command, "", results)) as program:
+            while program.running and time.monotonic() < until:
+                time.sleep(_POLL_S)
+            timed_out = program.running
+            self._end(program)
+            last = _last_line(program)
+        found = results_below(results)
+        shutil.rmtree(results, ignore_errors=True)
+        if timed_out:
+            return result(check, 0.0, f"the test took longer than {check.seconds:g} s")
+        if not found.tests:
+            return result(check, 0.0, f"no test ran: {last}")
+        passed = found.tests - found.failures
+        return result(check, passed / found.tests, found.first and
+                      f"{passed} of {found.tests} tests passed; {found.first}")
+
+    def _copied(self, file: str) -> str:
+        """A copy of a test with the files beside it, which the user of the program can read."""
+        folder = os.path.join(self._scratch, "test")
+        os.makedirs(folder, exist_ok=True)
+        for entry in os.scandir(os.path.dirname(file)):
+            if entry.is_file(follow_symlinks=False) and entry.stat().st_size <= _LARGEST:
+                shutil.copy(entry.path, folder)
+        for name in os.listdir(folder):
+            path = os.path.join(folder, name)
+            os.chmod(path, 0o755 if os.access(path, os.X_OK) else 0o644)
+        return os.path.join(folder, os.path.basename(file))
+
+    def _program(self, words: Sequence[str], uri: str, results: str = "") -> Program:
+        packages = os.pathsep.join([*package_folders(self._folder),
+                                    os.environ.get("ROS_PACKAGE_PATH", "")])
+        more: Dict[str, str] = {"ROS_PACKAGE_PATH": packages, "ROS_TEST_RESULTS_DIR": results}
+        if uri:
+            more.update(graph_environment(uri))
+        return Program(words, self._folder, self._scratch, self._assignment.limits, self._slot,
+                       more)
+
+    def _wait_for_nodes(self, program: Program, uri: str, nodes: Sequence[str]) -> str:
+        """The first node that does not come; "" if all are there."""
+        waiting = list(nodes)
+        until = time.monotonic() + _START_S
+        is_up = False
+        while (waiting or not is_up) and program.running and time.monotonic() < until:
+            with contextlib.suppress(OSError):
+                master_api.call(uri, "getPid", _CALLER)
+                is_up = True
+                while waiting and master_api.running_node(uri, waiting[0]) is not None:
+                    del waiting[0]
+            if waiting or not is_up:
+                time.sleep(_POLL_S)
+        return waiting[0] if waiting else "" if is_up else "of the ROS master"
+
+    @staticmethod
+    def _end(program: Program) -> None:
+        program.interrupt()
+        until = time.monotonic() + _END_S
+        while program.running and time.monotonic() < until:
+            time.sleep(_POLL_S)
+
+
+def package_folders(folder: str) -> List[str]:
+    """The folders in a submission that are ROS packages."""
+    found = []
+    for path, folders, names in os.walk(folder):
+        if "package.xml" in names:
+            found.append(path)
+            folders[:] = []
+    return sorted(found)
+
+
+def _said(program: Program) -> str:
+    return _COLOUR.sub("", program.output().decode("utf-8", "replace"))
+
+
+def _fault(program: Program) -> str:
+    """What went wrong in the output, or that it has ended; "" for nothing."""
+    found = _DIED.search(_said(program))
+    if found is not None:
+        return found[0].strip()[:500]
+    if not program.running:
+        return f"{program.why_ended()}: {_last_line(program)}"
+    return ""
+
+
+def _last_line(program: Program) -> str:
+    lines = [line.strip() for line in _said(program).splitlines() if line.strip()]
+    return lines[-1][:500] if lines else "no output"

@@ -1,0 +1,119 @@
+"""Decides when a program has done what follows from a step: nothing of it can run any further.
+
+A program has done its part when all its threads wait, and no byte is on its way between it and the
+world. Sim time advances only then, so a busy machine gives the same mark as an idle one. A program
+that never waits gets as much processor time for a step as the step has sim time.
+"""
+from __future__ import annotations
+
+import contextlib
+import os
+import threading
+import time
+from typing import Dict, List, Optional, Set, Tuple
+
+from . import box
+from .program import Program
+
+_LOOK_S = 0.0005
+_BUSY_LOOK_S = 0.002
+_LOOK_SHARE = 0.1     # of the time, at most, is spent on looking
+_QUIET_LOOKS = 2      # in a row
+_STUCK_LOOKS = 400    # all wait, but bytes stay unread
+_LONGEST_S = 60.0     # wall time of one wait, whatever the program does
+_START_S = 5.0        # processor time to start, s
+
+
+class Lockstep:
+    """Waits for one program.
+
+    Args:
+        program: the program.
+        judge: process id of the process that steps the world.
+    """
+
+    def __init__(self, program: Program, judge: int) -> None:
+        self._program = program
+        self._judge = judge
+        self._main = threading.get_native_id()
+        self._sim = 0.0
+        self._began: Optional[float] = None
+
+    def start(self) -> None:
+        """Wait until the program has started and waits for the world."""
+        self._wait(_START_S)
+        self._began = time.monotonic()
+
+    def wait(self, seconds: float) -> None:
+        """Wait after steps of so many s of sim time; never faster than real time."""
+        if not self._program.running:
+            return
+        self._wait(seconds)
+        self._sim += seconds
+        if self._began is not None:
+            time.sleep(max(0.0, self._began + self._sim - time.monotonic()))
+
+    def _wait(self, processor_seconds: float) -> None:
+        until = self._used() + processor_seconds
+        deadline = time.monotonic() + _LONGEST_S
+        quiet = waiting = 0
+        pause = _LOOK_S
+        while self._program.running:
+            time.sleep(pause)
+            began = time.monotonic()
+            if self._anything_runs():
+                quiet = waiting = 0
+                if self._used() >= until or began > deadline:
+                    return
+                took = time.monotonic() - began
+                pause = max(_BUSY_LOOK_S, min(took / _LOOK_SHARE, processor_seconds))
+                continue
+            waiting, pause = waiting + 1, _LOOK_S
+            quiet = 0 if _bytes_under_way() else quiet + 1
+            if quiet >= _QUIET_LOOKS or waiting >= _STUCK_LOOKS:
+                return
+
+    def _anything_runs(self) -> bool:
+        ignored: Set[int] = {self._main, self._program.watcher}
+        return any(_state(pid, thread) in "RD" for pid, thread in self._threads()
+                   if thread not in ignored)
+
+    def _threads(self) -> List[Tuple[int, int]]:
+        found = []
+        for pid in (self._judge, *box.descendants(self._judge)):
+            with contextlib.suppress(OSError):
+                found += [(pid, int(name)) for name in os.listdir(f"/proc/{pid}/task")]
+        return found
+
+    def _used(self) -> float:
+        """Processor time of the program so far, s: of its threads, and of processes that ended."""
+        total = 0.0
+        for pid in box.descendants(self._program.pid):
+            with contextlib.suppress(OSError, ValueError, IndexError):
+                with open(f"/proc/{pid}/stat", encoding="utf-8", errors="replace") as stat:
+                    ended = stat.read().rpartition(")")[2].split()[13:15]
+                total += sum(map(int, ended)) / os.sysconf("SC_CLK_TCK")
+                for thread in os.listdir(f"/proc/{pid}/task"):
+                    with open(f"/proc/{pid}/task/{thread}/schedstat", encoding="ascii") as stat:
+                        total += int(stat.read().split()[0]) * 1e-9
+        return total
+
+
+def _state(pid: int, thread: int) -> str:
+    """Such as R or S (proc(5), stat); "S" for one that has gone."""
+    try:
+        with open(f"/proc/{pid}/task/{thread}/stat", encoding="utf-8", errors="replace") as stat:
+            return stat.read().rpartition(")")[2].split()[0]
+    except (OSError, IndexError):
+        return "S"
+
+
+def _bytes_under_way() -> bool:
+    """Whether a TCP connection of this network has bytes that were not read or not acknowledged."""
+    totals: Dict[str, int] = {}
+    for name in ("tcp", "tcp6"):
+        with contextlib.suppress(OSError):
+            with open(f"/proc/net/{name}", encoding="ascii") as table:
+                next(table)
+                totals[name] = sum(line.split()[4] != "00000000:00000000" for line in table)
+    return any(totals.values())

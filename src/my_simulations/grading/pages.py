@@ -1,0 +1,91 @@
+"""Marks as pages: one for each student, and an overview."""
+from __future__ import annotations
+
+import os
+from html import escape
+from typing import List, Sequence
+from urllib.parse import quote
+
+from ..simulator.safe_file import write_whole
+from .assignment import Assignment
+from .grader import STUDENTS
+from .lists import said
+from .mark import GRADED, Mark
+
+REPLAY = "replay.html"
+_STYLE = """body{font:15px/1.45 sans-serif;margin:2em auto;max-width:62em;padding:0 1em;color:#222}
+table{border-collapse:collapse}td,th{border:1px solid #ccc;padding:3px 9px;text-align:left;
+vertical-align:top}th{background:#f2f2f2}.full{background:#e7f5e7}.part{background:#fff7dc}
+.none{background:#fdeaea}.number{text-align:right;white-space:nowrap}code{overflow-wrap:anywhere}
+iframe{width:100%;height:34em;border:1px solid #ccc}"""
+
+
+def write_pages(assignment: Assignment, marks: Sequence[Mark], out: str) -> str:
+    """Write a page for each student, and the overview, whose path is returned.
+
+    Raises:
+        CommandError: one cannot be written.
+    """
+    for mark in marks:
+        path = os.path.join(os.path.abspath(out), STUDENTS, mark.student, "index.html")
+        write_whole(path, _student(assignment, mark).encode("utf-8", "replace"), overwrite=True)
+    path = os.path.join(os.path.abspath(out), "index.html")
+    write_whole(path, _overview(assignment, marks).encode("utf-8", "replace"), overwrite=True)
+    return path
+
+
+def _page(title: str, body: Sequence[str]) -> str:
+    return (f'<!DOCTYPE html><html lang="en"><head><meta charset="utf-8"><title>{escape(title)}'
+            f'</title><style>{_STYLE}</style></head><body>' + "\n".join(body) + "</body></html>\n")
+
+
+def _colour(points: float, most: float) -> str:
+    return "full" if points >= most else "part" if points > 0.0 else "none"
+
+
+def _student(assignment: Assignment, mark: Mark) -> str:
+    rows = []
+    for one in mark.results:
+        place = f"{one.file}:{one.line}" if one.line else one.file
+        rows.append(f'<tr class="{_colour(one.points, one.most)}"><td>{escape(one.name)}</td>'
+                    f'<td class="number">{one.points:g} of {one.most:g}</td>'
+                    f'<td>{escape(one.reason)}</td><td><code>{escape(place)}</code></td></tr>')
+    body = [f"<h1>{escape(assignment.lab)}: {escape(mark.student)}</h1>",
+            f"<p><b>{mark.points:g} of {mark.most:g} points</b>"
+            + ("" if mark.status == GRADED else f" ({escape(mark.status)})") + "</p>",
+            "<table><tr><th>check</th><th>points</th><th>reason</th><th>place</th></tr>",
+            *rows, "</table>", *(f"<p>{escape(note)}</p>" for note in mark.notes)]
+    if REPLAY in mark.files:
+        body += [f'<h2>Replay</h2><p><a href="{REPLAY}">in a window of its own</a></p>',
+                 f'<iframe src="{REPLAY}" title="Replay" loading="lazy"></iframe>']
+    body += [f'<p><a href="{quote(name)}">{escape(name)}</a></p>' for name in mark.files
+             if name != REPLAY]
+    return _page(f"{assignment.lab}: {mark.student}", body)
+
+
+def _overview(assignment: Assignment, marks: Sequence[Mark]) -> str:
+    names = [check.name for check in assignment.checks]
+    head = "".join(f"<th>{escape(name)}</th>" for name in names)
+    rows: List[str] = []
+    for mark in marks:
+        link = f"{STUDENTS}/{quote(mark.student)}/index.html"
+        cells = "".join(f'<td class="number {_colour(one.points, one.most)}" title='
+                        f'"{escape(said(one), quote=True)}">{one.points:g}</td>'
+                        for one in mark.results)
+        status = "" if mark.status == GRADED else f" ({escape(mark.status)})"
+        rows.append(f'<tr><td><a href="{link}">{escape(mark.student)}</a>{status}</td>'
+                    f'<td class="number"><b>{mark.points:g}</b></td>{cells}</tr>')
+    means = "".join(f'<td class="number">{_mean([mark.results[at].points for mark in marks])}</td>'
+                    for at in range(len(names)))
+    total = _mean([mark.points for mark in marks])
+    return _page(assignment.lab, [
+        f"<h1>{escape(assignment.lab)}</h1>",
+        f"<p>{len(marks)} submissions, {assignment.points:g} points at most."
+        ' Lists: <a href="marks.csv">marks.csv</a>, <a href="nbgrader.csv">nbgrader.csv</a>,'
+        ' <a href="junit.xml">junit.xml</a></p>',
+        f"<table><tr><th>student</th><th>points</th>{head}</tr>", *rows,
+        f'<tr><th>mean</th><td class="number">{total}</td>{means}</tr></table>'])
+
+
+def _mean(values: Sequence[float]) -> str:
+    return f"{sum(values) / len(values):.2f}" if values else ""

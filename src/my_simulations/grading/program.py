@@ -1,0 +1,140 @@
+"""Starts the program of a submission in its cell, and watches its memory."""
+from __future__ import annotations
+
+import contextlib
+import json
+import os
+import signal
+import subprocess
+import sys
+import threading
+from typing import Dict, List, Optional, Sequence
+
+from . import box, cell
+from .assignment import GradeLimits
+
+OUTPUT = "output.txt"
+_FIRST_USER = 61000
+"""User id of the programs of slot 0: one that no account has (Debian policy, 9.2.2)."""
+
+_LOOK_S = 0.1
+_END_S = 10.0
+_KEPT_OUTPUT = 200_000
+
+
+class Program:
+    """A running program.
+
+    Args:
+        command: the command line.
+        folder: working directory, in the submission.
+        scratch: folder of the box.
+        limits: of the assignment.
+        slot: number of the slot.
+        environment: variables besides those of this process.
+
+    Attributes:
+        pid: of the cell.
+        watcher: thread id of the thread that watches the memory.
+        excess: why it was killed; "" if it was not.
+    """
+
+    def __init__(self, command: Sequence[str], folder: str, scratch: str, limits: GradeLimits,
+                 slot: int, environment: Dict[str, str]) -> None:
+        self._limits = limits
+        self._output = os.path.join(scratch, "judge", OUTPUT)
+        self.excess = ""
+        self.watcher = 0
+        user = _FIRST_USER + slot
+        spec = {"parent": os.getpid(), "command": list(command), "cwd": folder,
+                "environment": {**_environment(scratch), **environment},
+                "user": user, "private": [os.path.join(scratch, "judge")],
+                "bytes": int(limits.file_mb * 1e6 / 2), "processes": limits.processes,
+                "memory_bytes": int(limits.memory_mb * 1e6),
+                "processor_seconds": int(limits.processor_seconds) + 1}
+        _give(scratch, user)
+        with open(self._output, "ab") as output:
+            self._process = subprocess.Popen(
+                [sys.executable, "-I", cell.__file__, json.dumps(spec)], cwd=folder,
+                stdin=subprocess.DEVNULL, stdout=output, stderr=subprocess.STDOUT)
+        self.pid = self._process.pid
+        self._ended = threading.Event()
+        self._thread = threading.Thread(target=self._watch, name="memory", daemon=True)
+        self._thread.start()
+
+    @property
+    def running(self) -> bool:
+        """Whether the program runs."""
+        return self._process.poll() is None
+
+    @property
+    def status(self) -> Optional[int]:
+        """Exit status as of a shell; None while it runs."""
+        code = self._process.poll()
+        return None if code is None else code if code >= 0 else 128 - code
+
+    def interrupt(self) -> None:
+        """Ask the program to end, as Ctrl-C does."""
+        for pid in box.descendants(self.pid):
+            with contextlib.suppress(ProcessLookupError, PermissionError):
+                os.kill(pid, signal.SIGINT)
+
+    def close(self) -> None:
+        """Kill the program with all its processes."""
+        self._ended.set()
+        for pid in box.descendants(self.pid):
+            with contextlib.suppress(ProcessLookupError, PermissionError):
+                os.kill(pid, signal.SIGKILL)
+        with contextlib.suppress(subprocess.TimeoutExpired):
+            self._process.wait(_END_S)
+        self._process.kill()
+        self._process.wait()
+
+    def output(self) -> bytes:
+        """The end of what it has printed."""
+        with open(self._output, "rb") as stream:
+            size = stream.seek(0, os.SEEK_END)
+            stream.seek(max(0, size - _KEPT_OUTPUT))
+            return stream.read()
+
+    def why_ended(self) -> str:
+        """What became of it, for a reason; "" while it runs."""
+        status = self.status
+        if self.excess or status is None:
+            return self.excess
+        return f"the program ended with status {status}"
+
+    def _watch(self) -> None:
+        self.watcher = threading.get_native_id()
+        most = self._limits.memory_mb * 1e6
+        while self.running and not self._ended.wait(_LOOK_S):
+            used = sum(map(_resident, box.descendants(self.pid)))
+            if used > most:
+                self.excess = f"the program used more memory than {self._limits.memory_mb:g} MB"
+                self._process.kill()
+                return
+
+
+def _environment(scratch: str) -> Dict[str, str]:
+    home = os.path.join(scratch, "home")
+    return {**os.environ, "BOX_ISOLATION": "", "HOME": home, "ROS_HOME": os.path.join(home, ".ros"),
+            "TMPDIR": os.path.join(scratch, "tmp"), "PYTHONUNBUFFERED": "1", "USER": "student"}
+
+
+def _give(scratch: str, user: int) -> None:
+    """Let the program's user own the folders that it writes, where there is such a user."""
+    waiting: List[str] = [os.path.join(scratch, name) for name in ("submission", "home", "tmp")]
+    with contextlib.suppress(OSError):
+        for top in waiting:
+            os.chown(top, user, user)
+            for folder, folders, names in os.walk(top):
+                for name in (*folders, *names):
+                    os.lchown(os.path.join(folder, name), user, user)
+
+
+def _resident(pid: int) -> int:
+    try:
+        with open(f"/proc/{pid}/statm", encoding="ascii") as statm:
+            return int(statm.read().split()[1]) * os.sysconf("SC_PAGE_SIZE")
+    except (OSError, IndexError):
+        return 0

@@ -1,0 +1,144 @@
+"""The ROS graph of a submission: a master, the world as the node /gazebo, and the program."""
+from __future__ import annotations
+
+import os
+import socket
+import subprocess
+import time
+from typing import List, Optional
+
+from ..child_process import wait_or_kill
+from ..python_api import OpenWorld
+from ..resources.resolver import Resolver
+from .assignment import Assignment, ServiceAnswer, Timed, TopicRate
+from .lockstep import Lockstep
+from .mark import CheckResult, GradingError, result
+from .program import Program
+
+_MASTER_S = 60.0
+_POLL_S = 0.05
+_UPKEEP_S = 1.0
+_STEP_S = 0.01        # sim time between two looks at the program, at most
+_RATE_SHARE = 0.9     # of the wanted rate: a node needs some time to start
+
+
+class RosGraph:
+    """A world with a program that controls it.
+
+    Args:
+        assignment: the assignment.
+        world: the open world.
+        resolver: finds its files.
+
+    Raises:
+        GradingError: the master does not start.
+    """
+
+    def __init__(self, assignment: Assignment, world: OpenWorld, resolver: Resolver) -> None:
+        self._assignment = assignment
+        self._world = world
+        self.uri, self._master = start_master()
+        os.environ.update(graph_environment(self.uri))
+        from ..ros.attached_node import AttachedNode  # rospy: only programs need it
+
+        self._node = AttachedNode(world.simulator, resolver, self.uri)
+        self._upkeep = time.monotonic()
+        self._program: Optional[Program] = None
+        self._lockstep: Optional[Lockstep] = None
+
+    def run(self, program: Program) -> None:
+        """Take a program that has just been started."""
+        for check in self._assignment.of(TopicRate):
+            self._node.watch(check.topic)
+        for check in self._assignment.of(ServiceAnswer):
+            self._node.call(check.service, check.type_name)
+        self._program = program
+        self._lockstep = Lockstep(program, os.getpid())
+        self._lockstep.start()
+
+    def step(self, steps: int) -> None:
+        """Make steps, then wait until the program has done what follows from them."""
+        size = self._world.step_size
+        at_once = max(1, round(_STEP_S / size))
+        while steps > 0:
+            count = min(steps, at_once)
+            self._world.step(count)
+            steps -= count
+            if self._lockstep is not None:
+                self._lockstep.wait(count * size)
+        if time.monotonic() > self._upkeep + _UPKEEP_S:
+            self._upkeep = time.monotonic()
+            self._node.keep_up()
+
+    def result(self, check: Timed) -> CheckResult:
+        """Decide a check of a topic or service."""
+        if isinstance(check, TopicRate):
+            return self._rate(check)
+        if isinstance(check, ServiceAnswer):
+            return self._answer(check)
+        raise TypeError(type(check).__name__)
+
+    def _rate(self, check: TopicRate) -> CheckResult:
+        count, kind = self._node.messages(check.topic)
+        rate = count / check.within if check.within > 0.0 else float(count)
+        if not count:
+            return result(check, 0.0, self._with_end(f"{check.topic} has no messages"))
+        if check.type_name and kind != check.type_name:
+            return result(check, 0.0, f"{check.topic} has messages of the type {kind}, not"
+                                      f" {check.type_name}")
+        if rate < _RATE_SHARE * check.rate:
+            return result(check, 0.0, self._with_end(
+                f"{check.topic} has {rate:.1f} messages a second, {check.rate:g} are needed"))
+        return result(check, 1.0)
+
+    def _answer(self, check: ServiceAnswer) -> CheckResult:
+        answer = self._node.answer(check.service)
+        if answer is None:
+            return result(check, 0.0, self._with_end(
+                f"the service {check.service} did not answer within {check.within:g} s"))
+        if answer:
+            return result(check, 0.0, f"the service {check.service} failed: {answer}")
+        return result(check, 1.0)
+
+    def _with_end(self, reason: str) -> str:
+        end = self._program.why_ended() if self._program is not None else ""
+        return f"{reason}; {end}" if end else reason
+
+    def close(self) -> None:
+        """End node and master."""
+        self._node.close()
+        self._master.terminate()
+        wait_or_kill(self._master, _MASTER_S)
+
+
+def graph_environment(uri: str) -> "dict[str, str]":
+    """Variables of the nodes of a master."""
+    return {"ROS_MASTER_URI": uri, "ROS_IP": "127.0.0.1", "ROS_HOSTNAME": "127.0.0.1"}
+
+
+def start_master() -> "tuple[str, subprocess.Popen[bytes]]":
+    """Start a ROS master on a free port; returns its URI and process. Raises GradingError."""
+    port = free_port()
+    words: List[str] = ["rosmaster", "--core", "-p", str(port)]
+    try:
+        process = subprocess.Popen(words, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
+                                   stderr=subprocess.DEVNULL)
+    except OSError as fault:
+        raise GradingError(f"the ROS master cannot be started: {fault}; source the setup.bash of"
+                           " your workspace") from None
+    until = time.monotonic() + _MASTER_S
+    while time.monotonic() < until and process.poll() is None:
+        with socket.socket() as probe:
+            if probe.connect_ex(("127.0.0.1", port)) == 0:
+                return f"http://127.0.0.1:{port}/", process
+        time.sleep(_POLL_S)
+    process.kill()
+    raise GradingError("the ROS master did not start")
+
+
+def free_port() -> int:
+    """A TCP port that is free now."""
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        port: int = probe.getsockname()[1]
+        return port

@@ -1,0 +1,125 @@
+"""The results of a submission as a stream of bytes from the box: JSON lines and files.
+
+{"result": {...}}          a result of a check
+{"note": "..."}            a remark
+{"isolation": "..."}       how the box is isolated
+{"file": NAME, "size": N}  followed by N bytes
+{"end": true}              everything was checked
+"""
+from __future__ import annotations
+
+import json
+import os
+import re
+from dataclasses import asdict
+from typing import Any, Dict, List
+
+from .mark import CheckResult
+
+_MOST_BYTES = 200 << 20
+_LONGEST_LINE = 1 << 16
+_NAME = re.compile(r"[\w][\w.-]{0,60}\Z")
+
+
+class ResultWriter:
+    """Writes the stream to a file descriptor."""
+
+    def __init__(self, descriptor: int) -> None:
+        self._stream = os.fdopen(descriptor, "wb")
+
+    def result(self, found: CheckResult) -> None:
+        """Send a result."""
+        self._line({"result": asdict(found)})
+
+    def note(self, text: str) -> None:
+        """Send a remark."""
+        self._line({"note": text[:1000]})
+
+    def isolation(self, text: str) -> None:
+        """Send how the box is isolated."""
+        self._line({"isolation": text})
+
+    def file(self, name: str, content: bytes) -> None:
+        """Send a file."""
+        self._line({"file": name, "size": len(content)})
+        self._stream.write(content)
+        self._stream.flush()
+
+    def end(self) -> None:
+        """Send that everything was checked."""
+        self._line({"end": True})
+        self._stream.close()
+
+    def _line(self, value: Dict[str, Any]) -> None:
+        self._stream.write(json.dumps(value).encode() + b"\n")
+        self._stream.flush()
+
+
+class ResultReader:
+    """Collects the stream.
+
+    Attributes:
+        results, notes, isolation: what was received.
+        files: names of files, which are in the folder.
+        ended: whether the end was received.
+    """
+
+    def __init__(self, folder: str) -> None:
+        self.results: List[CheckResult] = []
+        self.notes: List[str] = []
+        self.isolation = ""
+        self.files: List[str] = []
+        self.ended = False
+        self._folder = folder
+        self._waiting = b""
+        self._file = ("", 0)
+        self._bytes = 0
+
+    def feed(self, data: bytes) -> bool:
+        """Take bytes; False if the stream is invalid or too long, and must not be read further."""
+        self._bytes += len(data)
+        if self._bytes > _MOST_BYTES:
+            return False
+        self._waiting += data
+        try:
+            while self._take():
+                pass
+        except (ValueError, TypeError, KeyError, OSError):
+            return False
+        return len(self._waiting) < _LONGEST_LINE or bool(self._file[0])
+
+    def _take(self) -> bool:
+        """Take one line or one file; False if it is not whole yet."""
+        name, size = self._file
+        if name:
+            if len(self._waiting) < size:
+                return False
+            self._write(name, self._waiting[:size])
+            self._waiting, self._file = self._waiting[size:], ("", 0)
+            return True
+        line, found, rest = self._waiting.partition(b"\n")
+        if not found:
+            return False
+        self._waiting = rest
+        self._line(json.loads(line))
+        return True
+
+    def _line(self, value: Dict[str, Any]) -> None:
+        if "result" in value:
+            self.results.append(CheckResult(**value["result"]))
+        elif "note" in value:
+            self.notes.append(str(value["note"]))
+        elif "isolation" in value:
+            self.isolation = str(value["isolation"])
+        elif "file" in value:
+            if not _NAME.match(value["file"]):
+                raise ValueError(value["file"])
+            self._file = (value["file"], int(value["size"]))
+        else:
+            self.ended = bool(value["end"])
+
+    def _write(self, name: str, content: bytes) -> None:
+        os.makedirs(self._folder, exist_ok=True)
+        with open(os.path.join(self._folder, name), "wb") as stream:
+            stream.write(content)
+        self.files.append(name)

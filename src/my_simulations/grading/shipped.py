@@ -1,0 +1,24 @@
+"""Assignments that come with the package, by name."""
+from __future__ import annotations
+
+import os
+from typing import List
+
+from ..resources.package_files import own_directory
+
+
+def folder() -> str:
+    """The folder of the shipped assignments."""
+    return os.path.join(own_directory(), "config", "assignments")
+
+
+def names() -> List[str]:
+    """Names of the shipped assignments."""
+    return sorted(os.path.splitext(name)[0] for name in os.listdir(folder())
+                  if name.endswith(".yaml"))
+
+
+def shipped_assignment(name: str) -> str:
+    """The path of an assignment file: `name` itself if there is such a file or it is a path."""
+    found = os.path.join(folder(), f"{name}.yaml")
+    return found if not os.path.exists(name) and os.path.isfile(found) else name

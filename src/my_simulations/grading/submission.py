@@ -1,0 +1,94 @@
+"""Finds submissions and their files, and hashes their content."""
+from __future__ import annotations
+
+import fnmatch
+import hashlib
+import os
+import stat
+from dataclasses import dataclass
+from typing import Dict, Iterator, List, Sequence, Tuple
+
+from ..errors import CommandError
+
+_CHUNK = 1 << 20
+
+
+@dataclass(frozen=True)
+class Submission:
+    """What a student handed in.
+
+    Attributes:
+        student: name, unique in a run: that of the folder, or of the file without its ending.
+        path: absolute path of the folder or file.
+    """
+
+    student: str
+    path: str
+
+
+def submissions_of(paths: Sequence[str]) -> List[Submission]:
+    """The submissions of a command line.
+
+    Raises:
+        CommandError: a path does not exist, or two submissions have one name.
+    """
+    found: Dict[str, Submission] = {}
+    for path in paths:
+        full = os.path.abspath(path)
+        if not os.path.exists(full):
+            raise CommandError(f"there is no submission {path}")
+        name = os.path.basename(full)
+        student = name if os.path.isdir(full) else os.path.splitext(name)[0]
+        if not student:
+            raise CommandError(f"{path} has no name that could be a student's")
+        if student in found:
+            raise CommandError(f"two submissions have the name {student}: {found[student].path} and"
+                               f" {full}")
+        found[student] = Submission(student, full)
+    return list(found.values())
+
+
+def regular_files(path: str) -> Iterator[Tuple[str, str]]:
+    """Relative and full path of each regular file of a submission, sorted.
+
+    Links, sockets, pipes and devices are left out: they may lead out of the submission.
+    """
+    if not os.path.isdir(path):
+        yield os.path.basename(path), path
+        return
+    for folder, folders, names in os.walk(path):
+        folders[:] = sorted(name for name in folders if not name.startswith(".")
+                            and not os.path.islink(os.path.join(folder, name)))
+        for name in sorted(names):
+            full = os.path.join(folder, name)
+            if stat.S_ISREG(os.lstat(full).st_mode):
+                yield os.path.relpath(full, path), full
+
+
+def content_key(path: str, *more: str) -> str:
+    """SHA-256 of names, permissions to execute and contents of all files, and of more texts."""
+    digest = hashlib.sha256("\0".join(more).encode())
+    for relative, full in regular_files(path):
+        runs = bool(os.stat(full).st_mode & 0o111)
+        digest.update(f"\0{relative}\0{runs}\0{os.path.getsize(full)}\0".encode())
+        with open(full, "rb") as stream:
+            for chunk in iter(lambda: stream.read(_CHUNK), b""):
+                digest.update(chunk)
+    return digest.hexdigest()
+
+
+def matching(folder: str, patterns: Sequence[str]) -> str:
+    """The first file of a submission that fits one of the patterns; "" for none.
+
+    A pattern is a path in the submission, or a name alone, which is looked for in all folders;
+    earlier patterns and shorter paths come first.
+    """
+    names = sorted((relative for relative, _ in regular_files(folder)),
+                   key=lambda name: (name.count(os.sep), name))
+    for pattern in patterns:
+        for name in names:
+            whole = fnmatch.fnmatchcase(name, pattern)
+            if whole or ("/" not in pattern
+                         and fnmatch.fnmatchcase(os.path.basename(name), pattern)):
+                return name
+    return ""

@@ -1,0 +1,175 @@
+"""Runs a world once and decides all checks of the running world."""
+from __future__ import annotations
+
+import math
+from typing import Any, Callable, Dict, List, Optional, Protocol, Sequence
+
+import numpy as np
+
+from ..errors import CommandError, EngineLostError, SimulationError
+from ..python_api import OpenWorld, WorldChoice
+from ..studies.expressions import Samples, Signal
+from ..studies.sampling import SignalReader
+from .assignment import (
+    Assignment,
+    NoContact,
+    Place,
+    Requirement,
+    ServiceAnswer,
+    Timed,
+    TopicRate,
+)
+from .mark import CheckResult, result
+
+_SHOWN = 3   # decimals of a length, m
+
+
+class Recorder(Protocol):
+    """Records the world for the replay."""
+
+    def look(self, world: OpenWorld) -> None:
+        """Add the present state."""
+
+
+class Graph(Protocol):
+    """The ROS graph of the world with the program of the submission."""
+
+    def step(self, steps: int) -> None:
+        """Make steps, then wait until the program has done what follows from them."""
+
+    def result(self, check: Timed) -> CheckResult:
+        """Decide a check of a topic or service at the present sim time."""
+
+
+class WorldRun:
+    """A world and the checks of it.
+
+    Args:
+        assignment: the assignment.
+        world: the open world, before its first step.
+        name: of the world file in the submission; "" for that of the assignment.
+        graph: the ROS graph; None for a world that runs alone.
+    """
+
+    def __init__(self, assignment: Assignment, world: OpenWorld, name: str,
+                 graph: Optional[Graph] = None) -> None:
+        self._assignment = assignment
+        self._world = world
+        self._name = name
+        self._graph = graph
+        self._readers: Dict[str, SignalReader] = {}
+        self._faults: Dict[str, str] = {}
+
+    def run(self, recorder: Optional[Recorder], done: Callable[[CheckResult], None]) -> None:
+        """Make the steps of the longest check; `done` gets each result as soon as it is decided."""
+        checks = sorted(self._assignment.of(Timed), key=lambda check: float(check.within))
+        size = self._world.step_size
+        period = max(1, round(self._assignment.sample / size))
+        made = 0
+        while checks:
+            try:
+                self._sample(checks)
+                if recorder is not None:
+                    recorder.look(self._world)
+                while checks and made >= round(checks[0].within / size):
+                    done(self._decided(checks[0]))
+                    del checks[0]
+                if checks:
+                    steps = min(period, max(1, round(checks[0].within / size) - made))
+                    self._step(steps)
+                    made += steps
+            except SimulationError as fault:
+                for check in checks:
+                    reason = f"the simulation ended after {made * size:g} s: {fault}"
+                    done(result(check, 0.0, reason, self._name))
+                return
+
+    def _step(self, steps: int) -> None:
+        if self._graph is None:
+            self._world.step(steps)
+        else:
+            self._graph.step(steps)
+
+    def _sample(self, checks: Sequence[Timed]) -> None:
+        """Add a sample to each check that can be read; a name may come to exist later."""
+        for check in checks:
+            signals = _signals(check)
+            try:
+                if check.name not in self._readers and signals:
+                    self._readers[check.name] = SignalReader(self._world, signals, {})
+                if check.name in self._readers:
+                    self._readers[check.name].take()
+                self._faults.pop(check.name, None)
+            except EngineLostError:
+                raise
+            except CommandError as fault:
+                self._faults[check.name] = str(fault)
+                self._readers.pop(check.name, None)
+
+    def _decided(self, check: Timed) -> CheckResult:
+        if isinstance(check, (TopicRate, ServiceAnswer)):
+            if self._graph is None:
+                return result(check, 0.0, "the submission contains no program")
+            return self._graph.result(check)
+        if check.name in self._faults:
+            return result(check, 0.0, self._faults[check.name], self._name)
+        samples = self._readers[check.name].samples()
+        return _DECIDE[type(check)](check, samples, self._name)
+
+
+def choice_of(assignment: Assignment, path: str) -> WorldChoice:
+    """The world of an assignment with its models; `path` is the world file."""
+    return WorldChoice(path, models=tuple((model.name, model.file, model.pose)
+                                          for model in assignment.models))
+
+
+def _signals(check: Timed) -> List[Signal]:
+    if isinstance(check, Place):
+        return [Signal("pose", (check.model,), part) for part in "xyz"]
+    if isinstance(check, NoContact):
+        return [Signal("contact", (check.first, check.second))]
+    if isinstance(check, Requirement):
+        return [signal for one in (check.require, check.partial) if one is not None
+                for signal in one.signals]
+    return []
+
+
+def _placed(check: Place, samples: Samples, name: str) -> CheckResult:
+    now = [float(samples[signal][-1]) for signal in _signals(check)]
+    distance = math.sqrt(sum((value - wanted) ** 2 for value, wanted in zip(now, check.at)
+                             if wanted is not None))
+    if distance <= check.tolerance:
+        return result(check, 1.0)
+    share = 0.0
+    if check.partial > check.tolerance:
+        share = (check.partial - distance) / (check.partial - check.tolerance)
+    place = ", ".join(f"{value:.{_SHOWN}f}" for value in now)
+    return result(check, share, f"{check.model} is at ({place}) m after {check.within:g} s,"
+                  f" {distance:.{_SHOWN}f} m from its place; {check.tolerance:g} m are allowed",
+                  name)
+
+
+def _required(check: Requirement, samples: Samples, name: str) -> CheckResult:
+    if check.require is None:
+        return result(check, 0.0, "there is no condition")
+    if check.require.value(samples):
+        return result(check, 1.0)
+    reason = f"not true within {check.within:g} s of sim time: {check.require.text}"
+    share = 0.0
+    if check.partial is not None:
+        share = float(check.partial.value(samples))
+        share = 0.0 if math.isnan(share) else min(max(share, 0.0), 1.0)
+        reason += f"; partial points by {check.partial.text}: {100.0 * share:.0f} %"
+    return result(check, share, reason, name)
+
+
+def _apart(check: NoContact, samples: Samples, name: str) -> CheckResult:
+    touched = np.flatnonzero(samples[_signals(check)[0]])
+    if not len(touched):
+        return result(check, 1.0)
+    time = float(samples[Signal("time")][touched[0]])
+    return result(check, 0.0, f"{check.first} touches {check.second} at {time:.2f} s", name)
+
+
+_DECIDE: Dict[type, Callable[[Any, Samples, str], CheckResult]] = {
+    Place: _placed, Requirement: _required, NoContact: _apart}

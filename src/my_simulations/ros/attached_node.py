@@ -1,0 +1,90 @@
+"""The node /gazebo of a world that another program steps."""
+from __future__ import annotations
+
+import importlib
+import threading
+from typing import Any, Dict, Tuple
+
+import rospy
+
+from ..resources.resolver import Resolver
+from ..simulator.simulator import Simulator
+from .node import Node
+from .registration import publisher
+
+_NAME = "gazebo"
+_CLOCK_QUEUE = 1000
+_SERVICE_S = 3600.0   # the caller decides how long an answer may take
+
+
+class AttachedNode:
+    """Offers a running, paused simulator to the ROS graph; only its owner makes steps.
+
+    Args:
+        simulator: the simulator.
+        resolver: resolves URIs of spawned models.
+        master: URI of the master, which must run.
+    """
+
+    def __init__(self, simulator: Simulator, resolver: Resolver, master: str) -> None:
+        rospy.init_node(_NAME, argv=[_NAME], disable_rostime=True, disable_signals=True,
+                        log_level=rospy.WARN)
+        rospy.set_param("/use_sim_time", True)
+        rospy.set_param("~manual_stepping", True)
+        clock = publisher("/clock", queue_size=_CLOCK_QUEUE, tcp_nodelay=True)
+        self._node = Node(simulator, resolver, clock, None, master)
+        self._node.advertise()
+        self._node.start_publishing()
+        self._node.advertise_late()
+        self._lock = threading.Lock()
+        self._messages: Dict[str, int] = {}
+        self._types: Dict[str, str] = {}
+        self._answers: Dict[str, str] = {}
+        self._subscribers: Dict[str, Any] = {}
+
+    def keep_up(self) -> None:
+        """Keep the registration up to date; call it about once a second."""
+        self._node.keep_up()
+
+    def watch(self, topic: str) -> None:
+        """Count the messages of a topic from now on."""
+        def count(message: Any) -> None:
+            with self._lock:
+                self._messages[topic] = self._messages.get(topic, 0) + 1
+                self._types[topic] = str(message._connection_header.get("type", ""))
+
+        if topic not in self._subscribers:
+            self._subscribers[topic] = rospy.Subscriber(topic, rospy.AnyMsg, count)
+
+    def messages(self, topic: str) -> Tuple[int, str]:
+        """How many messages of a watched topic have come, and their type."""
+        with self._lock:
+            return self._messages.get(topic, 0), self._types.get(topic, "")
+
+    def call(self, service: str, type_name: str) -> None:
+        """Call a service as soon as it exists, with a default request, in a thread."""
+        thread = threading.Thread(target=self._call, args=(service, type_name), daemon=True,
+                                  name=f"call {service}")
+        thread.start()
+
+    def answer(self, service: str) -> "str | None":
+        """Why a called service has failed, "" if it has answered; None before that."""
+        with self._lock:
+            return self._answers.get(service)
+
+    def _call(self, service: str, type_name: str) -> None:
+        answer = ""
+        try:
+            package, _, name = type_name.partition("/")
+            kind = getattr(importlib.import_module(f"{package}.srv"), name)
+            rospy.wait_for_service(service, _SERVICE_S)
+            rospy.ServiceProxy(service, kind)()
+        except Exception as fault:  # of the called node, its types or the network
+            answer = f"{type(fault).__name__}: {fault}"
+        with self._lock:
+            self._answers[service] = answer
+
+    def close(self) -> None:
+        """Take the node off the graph."""
+        self._node.stop()
+        rospy.signal_shutdown("the world is closed")

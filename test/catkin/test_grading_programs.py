@@ -1,0 +1,155 @@
+"""Grading of programs: what a program does changes its own mark only."""
+from __future__ import annotations
+
+import csv
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+REPOSITORY = Path(__file__).resolve().parents[2]
+GRADE = [sys.executable, str(REPOSITORY / "scripts" / "grade")]
+SECONDS = 900.0
+
+BOX = REPOSITORY / "examples" / "friction_study_box.sdf"
+MODELS = f"models:\n  box: {{file: {BOX}, pose: [0, 0, 0.1]}}\n"
+DRIVE = f"""lab: drive
+submission: {{run: go.py}}
+world: worlds/empty.world
+{MODELS}checks:
+  - {{points: 4, name: goal, require: "hypot(pose.box.x - 1, pose.box.y) < 0.05", within: 2,
+     partial: final(pose.box.x)}}
+  - {{points: 2, name: talks, topic: /chat, type: std_msgs/String, rate: 20, within: 2}}
+  - {{points: 1, name: type, topic: /chat, type: std_msgs/Int32, within: 2}}
+  - {{points: 1, name: answers, service: /go, type: std_srvs/Empty, within: 2}}
+"""
+GO = """#!/usr/bin/env python3
+import rospy
+from gazebo_msgs.msg import ModelState
+from gazebo_msgs.srv import SetModelState
+from std_msgs.msg import String
+from std_srvs.srv import Empty, EmptyResponse
+
+rospy.init_node("go")
+chat = rospy.Publisher("/chat", String, queue_size=10)
+rospy.Service("/go", Empty, lambda _: EmptyResponse())
+rospy.wait_for_service("/gazebo/set_model_state")
+move = rospy.ServiceProxy("/gazebo/set_model_state", SetModelState)
+state = ModelState(model_name="box")
+state.pose.position.z, state.pose.orientation.w = 0.1, 1.0
+rate = rospy.Rate(25)
+while not rospy.is_shutdown():
+    chat.publish("here")
+    state.pose.position.x = min({goal}, state.pose.position.x + 0.05)
+    move(state)
+    rate.sleep()
+"""
+HOSTILE = {
+    "fork": "import os\nwhile True:\n    try: os.fork()\n    except OSError: pass\n",
+    "kill": "import os\nfor pid in range(2, 100000):\n    try: os.kill(pid, 9)\n"
+            "    except OSError: pass\ntry: os.kill(-1, 9)\nexcept OSError: pass\n",
+    "delete": "import os, shutil\nfor top in ({folder!r}, '/tmp', os.getcwd()):\n"
+              "    shutil.rmtree(top, ignore_errors=True)\n"
+              "print([name for name in {names!r} if os.access(os.path.join({folder!r}, name),"
+              " os.R_OK | os.X_OK)])\n",
+    "log": "import sys\nwith open('big', 'wb') as big:\n    try:\n        while True:\n"
+           "            big.write(bytes(1000000))\n    except OSError as fault: print(fault)\n"
+           "while True: sys.stdout.write('y' * 1000000)\n",
+    "memory": "import os\nfor _ in range(10):\n    if os.fork() == 0: break\nkept = []\n"
+              "while True:\n    try: kept.append(bytearray(10000000))\n"
+              "    except MemoryError: pass\n",
+    "loop": "while True: pass\n",
+}
+QUICK = f"""submission: {{run: go.py}}
+world: worlds/empty.world
+{MODELS}checks:
+  - {{points: 4, name: moved, require: pose.box.x > 0.1, within: 0.3}}
+  - {{points: 2, name: talks, topic: /chat, rate: 20, within: 0.3}}
+"""
+LIMITS = ("limits: {processor_seconds: 20, memory_mb: 1000, processes: 100, file_mb: 50}\n")
+LAUNCH = """lab: launch
+checks:
+  - {points: 2, name: launch, launch: my_world.launch, args: "gui:=false", nodes: /gazebo,
+     seconds: 1}
+  - {points: 4, name: test, rostest: lab.test}
+"""
+TEST = """<launch>
+  <arg name="submission"/>
+  <param name="folder" value="$(arg submission)"/>
+  <test test-name="there" pkg="rostest" type="paramtest" time-limit="60">
+    <param name="param_name_target" value="/folder"/><param name="test_duration" value="0.5"/>
+  </test>
+  <test test-name="missing" pkg="rostest" type="paramtest" time-limit="60">
+    <param name="param_name_target" value="/nothing"/><param name="test_duration" value="0.5"/>
+  </test>
+</launch>
+"""
+
+
+def grade(folder, text, programs, *words, name="go.py"):
+    """Grade programs by name; returns their rows and the folder of the students."""
+    (folder / "lab.yaml").write_text(text)
+    for student, program in programs.items():
+        (folder / student).mkdir(exist_ok=True)
+        (folder / student / name).write_text(program)
+    done = subprocess.run([*GRADE, "lab.yaml", *programs, "--out", "marks", *words], cwd=folder,
+                          text=True, timeout=SECONDS, capture_output=True)
+    assert done.returncode == 0, done.stderr
+    with open(folder / "marks" / "marks.csv", newline="") as stream:
+        rows = {row["student"]: row for row in csv.DictReader(stream)}
+    return rows, folder / "marks" / "students"
+
+
+def points(row, *names):
+    return [float(row[name]) for name in names]
+
+
+@pytest.mark.parametrize("words", [(), ("--no-isolation",)], ids=["isolated", "ordinary"])
+def test_a_program_is_marked_for_what_it_does_in_sim_time(tmp_path, words):
+    rows, students = grade(tmp_path, DRIVE, {"good": GO.format(goal=1.0),
+                                             "half": GO.format(goal=0.5)}, *words)
+    names = ("goal", "talks", "type", "answers")
+    assert points(rows["good"], *names) == [4, 2, 0, 1], students
+    assert points(rows["half"], *names) == [2, 2, 0, 1]
+    said = json.loads((students / "half" / "results.json").read_text())["tests"]
+    assert "partial points" in said[0]["output"] and "std_msgs/String" in said[2]["output"]
+    assert 'id="data"' in (students / "good" / "replay.html").read_text(encoding="utf-8")
+
+
+def test_hostile_programs_change_no_other_mark(tmp_path):
+    names = [*HOSTILE, "good"]
+    programs = {name: text.format(folder=str(tmp_path), names=names) if name == "delete" else text
+                for name, text in HOSTILE.items()}
+    outside = subprocess.Popen([sys.executable, "-c", "import time; time.sleep(1000)"])
+    try:
+        rows, students = grade(tmp_path, LIMITS + QUICK, {**programs, "good": GO.format(goal=1.0)},
+                               "--jobs", "2")
+        assert outside.poll() is None
+    finally:
+        outside.kill()
+        outside.wait()
+    assert points(rows["good"], "moved", "talks") == [4, 2]
+    for name in HOSTILE:
+        assert points(rows[name], "moved", "talks") == [0, 0], name
+        assert rows[name]["status"] == "graded"
+        assert (tmp_path / name / "go.py").read_text() == programs[name]
+    assert "more memory than 1000 MB" in (students / "memory" / "index.html").read_text()
+    assert (students / "delete" / "output.txt").read_text() in ("", "[]\n")
+    assert sum(path.stat().st_size for path in students.rglob("*")) < 30e6
+
+
+def test_launch_files_and_rostests_are_run(tmp_path):
+    (tmp_path / "lab.test").write_text(TEST)
+    launch = (REPOSITORY / "launch" / "my_world.launch").read_text()
+    rows, students = grade(tmp_path, LAUNCH, {
+        "good": launch, "broken": launch.replace("empty_world.launch", "nothing.launch")},
+        name="my_world.launch")
+    assert points(rows["good"], "launch", "test") == [2, 2]
+    assert points(rows["broken"], "launch", "test") == [0, 2]
+    found = json.loads((students / "broken" / "results.json").read_text())["tests"]
+    assert "nothing.launch" in found[0]["output"]
+    assert found[1]["output"].startswith("1 of 2 tests passed")
+    assert os.listdir(tmp_path / "good") == ["my_world.launch"]

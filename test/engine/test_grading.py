@@ -1,0 +1,124 @@
+"""Grading of world files, from the command line to the pages."""
+from __future__ import annotations
+
+import csv
+import json
+import os
+
+import pytest
+
+from my_simulations.cli.grade_command import main
+
+BALL = """<model name="{name}"><pose>{x} 0 {z} 0 0 0</pose><link name="l">
+<inertial><mass>1</mass><inertia><ixx>.004</ixx><iyy>.004</iyy><izz>.004</izz></inertia></inertial>
+<collision name="c"><geometry><sphere><radius>0.1</radius></sphere></geometry></collision>
+</link></model>"""
+WORLD = """<sdf version="1.6"><world name="w"><include><uri>model://ground_plane</uri></include>
+{}</world></sdf>"""
+LAB = """lab: fall
+submission: {world: "*.world"}
+checks:
+  - {points: 1, name: valid, check_model: strict}
+  - {points: 4, name: place, place: ball, at: [0, 0, 1.775], within: 0.5, tolerance: 0.01,
+     partial: 1.01}
+  - {points: 4, name: ground, require: pose.ball.z < 0.11, within: 3,
+     partial: 1 - min(pose.ball.z)}
+  - {points: 1, name: apart, no_contact: [ball, ground_plane], within: 0.5}
+  - {points: 1, name: landed, no_contact: [ball, ground_plane], within: 3}
+"""
+
+
+@pytest.fixture
+def folder(tmp_path, monkeypatch):
+    (tmp_path / "lab.yaml").write_text(LAB)
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+def submit(folder, student, *balls):
+    (folder / student).mkdir(exist_ok=True)
+    (folder / student / "a.world").write_text(WORLD.format("".join(
+        BALL.format(name=name, x=x, z=z) for name, x, z in balls)))
+
+
+def grade(folder, *words):
+    status = main(["grade", "lab.yaml", *words, "--out", "marks"])
+    with open(folder / "marks" / "marks.csv", newline="") as stream:
+        return status, {row["student"]: row for row in csv.DictReader(stream)}
+
+
+def points(row):
+    return [float(row[name]) for name in ("valid", "place", "ground", "apart", "landed")]
+
+
+def test_worlds_are_run_and_marked_with_partial_points(folder, capsys):
+    submit(folder, "good", ("ball", 0, 3))
+    submit(folder, "near", ("ball", 0.51, 3))
+    submit(folder, "none", ("cube", 0, 3))
+    (folder / "broken").mkdir()
+    (folder / "broken" / "a.world").write_text("<sdf version='1.6'>\n<world>")
+    (folder / "empty").mkdir()
+    status, rows = grade(folder, "good", "near", "none", "broken", "empty", "--jobs", "2")
+    assert status == 0, capsys.readouterr().err
+    assert points(rows["good"]) == [1, 4, 4, 1, 0]
+    assert points(rows["near"]) == [1, 2, 4, 1, 0]
+    assert points(rows["none"]) == [1, 0, 0, 0, 0]
+    assert points(rows["broken"])[1:] == points(rows["empty"])[1:] == [0, 0, 0, 0]
+    students = folder / "marks" / "students"
+    found = json.loads((students / "near" / "results.json").read_text())
+    assert "0.510 m from its place" in found["tests"][1]["output"]
+    assert "touches ground_plane at 0." in found["tests"][4]["output"]
+    assert "no model" in (students / "none" / "index.html").read_text()
+    assert "a.world:2" in (students / "broken" / "index.html").read_text()
+    assert 'id="data"' in (students / "good" / "replay.html").read_text(encoding="utf-8")
+
+
+def test_an_unchanged_submission_keeps_its_mark_and_a_changed_one_is_graded_again(folder, capsys):
+    submit(folder, "anna", ("ball", 0, 3))
+    submit(folder, "ben", ("ball", 0, 3))
+    grade(folder, "anna", "ben")
+    times = {name: os.stat(folder / "marks" / "students" / name / "mark.json").st_mtime_ns
+             for name in ("anna", "ben")}
+    submit(folder, "ben", ("ball", 0.51, 3))
+    capsys.readouterr()
+    status, rows = grade(folder, "anna", "ben")
+    assert (status, points(rows["anna"])[1], points(rows["ben"])[1]) == (0, 4, 2)
+    told = capsys.readouterr().err
+    assert "anna: 10 of 11, unchanged" in told and "ben: 8 of 11\n" in told
+    now = {name: os.stat(folder / "marks" / "students" / name / "mark.json").st_mtime_ns
+           for name in ("anna", "ben")}
+    assert now["anna"] == times["anna"] and now["ben"] != times["ben"]
+    text = LAB.replace("points: 1, name: valid", "points: 2, name: valid")
+    (folder / "lab.yaml").write_text(text)
+    assert points(grade(folder, "anna")[1]["anna"])[0] == 2
+
+
+def test_a_world_that_exceeds_the_time_leaves_the_checks_before_it(folder, capsys):
+    (folder / "lab.yaml").write_text(LAB.replace("within: 3", "within: 3000").replace(
+        "lab: fall", "lab: fall\nlimits: {seconds: 4}\nsample: 0.001"))
+    submit(folder, "slow", *((f"ball{n}" if n else "ball", n, 3) for n in range(60)))
+    status, rows = grade(folder, "slow")
+    assert (status, rows["slow"]["status"]) == (1, "timed out")
+    assert points(rows["slow"])[2:] == [0, 0, 0] or points(rows["slow"])[3] == 1
+    assert "not finished within 4 s" in (
+        folder / "marks" / "students" / "slow" / "index.html").read_text()
+
+
+def test_a_submission_that_is_too_large_is_told_so(folder):
+    (folder / "lab.yaml").write_text(LAB.replace("lab: fall", "lab: fall\nlimits: {file_mb: 1}"))
+    submit(folder, "large", ("ball", 0, 3))
+    (folder / "large" / "video.avi").write_bytes(bytes(2_000_000))
+    _, rows = grade(folder, "large")
+    assert points(rows["large"]) == [0, 0, 0, 0, 0]
+    assert "the limit is 1 MB" in (
+        folder / "marks" / "students" / "large" / "index.html").read_text()
+
+
+def test_an_invalid_assignment_or_command_line_ends_with_2(folder, capsys):
+    (folder / "bad.yaml").write_text("checks:\n  - {points: x}\n")
+    assert main(["grade", "bad.yaml", "anna"]) == 2
+    assert "bad.yaml:2: error: a check has exactly one of the keys" in capsys.readouterr().err
+    assert main(["grade", "lab.yaml", "nobody"]) == 2
+    assert main(["grade", "lab.yaml", "--check"]) == 0
+    assert "5 checks, 11 points" in capsys.readouterr().out
+    assert main(["grade", "lab_sheet", "--check"]) == 0

@@ -1,0 +1,109 @@
+"""Assignment files: what is read, and which faults are named with their lines."""
+from __future__ import annotations
+
+import pytest
+
+from my_simulations.errors import InputError
+from my_simulations.grading.assignment import (
+    EntityCount,
+    Launch,
+    NoContact,
+    Place,
+    Requirement,
+    Rostest,
+    ServiceAnswer,
+    TopicRate,
+    ValidFile,
+)
+from my_simulations.grading.assignment_file import read_assignment
+from my_simulations.grading.shipped import names, shipped_assignment
+
+WHOLE = """lab: lab1
+submission: {world: test.world, run: go.py}
+limits: {seconds: 100, processes: 20}
+checks:
+  - {points: 2, name: valid file, check_model: strict}
+  - points: 2
+    count: static
+    not: [ground_plane]
+    at_least: 1
+  - {points: 4, place: box, at: [1, 2], within: 3, tolerance: 0.2, partial: 1}
+  - {points: 4, require: "hypot(pose.robo.x-2, pose.robo.y) < 0.3", within: 20,
+     partial: "1 - final(pose.robo.x) / 2"}
+  - {points: 1, no_contact: [robo, wall], within: 20}
+  - {points: 1, topic: cmd_vel, type: geometry_msgs/Twist, rate: 10, within: 20}
+  - {points: 1, service: /go, type: std_srvs/Empty, within: 20}
+  - {points: 1, launch: my_world.launch, args: "x:=1", nodes: /gazebo}
+  - {points: 3, rostest: lab.test}
+"""
+
+
+def read(folder, text):
+    (folder / "lab.test").write_text("<launch/>")
+    (folder / "lab.yaml").write_text(text)
+    return read_assignment(str(folder / "lab.yaml"))[0]
+
+
+def faults(folder, text):
+    with pytest.raises(InputError) as caught:
+        read(folder, text)
+    return [(issue.line, issue.code, issue.message) for issue in caught.value.issues]
+
+
+def test_all_kinds_of_checks_are_read(tmp_path):
+    found = read(tmp_path, WHOLE)
+    assert (found.lab, found.points, found.limits.seconds, found.limits.processes) == (
+        "lab1", 19.0, 100.0, 20)
+    assert [type(check) for check in found.checks] == [
+        ValidFile, EntityCount, Place, Requirement, NoContact, TopicRate, ServiceAnswer, Launch,
+        Rostest]
+    valid, count, place, require, apart, topic, service, launch, rostest = found.checks
+    assert (valid.name, valid.strict, valid.line) == ("valid file", True, 5)
+    assert (count.name, count.least, count.excluded, count.line) == (
+        "count static", 1, ("ground_plane",), 6)
+    assert (place.at, place.within) == ((1.0, 2.0, None), 3.0)
+    assert require.require.condition and not require.partial.condition
+    assert (apart.first, apart.second) == ("robo", "wall")
+    assert (topic.topic, topic.rate, service.service) == ("/cmd_vel", 10.0, "/go")
+    assert (launch.file, launch.nodes) == (("my_world.launch",), ("/gazebo",))
+    assert rostest.file == str(tmp_path / "lab.test")
+
+
+@pytest.mark.parametrize("check, message", [
+    ("{points: 1, count: cats, at_least: 1}", "'count' must be one of static"),
+    ("{points: 1, count: static}", "needs at_least"),
+    ("{count: static, at_least: 1}", "'points' is missing"),
+    ("{points: -1, count: static, at_least: 1}", "must be at least 0"),
+    ("{points: 1}", "exactly one of the keys"),
+    ("{points: 1, check_model: strict, count: static, at_least: 1}", "exactly one of the keys"),
+    ("{points: 1, check_model: strict, witin: 3}", "unknown key 'witin'"),
+    ("{points: 1, require: pose.a.x < 1}", "'within' is missing"),
+    ("{points: 1, require: pose.a.x <, within: 1}", "expected a"),
+    ("{points: 1, require: final(pose.a.x), within: 1}", "takes a condition"),
+    ("{points: 1, require: vary.x < 1, within: 1}", "there is no 'vary'"),
+    ("{points: 1, place: a, at: [1], within: 1}", "list of 2 or 3 numbers"),
+    ("{points: 1, no_contact: [a], within: 1}", "must name two models"),
+    ("{points: 1, service: /go, within: 1}", "'checks.1.type' must be text"),
+    ("{points: 1, rostest: none.test}", "there is no file"),
+])
+def test_faults_of_checks_have_their_lines(tmp_path, check, message):
+    found = faults(tmp_path, "submission: {world: a.world}\nchecks:\n"
+                             "  - {points: 1, check_model: strict}\n  - " + check + "\n")
+    assert [line for line, _, text in found if message in text] == [4], found
+    assert all(code.startswith("grade-") or code == "file-not-found" for _, code, _ in found)
+
+
+def test_faults_of_the_file_are_named(tmp_path):
+    assert "a mapping" in faults(tmp_path, "- 1\n")[0][2]
+    assert "'checks' must be a list" in faults(tmp_path, "lab: a\n")[0][2]
+    assert faults(tmp_path, "lab: a\nchecks:\n  - {points: 1, check_model: strict}\n") == [
+        (3, "grade-key", "'check_model strict' needs a world")]
+    twice = "  - {points: 1, check_model: strict, name: a}\n"
+    assert "two checks have the name 'a'" in faults(
+        tmp_path, "submission: {world: a.world}\nchecks:\n" + 2 * twice)[0][2]
+
+
+@pytest.mark.parametrize("name", names())
+def test_shipped_assignments_are_valid(name):
+    found, issues = read_assignment(shipped_assignment(name))
+    assert issues == [] and found.lab == name and found.points > 0

@@ -1,0 +1,129 @@
+"""Marks, lists and pages; the stream of results; submissions and their content."""
+from __future__ import annotations
+
+import csv
+import json
+import os
+
+import pytest
+from lxml import etree
+
+from my_simulations.errors import CommandError
+from my_simulations.grading.assignment_file import read_assignment
+from my_simulations.grading.lists import write_lists
+from my_simulations.grading.mark import GRADED, TIMED_OUT, CheckResult, Mark, mark_of, result
+from my_simulations.grading.pages import write_pages
+from my_simulations.grading.result_stream import ResultReader, ResultWriter
+from my_simulations.grading.submission import (
+    content_key,
+    matching,
+    regular_files,
+    submissions_of,
+)
+
+
+@pytest.fixture
+def assignment(tmp_path):
+    (tmp_path / "lab.yaml").write_text("submission: {world: a.world}\nchecks:\n"
+                                       "  - {points: 2, name: valid, check_model: strict}\n"
+                                       "  - {points: 3, name: many, count: model, at_least: 3}\n")
+    return read_assignment(str(tmp_path / "lab.yaml"))[0]
+
+
+@pytest.fixture
+def marks(assignment):
+    first, second = assignment.checks
+    return [Mark("anna", GRADED, [result(first, 1.0), result(second, 1.0)], files=["replay.html"]),
+            Mark("<ben>", TIMED_OUT, [result(first, 0.0, "a <b> \x01 is wrong", "a.world", 7),
+                                      result(second, 0.5, "too few")], ["a note"])]
+
+
+def test_points_are_shares_and_are_rounded(assignment):
+    check = assignment.checks[1]
+    assert [result(check, share).points for share in (-1.0, 1.0 / 3.0, 0.5, 2.0)] == [
+        0.0, 1.0, 1.5, 3.0]
+    mark = Mark("a", GRADED, [result(check, 0.5, "r", "f", 3)], key="k")
+    assert mark_of(mark.to_json()) == mark
+
+
+def test_lists_have_points_and_reasons(assignment, marks, tmp_path):
+    write_lists(assignment, marks, str(tmp_path / "out"))
+    with open(tmp_path / "out" / "marks.csv", newline="") as stream:
+        rows = list(csv.DictReader(stream))
+    assert [(row["student"], row["points"], row["status"], row["many"]) for row in rows] == [
+        ("anna", "5.0", "graded", "3.0"), ("<ben>", "1.5", "timed out", "1.5")]
+    with open(tmp_path / "out" / "nbgrader.csv", newline="") as stream:
+        (anna, _) = csv.DictReader(stream)
+    assert (anna["assignment"], anna["student_id"], anna["score"], anna["max_score"]) == (
+        "lab", "anna", "5.0", "5.0")
+    found = json.loads((tmp_path / "out" / "students" / "<ben>" / "results.json").read_text())
+    assert found["score"] == 1.5 and found["output"] == "a note"
+    assert found["tests"][0] == {"name": "valid", "score": 0.0, "max_score": 2.0,
+                                 "status": "failed", "output": "a.world:7: a <b> \x01 is wrong"}
+    suites = etree.parse(str(tmp_path / "out" / "junit.xml")).getroot()
+    assert [(one.get("name"), one.get("failures"), one.get("errors")) for one in suites] == [
+        ("anna", "0", "0"), ("<ben>", "0", "2")]
+
+
+def test_pages_show_reasons_and_lead_to_replays(assignment, marks, tmp_path):
+    path = write_pages(assignment, marks, str(tmp_path / "out"))
+    overview = open(path, encoding="utf-8").read()
+    assert "students/anna/index.html" in overview and "&lt;ben&gt;" in overview
+    assert "<ben>" not in overview and ">3.25<" in overview
+    students = tmp_path / "out" / "students"
+    assert 'src="replay.html"' in (students / "anna" / "index.html").read_text()
+    page = (students / "<ben>" / "index.html").read_text()
+    assert "a &lt;b&gt;" in page and "<code>a.world:7</code>" in page and "a note" in page
+
+
+def test_results_and_files_come_through_in_pieces(assignment, tmp_path):
+    receiving, sending = os.pipe()
+    writer = ResultWriter(sending)
+    writer.isolation("files")
+    writer.result(result(assignment.checks[0], 0.5, "why", "f", 2))
+    writer.file("replay.html", b"line\nline\n\0")
+    writer.note("a note")
+    writer.end()
+    with os.fdopen(receiving, "rb") as stream:
+        data = stream.read()
+    reader = ResultReader(str(tmp_path / "anna"))
+    assert all(reader.feed(data[at:at + 7]) for at in range(0, len(data), 7))
+    assert reader.results == [CheckResult("valid", 2.0, 1.0, "why", "f", 2)]
+    assert (reader.notes, reader.isolation, reader.ended) == (["a note"], "files", True)
+    assert (tmp_path / "anna" / "replay.html").read_bytes() == b"line\nline\n\0"
+
+
+@pytest.mark.parametrize("data", [
+    b"text\n", b'{"file": "../x", "size": 1}\n', b'{"result": {"name": 1}}\n', b"x" * (1 << 17)])
+def test_a_stream_that_is_invalid_is_not_read_further(tmp_path, data):
+    assert not ResultReader(str(tmp_path)).feed(data)
+    assert os.listdir(tmp_path) == []
+
+
+def test_submissions_are_named_and_their_content_decides(tmp_path):
+    for name in ("anna", "ben"):
+        (tmp_path / name / "world").mkdir(parents=True)
+        (tmp_path / name / "world" / "test.world").write_text("<sdf/>")
+    (tmp_path / "carl.world").write_text("<sdf/>")
+    anna, ben, carl = submissions_of([str(tmp_path / name) for name in ("anna", "ben/",
+                                                                        "carl.world")])
+    assert [one.student for one in (anna, ben, carl)] == ["anna", "ben", "carl"]
+    assert content_key(anna.path) == content_key(ben.path)
+    assert content_key(anna.path, "other") != content_key(anna.path)
+    before = content_key(anna.path)
+    (tmp_path / "anna" / "world" / "test.world").write_text("<sdf></sdf>")
+    assert content_key(anna.path) != before
+    assert matching(anna.path, ("*.sdf", "test.world")) == "world/test.world"
+    assert matching(anna.path, ("other.world",)) == ""
+    with pytest.raises(CommandError, match="the name anna"):
+        submissions_of([str(tmp_path / "anna"), str(tmp_path / "anna")])
+    with pytest.raises(CommandError, match="no submission"):
+        submissions_of([str(tmp_path / "nobody")])
+
+
+def test_links_and_pipes_are_no_files_of_a_submission(tmp_path):
+    (tmp_path / "a.txt").write_text("a")
+    (tmp_path / "secret").symlink_to("/etc/passwd")
+    (tmp_path / "folder").symlink_to("/etc")
+    os.mkfifo(tmp_path / "pipe")
+    assert [name for name, _ in regular_files(str(tmp_path))] == ["a.txt"]
