@@ -51,6 +51,21 @@ def _episode(env, seed, steps=15):
     return np.array(found)
 
 
+@pytest.mark.parametrize("name", [PUSH, STACK])
+def test_an_episode_goes_on_bit_for_bit_from_a_saved_state(make, name):
+    env = make(name)
+    _episode(env, 4)
+    world = env.unwrapped.world
+    saved, actions = world.save(), np.random.default_rng(7)
+    tries = [actions.uniform(-1, 1, (10, *env.action_space.shape)) for _ in range(2)]
+    found = []
+    for number in (0, 1, 0):
+        found.append(np.array([env.step(action)[0] for action in tries[number]]))
+        world.restore(saved)
+    assert (found[2] == found[0]).all()
+    assert (found[1] != found[0]).any()
+
+
 def test_an_episode_repeats_bit_for_bit_in_the_same_and_in_another_engine(make):
     env = make(PUSH)
     first = _episode(env, 4)
