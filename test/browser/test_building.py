@@ -245,6 +245,38 @@ def test_a_wall_is_painted_in_the_3d_view(drawn):
     wait_for(lambda: painted.count() == 0, "the wall as it was")
 
 
+def test_keys_change_the_plan_after_a_click_in_the_3d_view(drawn):
+    editor, sheet = drawn
+    page = editor.page
+    before = editor.names()
+    steps = editor.get("editor.store.history.depth")
+    box = page.locator("#view").bounding_box()
+
+    def press(*keys):
+        page.mouse.click(box["x"] + box["width"] / 2, box["y"] + box["height"] - 20)
+        for key in keys:
+            page.keyboard.press(key)
+
+    press("Control+z")
+    sheet.shows(walls=4)
+    press("Control+Shift+z")
+    sheet.shows(walls=5)
+    press("Control+a", "Delete")
+    sheet.shows(walls=0)
+    press("Control+z")
+    sheet.shows(walls=5)
+    press("Control+s")
+    page.get_by_role("dialog", name="Save Building").wait_for()
+    page.keyboard.press("Escape")
+    name = page.get_by_role("textbox", name="Model Name", exact=True)
+    name.click()
+    page.keyboard.press("Control+s")
+    page.get_by_role("dialog", name="Save Building").wait_for()
+    page.keyboard.press("Escape")
+    assert editor.names() == before
+    assert editor.get("editor.store.history.depth") == steps
+
+
 def test_a_floor_plan_is_scaled_by_a_line_and_a_file_that_is_none_refused(drawn, tmp_path):
     editor, sheet = drawn
     page = editor.page

@@ -101,7 +101,7 @@ export function run(actions, name) {
 export const hotkey = (event) => BY_KEYS.get(spelled(event));
 
 /** Keys that a focused control needs for itself. @param {KeyboardEvent} event */
-function belongsToControl(event) {
+export function belongsToControl(event) {
   const {target} = event;
   if (!(target instanceof Element)) return false;
   if (target.closest('dialog, [role="dialog"]') || document.querySelector('dialog:modal')) return true;

@@ -1,8 +1,7 @@
 /** Mouse and keyboard on the sheet, handed to the tool in metres of the plan. */
-import {hotkey} from '../hotkeys.js';
+import {belongsToControl, hotkey} from '../hotkeys.js';
 import {isDown} from '../mouse_buttons.js';
 import {isModalOpen} from '../panels/dialog.js';
-import {isTextInput} from '../panels/dom.js';
 import {menuList, openPopup} from '../panels/popup.js';
 import {hitOf} from './hit_test.js';
 import {inspectItem, inspectLevel} from './inspector.js';
@@ -121,7 +120,8 @@ const title = (word) => word[0].toUpperCase() + word.slice(1);
 const OF_THE_PAGE = new Set(['building', 'fullScreen', 'hotkeys', 'togglePanels']);
 
 /**
- * Keys of the building editor, as long as the focus is on it or nowhere.
+ * Keys of the building editor. All of the page's keys are its own while it is open, wherever the focus
+ * is: the world's keys would change models that are not shown.
  * @param {HTMLElement} element
  * @param {{session: Session, files: import('./building_editor.js').FileCommands,
  *          exit: () => void, draw: () => void}} parts
@@ -145,9 +145,7 @@ export function listenToKeys(element, {session, files, exit, draw}) {
   };
   /** @param {KeyboardEvent} event */
   const pressed = (event) => {
-    const at = document.activeElement;
-    const here = !at || at === document.body || element.contains(at);
-    if (isModalOpen() || !here || event.defaultPrevented || isTextInput(event.target)) return;
+    if (isModalOpen() || event.defaultPrevented || belongsToControl(event)) return;
     if (type(event)) {
       event.preventDefault();
       return;
