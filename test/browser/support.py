@@ -68,7 +68,9 @@ class Node:
     def __init__(self, folder, world, *arguments):
         self.home = str(folder)
         self.worlds = os.path.join(self.home, "my_simulations", "worlds")
+        self.typed = os.path.join(self.home, "typed_here")
         os.makedirs(self.worlds, exist_ok=True)
+        os.makedirs(self.typed, exist_ok=True)
         port = free_port()
         self.master = f"http://127.0.0.1:{port}"
         environment = {name: value for name, value in os.environ.items()
@@ -80,7 +82,8 @@ class Node:
         self.process = subprocess.Popen(
             ["roslaunch", "-p", str(port), "gazebo_ros", "empty_world.launch", "gui:=true",
              "paused:=true", f"world_name:={world}", *arguments],
-            env=environment, stdout=self.log, stderr=subprocess.STDOUT, start_new_session=True)
+            env=environment, cwd=self.typed, stdout=self.log, stderr=subprocess.STDOUT,
+            start_new_session=True)
         try:
             public = wait_for(self._editor_url, "the editor's address")
         except AssertionError as fault:

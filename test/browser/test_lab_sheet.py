@@ -164,7 +164,7 @@ def save_with(editor, node, launched):
     """The models in a file that Save As has written, in the folder where it begins."""
     editor.page.keyboard.press("Control+Shift+s")
     dialog = editor.page.get_by_role("dialog", name="Save World As")
-    wait_for(lambda: dialog.get_by_label("Folder").text_content() == node.worlds, "the folder")
+    wait_for(lambda: dialog.get_by_label("Folder").text_content() == node.typed, "the folder")
     choice = dialog.get_by_role(
         "checkbox", name="Include robo, which the launch file spawns at each start")
     choice.wait_for(state="visible")
@@ -173,11 +173,48 @@ def save_with(editor, node, launched):
     name = f"with_{launched}.world"
     dialog.get_by_role("textbox", name="File name").fill(name)
     dialog.get_by_role("button", name="Save", exact=True).click()
-    path = os.path.join(node.worlds, name)
+    path = os.path.join(node.typed, name)
     wait_for(lambda: os.path.isfile(path), "the file")
     dialog.wait_for(state="detached")
     world = ElementTree.parse(path).getroot().find("world")
     return [model.get("name") for model in world.findall("model")]
+
+
+def test_a_typed_name_with_its_ending_is_saved_where_the_command_was_typed(editor, node):
+    box = editor.place("Box", on_ground(-0.4, -1.6))
+    editor.page.keyboard.press("Control+Shift+s")
+    dialog = editor.page.get_by_role("dialog", name="Save World As")
+    wait_for(lambda: dialog.get_by_label("Folder").text_content() == node.typed, "the folder")
+    editor.page.keyboard.type("my_world.sdf")
+    editor.page.keyboard.press("Enter")
+    path = os.path.join(node.typed, "my_world.sdf")
+    wait_for(lambda: os.path.isfile(path), "the file")
+    dialog.wait_for(state="detached")
+    assert box in [model.get("name") for model in ElementTree.parse(path).iter("model")]
+
+
+def test_a_world_is_saved_in_a_new_folder(editor, node):
+    editor.place("Box", on_ground(-0.4, -1.6))
+    editor.page.keyboard.press("Control+Shift+s")
+    dialog = editor.page.get_by_role("dialog", name="Save World As")
+    wait_for(lambda: dialog.get_by_label("Folder").text_content() == node.typed, "the folder")
+    dialog.get_by_role("button", name="New Folder").click()
+    asked = editor.page.get_by_role("dialog", name="New Folder")
+    asked.get_by_role("textbox", name="Folder name").fill("week_1")
+    editor.page.keyboard.press("Enter")
+    asked.wait_for(state="detached")
+    folder = os.path.join(node.typed, "week_1")
+    wait_for(lambda: dialog.get_by_label("Folder").text_content() == folder, "the new folder")
+    dialog.get_by_role("textbox", name="File name").fill("room.world")
+    dialog.get_by_role("button", name="Save", exact=True).click()
+    wait_for(lambda: os.path.isfile(os.path.join(folder, "room.world")), "the file")
+    dialog.wait_for(state="detached")
+    editor.page.keyboard.press("Control+Shift+s")
+    wait_for(lambda: dialog.get_by_label("Folder").text_content() == folder, "the world's folder")
+    dialog.get_by_role("option", name="..", exact=True).click()
+    dialog.get_by_role("option", name="week_1", exact=True).click()
+    dialog.get_by_role("option", name="room.world").wait_for()
+    editor.page.keyboard.press("Escape")
 
 
 def test_the_middle_of_the_drawn_view_is_where_a_person_points(editor):

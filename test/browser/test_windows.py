@@ -296,7 +296,7 @@ def test_a_clone_is_another_file_and_the_world_keeps_its_own(node, open_page):
     dialog = editor.page.get_by_role("dialog", name="World Cloned")
     command = dialog.get_by_label("Command").input_value()
     dialog.get_by_role("button", name="Close").last.click()
-    clone = os.path.join(node.worlds, "second.world")
+    clone = os.path.join(node.typed, "second.world")
     assert command.endswith(f"gazebo {clone}")
     assert editor.get("editor.store.history.file") == own
     outcome = editor.get(f"editor.actions.open({clone!r}, {{discard: true}})")

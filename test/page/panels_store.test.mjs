@@ -5,7 +5,7 @@ import {Connection, RequestError} from '../../web/js/connection.js';
 import {Store} from '../../web/js/store.js';
 import {Watches} from '../../web/js/watches.js';
 import {faultText} from '../../web/js/panels/dialog.js';
-import {withEnding} from '../../web/js/panels/dialogs/world_file_dialogs.js';
+import {rootLabels, withEnding} from '../../web/js/panels/dialogs/world_file_dialogs.js';
 import {contextMenu, keysOf, menus} from '../../web/js/panels/menu_items.js';
 import {numberFault} from '../../web/js/panels/property_inputs.js';
 import {HOTKEYS} from '../../web/js/hotkeys.js';
@@ -73,6 +73,12 @@ test('worlds are saved with an ending', () => {
   assert.equal(withEnding('room'), 'room.world');
   assert.equal(withEnding('room.sdf'), 'room.sdf');
   assert.equal(withEnding('room.v2'), 'room.v2.world');
+});
+
+test('folders that end alike are told apart by the folders above them', () => {
+  assert.deepEqual(rootLabels(['/home/a/my_simulations/worlds', '/a/src/x/world', '/b/src/x/world']),
+    ['my_simulations/worlds', 'a/src/x/world', 'b/src/x/world']);
+  assert.deepEqual(rootLabels(['/b', '/a/b']), ['/b', 'a/b']);
 });
 
 test("numbers out of a field's range are refused in words", () => {

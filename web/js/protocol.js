@@ -532,6 +532,8 @@ export const FRAME_RECORD_BYTES = 32;
  *      path: string, parent?: string|null, roots: string[], folders: Folder[], files: File[],
  *      launched: string[], chosen: SaveChoices
  *    }},
+ *  new_folder: {fields: {parent: string, name: string},
+ *    reply: {path: string}},
  *  autosave: {fields: {action: 'restore'|'discard'|'list', name?: string|null},
  *    reply: {file?: string|null, entries?: Recoverable[]|null}},
  *  library: {fields: {},

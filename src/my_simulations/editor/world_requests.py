@@ -57,6 +57,7 @@ class Requests:
             "play": self._play, "pause": self._pause, "step": self._step, "save": self._save,
             "open": self._open, "new": self._new, "autosave": self._restore,
             "drag_end": self._drag_end, "folders": self._folders,
+            "new_folder": self._new_folder,
         }
         return {"hello": Route(self._hello, None), "drag": Route(self._drag, None),
                 "presence": Route(self._presence, None),
@@ -218,6 +219,9 @@ class Requests:
 
     def _folders(self, _client: Client, message: Dict[str, Any]) -> Dict[str, Any]:
         return self._files.folders(message)
+
+    def _new_folder(self, _client: Client, message: Dict[str, Any]) -> Dict[str, Any]:
+        return self._files.new_folder(message)
 
     def _filed(self, client: Client, verb: str,
                handler: Callable[[Dict[str, Any]], Dict[str, Any]],

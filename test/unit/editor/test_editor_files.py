@@ -196,24 +196,66 @@ def test_no_save_goes_into_a_file_that_ships(case):
         assert file.read() == before
 
 
-def test_a_file_dialog_starts_in_the_users_own_folder_then_beside_the_users_world(
+def test_a_file_dialog_starts_where_the_command_was_typed_then_beside_the_users_world(
         case, tmp_path, monkeypatch):
     monkeypatch.setenv("HOME", str(tmp_path / "home"))
-    mine = tmp_path / "course"
-    mine.mkdir()
-    made = case(box("a"), save_roots=None, caller=str(mine))
+    typed, mine = tmp_path / "course", tmp_path / "course/mine"
+    mine.mkdir(parents=True)
+    made = case(box("a"), save_roots=None, caller=str(typed))
 
     async def save(browser):
         found = await browser.ask("folders")
-        assert found["path"] == str(tmp_path / "home/my_simulations/worlds")
+        assert found["path"] == str(typed)
+        users = str(tmp_path / "home/my_simulations/worlds")
+        assert users in found["roots"]
+        found = await browser.ask("folders", path=users)
         assert (found["folders"], found["files"]) == ([], [])
-        assert str(mine) in found["roots"]
-        assert (await browser.ask("save", path="one"))["path"] == found["path"] + "/one.world"
-        await browser.ask("save", path=str(mine / "two.world"))
+        assert (await browser.ask("save", path="one"))["path"] == f"{users}/one.world"
+        await browser.ask("save", path=str(mine / "two.sdf"))
         assert (await browser.ask("folders"))["path"] == str(mine)
         assert (await browser.ask("save", path="three"))["path"] == str(mine / "three.world")
 
     made.browse(save)
+
+
+def test_a_file_dialog_starts_in_the_first_folder_if_the_command_was_typed_in_none(
+        case, tmp_path):
+    made = case(caller=str(tmp_path))
+
+    async def look(browser):
+        assert (await browser.ask("folders"))["path"] == str(made.worlds)
+
+    made.browse(look)
+
+
+def test_a_new_folder_is_created_in_an_allowed_folder_only(case, tmp_path):
+    made = case()
+    outside = tmp_path / "outside"
+    outside.mkdir()
+    (made.worlds / "link").symlink_to(outside)
+
+    async def create(browser):
+        reply = await browser.ask("new_folder", parent=str(made.worlds), name=" first ")
+        assert reply["path"] == str(made.worlds / "first")
+        inner = await browser.ask("new_folder", parent=reply["path"], name="second")
+        assert os.path.isdir(inner["path"])
+        refusals = [(str(made.worlds), name, "folder-name")
+                    for name in ("", "..", ".", ".x", "a/b", "../out")]
+        refusals += [(str(parent), "new", "not-allowed")
+                     for parent in (outside, made.worlds / "link", made.worlds / "..", "/")]
+        refusals += [(str(made.worlds), "first", "exists"),
+                     (str(made.worlds), "link", "exists"),
+                     (str(made.worlds), "n" * 300, "folder-not-created")]
+        for parent, name, code in refusals:
+            with pytest.raises(Refused) as refused:
+                await browser.ask("new_folder", parent=parent, name=name)
+            assert refused.value.code == code, (parent, name)
+        with pytest.raises(Refused):
+            await browser.ask("new_folder", parent=str(made.worlds), name="a\u202eb")
+        assert os.listdir(str(outside)) == []
+        assert sorted(os.listdir(str(made.worlds))) == ["first", "link"]
+
+    made.browse(create)
 
 
 def test_folders_and_worlds_are_listed_below_the_roots_only(case, tmp_path):

@@ -10,7 +10,7 @@ from ...description.world import World
 from ...errors import Issue, Severity
 from ...formats.sdf.writer.entities import write_world
 from ...resources.resolver import Resolver
-from ...resources.world_lookup import ships
+from ...resources.world_lookup import folder_of_users, ships
 from ...simulator.history import History
 from ...simulator.saving import (
     EXTENSIONS,
@@ -22,6 +22,7 @@ from ...simulator.saving import (
 )
 from ...simulator.simulator import Simulator
 from ...simulator.world_loading import load_world
+from ...xml_characters import check_file_name
 from ..editor_options import EditorOptions
 from ..transport.error_messages import EditRefusedError
 
@@ -49,10 +50,25 @@ class WorldFiles:
         self.file = simulator.world.file
 
     def roots(self) -> List[str]:
-        """Folders below which worlds are opened and saved; saving starts in the first."""
+        """Folders below which worlds are opened and saved; relative paths start in the first."""
         if self._options.save_roots is not None:
             return list(self._options.save_roots)
         return default_roots(self.file, self._options.caller)
+
+    def _start(self, roots: List[str]) -> str:
+        """The folder in which a file dialog starts.
+
+        The folder of the user's world, else the folder in which the command was typed; the first
+        root if neither is an allowed folder that can be written.
+
+        Args:
+            roots: the allowed folders, with symbolic links resolved.
+        """
+        typed = os.path.realpath(self._options.caller or os.getcwd())
+        for folder in (folder_of_users(self.file), typed):
+            if folder and os.access(folder, os.W_OK) and _is_below(folder, roots):
+                return folder
+        return roots[0] if roots else ""
 
     def save(self, message: Dict[str, Any]) -> Dict[str, Any]:
         """`save`: to a path, or to where the world was opened or saved.
@@ -158,18 +174,37 @@ class WorldFiles:
 
     def folders(self, message: Dict[str, Any]) -> Dict[str, Any]:
         """`folders`: folders and world files below an allowed root."""
-        roots = list(dict.fromkeys(os.path.realpath(os.path.expanduser(root))
-                                   for root in self.roots()))
-        wanted = message.get("path") or (roots[0] if roots else "")
-        folder = os.path.realpath(os.path.expanduser(wanted))
-        if not any(_is_in(folder, root) for root in roots):
-            raise EditRefusedError("not-allowed", f"{folder} is not an allowed folder; allowed: "
-                          + ", ".join(roots))
+        roots = self._real_roots()
+        folder = _allowed_folder(message.get("path") or self._start(roots), roots)
         parent = os.path.dirname(folder)
         folders, files = _listed(folder)
         return {"path": folder, "roots": roots, "folders": folders, "files": files,
-                "parent": parent if any(_is_in(parent, root) for root in roots) else None,
+                "parent": parent if _is_below(parent, roots) else None,
                 "launched": self._world.models.launched(), "chosen": dict(self._chosen)}
+
+    def new_folder(self, message: Dict[str, Any]) -> Dict[str, Any]:
+        """`new_folder`: creates one folder in an allowed folder."""
+        parent = _allowed_folder(message["parent"], self._real_roots())
+        name = message["name"].strip()
+        if not name or name.startswith(".") or "/" in name or "\0" in name:
+            raise EditRefusedError("folder-name", f"invalid folder name {name!r}",
+                                   "enter a name without '/' that does not start with '.'")
+        check_file_name(name)
+        path = os.path.join(parent, name)
+        try:
+            os.makedirs(parent, exist_ok=True)  # the users' folder need not exist yet
+            os.mkdir(path)
+        except FileExistsError as fault:
+            raise EditRefusedError("exists", f"{path} already exists",
+                                   "choose another name") from fault
+        except OSError as fault:
+            raise EditRefusedError("folder-not-created",
+                                   f"{path}: {fault.strerror or fault}") from fault
+        return {"path": path}
+
+    def _real_roots(self) -> List[str]:
+        return list(dict.fromkeys(os.path.realpath(os.path.expanduser(root))
+                                  for root in self.roots()))
 
     def launched(self) -> List[str]:
         """The models that the launch file spawned."""
@@ -201,6 +236,19 @@ class WorldFiles:
 
 def _is_in(path: str, root: str) -> bool:
     return path == root or path.startswith(root.rstrip(os.sep) + os.sep)
+
+
+def _is_below(path: str, roots: List[str]) -> bool:
+    return any(_is_in(path, root) for root in roots)
+
+
+def _allowed_folder(path: str, roots: List[str]) -> str:
+    """The folder with symbolic links resolved. Raises EditRefusedError outside of the roots."""
+    folder = os.path.realpath(os.path.expanduser(path))
+    if not _is_below(folder, roots):
+        raise EditRefusedError("not-allowed", f"{folder} is not an allowed folder; allowed: "
+                               + ", ".join(roots))
+    return folder
 
 
 def _listed(folder: str) -> Tuple[List[Dict[str, Any]], List[Dict[str, Any]]]:

@@ -23,6 +23,22 @@ import {icon} from '../icons.js';
 
 const ENDINGS = /\.(world|sdf|xml)$/i;
 
+/**
+ * The ends of paths: the last two folders, and as many more as make each one different.
+ * @param {string[]} roots
+ * @returns {string[]}
+ */
+export function rootLabels(roots) {
+  /** @param {string} root @param {number} count */
+  const tail = (root, count) => root.split('/').slice(-count).join('/');
+  return roots.map((root) => {
+    let count = 2;
+    while (count < root.split('/').length &&
+      roots.some((other) => other !== root && tail(other, count) === tail(root, count))) count += 1;
+    return tail(root, count);
+  });
+}
+
 /** The list of one folder, with its way up and the allowed roots above it. */
 class FolderList {
   /** @param {RequestFunction} request @param {FolderHandlers} folderHandlers */
@@ -32,13 +48,14 @@ class FolderList {
     /** @type {Requests['folders']['reply']|null} */
     this.listing = null;
     this.path = h('output', {class: 'folder-path', 'aria-label': 'Folder'});
+    const create = h('button', {type: 'button', text: 'New Folder…', onclick: () => this.#create()});
     this.roots = h('div', {class: 'folder-roots', role: 'group', 'aria-label': 'Places'});
     this.list = h('div', {class: 'folder-list', role: 'listbox', 'aria-label': 'Files'});
     this.element = h(
       'div',
       {class: 'folders'},
       this.roots,
-      h('div', {class: 'folder-main'}, this.path, this.list),
+      h('div', {class: 'folder-main'}, h('div', {class: 'folder-head'}, this.path, create), this.list),
     );
     this.#rove = roving(this.list, '[role=option]', {vertical: true, wrap: false});
   }
@@ -57,14 +74,30 @@ class FolderList {
     this.#show();
   }
 
+  /** Asks for a name, creates a folder in the one that is shown, and shows it. */
+  async #create() {
+    const parent = this.listing?.path;
+    if (!parent) return;
+    const name = h('input', {type: 'text', spellcheck: 'false', autocomplete: 'off', autofocus: true,
+      'aria-label': 'Folder name'});
+    const path = await new Dialog({
+      title: 'New Folder',
+      content: [labelled('Folder name', name)],
+      buttons: [{title: 'Cancel'}, {title: 'Create', primary: true,
+        run: async () => (await this.request('new_folder', {parent, name: name.value})).path}],
+    }).open();
+    if (typeof path === 'string') await this.go(path);
+  }
+
   #show() {
     if (!this.listing) return;
     const {path, parent, roots, folders, files} = this.listing;
     this.path.textContent = path;
     this.path.title = path;
+    const labels = rootLabels(roots);
     fill(
       this.roots,
-      ...roots.map((root) =>
+      ...roots.map((root, at) =>
         h(
           'button',
           {
@@ -75,7 +108,7 @@ class FolderList {
             'aria-pressed': String(path === root || path.startsWith(`${root}/`)),
           },
           icon('folder', 15),
-          h('span', {class: 'label', text: root.split('/').slice(-2).join('/')}),
+          h('span', {class: 'label', text: labels[at]}),
         ),
       ),
     );
@@ -212,8 +245,8 @@ async function filesDialog(
     buttons: [{title: 'Cancel'}, {title: button, primary: true, run: chosen}],
   });
   const closed = dialog.open();
-  // Typing replaces the name and leaves the ending.
-  name.setSelectionRange(0, name.value.replace(ENDINGS, '').length);
+  // Typing replaces the whole name: an ending that is typed decides the format.
+  name.select();
   await folders.go();
   if (folders.listing) onListing(folders.listing);
   const answer = await closed;
