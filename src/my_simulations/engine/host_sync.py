@@ -5,6 +5,7 @@ import time
 from typing import Callable
 
 from .commands import Clear, Command, LoadModel, RemoveModel, Restart, Synchronize
+from .memory_fence import fence
 from .ring import SETTINGS, STEP_BUDGET, WAITS_AT, WAITS_FOR_ROOM, Clock, RingWriter
 from .step_records import RecordSource, RecordWriter, SetRecordRules
 
@@ -67,6 +68,7 @@ class HostSync:
         """Notify the host that the newest snapshot shows `step`, where the engine waits for it."""
         self._words[SETTINGS] = self._settings
         self._words[WAITS_AT] = step + 1
+        fence()   # the budget is read only then: see `SyncPoints.allow`
         self._notify_now()
 
     def go_on(self) -> None:
@@ -83,6 +85,7 @@ class HostSync:
             return True
         if not self.records.write(step, clock_sets, clock):
             self._words[WAITS_FOR_ROOM] = 1
+            fence()
             self._notify_now()
             return False
         self._words[WAITS_FOR_ROOM] = 0

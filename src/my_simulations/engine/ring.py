@@ -6,8 +6,12 @@ body, so a reader that finds both equal to the one it asked for has a whole snap
 that dies in the middle leaves the previous slot untouched. The step count of the control page is
 newer than the latest slot while nothing has moved, or if not every step is read out.
 
-Who only wants to see where everything is, is served from a second, smaller ring: its slots hold
-link rows whose poses are new and whose twists may be older. To read twists costs as much again.
+On processors that reorder stores and loads, fences keep this order: the begin number before the
+body, the body before the end number and the number of the newest slot; readers read the number of
+the newest slot before the body, and the body before both numbers.
+
+Readers that need poses only use a second, smaller ring: its slots hold link rows whose poses are
+new and whose twists may be older. To read twists costs as much again.
 
 A program that acts at exact steps has a step budget in the control page: the step at which the
 engine stops until the budget is raised. A budget is valid for one setting of the world only: after
@@ -24,6 +28,7 @@ from dataclasses import dataclass
 from typing import NamedTuple, Optional, Sequence, Union
 
 from ..geometry import Pose, Twist
+from .memory_fence import IS_WEAKLY_ORDERED, keep_order
 
 Buffer = Union[bytes, memoryview]
 
@@ -217,12 +222,14 @@ class RingWriter:
 
     def hold(self, step: int) -> None:
         """Nothing has moved from what was written last until this step."""
+        keep_order()
         self.words[HELD_STEP] = step
 
     def _fill(self, slot: int, number: int, step: int, clock: Clock, links: Buffer,
               joints: Buffer) -> None:
         words = self.words
         words[slot + SEQ_BEGIN] = number
+        keep_order()
         words[slot + SLOT_STEP] = step
         words[slot + EPOCH_STEP] = clock.epoch_step
         words[slot + EPOCH_NS] = clock.epoch_ns
@@ -233,6 +240,7 @@ class RingWriter:
         self.memory.buffer[at:at + len(links)] = links
         at += _LINK_WORDS * 8
         self.memory.buffer[at:at + len(joints)] = joints
+        keep_order()
         words[slot + SEQ_END] = number
 
 
@@ -271,9 +279,10 @@ class RingReader:
     def clock(self) -> "tuple[int, Clock]":
         """The step count now and the clock that belongs to it, without copying states."""
         while True:
-            sequence = self.words[LATEST]
+            sequence = self._newest()
             slot = self.memory.slot(sequence)
             clock, step = self._clock_of(slot), self.words[STEP]
+            keep_order()
             if self.words[LATEST] == sequence:
                 return step, clock
 
@@ -281,7 +290,9 @@ class RingReader:
         """How often the clock was set, the step count now, and the clock that belongs to both."""
         while True:
             sets = self.words[CLOCK_SETS]
+            keep_order()
             step, clock = self.clock()
+            keep_order()
             if self.words[CLOCK_SETS] == sets:
                 return sets, step, clock
 
@@ -290,16 +301,20 @@ class RingReader:
         words, doubles = self.words, self.memory.doubles
         while True:
             sequence = words[LATEST]
+            if IS_WEAKLY_ORDERED:
+                keep_order()
             slot = _FIRST_SLOT + sequence % SLOTS * _SLOT_WORDS  # in line: robots read many
             at = slot + _FIRST_JOINT + row * JOINT_WIDTH
             found = doubles[at], doubles[at + 1]
+            if IS_WEAKLY_ORDERED:
+                keep_order()
             if words[slot + SEQ_BEGIN] == sequence == words[slot + SEQ_END]:
                 return found
 
     def link(self, row: int) -> "tuple[Pose, Twist]":
         """Newest state of one link, without copying the rest."""
         while True:
-            sequence = self.words[LATEST]
+            sequence = self._newest()
             slot = self.memory.slot(sequence)
             found = _link_at(self.memory.doubles, slot + HEAD_WORDS + row * LINK_WIDTH)
             if self._is_whole(slot, sequence):
@@ -308,7 +323,7 @@ class RingReader:
     def raw_links(self) -> "tuple[int, bytes]":
         """Sequence of the newest snapshot and its used link rows as they lie in memory."""
         while True:
-            sequence = self.words[LATEST]
+            sequence = self._newest()
             slot = self.memory.slot(sequence)
             links = self._links_of(slot)
             if self._is_whole(slot, sequence):
@@ -324,13 +339,21 @@ class RingReader:
         while True:
             # Before the slot: if that is newer than this step, its own step is greater.
             held = self.words[HELD_STEP]
+            keep_order()
             newer = self.words[POSES_ARE_NEWER]
             number = self.words[LATEST_POSES if newer else LATEST]
+            keep_order()
             slot = self.memory.pose_slot(number) if newer else self.memory.slot(number)
             step, clock = self.words[slot + SLOT_STEP], self._clock_of(slot)
             links = self._links_of(slot)
             if self._is_whole(slot, number):
                 return max(step, held), clock, links
+
+    def _newest(self) -> int:
+        """The number of the newest slot, read before anything in that slot."""
+        sequence = self.words[LATEST]
+        keep_order()
+        return sequence
 
     def _clock_of(self, slot: int) -> Clock:
         words = self.words
@@ -346,6 +369,7 @@ class RingReader:
         slot = self.memory.slot(sequence)
         if not self._is_whole(slot, sequence):
             return None
+        keep_order()
         step = self.words[slot + SLOT_STEP]
         links = self._links_of(slot)
         return (step, links) if self._is_whole(slot, sequence) else None
@@ -353,7 +377,7 @@ class RingReader:
     def read(self, sequence: Optional[int] = None) -> Optional[Snapshot]:
         """A copy of snapshot `sequence` (default the newest); None once it is overwritten."""
         while True:
-            wanted = self.words[LATEST] if sequence is None else sequence
+            wanted = self._newest() if sequence is None else sequence
             found = self._copy(wanted)
             if found is not None or sequence is not None:
                 return found
@@ -363,6 +387,7 @@ class RingReader:
         words, doubles = self.words, self.memory.doubles
         if words[slot + SEQ_END] != sequence:
             return None
+        keep_order()
         clock = Clock(words[slot + EPOCH_STEP], words[slot + EPOCH_NS], words[slot + STEP_PS])
         step = words[slot + SLOT_STEP]
         at = slot + HEAD_WORDS
@@ -379,4 +404,6 @@ class RingReader:
         return Snapshot(sequence, step, clock, links, joints)
 
     def _is_whole(self, slot: int, sequence: int) -> bool:
+        """Whether everything read from the slot before this call belongs to `sequence`."""
+        keep_order()
         return self.words[slot + SEQ_BEGIN] == sequence == self.words[slot + SEQ_END]

@@ -19,6 +19,7 @@ from dataclasses import dataclass
 from typing import Any, Counter, Dict, Iterator, List, Optional, Protocol, Tuple
 
 from .commands import Command, SetJoints
+from .memory_fence import keep_order
 from .rates import Rate
 from .ring import (
     FIRST_RECORD,
@@ -134,6 +135,7 @@ class RecordWriter:
         """Where a record of `size` words fits, in words from the first one."""
         words = self._words
         written, read = words[RECORDS_WRITTEN], words[RECORDS_READ]
+        keep_order()   # what was read is overwritten only then
         if written == read:
             return 0   # the memory that is touched stays small
         if written - read >= RECORDS:
@@ -171,6 +173,7 @@ class RecordWriter:
         self._buffer[at * 8:at * 8 + len(world)] = world
         number = words[RECORDS_WRITTEN]
         words[RECORD_PLACES + number % RECORDS] = place
+        keep_order()   # the record before its number
         words[RECORDS_WRITTEN] = number + 1
         waiting = number + 1 - words[RECORDS_READ]
         self.is_urgent = waiting >= _MANY or self.is_urgent and waiting > 1 or any(
@@ -264,9 +267,11 @@ class RecordReader:
         read = words[RECORDS_READ]
         if words[RECORDS_WRITTEN] == read:
             return None
+        keep_order()   # the number before its record
         return StepRecord(self._memory,
                           FIRST_RECORD + words[RECORD_PLACES + read % RECORDS])
 
     def release(self) -> None:
-        """The oldest record is not needed any more."""
+        """Allow the writer to overwrite the oldest record."""
+        keep_order()
         self._words[RECORDS_READ] += 1

@@ -8,6 +8,7 @@ from __future__ import annotations
 import threading
 from typing import Callable, NamedTuple, Optional, Sequence
 
+from ..engine.memory_fence import fence
 from ..engine.ring import (
     NO_LIMIT,
     SETTINGS,
@@ -117,6 +118,7 @@ class SyncPoints:
         """Let the engine run to `step` while `settings` are the world's; None for no limit."""
         words = self._session.ring.words
         words[STEP_BUDGET] = budget_word(settings, NO_LIMIT >> 17 if step is None else step)
+        fence()   # else the engine could begin to wait between the two, and not be notified
         if words[WAITS_AT]:
             self._session.supervisor.engine.notify()
 
@@ -126,6 +128,7 @@ class SyncPoints:
 
     def make_room(self) -> None:
         """Notify an engine that waits for the release of records."""
+        fence()
         if self._session.ring.words[WAITS_FOR_ROOM]:
             self._session.supervisor.engine.notify()
 
