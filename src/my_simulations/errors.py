@@ -135,6 +135,10 @@ class CommandError(SimulationError):
     """
 
 
+class OutdatedCommandError(CommandError):
+    """A request about a model, link or joint that was removed in the meantime."""
+
+
 class EngineTimeoutError(CommandError):
     """The engine runs but has not answered in time; the request may still be carried out."""
 

@@ -28,6 +28,7 @@ class Reply:
         error: one sentence if it was rejected; "" otherwise.
         is_partial: whether a rejected command has changed the world already. The engine then waits
             to be replaced; the newest snapshot shows the world before the command.
+        is_outdated: whether it was rejected because a model, link or joint had been removed.
     """
 
     step: int
@@ -35,6 +36,7 @@ class Reply:
     value: object = None
     error: str = ""
     is_partial: bool = False
+    is_outdated: bool = False
 
 
 @dataclass(frozen=True)
@@ -87,11 +89,11 @@ class Engine(Protocol):
     def on_event(self, listener: Callable[[Event], None]) -> None:
         """Set the listener of events, called from the engine's reader thread."""
 
-    def on_death(self, listener: Callable[[str, List[Command]], None]) -> None:
-        """Set the listener of the engine's death.
+    def on_death(self, listener: Callable[[str, List[Command]], bool]) -> None:
+        """Set the listener of the engine's death; it returns whether the first command is suspect.
 
         It gets a reason and the commands without a reply in their order, among them each `Post`
-        whose effect no snapshot shows.
+        whose effect no snapshot shows. It must not submit commands: `submit` waits for it.
         """
 
     def wait_bell(self, timeout: float) -> bool:
@@ -115,7 +117,15 @@ class Engine(Protocol):
 
 
 class EngineDiedError(SimulationError):
-    """The engine died before it replied."""
+    """The engine died before it replied.
+
+    Attributes:
+        is_suspect: whether this command may have killed it; see `Engine.on_death`.
+    """
+
+    def __init__(self, reason: str, is_suspect: bool = False) -> None:
+        super().__init__(reason)
+        self.is_suspect = is_suspect
 
 
 class EngineNotRunningError(EngineDiedError):
@@ -124,6 +134,10 @@ class EngineNotRunningError(EngineDiedError):
 
 class CommandRefusedError(SimulationError):
     """A rejected command; the message is one sentence for the user."""
+
+
+class RemovedError(CommandRefusedError):
+    """A rejected command about a model, link or joint that was removed in the meantime."""
 
 
 class PartiallyAppliedError(SimulationError):

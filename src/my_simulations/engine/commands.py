@@ -148,10 +148,6 @@ class RemoveModel(Command):
     model_id: int
 
 
-GONE = "is not there any more"
-"""Ends the refusal of a command about what was removed in the meantime."""
-
-
 @dataclass(frozen=True)
 class SetModelState(Command):
     """Move all links of a model rigidly so that its frame has `pose`; joints keep their positions.

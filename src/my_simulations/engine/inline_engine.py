@@ -54,12 +54,12 @@ class InlineEngine:
         self._memory = Memory(None)
         self._ring = RingReader(memory=self._memory)
         self.rung, self.notices = threading.Event(), threading.Event()
-        self._lock = threading.Lock()
+        self._lock, self._send_lock = threading.Lock(), threading.Lock()
         self._waiting: Dict[int, Tuple[Command, Future[Reply]]] = {}
         self._posts = PostedCommands(self._ring)
         self._numbers = 0
         self._on_event: Callable[[Event], None] = lambda event: None
-        self._on_death: Callable[[str, List[Command]], None] = lambda reason, commands: None
+        self._on_death: Callable[[str, List[Command]], bool] = lambda reason, commands: False
         self._alive = False
         self.restart()
 
@@ -77,7 +77,7 @@ class InlineEngine:
         """Set the listener of events."""
         self._on_event = listener
 
-    def on_death(self, listener: Callable[[str, List[Command]], None]) -> None:
+    def on_death(self, listener: Callable[[str, List[Command]], bool]) -> None:
         """Set the listener of deaths."""
         self._on_death = listener
 
@@ -93,7 +93,7 @@ class InlineEngine:
     def submit(self, command: Command) -> "Future[Reply]":
         """Queue a command."""
         future: "Future[Reply]" = Future()
-        with self._lock:
+        with self._send_lock, self._lock:
             if not self._alive:
                 future.set_exception(EngineNotRunningError("the engine is not running"))
                 return future
@@ -152,14 +152,15 @@ class InlineEngine:
     def kill(self, reason: str = "") -> None:
         """Drop the backend and all unanswered commands, as a crash would."""
         reason = reason or "the engine was killed"
-        self._stop()
-        with self._lock:
-            waiting, self._waiting = self._waiting, {}
-            lost: Dict[int, Command] = dict(self._posts.take_unshown())
-        lost.update((number, command) for number, (command, _) in waiting.items())
-        self._on_death(reason, [lost[number] for number in sorted(lost)])
-        for _, future in waiting.values():
-            future.set_exception(EngineDiedError(reason))
+        with self._send_lock:   # a sender that finds no engine comes after the listener
+            self._stop()
+            with self._lock:
+                waiting, self._waiting = self._waiting, {}
+                lost: Dict[int, Command] = dict(self._posts.take_unshown())
+            lost.update((number, command) for number, (command, _) in waiting.items())
+            is_suspect = self._on_death(reason, [lost[number] for number in sorted(lost)])
+        for number, (_, future) in waiting.items():
+            future.set_exception(EngineDiedError(reason, is_suspect and number == min(lost)))
 
     def close(self) -> None:
         """Stop the engine."""

@@ -7,7 +7,7 @@ from typing import Any, Callable, Dict, Iterable, List, Tuple
 
 from ..description.model import Model
 from ..geometry import Pose, Quat, add, compose, inverse, multiply, normalised, scale
-from .api import CommandRefusedError, Event
+from .api import CommandRefusedError, Event, RemovedError
 from .commands import (
     Clear,
     Command,
@@ -203,7 +203,7 @@ class KinematicBackend:
     def _check(self, model_ids: Iterable[int]) -> None:
         for model_id in model_ids:
             if model_id not in self.models:
-                raise CommandRefusedError("the model is not there any more")
+                raise RemovedError("the model is not there any more")
 
     def _set_joints(self, command: SetJoints) -> None:
         self._check(command.of)

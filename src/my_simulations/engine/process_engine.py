@@ -52,7 +52,7 @@ class ProcessEngine:
         self._closing = False
         self._verdict = ""
         self._event_listener: Callable[[Event], None] = _ignore_event
-        self._death_listener: Callable[[str, List[Command]], None] = _ignore_death
+        self._death_listener: Callable[[str, List[Command]], bool] = _ignore_death
         self._child: Optional[subprocess.Popen[bytes]] = None
         self._wire: Optional[Wire] = None
         self._reader: Optional[threading.Thread] = None
@@ -83,7 +83,7 @@ class ProcessEngine:
         """Set the listener of events."""
         self._event_listener = listener
 
-    def on_death(self, listener: Callable[[str, List[Command]], None]) -> None:
+    def on_death(self, listener: Callable[[str, List[Command]], bool]) -> None:
         """Set the listener of a child's death, called from its reader thread, once per child."""
         self._death_listener = listener
 
@@ -124,6 +124,10 @@ class ProcessEngine:
             except OSError as fault:
                 # The reader thread sees the same end, and fails this future with the others.
                 _log.debug("the engine does not listen: %s", fault)
+            except BaseException:   # it cannot be pickled, so nothing was sent
+                with self._lock:
+                    self._waiting.pop(number, None)
+                raise
         return future
 
     def post(self, command: SetModelState) -> bool:
@@ -218,23 +222,25 @@ class ProcessEngine:
         self._bury(process, wire)
 
     def _bury(self, process: "subprocess.Popen[bytes]", wire: Wire) -> None:
-        with self._lock:
-            if self._wire is wire:
-                self._wire = None
-            waiting, self._waiting = self._waiting, OrderedDict()
-            lost: Dict[int, Command] = dict(self._posts.take_unshown())
-        with self._send_lock:  # it was closed: further sends fail at once
+        first, is_suspect = 0, False
+        with self._send_lock:   # a sender that finds no engine comes after the listener
+            with self._lock:
+                if self._wire is wire:
+                    self._wire = None
+                waiting, self._waiting = self._waiting, OrderedDict()
+                lost: Dict[int, Command] = dict(self._posts.take_unshown())
             wire.sock.close()
-        shown = answer_shown(self._ring, waiting)
-        reason = self._verdict or _reason(process.returncode)
-        self._verdict = ""
-        if not self._closing:
-            lost.update((number, command) for number, (command, _) in waiting.items())
-            self._death_listener(reason, [lost[number] for number in sorted(lost)])
+            shown = answer_shown(self._ring, waiting)
+            reason = self._verdict or _reason(process.returncode)
+            self._verdict = ""
+            if not self._closing:
+                lost.update((number, command) for number, (command, _) in waiting.items())
+                first = min(lost, default=0)
+                is_suspect = self._death_listener(reason, [lost[key] for key in sorted(lost)])
         for future, reply in shown:
             future.set_result(reply)
-        for _, future in waiting.values():
-            future.set_exception(EngineDiedError(reason))
+        for number, (_, future) in waiting.items():
+            future.set_exception(EngineDiedError(reason, is_suspect and number == first))
 
 
 def answer_shown(ring: RingReader, waiting: "Dict[int, Tuple[Command, Future[Reply]]]"
@@ -264,5 +270,5 @@ def _ignore_event(_: Event) -> None:
     return None
 
 
-def _ignore_death(_: str, __: List[Command]) -> None:
-    return None
+def _ignore_death(_: str, __: List[Command]) -> bool:
+    return False

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import time
 import traceback
-from typing import List, Optional, Set, Tuple
+from typing import List, NamedTuple, Optional, Set, Tuple
 
 from .api import (
     Backend,
@@ -17,6 +17,7 @@ from .api import (
     EngineBrokenError,
     Event,
     PartiallyAppliedError,
+    RemovedError,
     Reply,
 )
 from .commands import (
@@ -57,6 +58,15 @@ _IDLE_S = 2.0            # heartbeat while paused
 _SYNC_S = 0.02           # between two looks at the budget while the host works; it notifies earlier
 _SHARE_ON_TIME = 0.25    # of the wall time for read-outs that no reader waits for, if on schedule
 _SHARE_LATE = 0.02       # the same while late or unthrottled
+
+
+class _Answer(NamedTuple):
+    """The result of a command, as in `Reply`."""
+
+    number: int
+    value: object = None
+    error: str = ""
+    is_outdated: bool = False
 
 
 class Runner:
@@ -146,16 +156,17 @@ class Runner:
         commands = [self._unwrapped(*pair) for pair in received if pair[0] > 0]
         if not commands:   # only a notification
             return True
-        answers: List[Tuple[int, object, str]] = []
+        answers: List[_Answer] = []
         for number, command in commands:
             if isinstance(command, Batch):
                 self._show_before(answers)
             try:
                 value = self._apply(number, command)
                 if not isinstance(command, Advance):
-                    answers.append((number, value, ""))
+                    answers.append(_Answer(number, value))
             except CommandRefusedError as refusal:
-                answers.append((number, None, str(refusal)))
+                answers.append(_Answer(number, None, str(refusal),
+                                       isinstance(refusal, RemovedError)))
             except PartiallyAppliedError as fault:
                 self._await_replacement(number, str(fault))
             except EngineBrokenError:
@@ -166,7 +177,7 @@ class Runner:
         self._answer(answers)
         return True
 
-    def _show_before(self, answers: List[Tuple[int, object, str]]) -> None:
+    def _show_before(self, answers: List[_Answer]) -> None:
         """Have the newest snapshot show the world as it is now, and answer what led to it.
 
         A batch that fails halfway is undone by a new engine with the world of that snapshot.
@@ -177,20 +188,21 @@ class Runner:
         elif self._shown != (self._clock_sets, self._step):
             self._write(force=True)
 
-    def _answer(self, answers: List[Tuple[int, object, str]]) -> None:
+    def _answer(self, answers: List[_Answer]) -> None:
         """Write a snapshot that shows the effect of commands, then reply to them."""
         # Only what precedes the first refusal counts as applied: one number says it all.
-        for number, _, error in answers:
-            if error:
+        for answer in answers:
+            if answer.error:
                 break
-            self._applied = number
+            self._applied = answer.number
         self._limit = self._sync.limit()   # some commands change it
         sequence = self._write(force=True)
-        answers[:0] = [(number, self._step, "") for number in self._ended]
+        answers[:0] = [_Answer(number, self._step) for number in self._ended]
         self._ended.clear()
-        for number, value, error in answers:
+        for number, value, error, is_outdated in answers:
             if number not in self._posted:
-                self._channel.reply(number, Reply(self._step, sequence, value, error))
+                self._channel.reply(number, Reply(self._step, sequence, value, error,
+                                                  is_outdated=is_outdated))
             elif error:
                 self._channel.event(Event("refused", error))
         self._posted.clear()

@@ -11,10 +11,10 @@ from ..description.model import Model
 from ..description.shapes import MeshTable
 from ..description.world import World
 from ..engine.api import Reply
-from ..engine.commands import GONE, Command, SetModelState
+from ..engine.commands import Command, SetModelState
 from ..engine.ring import JOINTS, LINKS, RingReader, Snapshot
 from ..engine.ring_rows import axis_rows
-from ..errors import CommandError, Issue, warning
+from ..errors import CommandError, Issue, OutdatedCommandError, warning
 from ..geometry import Pose
 from ..xml_characters import check_characters
 from .entity import Entity
@@ -102,8 +102,8 @@ class Session:
             try:
                 self.call(command)
                 return
-            except CommandError as fault:
-                again = self._looked_up_again(look_up) if GONE in str(fault) else command
+            except OutdatedCommandError:
+                again = self._looked_up_again(look_up)
                 if again == command:
                     raise
                 command = again

@@ -13,12 +13,20 @@ import threading
 import time
 from collections import deque
 from concurrent.futures import TimeoutError as FutureTimeout
-from typing import Callable, Deque, List, NamedTuple, Optional, Tuple
+from typing import Callable, Deque, List, NamedTuple, Optional
 
 from ..engine.api import Engine, EngineDiedError, EngineNotRunningError, Reply
 from ..engine.commands import Advance, Batch, Command, LoadModel, Ping, Post, SetModelState
 from ..engine.ring import HEARTBEAT, PROGRESS
-from ..errors import CommandError, EngineLostError, EngineTimeoutError, Issue, error, warning
+from ..errors import (
+    CommandError,
+    EngineLostError,
+    EngineTimeoutError,
+    Issue,
+    OutdatedCommandError,
+    error,
+    warning,
+)
 from .watchdog import PERIOD_S, Watchdog
 
 _COMMAND_S = 120.0    # time limit of a command (a large mesh takes long)
@@ -68,7 +76,6 @@ class Supervisor:
         self._ready = threading.Event()
         self._closing = False
         self._deaths: "queue.Queue[Optional[_Death]]" = queue.Queue()
-        self._killers: List[Tuple[Command, str]] = []
         self._lost: Deque[Command] = deque()  # posted commands that no engine has applied
         self._ping_lock = threading.Lock()
         self._shown = 0                       # number of a posted command that snapshots show
@@ -113,7 +120,10 @@ class Supervisor:
             try:
                 reply = self._answer(engine, command)
             except EngineDiedError as death:
-                deaths += self._await_restart(command)
+                if self._closing:
+                    raise CommandError("the simulator is shutting down") from death
+                deaths += [str(death)] if death.is_suspect else []
+                self._ready.wait(self._patience)
                 if isinstance(command, Advance) and not isinstance(death, EngineNotRunningError):
                     raise EngineLostError(
                         f"{death} during this request; the world was restored to "
@@ -127,6 +137,8 @@ class Supervisor:
                 continue
             if reply.is_partial:
                 self._replace(engine, reply.error)
+            if reply.is_outdated:
+                raise OutdatedCommandError(reply.error)
             if reply.error:
                 raise CommandError(reply.error)
             return reply
@@ -174,18 +186,6 @@ class Supervisor:
             raise CommandError(f"{why}; the physics engine did not restart within "
                                f"{self._patience:g} s")
 
-    def _await_restart(self, command: Command) -> List[str]:
-        """Why the engine crashed, if this command caused it."""
-        if self._closing:
-            raise CommandError("the simulator is shutting down")
-        for killer, why in list(self._killers):
-            if killer is command:
-                self._killers.remove((killer, why))
-                self._ready.wait(self._patience)
-                return [why]
-        time.sleep(0.005)  # the supervisor clears `ready` a moment after the future fails
-        return []
-
     # -- the supervisor's thread -----------------------------------------------------------------
 
     def _watch(self) -> None:
@@ -217,19 +217,18 @@ class Supervisor:
             engine.kill(f"the physics engine hung: no response for {silence}")
             self._watchdog.begin()
 
-    def _on_death(self, reason: str, unanswered: List[Command]) -> None:
-        """Called from the engine's reader thread, before the futures fail."""
+    def _on_death(self, reason: str, unanswered: List[Command]) -> bool:
+        """Note a death, before the futures fail; see `Engine.on_death`."""
         if self._closing:
-            return
+            return False
         self._ready.clear()
         self._lost.extend(one.command for one in unanswered if isinstance(one, Post))
         death = _Death(reason, self._is_replacing, bool(unanswered) and not self._restoring
                        and _brings_models(unanswered[0]))
         self._is_replacing = False
-        if (unanswered and not isinstance(unanswered[0], Post) and not death.is_replaced
-                and not self._restoring):
-            self._killers.append((unanswered[0], reason))
         self._deaths.put(death)
+        return bool(unanswered) and not isinstance(unanswered[0], Post) \
+            and not death.is_replaced and not self._restoring
 
     def _revive(self, death: _Death) -> None:
         now = time.monotonic()

@@ -61,11 +61,11 @@ class OneLifeEngine(ProcessEngine):
         self._started = True
         super().restart()
 
-    def on_death(self, listener: Callable[[str, List[Command]], None]) -> None:
+    def on_death(self, listener: Callable[[str, List[Command]], bool]) -> None:
         """Set the listener of the death."""
-        def note(reason: str, unanswered: List[Command]) -> None:
+        def note(reason: str, unanswered: List[Command]) -> bool:
             self.death = reason
-            listener(reason, unanswered)
+            return listener(reason, unanswered)
 
         super().on_death(note)
 

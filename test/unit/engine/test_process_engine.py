@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import os
+import pickle
 import socket
 import threading
 
@@ -75,3 +76,24 @@ def test_a_closed_engine_leaves_no_descriptors_and_wakes_who_waits_for_the_bell(
             os.fstat(descriptor)
     assert not engine.wait_bell(0.0) and engine.ring.step == 0
     engine.close()
+
+
+def test_a_command_that_cannot_be_sent_leaves_nothing_behind(engine):
+    with pytest.raises((TypeError, AttributeError, pickle.PicklingError)):
+        engine.submit(ClearTimedForces((threading.Lock(),)))
+    assert not engine._waiting
+    future = engine.submit(Ping())
+    (number, _), = engine.theirs.receive(WAIT)
+    engine.theirs.send((number, Reply(3, 1)))
+    assert future.result(WAIT).step == 3
+
+
+def test_of_several_commands_only_the_first_is_suspected_of_a_death(engine):
+    told = []
+    engine.on_death(lambda reason, commands: told.append(commands) or True)
+    first, second = engine.submit(Ping()), engine.submit(Ping())
+    engine.theirs.hang_up()
+    assert first.exception(WAIT).is_suspect and not second.exception(WAIT).is_suspect
+    assert len(told) == 1 and len(told[0]) == 2
+    # A sender that finds no engine comes after the listener.
+    assert not engine.submit(Ping()).exception(WAIT).is_suspect

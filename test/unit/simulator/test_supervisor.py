@@ -1,8 +1,10 @@
 """What the supervisor makes of an engine that does not answer."""
 from __future__ import annotations
 
+import gc
 import threading
 import time
+import weakref
 
 import pytest
 
@@ -22,6 +24,22 @@ class _Silent(InlineEngine):
     def submit(self, command: Command):
         answered = super().submit(command)
         return type(answered)() if isinstance(command, self.lost) else answered
+
+
+class Big(Command):
+    """Stands for a command with a large mesh."""
+
+
+class Stuck(KinematicBackend):
+    """Does not finish the command."""
+
+    goes_on = threading.Event()
+
+    def apply(self, command):
+        if isinstance(command, Big):
+            self.goes_on.wait(60)
+            raise SystemExit   # which ends the thread, as a kill ends a process
+        return super().apply(command)
 
 
 class _SlowBackend(KinematicBackend):
@@ -49,6 +67,22 @@ def test_a_command_without_an_answer_is_a_named_error(watch):
         supervisor.call(Ping())
     assert issubclass(EngineTimeoutError, CommandError)
     assert supervisor.call(Advance(3)).step == 3   # the engine is still there
+
+
+def test_a_command_that_timed_out_before_a_death_is_not_kept(watch):
+    supervisor = watch(lambda: InlineEngine(Stuck), 0.1)
+    command = Big()
+    kept = weakref.ref(command)
+    with pytest.raises(EngineTimeoutError):
+        supervisor.call(command)
+    killing = threading.Thread(target=supervisor.engine.kill)   # of which the command is suspected
+    killing.start()
+    Stuck.goes_on.set()
+    killing.join(60)
+    assert supervisor.call(Ping()).step == 0
+    del command
+    gc.collect()
+    assert kept() is None
 
 
 def test_advancing_may_take_longer_than_other_commands(watch):

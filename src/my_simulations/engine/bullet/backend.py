@@ -9,7 +9,7 @@ import pybullet
 
 from ...description.model import Model
 from ...geometry import Pose, pose_is_finite
-from ..api import CommandRefusedError, EngineBrokenError, Event
+from ..api import CommandRefusedError, EngineBrokenError, Event, RemovedError
 from ..body_plan import BodyPlanError, open_joints
 from ..commands import (
     Clear,
@@ -307,7 +307,7 @@ class BulletBackend:
 
     def _entry(self, model_id: int) -> Entry:
         if model_id not in self._models:
-            raise CommandRefusedError("the model is not there any more")
+            raise RemovedError("the model is not there any more")
         return self._models[model_id]
 
     # -- states ----------------------------------------------------------------------------------

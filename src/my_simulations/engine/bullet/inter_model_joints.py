@@ -11,7 +11,7 @@ from typing import Dict, List, Optional, Sequence, Set, Tuple
 import pybullet
 
 from ...geometry import IDENTITY
-from ..api import CommandRefusedError
+from ..api import CommandRefusedError, RemovedError
 from ..body_plan import BASE, TIE_TYPES
 from ..commands import ConnectModels
 from .bodies import Body, Part, set_sleep
@@ -55,7 +55,7 @@ class InterModelJoints:
                 (command.parent_row, command.parent_from_joint)]
         ends.sort(key=lambda end: end[0] < 0)  # the world last
         if ends[0][0] not in rows or not (ends[1][0] < 0 or ends[1][0] in rows):
-            raise CommandRefusedError(f"a link of joint '{joint.name}' is not there any more")
+            raise RemovedError(f"a link of joint '{joint.name}' is not there any more")
         one = rows[ends[0][0]]
         other = rows[ends[1][0]] if ends[1][0] >= 0 else self._world()
         if joint.type == "prismatic" and (one[0].rigid or other[0].rigid):

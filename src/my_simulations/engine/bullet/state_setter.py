@@ -20,7 +20,7 @@ from ...geometry import (
     rotate,
     subtract,
 )
-from ..api import CommandRefusedError
+from ..api import CommandRefusedError, RemovedError
 from ..commands import Frame, LinkState, SetJoints, SetLinkState, SetModelState
 from . import anchored_bodies, bodies
 from .bodies import Axis, Body, Part
@@ -83,7 +83,7 @@ class StateSetter:
     def set_link(self, command: SetLinkState) -> None:
         """Move the body of a link. Raises CommandRefusedError."""
         if command.row not in self._rows:
-            raise CommandRefusedError("the link is not there any more")
+            raise RemovedError("the link is not there any more")
         self._readout.read()
         body, part = self._rows[command.row]
         held = part.link is not None and part.link.kinematic
@@ -102,7 +102,7 @@ class StateSetter:
         """
         for row, position, rate in command.joints:
             if row not in self._axes and not self._readout.closes(row):
-                raise CommandRefusedError("the joint is not there any more")
+                raise RemovedError("the joint is not there any more")
             if not (abs(position) < 1e12 and abs(rate) < 1e12):
                 raise CommandRefusedError("the joint position is not finite")
         for row, position, rate in command.joints:
@@ -138,7 +138,7 @@ class StateSetter:
         if frame is None:
             return pose, twist
         if frame.row not in self._rows:
-            raise CommandRefusedError("the reference frame is not there any more")
+            raise RemovedError("the reference frame is not there any more")
         at = compose(self.link_state(frame.row).pose, frame.offset)
         if twist is not None:
             twist = Twist(rotate(at.orientation, twist.linear),
