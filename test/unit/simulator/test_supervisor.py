@@ -69,7 +69,8 @@ def test_a_command_without_an_answer_is_a_named_error(watch):
     assert supervisor.call(Advance(3)).step == 3   # the engine is still there
 
 
-def test_a_command_that_timed_out_before_a_death_is_not_kept(watch):
+def test_a_command_that_timed_out_before_a_death_is_not_kept(watch, monkeypatch):
+    monkeypatch.setattr(threading, "excepthook", lambda _: None)   # pytest's keeps the frames
     supervisor = watch(lambda: InlineEngine(Stuck), 0.1)
     command = Big()
     kept = weakref.ref(command)
