@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
 """A robot keeps driving while plugins with faults are spawned; a plugin that is mended runs."""
+import asyncio
 import os
 import sys
 import tempfile
@@ -7,12 +8,17 @@ import unittest
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 
+import aiohttp
 import rospy
+import support  # noqa: F401  (the folder of editor_case is on the path from here on)
+from editor_case import Browser
 from geometry_msgs.msg import Twist
 from nav_msgs.msg import Odometry
 from rosgraph_msgs.msg import Log
 from std_msgs.msg import Int64
 from support import Collected, Gazebo, box, pose, run, wait_for
+
+from my_simulations.editor.transport import address_file
 
 PLUGIN = '<gazebo><plugin name="written" filename="libwritten.so"/></gazebo>'
 TURN = 0.5   # rad/s
@@ -108,6 +114,20 @@ class BadPlugins(unittest.TestCase):
                                             and self.file in one], "an error in the log")
                 self.keeps_turning()
                 self.gazebo.delete_model("written")
+
+    def test_the_editor_shows_the_fault(self):
+        self.spawn("undefined_name\n")
+        url = address_file.whole(self.gazebo.open_editor().url)
+
+        async def watch():
+            async with aiohttp.ClientSession() as session:
+                browser = await Browser.open(session, url)
+                await browser.until(lambda: [
+                    push for push in browser.pushes
+                    if push["type"] == "issue" and "NameError" in push["issue"]["message"]
+                    and self.file in push["issue"]["message"]])
+
+        asyncio.run(watch())
 
     def test_a_plugin_that_is_mended_runs_without_a_restart(self):
         self.assertIn("NameError", self.spawn("undefined_name\n"))
