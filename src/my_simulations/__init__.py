@@ -18,6 +18,9 @@ __all__ = ["OpenWorld", "__version__", "open_world"]
 def __getattr__(name: str) -> Any:
     # The node imports this package and must not pay for NumPy and the readers.
     if name in ("OpenWorld", "open_world"):
+        from .workspace_packages import use_workspace_packages
+
+        use_workspace_packages()
         try:
             from . import python_api
         except ModuleNotFoundError as missing:

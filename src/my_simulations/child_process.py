@@ -9,6 +9,8 @@ import subprocess
 import sys
 from typing import Any, Dict, Iterator, List, Protocol
 
+from .workspace_packages import site_packages
+
 _PR_SET_PDEATHSIG = 1
 _END_S = 3.0  # how long a child may take to end by itself
 _PARENT = "MY_SIMULATIONS_PARENT"
@@ -36,6 +38,7 @@ def child_environment() -> Dict[str, str]:
     """
     root = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
     paths = [root] + [p for p in os.environ.get("PYTHONPATH", "").split(os.pathsep) if p]
+    paths += [folder for folder in site_packages() if folder in sys.path]
     return {"OPENBLAS_NUM_THREADS": "1", **os.environ, "PYTHONPATH": os.pathsep.join(paths),
             _PARENT: str(os.getpid())}
 

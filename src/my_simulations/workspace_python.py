@@ -6,6 +6,7 @@ import os
 import sys
 
 from .errors import CommandError
+from .workspace_packages import workspace_pythons
 
 
 def require(module: str) -> None:
@@ -16,9 +17,8 @@ def require(module: str) -> None:
 
 def advice(module: str) -> str:
     """A sentence for a program whose Python lacks `module`."""
-    for prefix in os.environ.get("CMAKE_PREFIX_PATH", "").split(os.pathsep):
-        python = os.path.join(os.path.dirname(prefix), ".my_simulations", "venv", "bin", "python3")
-        if prefix and os.path.exists(python) and os.path.realpath(sys.prefix) != os.path.realpath(
+    for python in workspace_pythons():
+        if os.path.realpath(sys.prefix) != os.path.realpath(
                 os.path.dirname(os.path.dirname(python))):
             return (f"{sys.executable} has no module {module!r}; run the program with the Python "
                     f"of this workspace: {python} {sys.argv[0]}")

@@ -45,3 +45,9 @@ def test_the_study_measures_what_the_formula_says(tmp_path):
     assert len(rows) == 48
     for row in rows:
         assert float(row["distance"]) == pytest.approx(float(row["expected"]), rel=0.01, abs=2e-3)
+
+
+def test_a_robot_stops_before_a_wall():
+    rows = list(example("drive_robot.py")["approach"](0.5))
+    assert rows[0][1] > 2.0 > rows[-1][1] == pytest.approx(0.5, abs=0.03)
+    assert rows[-1][2] == pytest.approx(3.0 - 0.1 - 0.08 - 0.5, abs=0.05)  # laser: 8 cm

@@ -2,12 +2,15 @@
 from __future__ import annotations
 
 import importlib.util
+import os
 import sys
 
 import pytest
 
 import my_simulations
+from my_simulations.child_process import child_environment
 from my_simulations.errors import CommandError
+from my_simulations.workspace_packages import use_workspace_packages
 from my_simulations.workspace_python import require
 
 
@@ -60,3 +63,40 @@ def test_an_import_that_fails_names_the_python_too(workspace, monkeypatch):
     monkeypatch.setitem(sys.modules, "my_simulations.python_api", None)
     with pytest.raises(ImportError, match=f"with the Python of this workspace: {workspace}"):
         my_simulations.open_world
+
+
+def workspace_of_this_python(tmp_path, monkeypatch, folder):
+    python = tmp_path / ".my_simulations" / "venv" / "bin" / "python3"
+    python.parent.mkdir(parents=True)
+    python.symlink_to(os.path.realpath(sys.executable))
+    packages = tmp_path / ".my_simulations" / "venv" / "lib" / folder / "site-packages"
+    packages.mkdir(parents=True)
+    monkeypatch.setenv("CMAKE_PREFIX_PATH", f"{tmp_path}/devel:/usr")
+    monkeypatch.setattr(sys, "prefix", sys.base_prefix)
+    monkeypatch.setattr(sys, "path", list(sys.path))
+    return str(packages)
+
+
+def test_packages_of_a_sourced_workspace_are_found_by_its_base_python(tmp_path, monkeypatch):
+    here = f"python{sys.version_info[0]}.{sys.version_info[1]}"
+    packages = workspace_of_this_python(tmp_path, monkeypatch, here)
+    assert packages not in sys.path
+    for _ in range(2):
+        use_workspace_packages()
+        assert sys.path.count(packages) == 1
+    assert packages in child_environment()["PYTHONPATH"].split(os.pathsep)
+
+
+def test_packages_for_another_python_are_left_alone(tmp_path, monkeypatch):
+    packages = workspace_of_this_python(tmp_path, monkeypatch, "python3.1")
+    use_workspace_packages()
+    assert packages not in sys.path
+    assert packages not in child_environment()["PYTHONPATH"]
+
+
+def test_a_virtual_environment_of_the_user_is_left_alone(tmp_path, monkeypatch):
+    here = f"python{sys.version_info[0]}.{sys.version_info[1]}"
+    packages = workspace_of_this_python(tmp_path, monkeypatch, here)
+    monkeypatch.setattr(sys, "prefix", str(tmp_path))
+    use_workspace_packages()
+    assert packages not in sys.path
