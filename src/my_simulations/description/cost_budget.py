@@ -6,7 +6,7 @@ at about 2.5 GHz; see the limits below.
 """
 from __future__ import annotations
 
-from dataclasses import astuple, dataclass
+from dataclasses import dataclass
 from typing import Any, Dict, Iterator, List, Optional
 
 from .flatten import flattened
@@ -34,10 +34,12 @@ class Cost:
     pairs: int = 0
 
     def __add__(self, other: "Cost") -> "Cost":
-        return Cost(*(a + b for a, b in zip(astuple(self), astuple(other))))
+        return Cost(self.links + other.links, self.shapes + other.shapes,
+                    self.triangles + other.triangles, self.pairs + other.pairs)
 
     def __sub__(self, other: "Cost") -> "Cost":
-        return Cost(*(a - b for a, b in zip(astuple(self), astuple(other))))
+        return Cost(self.links - other.links, self.shapes - other.shapes,
+                    self.triangles - other.triangles, self.pairs - other.pairs)
 
 
 MODEL_BUDGET = Cost(links=2000, shapes=10_000, triangles=2_500_000, pairs=100_000)

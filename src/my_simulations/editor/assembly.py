@@ -98,7 +98,7 @@ class Assembly:
         await asyncio.gather(*(client.close() for client in clients), return_exceptions=True)
         await runner.cleanup()
         self._pool.shutdown(wait=False)
-        self._requests.thread.shutdown(wait=True)
+        self._requests.close()
         self._autosave.keep()
 
     def tell(self, issue: Issue) -> None:

@@ -30,7 +30,8 @@ _LISTED = 200
 class Requests:
     """The requests about the world itself: editing, time and files.
 
-    All but `hello` run in one thread, in the order in which they came.
+    Those that change the world run in one thread, in the order in which they came. Folders are
+    listed by another one, which a world that opens does not keep busy.
     """
 
     def __init__(self, hub: Hub, resolver: Resolver, history: History, files: WorldFiles,
@@ -49,6 +50,7 @@ class Requests:
                             lambda names: self._drags.taken(self._acting, names))
         self._told: Dict[str, Any] = {}
         self.thread = ThreadPoolExecutor(1, "editor edits")
+        self._disk = ThreadPoolExecutor(1, "editor folders")
 
     def routes(self) -> Dict[str, Route]:
         """By type of request."""
@@ -56,12 +58,18 @@ class Requests:
             "edit": self._edit, "copy": self._copy, "undo": self._undo, "redo": self._redo,
             "play": self._play, "pause": self._pause, "step": self._step, "save": self._save,
             "open": self._open, "new": self._new, "autosave": self._restore,
-            "drag_end": self._drag_end, "folders": self._folders,
-            "new_folder": self._new_folder,
+            "drag_end": self._drag_end,
         }
         return {"hello": Route(self._hello, None), "drag": Route(self._drag, None),
+                "folders": Route(self._folders, self._disk),
+                "new_folder": Route(self._new_folder, self._disk),
                 "presence": Route(self._presence, None),
                 **{kind: Route(handler, self.thread) for kind, handler in handlers.items()}}
+
+    def close(self) -> None:
+        """Carry out what was asked for, and end the threads."""
+        self.thread.shutdown(wait=True)
+        self._disk.shutdown(wait=True)
 
     def leave(self, client: Client) -> None:
         """A client has gone: what it held falls."""

@@ -6,10 +6,12 @@ import json
 import os
 import subprocess
 import sys
+import threading
 
 import pytest
 from editor_case import Browser, Refused, box, cases
 
+from my_simulations.editor.library import world_files
 from my_simulations.editor.library.autosave import process_id
 from my_simulations.formats.reading import parse_world, read_world
 from my_simulations.resources.package_files import own_directory
@@ -137,6 +139,36 @@ def test_a_saved_world_is_opened_as_it_was(case):
         await browser.until(lambda: browser.last("history")["file"] == "")
 
     made.browse(run)
+
+
+def test_folders_are_listed_while_a_world_opens(case, monkeypatch):
+    made = case(box("a"))
+    (made.worlds / "slow.world").write_text(
+        "<sdf version='1.7'><world name='w'><model name='b'><link name='l'/></model></world></sdf>")
+    begun, listed = threading.Event(), threading.Event()
+    load = world_files.load_world
+
+    def slow(*args, **more):
+        begun.set()
+        assert listed.wait(60.0)
+        return load(*args, **more)
+
+    monkeypatch.setattr(world_files, "load_world", slow)
+
+    async def run(browser):
+        opening = asyncio.ensure_future(browser.ask("open", path="slow.world"))
+        await asyncio.get_running_loop().run_in_executor(None, begun.wait, 60.0)
+        found = await browser.ask("folders")
+        assert [entry["name"] for entry in found["files"]] == ["slow.world"]
+        assert not opening.done() and made.sim.models.names() == ["a"]
+        listed.set()
+        await opening
+        assert made.sim.models.names() == ["b"]
+
+    try:
+        made.browse(run)
+    finally:
+        listed.set()
 
 
 def test_a_file_that_is_no_world_leaves_the_old_one(case):

@@ -1,0 +1,117 @@
+"""Spawns one costly file into a running world: `python3 costly_run.py NAME FOLDER` prints JSON.
+
+A process of its own, so that its peak of memory belongs to this file. Keys: `outcome`, the codes of
+errors and of skipped collisions, or `built`; `took_s`; `stall_s`, the longest time in which
+simulated time stood still; `node_mb`, `engine_mb` and `reader_mb`, peaks of resident memory above
+those before, of the process that reads untrusted files as a whole.
+"""
+from __future__ import annotations
+
+import json
+import os
+import sys
+import threading
+import time
+from typing import Dict
+
+from costly_files import ATTACKS
+
+from my_simulations.description.model import Link, Model
+from my_simulations.description.shapes import Collision, Plane
+from my_simulations.description.world import World
+from my_simulations.engine.process_engine import ProcessEngine
+from my_simulations.errors import CommandError, InputError, errors_of
+from my_simulations.formats import reader_process
+from my_simulations.formats.mesh.loading import collision_meshes
+from my_simulations.formats.reading import parse_document
+from my_simulations.resources.resolver import Resolver
+from my_simulations.simulator.simulator import Simulator
+
+
+def peak(pid: int) -> int:
+    """The peak of resident memory of a process, MB; 0 if it does not exist."""
+    try:
+        with open(f"/proc/{pid}/status", encoding="ascii", errors="replace") as stream:
+            return next(int(line.split()[1]) >> 10 for line in stream if line.startswith("VmHWM"))
+    except (OSError, StopIteration):
+        return 0
+
+
+class Watch(threading.Thread):
+    """Looks at simulated time and memory until it is stopped."""
+
+    def __init__(self, simulator: Simulator) -> None:
+        super().__init__(daemon=True)
+        self.stall = 0.0
+        self.peaks: Dict[str, int] = {"engine": 0, "reader": 0}
+        self.stopping = threading.Event()
+        self._simulator = simulator
+
+    def run(self) -> None:
+        since, before = time.monotonic(), self._simulator.clock.sim_ns
+        while not self.stopping.wait(0.01):
+            now = self._simulator.clock.sim_ns
+            self.stall = max(self.stall, time.monotonic() - since)
+            if now != before:
+                since, before = time.monotonic(), now
+            for name, pid in (("engine", self._simulator.engine_pid),
+                              ("reader", reader_process.kept().pid)):
+                self.peaks[name] = max(self.peaks[name], peak(pid) if pid else 0)
+
+
+def outcome(simulator: Simulator, text: str, folder: str) -> str:
+    """Read and spawn as the ROS service does."""
+    try:
+        document = parse_document(text, Resolver(model_paths=[folder]), "attack.sdf")
+        model, issues = document.read_entity()
+        assert isinstance(model, Model)
+        meshes, more = collision_meshes(model, document.written(model.name))
+        issues = [*issues, *more]
+        if errors_of(issues):
+            raise InputError(issues)
+        simulator.models.spawn(model, meshes=meshes)
+    except InputError as fault:
+        return "refused: " + ", ".join(sorted({one.code for one in errors_of(fault.issues)}))
+    except CommandError as fault:
+        return f"refused by the simulator: {fault}"
+    return "built" if not issues else f"skipped: {issues[0].code}"
+
+
+def beyond(simulator: Simulator, step: int) -> None:
+    """Wait until so many steps were made."""
+    until = time.monotonic() + 300.0
+    while simulator.clock.step <= step:
+        assert time.monotonic() < until, "simulated time does not go on"
+        time.sleep(0.01)
+
+
+def main(name: str, folder: str) -> None:
+    """Print the figures of one attack."""
+    text = ATTACKS[name](folder)
+    ground = Model("ground", static=True, links=[Link("l", collisions=[Collision("c", Plane())])])
+    simulator = Simulator(World(models=[ground]), engine_factory=ProcessEngine, paused=False,
+                          log=lambda issue: None)
+    simulator.start()
+    watch = Watch(simulator)
+    try:
+        beyond(simulator, 0)
+        own, engine = peak(os.getpid()), peak(simulator.engine_pid)
+        watch.peaks["engine"] = engine
+        watch.start()
+        began = time.monotonic()
+        found = outcome(simulator, text, folder)
+        took = time.monotonic() - began
+        beyond(simulator, simulator.clock.step + 10)
+        watch.stopping.set()
+        watch.join()
+        print(json.dumps({
+            "outcome": found, "took_s": round(took, 1), "stall_s": round(watch.stall, 1),
+            "node_mb": peak(os.getpid()) - own, "engine_mb": watch.peaks["engine"] - engine,
+            "reader_mb": watch.peaks["reader"]}))
+    finally:
+        simulator.close()
+        reader_process.kept().close()
+
+
+if __name__ == "__main__":
+    main(sys.argv[1], sys.argv[2])
