@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from conftest import Lab, box, ground, inertial_of_box, link_of, slab
 from laws import Laws
+from pushing import PushedBox, ways
 
 from my_simulations.description.model import Inertial, Link, Model
 from my_simulations.description.shapes import (
@@ -55,6 +56,18 @@ def test_a_box_slides_as_far_in_every_direction(lab: Lab, laws: Laws, size, floo
     for (number, mu, _), start in zip(sliding, starts):
         laws.near("boxes sliding in eight directions, mu 0.2 to 1: way to a stop, m",
                   math.dist(lab.pose(number).position, start), 4 / (2 * mu * G), rel=0.02)
+
+
+@pytest.mark.parametrize("push", [0.95, 1.1, 1.3, 2.0])
+@pytest.mark.parametrize("size", [0.02, 0.2, 0.5, 1.0])
+def test_a_cube_slides_as_coulomb_says_however_it_is_pushed(laws: Laws, size: float, push: float):
+    boxes = [PushedBox(size, size, mu, push, math.pi / 4 * n)
+             for n, mu in enumerate((0.1, 0.5, 0.69, 0.75, 0.8))]
+    for pushed, way in zip(boxes, ways(boxes)):
+        if push < 1.0:
+            laws.at_most("cubes that less than mu N pushes: way in 1 s, m", way, 1e-4)
+        else:
+            laws.near("cubes that 1.1 to 2 mu N push: way in 1 s, m", way, pushed.way(), rel=0.02)
 
 
 @pytest.mark.parametrize("height", [0.5, 2.0, 4.5, 4.996, 5.0])

@@ -139,8 +139,9 @@ class LevelSeams:
         contacts = pybullet.getContactPoints(bodyA=uid)
         if any(contact[2] not in self._static for contact in contacts):
             return []
-        floors = {contact[2]: None for contact in contacts if contact[7][2] > _UP}
-        if floors:   # the sides that it meets come last
+        upright = [contact for contact in contacts if contact[7][2] > _UP]
+        floors = {contact[2]: None for contact in sorted(upright, key=lambda each: each[8])}
+        if floors:   # the one that it stands on is first, the sides that it meets come last
             floors.update((contact[2], None) for contact in contacts)
         return list(floors)
 

@@ -6,19 +6,31 @@ something in an early iteration and nothing in the last one keeps the friction o
 unit cube with mu 0.8 that slides on a box stops 18 % too early, with mu 1 26 %. After the step such
 impulses are known, and their effect on the velocities is taken back: 1 % remains.
 
-Only bodies that slide are looked at: fast ones that do not tumble, fly, roll on one line, or lie in
-a pile. Which they are follows from the step count and their state alone, so runs repeat bit for
-bit.
+Bullet begins each step with the impulses of the one before, such impulses included: a cube that is
+pushed by 1.15 mu N stays where it is. The friction of a body at rest is corrected only if it is
+more than mu N. If such a body has no velocity that friction could act against, its contact points
+are dropped: the next step begins without impulses.
+
+Only bodies that slide are looked at: those that move and do not tumble, fly, roll on one line, or
+lie in a pile. Which they are follows from the step count and their state alone, so runs repeat bit
+for bit.
 """
 from __future__ import annotations
 
-from typing import Any, Callable, Dict, List, Optional, Set, Tuple
+from math import inf
+from typing import Any, Callable, Dict, List, Optional, Sequence, Set, Tuple
 
 import pybullet
 
-from ...geometry import Vec3, conjugate, cross, dot, norm, rotate
+from ...geometry import Vec3, add, conjugate, cross, dot, norm, rotate, scale
+from ..body_plan import BASE
+from . import collision_groups
 from .bodies import Body
 from .step_helper import FAR, looks_until_turn, turn_of
+from .surface_coefficients import directed, of_link
+
+Contact = Tuple[Any, ...]  # as PyBullet tells it
+Node = Tuple[int, int]  # body uid, link index
 
 EVERY = 8
 """Steps between two looks at the fast bodies."""
@@ -26,13 +38,15 @@ EVERY = 8
 _FAST_ROUNDS = 2   # looks until every fast body was asked for its contacts
 _ROUNDS = 16       # looks until every moving body was asked for its speed
 _SLOW_ROUNDS = 64  # the same for those found at rest
-_FAST = 0.05       # m/s, or rad/s: slower ones lose nothing that one sees
+_FAST = 2e-3       # m/s, or rad/s: slower ones may rest
+_MAY_STOP = 0.5    # m/s: slower ones are asked in every step, as such friction may stop them
+_STUCK = 2e-5      # m/s: less is no direction
+_BEYOND = 1.001    # of mu N: more friction than that breaks Coulomb's law
 _TUMBLES = 1.5     # rad/s across gravity: nobody knows how far a body that turns over slides
 _CLEAR = 24        # looks for which what flies clear of everything is not asked
 _REACH = 0.02      # m: contacts exist a little before surfaces meet
-_FIRST = 3         # looks for which a body is asked in every step, once it slides
-_KEPT = 16         # the same after a find
-_MOST_CONTACTS = 8 # a body with more, or that touches two that move, lies in a pile: as tumbling
+_KEPT = 16         # looks for which a body is asked in every step, once it slides or was mended
+_MOST_CONTACTS = 8 # one with more that touches one that moves, or that touches two, is in a pile
 _SOON = -1         # instead of a look: it is not known yet which comes next
 _NONE = (0.0, 0.0, 0.0)
 
@@ -58,10 +72,14 @@ class ResidualFriction:
         self._asleep: Set[int] = set()
         self._clear: Dict[int, int] = {}    # until which look
         self._planes: Set[int] = set()
+        self._mu: Dict[Node, float] = {}    # of surfaces with one coefficient
         self._rounds: Optional[Tuple[List[int], List[int]]] = None
 
     def add(self, body: Body) -> None:
         """Know a new body; only rigid ones that move and can have several contacts matter."""
+        for part in body.colliders:
+            if not directed(of_link(part.link)):
+                self._mu.update({(uid, part.index): part.mu for uid in body.uids})
         if not body.moves:
             if not body.radius:
                 self._planes.add(body.uid)  # endless; the box below each says what it says
@@ -86,12 +104,16 @@ class ResidualFriction:
             table.pop(body.uid, None)
         for group in (self._moving, self._trees, self._asleep, self._planes):
             group.discard(body.uid)
+        for part in body.colliders:
+            for uid in body.uids:
+                self._mu.pop((uid, part.index), None)
         self._rounds = None
 
     def clear(self) -> None:
         """All bodies are gone."""
         for table in (self._bodies, self._watched, self._fast, self._mended, self._clear):
             table.clear()
+        self._mu.clear()
         for group in (self._moving, self._trees, self._asleep, self._planes):
             group.clear()
         self._rounds = None
@@ -142,7 +164,7 @@ class ResidualFriction:
         if found == _MENDED:
             self._mended[uid] = look + _KEPT
         elif found == _SLIDES and until == _SOON:
-            self._mended[uid] = look + _FIRST
+            self._mended[uid] = look + _KEPT
         elif found != _SLIDES or look > until:
             del self._mended[uid]
             if found == _PILED:
@@ -184,14 +206,16 @@ class ResidualFriction:
         if (speed == 0.0) != (uid in self._asleep):
             (self._asleep.add if speed == 0.0 else self._asleep.discard)(uid)
             self._rounds = None
-        if speed <= _FAST * _FAST or _tumbles(angular, gravity) or self._rolls(uid):
+        rests = speed <= _FAST * _FAST and self._mended.get(uid, look) <= look
+        if (rests and (speed == 0.0 or not self._is_held(uid))
+                or _tumbles(angular, gravity) or self._rolls(uid)):
             self._fast.pop(uid, None)
             self._mended.pop(uid, None)
         elif until is not None:
             return False
-        elif uid not in self._fast:
+        elif uid not in self._fast or speed < _MAY_STOP * _MAY_STOP:
             self._fast[uid] = None
-            self._mended[uid] = look + _FIRST
+            self._mended[uid] = look + _KEPT
         return True
 
     def _look_ahead(self, uid: int, look: int, dt: float, gravity: Vec3) -> None:
@@ -212,11 +236,32 @@ class ResidualFriction:
 
     # -- mending ---------------------------------------------------------------------------------
 
+    def _is_held(self, uid: int) -> bool:
+        """Whether friction that was left holds a slow body against Coulomb's law."""
+        contacts = pybullet.getContactPoints(bodyA=uid)
+        return (len(contacts) <= _MOST_CONTACTS and any(map(_is_left, contacts))
+                and self._is_beyond_mu(uid, contacts))
+
+    def _is_beyond_mu(self, uid: int, contacts: Sequence[Contact]) -> bool:
+        """Whether the friction of one surface on a body is more than mu N."""
+        loads: Dict[Node, float] = {}
+        frictions: Dict[Node, Vec3] = {}
+        for contact in contacts:
+            if contact[8] > 0.0:
+                continue
+            node = (contact[2], contact[4])
+            loads[node] = loads.get(node, 0.0) + contact[9]
+            frictions[node] = add(frictions.get(node, _NONE), add(
+                scale(contact[11], contact[10]), scale(contact[13], contact[12])))
+        mu = self._mu.get((uid, BASE), inf)
+        return any(norm(frictions[node]) > _BEYOND * load * min(mu, self._mu[node])
+                   for node, load in loads.items() if node in self._mu)
+
     def _mend(self, uid: int, seen: Set[int], dt: float) -> int:
         """Take back what was left at the contacts of a body. Returns what they tell."""
         contacts = pybullet.getContactPoints(bodyA=uid)
         if len(contacts) > _MOST_CONTACTS:
-            return _PILED
+            return _PILED if any(each[2] in self._moving for each in contacts) else _SLIDES
         neighbour, left = -1, []
         for contact in contacts:
             other = contact[2]
@@ -224,24 +269,30 @@ class ResidualFriction:
                 if neighbour >= 0:
                     return _PILED
                 neighbour = other
-            # What lies apart was not solved in this step, its forces are older ones. Those with
-            # joints go through another solver, which leaves nothing.
-            if (contact[9] <= 0.0 and contact[10] != 0.0 and contact[8] <= 0.0
-                    and other not in seen and other not in self._trees):
+            # Those with joints go through another solver, which leaves nothing.
+            if _is_left(contact) and other not in seen and other not in self._trees:
                 left.append(contact)
+        if left:
+            linear, angular = pybullet.getBaseVelocity(uid)
+            if max(dot(linear, linear), dot(angular, angular)) <= _FAST * _FAST:
+                if not self._is_beyond_mu(uid, contacts):
+                    return _SLIDES
+                if norm(linear) < _STUCK:
+                    collision_groups.moving(self._bodies[uid].parts[0].link).set(uid, BASE)
+                    return _MENDED
         for contact in left:
             self._take_back(uid, contact[2], contact, dt)
         seen.add(uid)
         return _MENDED if left else _SLIDES if contacts else _FLIES
 
     def _take_back(self, uid: int, other: int, contact: Tuple[Any, ...], dt: float) -> None:
-        """Undo the friction impulse of one contact: it acts against the slip of each body."""
+        """Undo the friction impulses of one contact: the first acts against the slip."""
         ours = self._motion(uid, contact[5])
         theirs = self._motion(other, contact[6])
         along: Vec3 = contact[11]
         slip = sum((a - b) * d for a, b, d in zip(ours[1], theirs[1], along))
-        size = abs(contact[10]) * dt * (1.0 if slip > 0.0 else -1.0)
-        impulse = (along[0] * size, along[1] * size, along[2] * size)
+        sign = dt if (slip > 0.0) == (contact[10] > 0.0) else -dt
+        impulse = add(scale(along, sign * contact[10]), scale(contact[13], sign * contact[12]))
         self._push(uid, impulse, ours[0])
         self._push(other, (-impulse[0], -impulse[1], -impulse[2]), theirs[0])
 
@@ -269,6 +320,14 @@ class ResidualFriction:
         pybullet.resetBaseVelocity(
             uid, (vx + impulse[0] / part.mass, vy + impulse[1] / part.mass,
                   vz + impulse[2] / part.mass), (wx + ax, wy + ay, wz + az))
+
+
+def _is_left(contact: Contact) -> bool:
+    """Whether a contact that carries nothing has friction.
+
+    Forces of a contact whose surfaces lie apart are older ones: this step did not solve it.
+    """
+    return contact[9] <= 0.0 and contact[10] != 0.0 and contact[8] <= 0.0
 
 
 def _tumbles(angular: Vec3, gravity: Vec3) -> bool:

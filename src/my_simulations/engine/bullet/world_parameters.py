@@ -23,7 +23,7 @@ from . import collision_groups
 
 USUAL_SPACING = 0.02      # of a body's size
 USUAL_RESIDUAL = 1e-7     # m^2/s^2
-LEAST_BOUNCE = 0.2        # m/s: Bullet's own; what is slower comes to rest
+LEAST_BOUNCE = 0.2        # m/s: Bullet's own; slower bodies come to rest
 
 
 class Accuracy(NamedTuple):
