@@ -1,8 +1,10 @@
 """Worlds from Python, without ROS: `my_simulations.open_world` (see doc/python_api.md)."""
 from .open_world import OpenWorld, open_world
+from .ray_casts import RayReading
 from .readings import ContactReading, JointReadings, Readings, SavedState
+from .robot import Robot
 from .world_choice import WorldChoice
 from .world_pictures import Picture
 
-__all__ = ["ContactReading", "JointReadings", "OpenWorld", "Picture", "Readings", "SavedState",
-           "WorldChoice", "open_world"]
+__all__ = ["ContactReading", "JointReadings", "OpenWorld", "Picture", "RayReading", "Readings",
+           "Robot", "SavedState", "WorldChoice", "open_world"]

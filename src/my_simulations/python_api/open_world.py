@@ -4,7 +4,7 @@ from __future__ import annotations
 import os
 from dataclasses import replace
 from types import TracebackType
-from typing import TYPE_CHECKING, Any, Callable, Dict, List, Optional, Sequence, Type
+from typing import TYPE_CHECKING, Any, Callable, Dict, List, Optional, Sequence, Tuple, Type
 
 from ..description.model import Model
 from ..engine.api import Engine
@@ -21,12 +21,14 @@ from .controllers import Controllers, Parameters, read_parameters
 from .furnishing import Furnisher
 from .kept_files import KeptFiles
 from .plain_values import pose_of, vector_of, whole_number
+from .ray_casts import RayReading, cast_rays
 from .readings import (
     ContactReading,
     JointReadings,
     Readings,
     SavedState,
     contact_reading,
+    forces_by_pair,
     joint_readings,
     link_readings,
     model_readings,
@@ -37,6 +39,9 @@ from .world_choice import WorldChoice
 from .world_pictures import Photographer, Picture, camera_pose
 
 if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import ArrayLike
+
     from ..plugins.local_parameters import LocalParameters
     from .topics import Topics
 
@@ -263,6 +268,27 @@ class OpenWorld(WorldChanges):
         """The contact points of the last step."""
         return [contact_reading(*found) for found in self._whole().states.contacts()]
 
+    def contact_forces(self) -> Dict[Tuple[str, str], np.ndarray]:
+        """The forces between links in the last step: what the second pushes the first with.
+
+        (3,) N in the world frame, by pair of links as `model::link`, the sum over their contact
+        points; each pair once, in the order of `contacts`.
+        """
+        return forces_by_pair(self.contacts())
+
+    def cast_rays(self, origins: ArrayLike, directions: ArrayLike, *, far: float = 100.0,
+                  frame: str = "", visuals: bool = False) -> RayReading:
+        """Cast rays into the world as it is now. It needs the extra `sensors`.
+
+        Args:
+            origins: m, shape (n, 3), or (3,) for one origin of all rays.
+            directions: shape (n, 3), or (3,) for one direction; of any length.
+            far: m; what is farther away is not met.
+            frame: model or link whose frame these are given in; "" for the world.
+            visuals: meet what is drawn instead of what collides.
+        """
+        return cast_rays(self._whole(), self._scene, origins, directions, far, frame, visuals)
+
     def description(self, name: str) -> Model:
         """The description of a model, with all links and joints."""
         return self.simulator.models.get(name)
@@ -341,7 +367,8 @@ class OpenWorld(WorldChanges):
         """Start an engine with a world."""
         self.simulator = Simulator(loaded.world, engine_factory=self._new_engine, paused=True,
                                    log=self._log, meshes=loaded.meshes)
-        self._photographer = Photographer(self.simulator, SceneSensing(self.simulator, self._log))
+        self._scene = SceneSensing(self.simulator, self._log)
+        self._photographer = Photographer(self.simulator, self._scene)
         try:
             self.simulator.start()
             self._furnish()

@@ -183,3 +183,16 @@ def twist_row(twist: Twist) -> Tuple[float, ...]:
 
 def _link_table(snapshot: Snapshot) -> np.ndarray:
     return np.array(snapshot.links, dtype=float).reshape(-1, LINK_WIDTH)
+
+
+def forces_by_pair(contacts: Sequence[ContactReading]) -> Dict[Tuple[str, str], np.ndarray]:
+    """The sums of normal and friction forces on the first link of each pair, N, world frame."""
+    found: Dict[Tuple[str, str], np.ndarray] = {}
+    for one in contacts:
+        force = one.force * one.normal + one.friction
+        first, second = one.links
+        if (second, first) in found:
+            found[second, first] = found[second, first] - force
+        else:
+            found[one.links] = found.get(one.links, np.zeros(3)) + force
+    return found

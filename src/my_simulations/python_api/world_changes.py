@@ -1,15 +1,17 @@
 """Changes of an open world: models that come, go and move; forces; joints that are driven."""
 from __future__ import annotations
 
-import math
 import os
 from typing import Optional, Sequence, Union
 
+from ..errors import CommandError
 from ..formats.reading import Text
 from ..geometry import ZERO3, Twist
 from ..simulator.simulator import Simulator
 from .furnishing import Furnisher
+from .joint_limits import move_within_limits
 from .plain_values import nanoseconds_of, pose_of, twist_of, vector_of
+from .robot import Robot
 from .robots import Robots
 
 FilePath = Union[str, "os.PathLike[str]"]
@@ -102,18 +104,38 @@ class WorldChanges:
         """
         self._whole().drives.drive_axis(joint, float(rate), float(effort))
 
-    def move_joint(self, joint: str, position: float, effort: float, rate: float = math.inf
-                   ) -> None:
+    def move_joint(self, joint: str, position: float, effort: Optional[float] = None,
+                   rate: Optional[float] = None) -> None:
         """Move a joint axis to a position and hold it there, until another call.
 
         Args:
             joint: the joint.
             position: rad or m.
-            effort: most that the motor spends, N m or N.
-            rate: fastest that it moves, rad/s or m/s.
+            effort: most that the motor spends, N m or N; None for the limit of the joint's file.
+            rate: fastest that it moves, rad/s or m/s; None for the limit of the file, if it has
+                one.
         """
-        self._whole().drives.hold_axis(joint, float(position), float(effort), float(rate))
+        move_within_limits(self._whole(), joint, position, effort, rate)
 
     def release_joint(self, joint: str) -> None:
         """Switch off what `drive_joint` or `move_joint` has set."""
         self._whole().drives.release_axis(joint)
+
+    def robot(self, name: str) -> Robot:
+        """The joints of a model: positions, efforts, motors, Jacobians, inverse kinematics."""
+        return Robot(self._whole, name)
+
+    def attach(self, name: str, parent: str, child: str) -> None:
+        """Fix a link to another one, or to the `world`, as they are now.
+
+        Args:
+            name: of the fixed joint, for `detach`.
+            parent: the link, as `model::link`; or `world`.
+            child: a link of another model.
+        """
+        self._whole().models.attach(name, parent, child)
+
+    def detach(self, name: str) -> None:
+        """Remove a joint that `attach` has made."""
+        if not self._whole().models.detach(name):
+            raise CommandError(f"nothing is attached by a joint '{name}'")

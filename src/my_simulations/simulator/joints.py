@@ -56,8 +56,18 @@ class Joints:
             (entity.model_id, joint.name) for entity, joint, _ in found))).value
         return list(answer) if isinstance(answer, tuple) else [None] * len(found)
 
-    def set_positions(self, positions: Dict[str, float]) -> None:
-        """Move joint axes to positions (rad or m), at rest; within their limits, as Gazebo does.
+    def row(self, name: str) -> int:
+        """The row of a joint axis. Raises UnknownEntityError."""
+        with self._session.registry_lock:
+            return self._session.axis_row(name)
+
+    def set_positions(self, positions: Dict[str, float],
+                      rates: Optional[Dict[str, float]] = None) -> None:
+        """Move joint axes to positions (rad or m); within their limits, as Gazebo does.
+
+        Args:
+            positions: by name.
+            rates: rad/s or m/s of some of these axes; 0 for the others.
 
         Raises:
             UnknownEntityError: a joint does not exist.
@@ -67,8 +77,9 @@ class Joints:
 
         def look_up() -> Command:
             found = [session.registry.movable_joint(name) for name in positions]
-            return SetJoints(tuple((row, _within_limits(entity, row, value), 0.0)
-                                   for (entity, row), value in zip(found, positions.values())),
+            return SetJoints(tuple(
+                (row, _within_limits(entity, row, value), (rates or {}).get(name, 0.0))
+                for (entity, row), (name, value) in zip(found, positions.items())),
                              tuple(sorted({entity.model_id for entity, _ in found})))
 
         session.move(look_up)

@@ -14,6 +14,7 @@ from ..sensing.api import (
     CastRays,
     Mount,
     Pictures,
+    RayBundle,
     RayFan,
     RayReturns,
     RemoveBody,
@@ -52,7 +53,7 @@ class SceneSensing:
         self._scenery: Tuple[List[Any], List[Any]] = ([], [])
         self._resolver: Any = None
 
-    def cast(self, mount: Mount, fan: RayFan, visuals: bool, ns: int,
+    def cast(self, mount: Mount, fan: Union[RayFan, RayBundle], visuals: bool, ns: int,
              rows: bytes) -> "Future[RayReturns]":
         """Ranges, once `send` is called.
 

@@ -1,0 +1,185 @@
+"""One model of an open world as a robot: its joints, Jacobians and inverse kinematics."""
+from __future__ import annotations
+
+from typing import Callable, Dict, Iterable, Mapping, Optional, Sequence, Tuple
+
+import numpy as np
+
+from ..errors import CommandError
+from ..geometry import IDENTITY, ZERO3, Pose, compose, inverse
+from ..simulator.simulator import Simulator
+from .joint_limits import JointLimits, limits_of, move_within_limits
+from .kinematics import Chain, InverseKinematics, Target
+from .plain_values import nanoseconds_of, pose_of, vector_of
+from .readings import JointReadings, NamedRows, joint_readings, link_readings
+
+
+class Robot:
+    """The joints of a model; see `OpenWorld.robot`. Names of joints and links are the model's own.
+
+    Attributes:
+        name: of the model.
+
+    Args:
+        whole: gives the simulator; it raises EngineLostError.
+        name: of the model. Raises CommandError if there is no such model.
+    """
+
+    def __init__(self, whole: Callable[[], Simulator], name: str) -> None:
+        self._whole, self.name = whole, name
+        whole().models.get(name)
+
+    @property
+    def joints(self) -> Tuple[str, ...]:
+        """The axes of the joints, in the order of the rows of `positions` and `rates`."""
+        return self.positions.names
+
+    @property
+    def positions(self) -> NamedRows:
+        """Positions of the axes, rad or m, as they are now."""
+        return self._mine(self._read().position)
+
+    @property
+    def rates(self) -> NamedRows:
+        """Rates of the axes, rad/s or m/s, as they are now."""
+        return self._mine(self._read().rate)
+
+    @property
+    def efforts(self) -> NamedRows:
+        """What motors, servos and controllers applied to the axes in the last step, N m or N."""
+        simulator, names = self._whole(), self.joints
+        rows = [simulator.joints.row(self._scoped(name)) for name in names]
+        return NamedRows(names, np.array(simulator.drives.efforts(rows), float))
+
+    def limits(self, joint: str) -> JointLimits:
+        """The limits of an axis in the robot's file."""
+        return limits_of(self._whole(), self._scoped(joint))
+
+    # -- changing ----------------------------------------------------------------------------------
+
+    def set_positions(self, positions: Mapping[str, float], rates: Mapping[str, float] = {}
+                      ) -> None:
+        """Put axes to positions at once, within their limits; motors stay as they are.
+
+        Args:
+            positions: rad or m.
+            rates: rad/s or m/s that these axes then have; 0 for those not named.
+        """
+        unknown = sorted(set(rates) - set(positions))
+        if unknown:
+            raise CommandError(f"a rate needs a position of the same joint: {', '.join(unknown)}")
+        self._whole().joints.set_positions(
+            {self._scoped(name): float(value) for name, value in positions.items()},
+            {self._scoped(name): float(value) for name, value in rates.items()})
+
+    def move(self, positions: Mapping[str, float], *, effort: Optional[float] = None,
+             rate: Optional[float] = None) -> None:
+        """Move axes to positions and hold them there, until another call.
+
+        Args:
+            positions: rad or m.
+            effort: most that each motor spends, N m or N; None for the limit of the robot's file.
+            rate: fastest that each axis moves, rad/s or m/s; None for the limit of the file.
+        """
+        for name, position in positions.items():
+            move_within_limits(self._whole(), self._scoped(name), position, effort, rate)
+
+    def drive(self, rates: Mapping[str, float], *, effort: Optional[float] = None) -> None:
+        """Drive axes at rates, until another call.
+
+        Args:
+            rates: rad/s or m/s.
+            effort: most that each motor spends, N m or N; None for the limit of the robot's file.
+        """
+        for name, rate in rates.items():
+            most = self.limits(name).effort if effort is None else float(effort)
+            if most == float("inf"):
+                raise CommandError(f"the file of joint '{name}' has no limit of effort: give an"
+                                   " effort")
+            self._whole().drives.drive_axis(self._scoped(name), float(rate), most)
+
+    def apply_efforts(self, efforts: Mapping[str, float], *, duration: Optional[float] = None
+                      ) -> None:
+        """Apply efforts to axes from the next step on; they add to others.
+
+        Args:
+            efforts: N m or N.
+            duration: s of sim time; None for until the world is reset.
+        """
+        for name, effort in efforts.items():
+            self._whole().wrenches.apply_effort(self._scoped(name), float(effort),
+                                                duration_ns=nanoseconds_of(duration))
+
+    def release(self, joints: Iterable[str] = ()) -> None:
+        """Switch off what `move` and `drive` have set, for some joints or for all."""
+        for name in tuple(joints) or self.joints:
+            self._whole().drives.release_axis(self._scoped(name))
+
+    # -- kinematics --------------------------------------------------------------------------------
+
+    def jacobian(self, link: str, point: Sequence[float] = ZERO3) -> np.ndarray:
+        """Return the derivative of the twist of a link by the rates of the joints.
+
+        The base of the robot counts as fixed. A joint that mimics another has a column of its own.
+
+        Args:
+            link: of the robot.
+            point: of the link whose velocity is meant, m in its frame.
+
+        Returns:
+            Shape (6, joints), in the order of `joints`: m/s of the point and rad/s, along the axes
+            of the world.
+        """
+        chain = Chain(self._whole().models.get(self.name), link)
+        positions, names = self._positions(), self.joints
+        found = np.zeros((6, len(names)))
+        found[:, [names.index(name) for name in chain.joints]] = chain.jacobian(
+            self._root(chain, link, positions), positions, vector_of(point, "point"))
+        return found
+
+    def inverse_kinematics(self, link: str, pose: Sequence[float], *,
+                           joints: Sequence[str] = (), point: Sequence[float] = ZERO3,
+                           tolerance: float = 1e-4) -> Dict[str, float]:
+        """Return positions of joints, within their limits, at which a link reaches a pose.
+
+        Nothing moves: give the result to `set_positions` or `move`.
+
+        Args:
+            link: of the robot.
+            pose: in the world; 3 numbers for a position with any orientation, else as everywhere.
+            joints: that may move; none for all.
+            point: of the link that reaches the position, m in its frame.
+            tolerance: m, and rad of the orientation.
+
+        Raises:
+            CommandError: no positions are found; the message has the smallest error.
+        """
+        model = self._whole().models.get(self.name)
+        chain, positions = Chain(model, link), self._positions()
+        wanted = pose_of(pose)
+        target = Target(wanted.position, wanted.orientation if len(pose) > 3 else None,
+                        vector_of(point, "point"), float(tolerance))
+        return InverseKinematics(chain, model, tuple(joints) or self.joints).solve(
+            self._root(chain, link, positions), positions, target)
+
+    # -- inside ------------------------------------------------------------------------------------
+
+    def _root(self, chain: Chain, link: str, positions: Mapping[str, float]) -> Pose:
+        """The pose of the root of a chain, from that of its last link now."""
+        links = link_readings(*self._whole().states.latest())
+        now = pose_of(links.pose[self._scoped(link)].tolist())
+        return compose(now, inverse(chain.pose(IDENTITY, positions)))
+
+    def _positions(self) -> Dict[str, float]:
+        return {name: float(value) for name, value in self.positions.items()}
+
+    def _read(self) -> JointReadings:
+        return joint_readings(*self._whole().states.latest())
+
+    def _mine(self, rows: NamedRows) -> NamedRows:
+        begin = f"{self.name}::"
+        at = [n for n, name in enumerate(rows.names) if name.startswith(begin)]
+        return NamedRows([rows.names[n][len(begin):] for n in at], rows.array[at])
+
+    def _scoped(self, name: str) -> str:
+        return f"{self.name}::{name}"
