@@ -2,7 +2,7 @@
 from .open_world import OpenWorld, open_world
 from .ray_casts import RayReading
 from .readings import ContactReading, JointReadings, Readings, SavedState
-from .robot import Robot
+from .robot_joints import Robot
 from .world_choice import WorldChoice
 from .world_pictures import Picture
 

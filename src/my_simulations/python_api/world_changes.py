@@ -11,7 +11,7 @@ from ..simulator.simulator import Simulator
 from .furnishing import Furnisher
 from .joint_limits import move_within_limits
 from .plain_values import nanoseconds_of, pose_of, twist_of, vector_of
-from .robot import Robot
+from .robot_joints import Robot
 from .robots import Robots
 
 FilePath = Union[str, "os.PathLike[str]"]
