@@ -34,7 +34,7 @@ class WakeUp:
 
         With `awake` the targets were woken just now, and have been put elsewhere since.
         """
-        queue: List[Body] = list(targets)
+        queue: List[Body] = list({body.uid: body for body in targets}.values())
         seen: Set[int] = {body.uid for body in queue}
         woken = seen.copy() if awake else set()
         while queue:
