@@ -1,14 +1,19 @@
 """Grading of programs: what a program does changes its own mark only."""
 from __future__ import annotations
 
+import contextlib
 import csv
 import json
 import os
+import signal
 import subprocess
 import sys
+import time
 from pathlib import Path
 
 import pytest
+
+from my_simulations.grading import box
 
 REPOSITORY = Path(__file__).resolve().parents[2]
 GRADE = [sys.executable, str(REPOSITORY / "scripts" / "grade")]
@@ -45,6 +50,27 @@ while not rospy.is_shutdown():
     chat.publish("here")
     state.pose.position.x = min({goal}, state.pose.position.x + 0.05)
     move(state)
+    rate.sleep()
+"""
+ROBOT = f"""submission: {{run: go.py}}
+world: worlds/empty.world
+models: {{robo: {{file: {REPOSITORY / "urdf" / "robo.urdf"}}}}}
+checks:
+  - {{points: 2, name: moves, require: pose.robo.x > 0.2, within: 2}}
+  - {{points: 1, name: odometry, topic: /odom, type: nav_msgs/Odometry, rate: 10, within: 2}}
+  - {{points: 1, name: twice, topic: /odom, rate: 80, within: 2}}
+  - {{points: 1, name: falls, require: pose.robo.z > 1, within: 2}}
+"""
+DRIVER = """import rospy
+from geometry_msgs.msg import Twist
+
+rospy.init_node("driver")
+command = rospy.Publisher("/cmd_vel", Twist, queue_size=1)
+rate = rospy.Rate(10)
+twist = Twist()
+twist.linear.x = 0.3
+while not rospy.is_shutdown():
+    command.publish(twist)
     rate.sleep()
 """
 HOSTILE = {
@@ -103,6 +129,26 @@ def grade(folder, text, programs, *words, name="go.py"):
     return rows, folder / "marks" / "students"
 
 
+def wait_for(condition, what):
+    until = time.monotonic() + SECONDS
+    while True:
+        found = condition()
+        if found:
+            return found
+        assert time.monotonic() < until, f"{what} did not come"
+        time.sleep(0.05)
+
+
+def programs_below(pid):
+    """The processes below one that run a submission."""
+    found = []
+    for below in box.descendants(pid):
+        with contextlib.suppress(OSError):
+            words = Path(f"/proc/{below}/cmdline").read_bytes().split(b"\0")
+            found += [below] if words[1:2] and words[1].endswith(b"submission/go.py") else []
+    return found
+
+
 def points(row, *names):
     return [float(row[name]) for name in names]
 
@@ -117,6 +163,11 @@ def test_a_program_is_marked_for_what_it_does_in_sim_time(tmp_path, words):
     said = json.loads((students / "half" / "results.json").read_text())["tests"]
     assert "partial points" in said[0]["output"] and "std_msgs/String" in said[2]["output"]
     assert 'id="data"' in (students / "good" / "replay.html").read_text(encoding="utf-8")
+
+
+def test_a_robot_is_driven_by_its_topic_and_its_plugins_run_once(tmp_path):
+    rows, _ = grade(tmp_path, ROBOT, {"driver": DRIVER})
+    assert points(rows["driver"], "moves", "odometry", "twice", "falls") == [2, 1, 0, 0]
 
 
 def test_hostile_programs_change_no_other_mark(tmp_path):
@@ -139,6 +190,20 @@ def test_hostile_programs_change_no_other_mark(tmp_path):
     assert "more memory than 1000 MB" in (students / "memory" / "index.html").read_text()
     assert (students / "delete" / "output.txt").read_text() in ("", "[]\n")
     assert sum(path.stat().st_size for path in students.rglob("*")) < 30e6
+
+
+def test_an_interrupt_ends_all_programs(tmp_path):
+    (tmp_path / "lab.yaml").write_text(LIMITS + QUICK)
+    (tmp_path / "loop").mkdir()
+    program = tmp_path / "loop" / "go.py"
+    program.write_text(HOSTILE["loop"])
+    process = subprocess.Popen([*GRADE, "lab.yaml", "loop"], cwd=tmp_path,
+                               stderr=subprocess.PIPE, text=True)
+    pids = wait_for(lambda: programs_below(process.pid), "the program")
+    process.send_signal(signal.SIGINT)
+    assert process.wait(SECONDS) == 130, process.stderr.read()
+    process.stderr.close()
+    wait_for(lambda: not any(Path(f"/proc/{pid}").exists() for pid in pids), "its end")
 
 
 def test_launch_files_and_rostests_are_run(tmp_path):

@@ -17,6 +17,7 @@ from ..editor.logs.replay_page import write_replay
 from ..editor.logs.world_record import LogRecord
 from ..errors import InputError, SimulationError
 from ..python_api import OpenWorld
+from ..python_api.robots import RobotOptions
 from ..resources.resolver import Resolver
 from .assignment import Assignment, Launch, Rostest, Timed
 from .assignment_file import read_assignment
@@ -103,7 +104,10 @@ class Judge:
             return
         log = os.path.join(self._own, "state.log")
         try:
-            with OpenWorld(choice_of(self._assignment, path), resolver=self._resolver) as world:
+            # With a program, the node of the graph runs the plugins of robots.
+            robots = RobotOptions(plugins=not self._assignment.form.run, sensors=False)
+            with OpenWorld(choice_of(self._assignment, path), resolver=self._resolver,
+                           robots=robots) as world:
                 with contextlib.closing(LogRecord(log)) as record:
                     self._decide(world, name, ThinRecord(record))
         except GradingError:

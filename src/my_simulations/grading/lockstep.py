@@ -10,15 +10,15 @@ import contextlib
 import os
 import threading
 import time
-from typing import Dict, List, Optional, Set, Tuple
+from typing import Dict, Optional
 
 from . import box
 from .program import Program
+from .thread_states import ThreadStates
 
 _LOOK_S = 0.0005
 _BUSY_LOOK_S = 0.002
 _LOOK_SHARE = 0.1     # of the time, at most, is spent on looking
-_QUIET_LOOKS = 2      # in a row
 _STUCK_LOOKS = 400    # all wait, but bytes stay unread
 _LONGEST_S = 60.0     # wall time of one wait, whatever the program does
 _START_S = 5.0        # processor time to start, s
@@ -34,8 +34,8 @@ class Lockstep:
 
     def __init__(self, program: Program, judge: int) -> None:
         self._program = program
-        self._judge = judge
-        self._main = threading.get_native_id()
+        main = threading.get_native_id()
+        self._threads = ThreadStates(judge, lambda: {main, program.watcher})
         self._sim = 0.0
         self._began: Optional[float] = None
 
@@ -56,34 +56,28 @@ class Lockstep:
     def _wait(self, processor_seconds: float) -> None:
         until = self._used() + processor_seconds
         deadline = time.monotonic() + _LONGEST_S
-        quiet = waiting = 0
+        waiting, is_quiet = 0, False
         pause = _LOOK_S
+        self._threads.refresh()
         while self._program.running:
             time.sleep(pause)
             began = time.monotonic()
-            if self._anything_runs():
-                quiet = waiting = 0
+            if self._threads.any_runs():
+                waiting, is_quiet = 0, False
                 if self._used() >= until or began > deadline:
                     return
                 took = time.monotonic() - began
                 pause = max(_BUSY_LOOK_S, min(took / _LOOK_SHARE, processor_seconds))
                 continue
             waiting, pause = waiting + 1, _LOOK_S
-            quiet = 0 if _bytes_under_way() else quiet + 1
-            if quiet >= _QUIET_LOOKS or waiting >= _STUCK_LOOKS:
+            if is_quiet or waiting >= _STUCK_LOOKS:
                 return
+            self._threads.refresh()    # what has started meanwhile is looked at the next time
+            is_quiet = not _bytes_under_way()
 
-    def _anything_runs(self) -> bool:
-        ignored: Set[int] = {self._main, self._program.watcher}
-        return any(_state(pid, thread) in "RD" for pid, thread in self._threads()
-                   if thread not in ignored)
-
-    def _threads(self) -> List[Tuple[int, int]]:
-        found = []
-        for pid in (self._judge, *box.descendants(self._judge)):
-            with contextlib.suppress(OSError):
-                found += [(pid, int(name)) for name in os.listdir(f"/proc/{pid}/task")]
-        return found
+    def close(self) -> None:
+        """Look no longer."""
+        self._threads.close()
 
     def _used(self) -> float:
         """Processor time of the program so far, s: of its threads, and of processes that ended."""
@@ -97,15 +91,6 @@ class Lockstep:
                     with open(f"/proc/{pid}/task/{thread}/schedstat", encoding="ascii") as stat:
                         total += int(stat.read().split()[0]) * 1e-9
         return total
-
-
-def _state(pid: int, thread: int) -> str:
-    """Such as R or S (proc(5), stat); "S" for one that has gone."""
-    try:
-        with open(f"/proc/{pid}/task/{thread}/stat", encoding="utf-8", errors="replace") as stat:
-            return stat.read().rpartition(")")[2].split()[0]
-    except (OSError, IndexError):
-        return "S"
 
 
 def _bytes_under_way() -> bool:

@@ -106,6 +106,8 @@ class RosGraph:
 
     def close(self) -> None:
         """End node and master."""
+        if self._lockstep is not None:
+            self._lockstep.close()
         self._node.close()
         self._master.terminate()
         wait_or_kill(self._master, _MASTER_S)
