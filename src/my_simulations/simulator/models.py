@@ -29,6 +29,7 @@ from .entity import Entity
 from .initial_state import initial_commands
 from .inter_model_joints import DeletedModel, InterModelJoints
 from .known_models import KnownModels
+from .load_groups import small_groups
 from .model_links import ModelLinks
 from .model_preparation import prepare_shapes
 from .order_slot import OrderSlot
@@ -355,13 +356,10 @@ class Models(KnownModels):
         self._losses = list(session.world.losses)
         self._between = InterModelJoints(session.world.joints)
         self.divide_meshes(session.world, meshes)
-        for model in session.world.models:
-            try:
-                self.spawn(model, meshes=meshes.get(model.name))
-            except CommandError as fault:
-                left_out = f"skipped model '{model.name}': {fault}"
-                self._losses.append(left_out)
-                session.log(error("model-refused", left_out, file=session.world.file))
+        for group in small_groups(session.world.models):
+            if len(group) == 1 or not self._load_together(group, meshes):
+                for model in group:
+                    self._load_or_skip(model, meshes.get(model.name))
         located, issues = self._between.located(session.registry)
         for issue in issues:
             session.log(replaced(issue, file=session.world.file))
@@ -372,6 +370,49 @@ class Models(KnownModels):
                 self._between = self._between.joined(located.named(command.joint.name))
             except CommandError as fault:
                 session.log(error("joint-refused", str(fault), file=session.world.file))
+
+    def _load_or_skip(self, model: Model, meshes: Optional[MeshTable]) -> None:
+        """Load a model of the world, or log why it is skipped."""
+        try:
+            self.spawn(model, meshes=meshes)
+        except CommandError as fault:
+            left_out = f"skipped model '{model.name}': {fault}"
+            self._losses.append(left_out)
+            self._session.log(error("model-refused", left_out, file=self._session.world.file))
+
+    def _load_together(self, group: Sequence[Model], meshes: Dict[str, MeshTable]) -> bool:
+        """Load models by one command; returns False, and loads none, if one of them is refused.
+
+        Each command costs a snapshot of the whole world.
+        """
+        session = self._session
+        entities: List[Entity] = []
+        with session.structure_lock:
+            try:
+                for model in map(flattened, group):
+                    check_name(model.name, "model")
+                    if has_plugins(model):
+                        session.before_plugins()
+                    parts = self._convex_meshes.of(model, meshes.get(model.name) or {})
+                    with session.registry_lock:
+                        self._replaceable(model.name)
+                        entity = session.new_entity(model, self._world_pose(model, None, ""),
+                                                    parts, self._between.slides(model.name))
+                    entity.start = self._saved_starts.get(model.name)
+                    entities.append(entity)
+                session.call(Batch(tuple(
+                    command for entity in entities
+                    for command in (load_command(entity),
+                                    *initial_commands(entity, entity.start)))))
+            except CommandError:
+                for entity in entities:
+                    self._forget(entity)
+                return False
+            with session.registry_lock:
+                for entity in entities:
+                    session.registry.add(entity)
+                    self._saved_starts.pop(entity.model.name, None)
+        return True
 
     def divide_meshes(self, world: World, meshes: Dict[str, MeshTable],
                       gently: bool = False) -> None:

@@ -1,0 +1,53 @@
+"""Divides the models of a world into groups that the engine loads by one command each."""
+from __future__ import annotations
+
+from typing import Iterator, List, Sequence
+
+from ..description.flatten import flattened
+from ..description.model import Model
+from ..description.shapes import SOLIDS
+from ..engine.body_plan import BodyPlanError, plan_bodies
+from ..geometry import pose_is_finite
+
+_MOST_MODELS, _MOST_LINKS, _MOST_SHAPES = 100, 300, 2000
+"""Of one group: the engine takes less than a second for it."""
+
+
+def small_groups(models: Sequence[Model]) -> Iterator[List[Model]]:
+    """The models in their order; those that may be refused, or that have meshes, are alone.
+
+    A command of which a part is refused costs another engine.
+    """
+    group: List[Model] = []
+    names = set()
+    links = shapes = 0
+    for model in models:
+        flat = flattened(model)
+        many, more = len(flat.links), sum(len(link.collisions) for link in flat.links)
+        full = (len(group) == _MOST_MODELS or links + many > _MOST_LINKS
+                or shapes + more > _MOST_SHAPES)
+        alone = model.name in names or not _is_simple(flat)
+        if group and (full or alone):
+            yield group
+            group, links, shapes = [], 0, 0
+        names.add(model.name)
+        if alone:
+            yield [model]
+            continue
+        group.append(model)
+        links, shapes = links + many, shapes + more
+    if group:
+        yield group
+
+
+def _is_simple(model: Model) -> bool:
+    """Whether a flattened model has no meshes, and the engine has no reason to refuse it."""
+    if not model.name or not pose_is_finite(model.pose) or any(
+            isinstance(collision.geometry, SOLIDS)
+            for link in model.links for collision in link.collisions):
+        return False
+    try:
+        plan_bodies(model)
+    except BodyPlanError:
+        return False
+    return True
