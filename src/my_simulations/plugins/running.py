@@ -96,15 +96,32 @@ class ModelPlugins:
             known = [] if before is None else [
                 *(one.found for one in before[1]),
                 *(one for owner, one in self._to_load if owner == name)]
-            if before is not None and before[0].spawn_id == entity.spawn_id and known == found:
-                self._models[name] = (entity, before[1])
-                for running in before[1]:
+            if before is not None and before[0].spawn_id == entity.spawn_id and (
+                    _are_same(known, found)):
+                kept = self._continuing(name, before, entity)
+                self._models[name] = (entity, kept)
+                for running in kept:
                     self._rebind(running, entity)
                 continue
             if before is not None:
                 self._end(name)
             self._models[name] = (entity, [])
             self._to_load += [(name, one) for one in found]
+
+    def _continuing(self, name: str, before: Tuple[Entity, List[Running]],
+                        entity: Entity) -> List[Running]:
+        """The plugins that continue; the others are loaded again.
+
+        Other links or joints restart all plugins, any other edit those that failed.
+        """
+        old, all_running = before
+        if old.model == entity.model:
+            return all_running
+        other_parts = _parts(old.model) != _parts(entity.model)
+        again = [one for one in all_running if other_parts or one.fault is not None]
+        self.leaving += again
+        self._to_load += [(name, one.found) for one in again]
+        return [one for one in all_running if all(one is not other for other in again)]
 
     def _world_entity(self) -> Entity:
         """What stands for the world as owner of its plugins."""
@@ -118,3 +135,14 @@ class ModelPlugins:
         _, all_running = self._models.pop(name)
         self._to_load = deque(one for one in self._to_load if one[0] != name)
         self.leaving += all_running
+
+
+def _parts(model: Model) -> Tuple[List[str], List[Tuple[str, str, str, str]]]:
+    """Names of the links, and of the joints with their types and ends."""
+    return ([link.name for link in model.links],
+            [(joint.name, joint.type, joint.parent, joint.child) for joint in model.joints])
+
+
+def _are_same(known: List[Found], found: List[Found]) -> bool:
+    """Whether both have the same plugins, in any order."""
+    return len(known) == len(found) and all(known.count(one) == found.count(one) for one in found)

@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import itertools
+from dataclasses import replace
 
 import pytest
 from plugin_case import PluginCase, kept, until
@@ -174,3 +175,53 @@ def test_a_replaced_model_has_new_plugins(case):
     assert one.host.settle()
     one.sim.clock.advance(20)
     until(lambda: len(one.graph.on("bad/alive")) == 2)
+
+
+NEEDS_JOINT = HEAD + """
+    def load(self):
+        self.joint = self.context.joint("late_hinge")
+        self.topic = self.context.publish(f"{self.context.model}/late", "std_msgs/Empty")
+        self.context.every(100.0, lambda: self.topic.publish(self.context.now_ns))
+"""
+
+
+def test_a_plugin_that_failed_starts_again_when_its_model_is_edited(case):
+    made = case()
+    made.spawn(NEEDS_JOINT)
+    assert len(made.failed()) == 1
+    described = made.sim.models.get("bad")
+    hinge = Joint("late_hinge", "revolute", "base", "extra", axis=JointAxis())
+    extra = Link("extra", inertial=Inertial())
+    made.sim.models.edit("bad", replace(described, links=[*described.links, extra]))
+    assert made.host.settle()
+    assert len(made.failed()) == 2  # it lacks its joint still
+    made.sim.models.edit("bad", replace(described, links=[*described.links, extra],
+                                        joints=[*described.joints, hinge]))
+    assert made.host.settle()
+    assert made.host.faults("bad") == []
+    made.sim.clock.advance(50)
+    until(lambda: len(made.graph.on("bad/late")) == 5)
+    assert len(made.failed()) == 2
+    made.goes_on()
+
+
+def test_an_edit_starts_no_plugin_again_that_works(case):
+    made = case()
+    made.goes_on()
+    running = made.host._models.of("works")[0].plugin
+    described = made.sim.models.get("works")
+    made.sim.models.edit("works", replace(described, allow_auto_disable=False))
+    assert made.host.settle()
+    assert made.host._models.of("works")[0].plugin is running
+    made.goes_on()
+
+
+def test_a_plugin_starts_again_when_its_model_gets_other_joints(case):
+    made = case()
+    running = made.host._models.of("works")[0].plugin
+    described = made.sim.models.get("works")
+    made.sim.models.edit("works", replace(described, joints=[
+        replace(joint, name="renamed") for joint in described.joints]))
+    assert made.host.settle()
+    assert made.host._models.of("works")[0].plugin is not running
+    made.goes_on()
