@@ -167,3 +167,71 @@ def test_a_model_of_the_world_is_edited_and_keeps_its_name(editor):
     editor.until("!editor.store.modelEditing", "the end")
     wait_for(lambda: [link["name"] for link in editor.model(name)["links"]] == ["link", "link_0"],
              "both links")
+
+
+JOINTS_OF_UNTITLED = "editor.store.model('untitled').joints"
+DRIVE = """<plugin name="drive" filename="libgazebo_ros_diff_drive.so">
+<leftJoint>link_1_joint</leftJoint><rightJoint>link_1_joint</rightJoint></plugin>"""
+
+
+def with_covered_sphere(editor):
+    """A model of a box and a sphere in it, in the model editor."""
+    editor.page.keyboard.press("Control+m")
+    editor.page.get_by_role("region", name="Model editor").wait_for()
+    add_link(editor, "box", (0.0, 0.0, 0.0))
+    editor.get("editor.request('edit', {op: {kind: 'add_link', model: 'untitled', "
+               "shape: 'sphere', pose: [0, 0, 0.5, 0, 0, 0, 1]}})")
+    editor.until("editor.store.model('untitled').links.length === 2", "the sphere")
+    editor.rest()
+
+
+def joint_ends(editor):
+    editor.until(f"{JOINTS_OF_UNTITLED}.length === 1", "the joint")
+    ends = editor.get(f"{JOINTS_OF_UNTITLED}.map(({{parent, child}}) => [parent, child])[0]")
+    editor.get("editor.request('undo')")
+    editor.until(f"{JOINTS_OF_UNTITLED}.length === 0", "no joint")
+    return ends
+
+
+def test_links_are_connected_in_the_view_the_tree_and_the_list(editor):
+    with_covered_sphere(editor)
+    front = (0.1, -0.1, 0.6)
+    editor.button("Connect").click()
+    editor.click(front)
+    editor.page.get_by_text("Click the child link.").wait_for()
+    editor.click(front)
+    assert joint_ends(editor) == ["link_0", "link_1"]
+
+    editor.page.keyboard.press("Escape")
+    editor.get("editor.store.select(['untitled::link_1'])")
+    editor.row("link_1").wait_for()
+    editor.button("Connect").click()
+    editor.row("link_1").click()
+    editor.page.get_by_text("Parent: link_1.").wait_for()
+    editor.row("link_0").click()
+    assert joint_ends(editor) == ["link_1", "link_0"]
+
+    editor.button("Connect").click()
+    editor.page.get_by_role("combobox", name="Parent link").select_option("link_1")
+    editor.page.get_by_role("combobox", name="Child link").select_option("link_0")
+    assert joint_ends(editor) == ["link_1", "link_0"]
+
+
+def test_a_plugin_that_lacks_its_joint_is_reported_and_starts_with_the_joint(launch, browser):
+    node = launch("worlds/empty.world")
+    editor = browser.open(node.url)
+    with_covered_sphere(editor)
+    editor.button("Plugins…").click()
+    editor.page.get_by_role("textbox", name="Plugins").fill(DRIVE)
+    editor.page.get_by_role("dialog").get_by_role("button", name="OK").click()
+    editor.until("editor.store.issues.some(({code}) => code === 'plugin-failed')",
+                 "the fault in Messages")
+    editor.button("Connect").click()
+    editor.page.get_by_role("combobox", name="Parent link").select_option("link_0")
+    editor.page.get_by_role("combobox", name="Child link").select_option("link_1")
+    editor.until(f"{JOINTS_OF_UNTITLED}.length === 1", "the joint")
+    editor.page.keyboard.press("Alt+t")
+    wait_for(lambda: "/odom" in editor.get("document.body.innerText"),
+             "the topic of the plugin")
+    assert editor.faults == []
+    editor.close()

@@ -136,3 +136,36 @@ test('a model that got another name is known by its links, also where nobody sel
   assert.equal(renamedModel([b, {...a, name: 'new'}], links, new Set(['a', 'b'])).name, 'new');
   assert.equal(renamedModel([b, c], links, new Set(['a', 'b', 'c'])), undefined);
 });
+
+/** A tool that connects links of a model of two, at its first question. */
+function connecting() {
+  const {connection, store, actions} = begun();
+  const one = model('m', 7, turned);
+  const two = {...one, links: ['l', 'k'].map((name, at) => ({...one.links[0], name, id: 7 + at}))};
+  store.receive({type: 'world', revision: 2, document: {...world(), models: [two]}});
+  store.setModelEditing({name: 'm'});
+  const editor = new ModelEditor({store, actions, request: null, notices: {say() {}}});
+  connection.answers.edit = {name: 'm::joint'};
+  store.select(['m::l']);
+  editor.connect.listen();
+  editor.connect.toggle();
+  return {store, connect: editor.connect, joints: () => connection.requests
+    .filter(([type]) => type === 'edit').map(([, {op}]) => [op.joint.parent, op.joint.child])};
+}
+
+test('links are connected by selecting them in the tree, also the one that was selected', async () => {
+  const {store, joints, connect} = connecting();
+  store.select(['m::l']);
+  assert.equal(connect.parent, 'l');
+  store.select(['m::k']);
+  assert.deepEqual(joints(), [['l', 'k']]);
+  assert.equal(connect.active, false);
+});
+
+test('a second click on the parent connects the link behind it', async () => {
+  const {store, joints} = connecting();
+  const under = ['l', 'k'].map((link) => ({model: 'm', link}));
+  store.emit('pick', [{model: 'other', link: 'x'}, ...under]);
+  store.emit('pick', under);
+  assert.deepEqual(joints(), [['l', 'k']]);
+});

@@ -62,7 +62,8 @@ import {WorldStore} from './world_store.js';
  * @property {undefined} camera
  * @property {undefined} preview
  * @property {undefined} modelEditing
- * @property {{model: string, link: string}} pick  a link was clicked in the mode `connect`
+ * @property {{model: string, link: string}[]} pick  links under a click in the mode `connect`, nearest
+ *   first
  * @property {undefined} people  who is here, what they hold and have selected
  * @property {LoadingPush} loading
  * @property {WatchPush} watch

@@ -1,4 +1,4 @@
-/** A joint by two clicks: the parent link, then the child link. */
+/** A joint by two choices, in the view, in the tree or in a list: the parent link, then the child link. */
 import {connection, isLinkOf} from './model_edits.js';
 /** @import {ModelEditor} from './model_editor.js' */
 
@@ -19,14 +19,16 @@ export class ConnectTool {
   /** What the user is asked for; '' when nothing. */
   get hint() {
     if (!this.active) return '';
-    return this.parent === null ? 'Click the parent link.' : `Parent: ${this.parent}. Click the child link.`;
+    return this.parent === null ? 'Click the parent link, in the view or in the tree.'
+      : `Parent: ${this.parent}. Click the child link. A second click on the parent chooses the link behind it.`;
   }
 
   /** @returns {() => void} stops listening */
   listen() {
     const {store} = this.editor;
     const ends = [
-      store.listen('pick', ({detail}) => this.#picked(detail.model, detail.link)),
+      store.listen('pick', ({detail}) => this.#picked(detail)),
+      store.listen('selection', () => this.#selected()),
       store.listen('mode', () => {
         if (!this.active) this.parent = null;
         this.onChange();
@@ -43,6 +45,8 @@ export class ConnectTool {
       return;
     }
     this.parent = null;
+    // A click in the tree on the link that was selected selects it again, and so is noticed.
+    if (!this.active) store.select([]);
     store.setMode(this.active ? 'select' : 'connect');
     this.onChange();
   }
@@ -59,24 +63,37 @@ export class ConnectTool {
     if (this.active) this.editor.store.setMode('select');
   }
 
-  /** @param {string} owner @param {string} link */
-  async #picked(owner, link) {
-    const {store, actions, notices, model} = this.editor;
+  /** The nearest link of the model that is not the parent. @param {{model: string, link: string}[]} under */
+  #picked(under) {
+    const {notices, model} = this.editor;
     if (!this.active || !model) return;
-    if (owner !== model.name || !isLinkOf(model, `${owner}::${link}`)) {
-      notices.say(`Click a link of ${model.name}.`);
-      return;
-    }
+    const links = under.filter((one) => one.model === model.name && isLinkOf(model, `${model.name}::${one.link}`));
+    const found = links.find(({link}) => link !== this.parent);
+    if (found) this.choose(found.link);
+    else if (!links.length) notices.say(`Click a link of ${model.name}.`);
+  }
+
+  #selected() {
+    const {store, model} = this.editor;
+    const [name] = store.selection;
+    if (!this.active || !model || store.selection.length !== 1 || !isLinkOf(model, name)) return;
+    this.choose(name.slice(model.name.length + 2));
+  }
+
+  /** A link of the model becomes the parent, then another the child. @param {string} link */
+  async choose(link) {
+    const {store, actions, model} = this.editor;
+    if (!this.active || !model || link === this.parent) return;
+    const name = `${model.name}::${link}`;
     if (this.parent === null) {
       this.parent = link;
-      store.select([`${owner}::${link}`]);
+      store.select([name]);
       this.onChange();
       return;
     }
-    if (this.parent === link) return;
-    const op = connection(owner, this.type, this.parent, link);
+    const op = connection(model.name, this.type, this.parent, link);
     store.setMode('select');
     const outcome = await actions.edit(op);
-    if (outcome.ok) store.select([`${owner}::${link}`]);
+    if (outcome.ok) store.select([name]);
   }
 }

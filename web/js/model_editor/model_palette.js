@@ -90,10 +90,21 @@ export class Palette {
     this.#connect.setAttribute('aria-pressed', String(connect.active));
     this.#hint.textContent = connect.hint || (model ? '' : 'Add a first link: it follows the mouse.');
     const world = button('World as parent', () => connect.fromWorld(), {class: 'plain'});
+    if (connect.active && model) this.#hint.append(' ', this.#linkList(model));
     if (connect.active && connect.parent === null) this.#hint.append(' ', world);
     fill(this.#joints, ...(model?.joints ?? []).map((joint) => h('li', {},
       button(jointText(joint), () => model && this.#editJoint(model, joint), {class: 'plain wide', title: `Edit ${joint.name}`}))));
     this.#showParts(model);
+  }
+
+  /** The links that the joint can connect next, for those that the view hides. @param {Model} model */
+  #linkList(model) {
+    const {connect} = this.editor;
+    const list = h('select', {'aria-label': connect.parent === null ? 'Parent link' : 'Child link'},
+      h('option', {value: '', text: 'Choose a link', disabled: true, selected: true}),
+      ...model.links.filter(({name}) => name !== connect.parent).map(({name}) => h('option', {value: name, text: name})));
+    list.addEventListener('change', () => connect.choose(list.value));
+    return list;
   }
 
   /** What can be done with the selected link. @param {Model|undefined} model */

@@ -50,6 +50,36 @@ export class Picker {
    * @returns {Hit|null}
    */
   nearest(items, clientX, clientY, accept = () => true) {
+    /** @type {Hit|null} */
+    let best = null;
+    for (const {item, distance} of this.#candidates(items, clientX, clientY, accept)) {
+      if (best && distance > best.distance) break;
+      best = this.#hit(item, best) ?? best;
+    }
+    return best;
+  }
+
+  /**
+   * All of some items, also those that others cover, nearest first.
+   * @param {Iterable<Item>} items
+   * @param {number} clientX
+   * @param {number} clientY
+   * @param {(owner: Owner) => boolean} accept
+   */
+  all(items, clientX, clientY, accept) {
+    return this.#candidates(items, clientX, clientY, accept)
+      .flatMap(({item}) => this.#hit(item, null) ?? [])
+      .sort((a, b) => a.distance - b.distance);
+  }
+
+  /**
+   * Items whose bounding spheres the ray enters, nearest first.
+   * @param {Iterable<Item>} items
+   * @param {number} clientX
+   * @param {number} clientY
+   * @param {(owner: Owner) => boolean} accept
+   */
+  #candidates(items, clientX, clientY, accept) {
     this.#aim(clientX, clientY);
     /** @type {{item: Item, distance: number}[]} */
     const candidates = [];
@@ -58,14 +88,7 @@ export class Picker {
       const distance = this.#entry(item);
       if (distance !== null) candidates.push({item, distance});
     }
-    candidates.sort((a, b) => a.distance - b.distance);
-    /** @type {Hit|null} */
-    let best = null;
-    for (const {item, distance} of candidates) {
-      if (best && distance > best.distance) break;
-      best = this.#hit(item, best) ?? best;
-    }
-    return best;
+    return candidates.sort((a, b) => a.distance - b.distance);
   }
 
   /**

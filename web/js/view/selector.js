@@ -65,10 +65,12 @@ export class Selector {
     return hit && built ? {...hit, name: `${hit.name}::${hit.link}`} : hit;
   }
 
-  /** A link is chosen, for a joint. @param {MousePoint} event */
-  pick(event) {
-    const hit = this.movable(event);
-    if (hit?.link) this.#store.emit('pick', {model: hit.name, link: hit.link});
+  /** Links are offered for a joint: all under the mouse, nearest first. @param {MousePoint} event */
+  pick({clientX, clientY}) {
+    const hits = this.#picker.all(this.#batches.items(), clientX, clientY,
+      (owner) => owner.model !== undefined && !owner.plane);
+    const links = hits.flatMap(({owner: {model, link}}) => (model && link ? [{model, link}] : []));
+    if (links.length) this.#store.emit('pick', links);
   }
 
   /**
