@@ -169,6 +169,28 @@ def test_a_model_of_the_world_is_edited_and_keeps_its_name(editor):
              "both links")
 
 
+def test_one_size_changes_collision_visual_and_inertia_in_one_step(editor):
+    editor.page.keyboard.press("Control+m")
+    link = add_link(editor, "box", (0.0, 0.0, 0.0))
+    before = editor.model("untitled")["links"][0]
+    depth = editor.get("editor.store.history.depth")
+    editor.button("Size…").click()
+    dialog = editor.page.get_by_role("dialog", name=f"Size of {link}")
+    for name, value in (("x", "0.6"), ("y", "0.4"), ("z", "0.2")):
+        dialog.get_by_label(f"Size {name}", exact=True).fill(value)
+    dialog.get_by_role("button", name="OK").click()
+    dialog.wait_for(state="detached")
+    editor.until(f"editor.store.history.depth === {depth + 1}", "one step")
+    after = editor.model("untitled")["links"][0]
+    for part in ("collisions", "visuals"):
+        assert [one["geometry"]["size"] for one in after[part]] == [[0.6, 0.4, 0.2]]
+    assert after["inertial"]["mass"] == approx(1.0)
+    assert after["inertial"]["ixx"] == approx((0.4 ** 2 + 0.2 ** 2) / 12)
+    editor.get("editor.request('undo')")
+    editor.until(f"editor.store.history.depth === {depth}", "the undone step")
+    assert editor.model("untitled")["links"][0] == before
+
+
 JOINTS_OF_UNTITLED = "editor.store.model('untitled').joints"
 DRIVE = """<plugin name="drive" filename="libgazebo_ros_diff_drive.so">
 <leftJoint>link_1_joint</leftJoint><rightJoint>link_1_joint</rightJoint></plugin>"""

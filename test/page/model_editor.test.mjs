@@ -3,7 +3,7 @@ import {test} from 'node:test';
 import {createActions} from '../../web/js/actions.js';
 import {
   axesOf, axisOr, connection, isLinkOf, jointText, JOINT_TYPES, linkMoves, linkRemovals, pluginText,
-  renamedModel, stepsSince,
+  renamedModel, resizing, sizeOf, stepsSince,
 } from '../../web/js/model_editor/model_edits.js';
 import {ModelEditor} from '../../web/js/model_editor/model_editor.js';
 import {SOLID_SHAPES, solidModel} from '../../web/js/model_editor/solids.js';
@@ -168,4 +168,20 @@ test('a second click on the parent connects the link behind it', async () => {
   store.emit('pick', [{model: 'other', link: 'x'}, ...under]);
   store.emit('pick', under);
   assert.deepEqual(joints(), [['l', 'k']]);
+});
+
+test('a size is for the collision and the shapes like it, and the inertia follows', () => {
+  const rod = {type: 'cylinder', radius: 0.5, length: 1};
+  const link = {collisions: [{name: 'c', geometry: rod}], visuals: [{name: 'v', geometry: {...rod}},
+    {name: 'lamp', geometry: {type: 'sphere', radius: 0.5}}]};
+  const size = sizeOf(link);
+  assert.deepEqual(size.map(({label, value}) => [label, value]), [['Radius', 0.5], ['Length', 1]]);
+  const {ops} = resizing('m::l', link, size.map((one) => ({...one, value: 2 * one.value})));
+  assert.deepEqual(ops.map(({target, path, value}) => [target, path, value]), [
+    ['m::l::collision:c', 'geometry.radius', 1], ['m::l::collision:c', 'geometry.length', 2],
+    ['m::l::visual:v', 'geometry.radius', 1], ['m::l::visual:v', 'geometry.length', 2],
+    ['m::l', undefined, undefined]]);
+  assert.deepEqual(ops.at(-1), {kind: 'compute_inertial', target: 'm::l', density: null});
+  assert.deepEqual(sizeOf({collisions: [{geometry: {type: 'mesh'}}]}), []);
+  assert.deepEqual(sizeOf({collisions: []}), []);
 });

@@ -1,6 +1,6 @@
 /** What the model editor asks of the simulator, as operations. Pure. */
 import {compose, inverse} from '../pose.js';
-/** @import {Joint, Axis, Model, Operation} from '../protocol.js' */
+/** @import {Joint, Axis, Link, Model, Operation} from '../protocol.js' */
 /** @import {Pose7} from '../pose.js' */
 
 export const JOINT_TYPES = Object.freeze(['revolute', 'revolute2', 'prismatic', 'ball', 'universal', 'screw',
@@ -43,6 +43,48 @@ export function linkRemovals(model, names) {
  */
 export const connection = (model, type, parent, child) =>
   ({kind: 'add_joint', model, joint: {type, parent, child}});
+
+/** Fields of a shape's size, each with what its numbers are. @type {Record<string, string[]>} */
+const SIZES = {size: ['Size x', 'Size y', 'Size z'], radii: ['Radius x', 'Radius y', 'Radius z'],
+  radius: ['Radius'], length: ['Length']};
+
+/**
+ * The size of a link's first collision, m: its numbers by field; none for a mesh or a plane.
+ * @param {Link} link
+ * @returns {{path: string, label: string, value: number}[]}
+ */
+export function sizeOf(link) {
+  const geometry = /** @type {Record<string, unknown>|undefined} */ (link.collisions[0]?.geometry);
+  if (!geometry || !SIZED.has(String(geometry.type))) return [];
+  return Object.entries(SIZES).filter(([path]) => geometry[path] !== undefined)
+    .flatMap(([path, labels]) => labels.map((label, at) => ({path, label,
+      value: Number(labels.length > 1 ? /** @type {number[]} */ (geometry[path])[at] : geometry[path])})));
+}
+
+const SIZED = new Set(['box', 'sphere', 'cylinder', 'capsule', 'cone', 'ellipsoid']);
+
+/**
+ * Another size for the first collision of a link and for all its shapes like that; the inertia
+ * follows, with the mass as it is.
+ * @param {string} target  scoped name of the link
+ * @param {Link} link
+ * @param {{path: string, value: number}[]} size  as of `sizeOf`, with other numbers
+ * @returns {Operation}
+ */
+export function resizing(target, link, size) {
+  const old = JSON.stringify(link.collisions[0].geometry);
+  const paths = [...new Set(size.map(({path}) => path))];
+  const parts = /** @type {const} */ ([['collision', link.collisions], ['visual', link.visuals]])
+    .flatMap(([kind, shapes]) => shapes.filter(({geometry}) => JSON.stringify(geometry) === old)
+      .map(({name}) => `${target}::${kind}:${name}`));
+  const sets = parts.flatMap((part) => paths.map((path) => {
+    const numbers = size.filter((one) => one.path === path).map(({value}) => value);
+    return /** @type {Operation} */ ({kind: 'set', target: part, path: `geometry.${path}`,
+      value: SIZES[path].length > 1 ? numbers : numbers[0]});
+  }));
+  return {kind: 'group', label: `Resize ${target}`,
+    ops: [...sets, {kind: 'compute_inertial', target, density: null}]};
+}
 
 /** An axis without limits. @type {Axis} */
 const FREE = {xyz: [0, 0, 1], lower: -1e16, upper: 1e16, effort: -1, velocity: -1, damping: 0, friction: 0,

@@ -3,7 +3,7 @@ import {Dialog, faultText, labelled} from '../panels/dialog.js';
 import {fill, h} from '../panels/dom.js';
 import {icon} from '../panels/icons.js';
 import {jointDialog} from './joint_dialog.js';
-import {isLinkOf, JOINT_TYPES, jointText, pluginText} from './model_edits.js';
+import {isLinkOf, JOINT_TYPES, jointText, pluginText, resizing, sizeOf} from './model_edits.js';
 import {meshDialog} from './model_files.js';
 import {SOLID_SHAPES, solidModel} from './solids.js';
 /** @import {Joint, Model, Operation, SolidShape} from '../protocol.js' */
@@ -124,7 +124,7 @@ export class Palette {
       h('div', {class: 'row'}, shapes),
       h('div', {class: 'tools'}, button('Add visual', () => add('visual')), button('Add collision', () => add('collision')),
         button('Rename…', () => this.#renameLink(target, link)), button('Inertia…', () => this.#inertia(target)),
-        button('Shapes…', () => this.#shapes(model, target)),
+        button('Shapes…', () => this.#shapes(model, target)), button('Size…', () => this.#resize(model, target)),
         button('Remove', () => this.#edit({kind: 'remove_part', target}), {class: 'danger'})));
   }
 
@@ -194,6 +194,25 @@ export class Palette {
         if (reply.name) this.editor.store.select([reply.name]);
         return true;
       }}]}).open();
+  }
+
+  /** One size for the collision, the visual and the inertia of a link. @param {Model} model @param {string} target */
+  #resize(model, target) {
+    const link = model.links.find((one) => `${model.name}::${one.name}` === target);
+    const size = link ? sizeOf(link) : [];
+    if (!link || !size.length) {
+      this.editor.notices.say('The first collision of this link has no size in numbers.');
+      return undefined;
+    }
+    const inputs = size.map(({label, value}) => h('input', {type: 'number', value, min: 0, step: 'any',
+      'aria-label': label}));
+    return new Dialog({title: `Size of ${target}`, content: [
+      h('p', {class: 'soft', text: 'For the collision, for the visual of the same shape, and for the inertia. The mass stays.'}),
+      ...size.map(({label}, at) => labelled(`${label} (m)`, inputs[at])),
+    ], buttons: [{title: 'Cancel'}, {title: 'OK', primary: true, run: () => {
+      if (!inputs.every(({valueAsNumber}) => valueAsNumber > 0)) throw new Error('Each length must be greater than 0 m.');
+      return this.#asked(resizing(target, link, size.map((one, at) => ({...one, value: inputs[at].valueAsNumber}))));
+    }}]}).open();
   }
 
   /** What a link consists of, to take away. @param {Model} model @param {string} target */
