@@ -103,6 +103,25 @@ def test_a_skid_steered_base_turns_on_a_box(lab: Lab, laws: Laws):
               rel=0.05)
 
 
+@pytest.mark.parametrize("crooked", [0.0, 8e-4])   # half of pi as 1.57
+@pytest.mark.parametrize("rate", [1.0, 3.0])
+def test_a_base_on_wide_wheels_turns_in_place(lab: Lab, laws: Laws, rate: float, crooked: float):
+    lab.load(ground())
+    base = _base(speed=0.0, mu=0.8)
+    for link in base.links[1:]:
+        link.collisions[0] = replace(link.collisions[0], geometry=Cylinder(RADIUS, 0.12),
+                                     pose=Pose((0, 0, 0), quat_from_rpy(crooked, 0, 0)))
+    car = lab.load(base, (0, 0, RADIUS), quat_from_rpy(0, 0, 0.3))
+    lab.seconds(1)
+    start = lab.pose(car).position
+    lab.apply(SetMotors(tuple(JointMotor(lab.joint_rows[car, f"j{n}"], rate * side, 1e3)
+                              for n, side in enumerate((-1, 1, -1, 1)))))
+    for _ in range(8):
+        lab.seconds(0.5)
+        laws.at_most("a skid-steered base that turns for 4 s: way from its place, m",
+                     math.dist(lab.pose(car).position, start), 0.01)
+
+
 def test_a_base_that_skids_comes_to_rest_and_stays(lab: Lab, laws: Laws):
     # Braked wheels that slide over a slope of 10 degrees stop as Coulomb's law says, and hold.
     angle, mu, speed = math.radians(10), 0.8, 1.0

@@ -12,6 +12,7 @@ from laws import Laws
 from my_simulations.description.model import Inertial, Joint, JointAxis, Link, Model
 from my_simulations.description.shapes import Box, Collision, Cylinder, Surface
 from my_simulations.engine.commands import ReadContacts
+from my_simulations.engine.drive_commands import JointMotor, SetMotors
 from my_simulations.engine.timed_forces import AddTimedForces, TimedEffort
 from my_simulations.geometry import Pose, quat_from_rpy
 
@@ -84,6 +85,49 @@ def test_wide_wheels_stand_on_both_edges(lab: Lab, laws: Laws):
     assert len(edges) == 8
     laws.near("wide wheels that roll: height of the axle, m", lab.pose(car, "w0").position[2], 0.1,
               abs=1e-4)
+
+
+def _two_wheeled(roll: float, mu: float) -> Model:
+    """A light base on two driven wheels and a box that slides behind them."""
+    side = quat_from_rpy(roll, 0, 0)
+    links = [Link("link", Pose((0, 0, 0.01)),
+                  Inertial(0.83, Pose(), 2.2e-3, 0, 0, 2.1e-3, 0, 2.0e-3))]
+    joints: List[Joint] = []
+    for n, y in enumerate((0.08, -0.08)):
+        links.append(Link(f"w{n}", Pose((0, y, 0.033), side),
+                          Inertial(0.0285, Pose(), 1.1e-5, 0, 0, 1.1e-5, 0, 2.1e-5),
+                          [Collision("c", Cylinder(0.033, 0.018), surface=Surface(mu=mu))]))
+        joints.append(Joint(f"j{n}", "revolute", "link", f"w{n}", axis=JointAxis((0, 0, 1))))
+    links.append(Link("caster", Pose((-0.081, 0, 0.006), side),
+                      Inertial(0.005, Pose(), 1e-3, 0, 0, 1e-3, 0, 1e-3),
+                      [Collision("c", Box((0.03, 0.009, 0.02)), Pose((0, 0.001, 0)),
+                                 surface=Surface(mu=0.1))]))
+    joints.append(Joint("mount", "fixed", "link", "caster"))
+    return Model("base", links=links, joints=joints)
+
+
+@pytest.mark.parametrize("floor", ["plane", "box"])
+@pytest.mark.parametrize("roll", [-math.pi / 2, -1.57])
+@pytest.mark.parametrize("mu", [1.0, 1e5])
+@pytest.mark.parametrize("period", [10, 33])   # of the commands, in steps
+def test_a_base_on_two_wheels_keeps_its_heading_as_it_starts_and_stops(
+        lab: Lab, laws: Laws, floor: str, roll: float, mu: float, period: int):
+    """The commands of a driver that accelerates by 1 m/s^2, in steps that make the wheels slip."""
+    lab.load(ground() if floor == "plane" else slab("floor", (60, 60, 1)),
+             (0, 0, 0 if floor == "plane" else -0.5))
+    base = lab.load(_two_wheeled(roll, mu))
+    lab.seconds(1)
+    speed, heading = 0.0, _yaw(lab, base)
+    for goal in (0.22, 0.0) * 3:
+        for _ in range(1500 // period):
+            change = 1e-3 * period
+            speed += max(-change, min(change, goal - speed))
+            lab.apply(SetMotors(tuple(JointMotor(lab.joint_rows[base, f"j{n}"], speed / 0.033, 10.0)
+                                      for n in range(2))))
+            lab.steps(period)
+        before, heading = heading, _yaw(lab, base)
+        laws.at_most("a base on two wheels: yaw by a start or a stop, degrees",
+                     abs(heading - before), 0.03)
 
 
 def test_a_wheel_of_many_shapes_stays_one_body(lab: Lab):

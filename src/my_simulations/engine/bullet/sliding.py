@@ -9,7 +9,8 @@ So once a link that hangs on a joint slides on something static, Bullet's fricti
 from it (a share of 0.001 along each axis remains), and Coulomb's law acts as an external force at
 each contact. A force against a slip of a few centimetres a second or less would overshoot within a
 step; there it grows in proportion to the slip. So as to come to rest, such a link gets Bullet's
-friction back every 64 steps, for as long as that slows it down, and keeps it when it is held.
+friction back every 64 steps, for as long as that slows it down, and keeps it once all such links of
+its body are held.
 """
 from __future__ import annotations
 
@@ -54,6 +55,7 @@ class _Slide:
         loads: what presses there, N.
         slip: mean velocity across the floor after the last step, m/s.
         trying: Bullet has its friction in this step.
+        held: and holds it.
         apart: steps since it last touched something.
     """
 
@@ -64,6 +66,7 @@ class _Slide:
     forces: Dict[Vec3, Vec3] = field(default_factory=dict)
     loads: Dict[Vec3, float] = field(default_factory=dict)
     trying: bool = False
+    held: bool = False
     apart: int = 0
 
 
@@ -162,6 +165,7 @@ class Sliding:
             found = self._loads()
             for key in list(self._slides):
                 self._go_on(key, *found[key], step, dt, least)
+            self._give_back_held()
 
     def _look(self, uid: int, parts: Dict[int, Part]) -> None:
         """Find the links of a body that slide."""
@@ -220,8 +224,8 @@ class Sliding:
         before = slide.slip
         slide.slip = slip
         if slide.trying:
-            if norm(slip) < _HELD:
-                self._give_back(key)
+            slide.held = norm(slip) < _HELD
+            if slide.held:
                 return
             if norm(slip) < _SLOWS * norm(before):
                 return
@@ -235,13 +239,24 @@ class Sliding:
             if speed > 0.0:
                 slide.forces[contact[5]] = scale(
                     velocity, -mu * load / max(speed, soft * mu))
-        if dot(slip, before) < 0.0 or (slow and step % _TRY == 0):
+        # A slip that is larger than before is the answer to a command.
+        turned = dot(slip, before) < 0.0 and norm(slip) < norm(before) + _HELD
+        if turned or (slow and step % _TRY == 0):
             self._try(key, slide, True)
+
+    def _give_back_held(self) -> None:
+        """Give the links of a body back to Bullet together, once it holds all of them.
+
+        Bullet stops a slip sooner: a base with one wheel here and the other there would turn.
+        """
+        sliding = {uid for (uid, _), slide in self._slides.items() if not slide.held}
+        for key in [key for key in self._slides if key[0] not in sliding]:
+            self._give_back(key)
 
     @staticmethod
     def _try(key: Key, slide: _Slide, trying: bool) -> None:
         """Let Bullet's friction act in the next step, or ours again."""
-        slide.trying = trying
+        slide.trying, slide.held = trying, False
         if trying:
             slide.forces = {}
         pybullet.changeDynamics(*key, anisotropicFriction=_BULLETS if trying else _OURS)
