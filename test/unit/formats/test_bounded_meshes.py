@@ -14,6 +14,7 @@ from my_simulations.formats.mesh.declared_size import LARGEST, check_declared_si
 from my_simulations.formats.mesh.loading import load_mesh
 from my_simulations.formats.mesh.obj import read_obj
 from my_simulations.formats.mesh.part import MOST_TRIANGLES, MeshError
+from my_simulations.formats.mesh.plain_text import numbered_lines
 from my_simulations.formats.mesh.stl import read_stl
 
 PLY = (b"ply\nformat binary_little_endian 1.0\nelement vertex %d\nproperty float x\n"
@@ -98,6 +99,11 @@ def test_lines_that_go_on_in_others_keep_their_numbers():
     with pytest.raises(MeshError, match="there is no vertex 9") as refused:
         read_obj(data)
     assert refused.value.line == 8
+
+
+def test_empty_lines_are_counted_and_left_out():
+    assert list(numbered_lines("a\n\n\nb\n")) == [(1, "a"), (4, "b")]
+    assert list(numbered_lines("a\\\n\nb", continued=True)) == [(1, "a "), (3, "b")]
 
 
 def test_parts_of_obj_come_in_the_order_of_their_first_faces():

@@ -24,7 +24,7 @@ def with_newlines(data: bytes) -> bytes:
 
 
 def numbered_lines(text: str, continued: bool = False) -> Iterator[Tuple[int, str]]:
-    """Line number, from 1, and text of each line, one after the other.
+    """Line number, from 1, and text of each line that is not empty, one after the other.
 
     If `continued`, lines that end with a backslash are one with the next one, under the number of
     the first.
@@ -41,7 +41,7 @@ def numbered_lines(text: str, continued: bool = False) -> Iterator[Tuple[int, st
         elif begun:
             yield line - len(begun), " ".join((*begun, row))
             begun = []
-        else:
+        elif row:
             yield line, row
 
 
