@@ -17,7 +17,8 @@ from gymnasium.utils.env_checker import check_env
 
 import my_simulations.gym
 from my_simulations.errors import CommandError
-from my_simulations.gym import push_box, stack_boxes
+from my_simulations.gym import Judgement, View, WorldEnv, push_box, stack_boxes
+from my_simulations.python_api import RobotOptions, WorldChoice
 
 REPOSITORY = Path(__file__).resolve().parents[2]
 PUSH, STACK = "my_simulations/PushBox-v0", "my_simulations/StackBoxes-v0"
@@ -223,3 +224,44 @@ def test_environments_are_closed_when_one_of_several_cannot_be_made():
 
 def _failing():
     raise CommandError("no such world")
+
+
+class _Explore:
+    """Drives the lab robot and sees with its laser."""
+
+    choice = WorldChoice(str(REPOSITORY / "test/rostest/live_robot.world"))
+    period = 0.1
+    action_space = gymnasium.spaces.Box(-1.0, 1.0, (2,))
+    observation_space = gymnasium.spaces.Box(0.0, 10.0, (360,))
+    view = View()
+
+    def begin(self, world, random, options):
+        self.scan = world.topics["/scan"]
+        self.scan.wait()
+
+    def act(self, world, action):
+        world.publish("/cmd_vel", {"linear": {"x": 0.5 * action[0]}, "angular": {"z": action[1]}})
+
+    def observe(self, world):
+        return np.clip(np.nan_to_num(self.scan.latest.ranges, posinf=10.0), 0.0, 10.0)
+
+    def judge(self, world, action):
+        return Judgement(reward=float(self.scan.latest.ranges.min()))
+
+
+def test_a_task_drives_a_robot_by_its_laser_and_repeats():
+    env = WorldEnv(_Explore())
+    try:
+        episodes = []
+        for _ in range(2):
+            seen = [env.reset(seed=1)[0]]
+            seen += [env.step(np.array([1.0, 0.1]))[0] for _ in range(8)]
+            episodes.append(np.array(seen))
+        assert np.array_equal(*episodes)
+        assert episodes[0][-1].min() < episodes[0][0].min() - 0.1
+    finally:
+        env.close()
+    silent = WorldEnv(_Explore(), robots=RobotOptions(plugins=False))
+    with pytest.raises(CommandError, match="there is no topic /scan"):
+        silent.reset(seed=1)
+    silent.close()

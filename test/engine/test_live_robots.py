@@ -1,6 +1,8 @@
 """Robots of an open world: their plugins and sensors run in Python, without ROS."""
 from __future__ import annotations
 
+import os
+import signal
 import subprocess
 import sys
 from pathlib import Path
@@ -9,8 +11,9 @@ import numpy as np
 import pytest
 
 import my_simulations
-from my_simulations.errors import CommandError
+from my_simulations.errors import CommandError, EngineLostError
 from my_simulations.messages import geometry_msgs, pixels
+from my_simulations.python_api import WorldChoice
 
 ROOT = Path(__file__).resolve().parents[2]
 WORLD = f"""<sdf version="1.6"><world name="w">
@@ -20,7 +23,8 @@ WORLD = f"""<sdf version="1.6"><world name="w">
 <collision name="c"><geometry><box><size>0.2 40 1</size></box></geometry></collision>
 <visual name="v"><geometry><box><size>0.2 40 1</size></box></geometry></visual>
 </link></model></world></sdf>"""
-TOPICS = {"/odom": 50, "/scan": 10, "/imu": 50, "/joint_states": 50, "/camera/image_raw": 15}
+TOPICS = {"/tf": 50, "/odom": 50, "/scan": 10, "/imu": 50, "/joint_states": 50,
+          "/camera/image_raw": 15}
 """Hz of each topic."""
 
 RUN = """
@@ -77,9 +81,13 @@ def test_after_a_step_all_that_was_due_has_arrived(world):
     for _ in range(3):
         world.step(1000)
         for name, topic in topics.items():
+            if name == "/tf":
+                continue
             last = topic.latest.header.stamp.to_nsec()
             due = world.time * 1e9
             assert due - last < 1e9 / TOPICS[name] + 1e6, name
+    transforms = topics.pop("/tf")
+    assert transforms.count >= 3 * TOPICS["/tf"] - 2
     for name, topic in topics.items():
         assert abs(topic.count - 3 * TOPICS[name]) <= 2, name
         stamps = [one.header.stamp.to_nsec() for one in topic.take()]
@@ -222,3 +230,37 @@ class Bad(Plugin):
             assert issue.code == "plugin-failed" and "std_msgs/UInt8.data" in issue.message
     finally:
         sys.path.remove(str(tmp_path))
+
+
+def test_robots_run_again_after_the_engine_has_died(world):
+    odometry, scan = world.topics["odom"], world.topics["scan"]
+    world.step(100)
+    os.kill(world.simulator.engine_pid, signal.SIGKILL)
+    with pytest.raises(EngineLostError):
+        for _ in range(1000):
+            world.step(10)
+    world.reset()
+    world.publish("cmd_vel", {"linear": {"x": 0.3}})
+    world.step(1000)
+    assert odometry.count == 50 and 9 <= scan.count <= 11
+    assert world.states().pose["robo"][0] > 0.1
+
+
+def test_worlds_side_by_side_have_their_own_robots(file, world):
+    with my_simulations.open_world(file) as other:
+        mine, theirs = world.topics["odom"], other.topics["odom"]
+        world.publish("cmd_vel", {"linear": {"x": 0.3}})
+        world.step(500)
+        other.step(500)
+        assert mine.latest.pose.pose.position.x > 0.05 > theirs.latest.pose.pose.position.x
+
+
+def test_another_world_in_the_same_engine_has_its_own_topics(file, world):
+    odometry = world.topics["odom"]
+    world.step(100)
+    world.open(WorldChoice("worlds/empty.world"))
+    assert len(world.topics) == 0 and odometry.count == 0
+    world.step(10)
+    world.open(WorldChoice(file))
+    world.step(100)
+    assert odometry.count == 5

@@ -8,7 +8,7 @@ import gymnasium
 import numpy as np
 
 from ..errors import EngineLostError
-from ..python_api import OpenWorld, WorldChoice
+from ..python_api import OpenWorld, RobotOptions, WorldChoice
 
 
 @dataclass(frozen=True)
@@ -76,15 +76,18 @@ class WorldEnv(gymnasium.Env[Any, Any]):
     Args:
         task: what it is about.
         render_mode: "rgb_array", or None.
+        robots: which plugins of the world's robots run.
     """
 
     metadata: Dict[str, Any] = {"render_modes": ["rgb_array"], "render_fps": 10}
 
-    def __init__(self, task: Task, render_mode: Optional[str] = None) -> None:
+    def __init__(self, task: Task, render_mode: Optional[str] = None,
+                 robots: RobotOptions = RobotOptions()) -> None:  # noqa: B008
         if render_mode not in (None, "rgb_array"):
             raise ValueError(f"render_mode is 'rgb_array' or None, not '{render_mode}'")
         self.task = task
         self.render_mode = render_mode
+        self._robots = robots
         self.action_space = task.action_space
         self.observation_space = task.observation_space
         self.metadata = {**self.metadata, "render_fps": round(1.0 / task.period)}
@@ -103,7 +106,7 @@ class WorldEnv(gymnasium.Env[Any, Any]):
         """Begin an episode; see gymnasium.Env.reset. `options` goes to the task."""
         super().reset(seed=seed)
         if self._world is None:
-            self._world = OpenWorld(self.task.choice)
+            self._world = OpenWorld(self.task.choice, robots=self._robots)
         else:
             self._world.reset()
         self.task.begin(self._world, self.np_random, options or {})

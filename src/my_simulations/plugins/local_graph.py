@@ -194,6 +194,11 @@ class LocalGraph:
         """
         return self._listen(name, call, plugin=False)
 
+    def end_transforms(self) -> None:
+        """Take /tf off the graph, until a plugin offers it again."""
+        if self._tf is not None:
+            self._tf.close()
+
     @contextlib.contextmanager
     def suspended(self) -> Iterator[None]:
         """Let plugins run as if the functions of `listen` were given at the end.

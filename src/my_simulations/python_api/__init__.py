@@ -3,8 +3,9 @@ from .open_world import OpenWorld, open_world
 from .ray_casts import RayReading
 from .readings import ContactReading, JointReadings, Readings, SavedState
 from .robot_joints import Robot
+from .robots import RobotOptions
 from .world_choice import WorldChoice
 from .world_pictures import Picture
 
 __all__ = ["ContactReading", "JointReadings", "OpenWorld", "Picture", "RayReading", "Readings",
-           "Robot", "SavedState", "WorldChoice", "open_world"]
+           "Robot", "RobotOptions", "SavedState", "WorldChoice", "open_world"]

@@ -99,6 +99,8 @@ class Robots:
         if self._starter is not None:
             self._starter.stop()
             self._starter = None
+        if self._graph is not None:
+            self._graph.end_transforms()
         if self._topics is not None:
             self._topics.forget()
 
