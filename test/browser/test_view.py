@@ -1,6 +1,8 @@
 """The 3D view as a person uses it: camera, tools, live drags, and what goes wrong round it."""
 from __future__ import annotations
 
+import math
+
 import pytest
 from free_ports import free_port
 from gazebo_msgs.srv import GetModelState
@@ -97,6 +99,52 @@ def test_views_from_the_top_look_down(editor):
     editor.get("editor.actions.orthographic()")
     wait_for(lambda: pixel_of(editor, "low") == approx(pixel_of(editor, "high"), abs=1),
              "one above the other")
+
+
+def middle_of_view(editor):
+    box = editor.page.locator("#view").bounding_box()
+    return [box["x"] + box["width"] / 2, box["y"] + box["height"] / 2]
+
+
+def test_f_frames_the_selection_and_with_shift_all_models(editor):
+    insert(editor, "near", standing(2, 0))
+    insert(editor, "far", standing(-30, 40))
+    editor.get("editor.store.select(['far'])")
+    editor.page.keyboard.press("f")
+    wait_for(lambda: pixel_of(editor, "far") == approx(middle_of_view(editor), abs=3),
+             "the framed selection")
+    editor.page.keyboard.press("Shift+F")
+    x, y = middle_of_view(editor)
+    wait_for(lambda: all(0 < at[0] < 2 * x and 0 < at[1] < 2 * y for at in (
+        pixel_of(editor, "near"), pixel_of(editor, "far"))), "both models in the view")
+
+
+def test_home_shows_all_models_if_the_first_view_is_inside_of_one(editor):
+    shape = "<geometry><box><size>30 30 10</size></box></geometry>"
+    house = (f"<sdf version='1.7'><model name='house'><static>1</static><link name='l'>"
+             f"<visual name='v'>{shape}</visual></link></model></sdf>")
+    editor.get(f"editor.request('edit', {{op: {{kind: 'insert', sdf: `{house}`}}}})")
+    editor.until("editor.view.pixelOf('house') !== null", "the house")
+    editor.page.keyboard.press("Home")
+    outside = "Math.max(...editor.view.camera.position.slice(0, 2).map(Math.abs)) > 15"
+    editor.until(outside, "a camera outside of the house")
+
+
+def test_an_orthographic_view_keeps_the_size_of_what_is_seen(editor):
+    insert(editor, "a", standing(20, 0))
+    insert(editor, "b", standing(-20, 0))
+    editor.page.keyboard.press("Shift+F")
+    editor.rest()
+
+    def width():
+        return math.dist(pixel_of(editor, "a"), pixel_of(editor, "b"))
+
+    before = width()
+    editor.get("editor.actions.orthographic()")
+    editor.until("editor.store.camera.projection === 'orthographic'", "the projection")
+    editor.rest()
+    assert width() == approx(before, rel=0.3)
+    editor.get("editor.actions.perspective()")
 
 
 def test_following_keeps_a_moving_thing_in_its_place(editor):

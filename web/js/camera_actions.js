@@ -15,6 +15,9 @@ export function cameraActions({store, note, view}) {
     viewFrom: (side) => view()?.viewFrom(side),
     resetView: () => view()?.viewFrom('home'),
     moveTo: (name = store.selection.at(-1)) => name && view()?.moveTo(name),
+    /** The whole selection; without one all models. */
+    frameSelection: () => view()?.frame(store.selection),
+    frameAll: () => view()?.frame(),
     /** The address that opens this page with this camera and selection, to the clipboard. */
     async copyLink() {
       const link = camera.viewLink();
@@ -63,11 +66,14 @@ export function cameraActions({store, note, view}) {
       store.setCamera({following: name});
     },
     /** @param {CameraChoices['projection']} projection */
-    setProjection: (projection) => store.setCamera({projection}),
+    setProjection(projection) {
+      if (projection === 'orthographic' && store.camera.projection !== projection) view()?.keepScale();
+      store.setCamera({projection});
+    },
     /** @param {CameraChoices['controller']} controller */
     setController: (controller) => store.setCamera({controller}),
-    perspective: () => store.setCamera({projection: 'perspective'}),
-    orthographic: () => store.setCamera({projection: 'orthographic'}),
+    perspective: () => camera.setProjection('perspective'),
+    orthographic: () => camera.setProjection('orthographic'),
     orbitControl: () => store.setCamera({controller: 'orbit'}),
     fpsControl: () => store.setCamera({controller: 'fps'}),
   };

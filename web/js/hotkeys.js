@@ -52,6 +52,8 @@ export const HOTKEYS = Object.freeze([
   {keys: 'Alt+L', title: 'Copy a link to this view', group: 'Camera', action: 'copyLink'},
   {keys: 'Touch', title: 'One finger orbits, two pan and zoom; a long press opens the menu',
     group: 'Camera'},
+  {keys: 'F', title: 'Frame selection', group: 'Camera', action: 'frameSelection'},
+  {keys: 'Shift+F', title: 'Frame all models', group: 'Camera', action: 'frameAll'},
   {keys: 'Home', title: 'Reset view', group: 'Camera', action: 'resetView'},
   {keys: 'Shift held', title: 'Disable snapping while drawing', group: 'Building editor'},
   {keys: '0-9, Enter', title: 'Enter the length of the wall', group: 'Building editor'},

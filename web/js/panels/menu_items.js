@@ -119,6 +119,8 @@ export function menus(page) {
         camera('Orbit View Control', 'orbitControl', 'controller', 'orbit'),
         LINE,
         item('Reset View Angle', 'resetView'),
+        item('Frame Selection', 'frameSelection'),
+        item('Frame All Models', 'frameAll'),
         item('Copy Link to This View', 'copyLink'),
         item('Add Bookmark', 'addBookmark'),
         ...actions.bookmarks().map(({name}, at) => ({title: name, run: () => actions.goToBookmark(at)})),

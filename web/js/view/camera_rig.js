@@ -22,6 +22,9 @@ const FLIGHT = 500;
 const TURN_FLIGHT = 1000;
 /** Whether the user has asked the system for less motion: views then change at once. */
 const calm = () => globalThis.matchMedia?.('(prefers-reduced-motion: reduce)').matches ?? false;
+/** Whether nothing is seen of a model but planes. @param {import('../protocol.js').Model} model */
+const isGround = (model) =>
+  model.links.every((link) => link.visuals.every(({geometry}) => geometry.type === 'plane'));
 const WALK_SPEED = {ahead: 1, aside: 0.8};
 
 export class CameraRig {
@@ -178,9 +181,50 @@ export class CameraRig {
       this.fly(views.fromSide(this.view, side, centre), TURN_FLIGHT);
       return;
     }
-    this.zoomLevel = views.ORTHOGRAPHIC_ZOOM;
     if (this.#store.camera.following) this.#store.setCamera({following: null});
+    if (this.#isInside(this.#home.position)) {
+      this.frame();
+      return;
+    }
+    this.zoomLevel = views.ORTHOGRAPHIC_ZOOM;
     this.fly(this.#home, TURN_FLIGHT);
+  }
+
+  /**
+   * Flies to where models or links are seen as a whole.
+   * @param {string[]} names  all models but grounds where none is given
+   */
+  frame(names = []) {
+    const whole = new Box3();
+    for (const name of names.length ? names : this.#standing()) {
+      const box = this.#models.bounds(name);
+      if (box) whole.union(box);
+    }
+    if (!whole.isEmpty()) this.flyTo(whole);
+    else if (!names.length) this.fly(this.#home);
+  }
+
+  /** Gives what is looked at its present size in an orthographic view. */
+  keepScale() {
+    const whole = new Box3();
+    for (const name of this.#standing()) whole.union(this.#models.bounds(name) ?? new Box3());
+    const centre = whole.getCenter(new Vector3()).toArray();
+    const away = subtract(centre, this.view.position);
+    const depth = views.forward(this.view).reduce((sum, part, at) => sum + part * away[at], 0);
+    const point = whole.isEmpty() || depth <= 0 ? this.ahead : centre;
+    this.zoomLevel = 1 / views.metresPerPixel(this.view, point, this.fov, this.#stage.height);
+  }
+
+  /** Whether a point is in the box around a model. @param {Vec3} point */
+  #isInside(point) {
+    const at = new Vector3(...point);
+    return this.#standing().some((name) => this.#models.bounds(name)?.containsPoint(at));
+  }
+
+  /** Models that are no grounds. */
+  #standing() {
+    return (this.#store.document?.models ?? []).filter((model) => !isGround(model))
+      .map((model) => model.name);
   }
 
   /**
@@ -299,11 +343,8 @@ export class CameraRig {
    * walk about, as in Gazebo.
    */
   #beginWithAll() {
-    const isGround = (/** @type {import('../protocol.js').Model} */ model) =>
-      model.links.every((link) => link.visuals.every(({geometry}) => geometry.type === 'plane'));
-    const {models = [], actors = []} = this.#store.document ?? {};
-    this.#toFrame = actors.length ? []
-      : models.filter((model) => !isGround(model)).map((model) => model.name);
+    const {actors = []} = this.#store.document ?? {};
+    this.#toFrame = actors.length ? [] : this.#standing();
     this.#home = views.HOME;
     this.set(this.#home);
     this.#framed = this.view;

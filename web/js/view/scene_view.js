@@ -250,6 +250,16 @@ export class View {
     else if (pose) this.#rig.flyTowards(pose.slice(0, 3));
   }
 
+  /** Shows models or links as a whole; all models where none is given. @param {string[]} [names] */
+  frame(names) {
+    this.#rig.frame(names);
+  }
+
+  /** Before a switch to an orthographic view: what is looked at keeps its size. */
+  keepScale() {
+    this.#rig.keepScale();
+  }
+
   /** @param {string} name */
   #centre(name) {
     const bounds = this.bounds(name);
