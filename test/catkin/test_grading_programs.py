@@ -1,6 +1,7 @@
 """Grading of programs: what a program does changes its own mark only."""
 from __future__ import annotations
 
+import ast
 import contextlib
 import csv
 import json
@@ -13,7 +14,7 @@ from pathlib import Path
 
 import pytest
 
-from my_simulations.grading import box
+from my_simulations.grading import box, cell
 
 REPOSITORY = Path(__file__).resolve().parents[2]
 GRADE = [sys.executable, str(REPOSITORY / "scripts" / "grade")]
@@ -190,6 +191,29 @@ def test_hostile_programs_change_no_other_mark(tmp_path):
     assert "more memory than 1000 MB" in (students / "memory" / "index.html").read_text()
     assert (students / "delete" / "output.txt").read_text() in ("", "[]\n")
     assert sum(path.stat().st_size for path in students.rglob("*")) < 30e6
+
+
+def test_a_program_reaches_what_it_needs_below_a_closed_folder_and_nothing_else(tmp_path):
+    closed = tmp_path / "closed"
+    (closed / "ws" / "src").mkdir(parents=True)
+    (closed / "ws" / "src" / "package.py").write_text("there")
+    (closed / "one.txt").write_text("one")
+    (closed / "secret.txt").write_text("secret")
+    closed.chmod(0o700)
+    (tmp_path / "judge").mkdir()
+    tmp_path.chmod(0o755)
+    wanted = [str(closed / name) for name in ("ws/src/package.py", "one.txt")]
+    code = "import os\nprint([open(name).read() for name in {!r}], os.listdir({!r}))"
+    spec = {"parent": os.getpid(), "command": [sys.executable, "-c", code.format(
+                wanted, str(closed))],
+            "environment": dict(os.environ), "cwd": "/", "user": 61000,
+            "private": [str(tmp_path / "judge")], "needed": [str(closed / "ws"), wanted[1]],
+            "bytes": 1 << 20, "memory_bytes": 1 << 30, "processor_seconds": 20, "processes": 50}
+    done = subprocess.run([sys.executable, "-I", cell.__file__, json.dumps(spec)],
+                          capture_output=True, text=True, timeout=SECONDS)
+    assert done.stdout.startswith("['there', 'one']"), done.stderr
+    if os.getuid() == 0:
+        assert sorted(ast.literal_eval(done.stdout.partition("] ")[2])) == ["one.txt", "ws"]
 
 
 def test_an_interrupt_ends_all_programs(tmp_path):

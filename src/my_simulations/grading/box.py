@@ -42,7 +42,7 @@ _LOOK_S = 0.05
 _PR_SET_PDEATHSIG, _PR_SET_CHILD_SUBREAPER = 1, 36
 _NEWNS, _NEWIPC, _NEWUSER, _NEWPID, _NEWNET = (
     0x00020000, 0x08000000, 0x10000000, 0x20000000, 0x40000000)
-MS_NOSUID, MS_NODEV, MS_REC, MS_PRIVATE, _MS_BIND = 2, 4, 16384, 1 << 18, 4096
+MS_NOSUID, MS_NODEV, MS_REC, MS_PRIVATE, MS_BIND = 2, 4, 16384, 1 << 18, 4096
 _MOUNT_SETATTR, _AT_FDCWD, _AT_RECURSIVE, _RDONLY = 442, -100, 0x8000, 1
 _SIOCGIFFLAGS, _SIOCSIFFLAGS, _IFF_UP = 0x8913, 0x8914, 1
 
@@ -205,7 +205,7 @@ def hide(path: str) -> None:
         if os.path.isdir(path):
             mount("none", path, "tmpfs", MS_NOSUID | MS_NODEV | 1, "size=4k,mode=000")
         elif os.path.exists(path):
-            mount("/dev/null", path, "", _MS_BIND)
+            mount("/dev/null", path, "", MS_BIND)
 
 
 def _is_below(path: str, folder: str) -> bool:

@@ -7,6 +7,7 @@ SPECIFICATION is JSON:
     command, environment, cwd
     user      user id that the program gets where the system permits it
     private   folders that the program must not see
+    needed    files and folders that it must reach, also below folders of other users
     bytes, memory_bytes, processor_seconds, processes   limits of each process of the program
 
 Run as a file, it imports the standard library alone, and box.py beside it. Processes outside of
@@ -70,7 +71,7 @@ def main(words: List[str]) -> int:
 
 def _inside(spec: Dict[str, Any], isolated: bool, box: Any) -> int:
     if isolated:
-        _hide(spec["private"], box)
+        _hide(spec["private"], spec["needed"], box)
     _limit(spec)
     with contextlib.suppress(OSError):
         os.setgroups([])
@@ -87,14 +88,57 @@ def _inside(spec: Dict[str, Any], isolated: bool, box: Any) -> int:
             return code
 
 
-def _hide(folders: List[str], box: Any) -> None:
+def _hide(folders: List[str], needed: List[str], box: Any) -> None:
     box.mount("none", "/", "", box.MS_REC | box.MS_PRIVATE)
+    if _changes_user():
+        _open_ways(needed, box)
     for folder in folders:
         box.hide(folder)
     with contextlib.suppress(OSError):
         box.tmpfs("/dev/shm", 64 << 20)
     with contextlib.suppress(OSError):
         box.mount("proc", "/proc", "proc", box.MS_NOSUID | box.MS_NODEV)
+
+
+def _changes_user() -> bool:
+    """Whether the program gets another user: root may do so, not the root of a namespace."""
+    with open("/proc/self/uid_map", encoding="ascii") as table:
+        return os.getuid() == 0 and int(table.read().split()[2]) > 1
+
+
+def _open_ways(needed: List[str], box: Any) -> None:
+    """Let another user reach paths below folders that only their owner enters, such as /root.
+
+    An empty folder takes the place of the closed one, and holds the needed paths only.
+    """
+    closed: Dict[str, Dict[str, int]] = {}
+    for path in sorted({os.path.realpath(path) for path in needed if os.path.exists(path)}):
+        gate = _closed_folder(path)
+        inside = closed.setdefault(gate, {}) if gate else {}
+        if gate and not any(path.startswith(f"{other}/") for other in inside):
+            inside[path] = os.open(path, os.O_PATH)
+    for gate, paths in closed.items():
+        box.tmpfs(gate, 1 << 20)
+        for path, held in paths.items():
+            source = f"/proc/self/fd/{held}"
+            if os.path.isdir(source):
+                os.makedirs(path, exist_ok=True)
+            else:
+                os.makedirs(os.path.dirname(path), exist_ok=True)
+                with open(path, "wb"):
+                    pass
+            box.mount(source, path, "", box.MS_BIND | box.MS_REC)
+            os.close(held)
+
+
+def _closed_folder(path: str) -> str:
+    """The first folder on the way to a path that other users must not enter; "" for none."""
+    parts = path.split("/")
+    for count in range(2, len(parts)):
+        folder = "/".join(parts[:count])
+        if not os.stat(folder).st_mode & 0o001:
+            return folder
+    return ""
 
 
 def _limit(spec: Dict[str, Any]) -> None:

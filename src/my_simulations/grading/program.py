@@ -10,6 +10,7 @@ import sys
 import threading
 from typing import Dict, List, Optional, Sequence
 
+from ..resources.package_files import own_directory
 from . import box, cell
 from .assignment import GradeLimits
 
@@ -49,6 +50,7 @@ class Program:
         spec = {"parent": os.getpid(), "command": list(command), "cwd": folder,
                 "environment": {**_environment(scratch), **environment},
                 "user": user, "private": [os.path.join(scratch, "judge")],
+                "needed": _needed(scratch),
                 "bytes": int(limits.file_mb * 1e6 / 2), "processes": limits.processes,
                 "memory_bytes": int(limits.memory_mb * 1e6),
                 "processor_seconds": int(limits.processor_seconds) + 1}
@@ -119,6 +121,23 @@ def _environment(scratch: str) -> Dict[str, str]:
     home = os.path.join(scratch, "home")
     return {**os.environ, "BOX_ISOLATION": "", "HOME": home, "ROS_HOME": os.path.join(home, ".ros"),
             "TMPDIR": os.path.join(scratch, "tmp"), "PYTHONUNBUFFERED": "1", "USER": "student"}
+
+
+def _needed(scratch: str) -> List[str]:
+    """What programs of ROS read: this package, Python, and the packages of the workspace."""
+    found = [os.path.join(scratch, name) for name in ("submission", "home", "tmp", "test")]
+    found += [own_directory(), sys.prefix, sys.base_prefix,
+             os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))]
+    for name in ("CMAKE_PREFIX_PATH", "ROS_PACKAGE_PATH", "PYTHONPATH", "GAZEBO_MODEL_PATH",
+                 "GAZEBO_RESOURCE_PATH"):
+        found += [path for path in os.environ.get(name, "").split(os.pathsep) if path]
+    # Packages are often links from the workspace to a clone elsewhere.
+    for path in os.environ.get("ROS_PACKAGE_PATH", "").split(os.pathsep):
+        if os.path.isdir(path):
+            found += [entry.path for entry in os.scandir(path) if entry.is_symlink()]
+    found += [os.path.join(os.path.dirname(path), ".my_simulations")
+              for path in os.environ.get("CMAKE_PREFIX_PATH", "").split(os.pathsep) if path]
+    return found
 
 
 def _give(scratch: str, user: int) -> None:
