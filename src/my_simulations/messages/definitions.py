@@ -134,6 +134,8 @@ Wrench: Vector3 force; Vector3 torque
 WrenchStamped: Header header; Wrench wrench
 [hector_uav_msgs]
 Altimeter: Header header; float32 altitude; float32 pressure; float32 qnh
+EnableMotorsRequest: bool enable
+EnableMotorsResponse: bool success
 MotorStatus: Header header; bool on; bool running; float32[] voltage; float32[] frequency;
     float32[] current
 Supply: Header header; float32[] voltage; float32[] current

@@ -1,0 +1,22 @@
+"""All message types that plugins use are standard ones, but for those of packages of robots."""
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+from my_simulations.messages.definitions import standard_definitions
+
+PLUGINS = Path(__file__).resolve().parents[3] / "src/my_simulations/plugins"
+ROBOTS = {"cob_base_controller_utils", "kobuki_msgs", "pal_control_msgs"}
+"""Packages whose messages are read from their files, where they are installed."""
+
+
+def test_types_are_known():
+    used = set()
+    for path in PLUGINS.rglob("*.py"):
+        used |= set(re.findall(r'"([a-z]\w*_(?:msgs|srvs|utils|comm)/[A-Z]\w*)"', path.read_text()))
+    known = standard_definitions()
+    missing = {kind for kind in used if not known.keys() & {
+        kind, f"{kind}Request", f"{kind}Action"}}
+    assert len(used) > 60
+    assert {kind.partition("/")[0] for kind in missing} <= ROBOTS, sorted(missing)
