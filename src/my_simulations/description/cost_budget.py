@@ -7,7 +7,7 @@ at about 2.5 GHz; see the limits below.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, Dict, Iterator, List, Optional
+from typing import Any, Dict, Iterator, List, Optional, Tuple
 
 from .flatten import flattened
 from .model import WORLD, Model
@@ -26,31 +26,39 @@ class Cost:
         triangles: triangles of all collision meshes; a mesh counts for each collision that uses it.
         pairs: pairs of links of one model of which the engine stores whether they collide. Links
             that joints connect to one tree count only if one of them has self_collide.
+        meeting_pairs: those of them that collide because of self_collide.
     """
 
     links: int = 0
     shapes: int = 0
     triangles: int = 0
     pairs: int = 0
+    meeting_pairs: int = 0
 
     def __add__(self, other: "Cost") -> "Cost":
         return Cost(self.links + other.links, self.shapes + other.shapes,
-                    self.triangles + other.triangles, self.pairs + other.pairs)
+                    self.triangles + other.triangles, self.pairs + other.pairs,
+                    self.meeting_pairs + other.meeting_pairs)
 
     def __sub__(self, other: "Cost") -> "Cost":
         return Cost(self.links - other.links, self.shapes - other.shapes,
-                    self.triangles - other.triangles, self.pairs - other.pairs)
+                    self.triangles - other.triangles, self.pairs - other.pairs,
+                    self.meeting_pairs - other.meeting_pairs)
 
 
-MODEL_BUDGET = Cost(links=2000, shapes=10_000, triangles=2_500_000, pairs=100_000)
+MODEL_BUDGET = Cost(links=2000, shapes=10_000, triangles=2_500_000, pairs=100_000,
+                    meeting_pairs=50_000)
 """Limits of one model.
 
 A link takes about 0.5 ms to build, a shape 0.05 ms, a pair 0.01 ms: 1 s each at the limit. A mesh
 takes 1 s for each 600 000 triangles, and is built in pieces between steps. 100 000 pairs are 447
-moving links without joints. The largest height map has 2 097 152 triangles.
+moving links without joints. Pairs that collide cost little while their links are apart; if all
+overlap, a step of 10 000 pairs takes about a second. 50 000 are 316 such links. The largest height
+map has 2 097 152 triangles.
 """
 
-WORLD_BUDGET = Cost(links=16_384, shapes=100_000, triangles=5_000_000, pairs=1_000_000)
+WORLD_BUDGET = Cost(links=16_384, shapes=100_000, triangles=5_000_000, pairs=1_000_000,
+                    meeting_pairs=200_000)
 """Limits of all models of a world together.
 
 The first is the number of rows for links in the shared memory. A million triangles take about
@@ -62,10 +70,12 @@ _HINTS: Dict[str, str] = {
     "shapes": "use fewer or larger collisions",
     "triangles": "use a simpler mesh for <collision>; <visual> may keep the detailed one",
     "pairs": "connect the links by joints, or divide the model into several models",
+    "meeting_pairs": "set self_collide for the links that need it only",
 }
 _NAMES: Dict[str, str] = {
     "links": "links", "shapes": "collisions", "triangles": "triangles in its collision meshes",
-    "pairs": "pairs of links that the engine has to tell apart"}
+    "pairs": "pairs of links that the engine has to tell apart",
+    "meeting_pairs": "pairs of links that collide because of self_collide"}
 
 
 def cost_of(model: Model, meshes: Optional[MeshTable] = None) -> Cost:
@@ -80,7 +90,7 @@ def cost_of(model: Model, meshes: Optional[MeshTable] = None) -> Cost:
                     if table and isinstance(collision.geometry, SOLIDS) else None)
             shapes += len(data.parts) if data is not None and data.parts and moves else 1
             triangles += 0 if data is None else len(data.triangles)
-    return Cost(len(flat.links), shapes, triangles, _pairs(flat))
+    return Cost(len(flat.links), shapes, triangles, *_pairs(flat))
 
 
 def budget_faults(cost: Cost, model: Model) -> Iterator[Fault]:
@@ -104,21 +114,23 @@ def _exceeded(cost: Cost, budget: Cost) -> List[str]:
     return [name for name in _NAMES if getattr(cost, name) > getattr(budget, name)]
 
 
-def _pairs(model: Model) -> int:
-    """See `Cost.pairs`; of a flattened model."""
+def _pairs(model: Model) -> Tuple[int, int]:
+    """`Cost.pairs` and `Cost.meeting_pairs` of a flattened model."""
     if model.static:
-        return 0
+        return 0, 0
     solid = [link for link in model.links if link.collisions]
-    found = _of_two(len(solid))
     root = _trees(model)
     counts: Dict[str, int] = {}
-    asking = set()
+    asking: Dict[str, int] = {}
     for link in solid:
         tree = root[link.name]
         counts[tree] = counts.get(tree, 0) + 1
         if asks(link, model):
-            asking.add(tree)
-    return found - sum(_of_two(count) for tree, count in counts.items() if tree not in asking)
+            asking[tree] = asking.get(tree, 0) + 1
+    pairs = _of_two(len(solid)) - sum(
+        _of_two(count) for tree, count in counts.items() if tree not in asking)
+    silent = len(solid) - sum(asking.values())
+    return pairs, _of_two(len(solid)) - _of_two(silent)
 
 
 def _of_two(count: int) -> int:
