@@ -56,6 +56,7 @@ class _Slide:
         slip: mean velocity across the floor after the last step, m/s.
         trying: Bullet has its friction in this step.
         held: and holds it.
+        slow: it meets less than Coulomb's friction, as its slip would end within a few steps.
         apart: steps since it last touched something.
     """
 
@@ -67,6 +68,7 @@ class _Slide:
     loads: Dict[Vec3, float] = field(default_factory=dict)
     trying: bool = False
     held: bool = False
+    slow: bool = False
     apart: int = 0
 
 
@@ -165,6 +167,7 @@ class Sliding:
             found = self._loads()
             for key in list(self._slides):
                 self._go_on(key, *found[key], step, dt, least)
+            self._keep_alike()
             self._give_back_held()
 
     def _look(self, uid: int, parts: Dict[int, Part]) -> None:
@@ -241,8 +244,21 @@ class Sliding:
                     velocity, -mu * load / max(speed, soft * mu))
         # A slip that is larger than before is the answer to a command.
         turned = dot(slip, before) < 0.0 and norm(slip) < norm(before) + _HELD
+        slide.slow = slow
         if turned or (slow and step % _TRY == 0):
             self._try(key, slide, True)
+
+    def _keep_alike(self) -> None:
+        """Take links back from Bullet while others of their body slide and are slow.
+
+        Bullet's friction holds at once, that of what is slow grows with the slip: a base of which
+        Bullet held two wheels did not turn.
+        """
+        slow = {uid for (uid, _), slide in self._slides.items() if slide.slow and not slide.trying}
+        if slow:
+            for key, slide in self._slides.items():
+                if slide.trying and key[0] in slow:
+                    self._try(key, slide, False)
 
     def _give_back_held(self) -> None:
         """Give the links of a body back to Bullet together, once it holds all of them.
