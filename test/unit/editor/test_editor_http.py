@@ -83,6 +83,37 @@ def test_files_of_the_page_are_kept_by_browsers_until_one_has_changed(case, tmp_
     assert second != first and request(second)[2] == b"other();"
 
 
+def test_modules_of_the_page_are_sent_compressed_until_they_change(case, tmp_path):
+    folder = page_folder(tmp_path)
+    script = folder / "js" / "main.js"
+    script.write_text("one();" * 1000)
+    url = case(web=str(folder)).url
+    _, headers, body = request(main_script(url))
+    assert headers["Content-Encoding"] == "gzip" and int(headers["Content-Length"]) < 600
+    assert "immutable" in headers["Cache-Control"] and headers["Vary"] == "Accept-Encoding"
+    assert body == script.read_bytes()
+    script.write_text("other();" * 1000)
+    assert request(main_script(url))[2] == script.read_bytes()
+    for asked in ({"Accept-Encoding": "identity"}, {"Accept-Encoding": "gzip;q=0, br"}):
+        _, headers, body = request(url + "js/main.js", headers=asked)
+        assert "Content-Encoding" not in headers and body == script.read_bytes()
+    changed = request(url + "js/main.js")[1]["Last-Modified"]
+    assert request(url + "js/main.js", headers={"If-Modified-Since": changed})[0] == 304
+    script.write_text("short();")
+    assert "Content-Encoding" not in request(url + "js/main.js")[1]
+
+
+def test_the_page_of_the_package_is_sent_in_less_than_half_of_its_bytes(case):
+    url = case().url
+    folder = os.path.join(Pages.own_folder(), "js")
+    plain = sent = 0
+    for name in os.listdir(folder):
+        if name.endswith(".js"):
+            plain += os.path.getsize(os.path.join(folder, name))
+            sent += int(request(f"{url}js/{name}")[1]["Content-Length"])
+    assert 0 < sent < 0.5 * plain
+
+
 def test_addresses_of_the_page_are_the_same_after_a_start_and_another_users_are_others(tmp_path):
     folder = str(page_folder(tmp_path))
     stamps = [PageFiles(folder, str(tmp_path / home)).stamp() for home in ("a", "a", "b")]

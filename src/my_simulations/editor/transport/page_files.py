@@ -11,6 +11,7 @@ from aiohttp import hdrs, web
 
 from ...resources.package_files import own_directory
 from ..scene.content_types import PAGE, page_type, resource_type
+from .compressed_files import CompressedFiles
 from .page_bundle import PACKED, PageBundle
 from .page_key import page_key
 
@@ -38,6 +39,7 @@ class PageFiles:
         self._node_modules = node_modules(self.web)
         self._key = page_key(cache_dir)
         self._bundle = PageBundle(self.web, self._node_modules)
+        self._compressed = CompressedFiles()
         self._stamp = ""
         self._packed = ("", "", "")     # stamp, HTML, and the HTML with packed modules
 
@@ -74,30 +76,38 @@ class PageFiles:
         return response
 
     async def _protocol(self, request: web.Request) -> web.StreamResponse:
-        return self._page_file(request, os.path.join(self.web, "protocol.json"))
+        return await self._page_file(request, os.path.join(self.web, "protocol.json"))
 
     async def _part(self, request: web.Request) -> web.StreamResponse:
         part, inside = request.match_info["part"], request.match_info["inside"]
         path = _inside(os.path.join(self.web, part), inside)
         if part == "js" and inside.startswith(PACKED):
             path = _inside(os.path.join(self._bundle.folder, PACKED), inside[len(PACKED):])
-        return self._page_file(request, path)
+        return await self._page_file(request, path)
 
     async def _three(self, request: web.Request) -> web.StreamResponse:
         if not self._node_modules:
             raise web.HTTPNotFound(text="three is not installed: run tools/run, or `npm ci` in "
                                         "the folder web\n")
         folder = os.path.join(self._node_modules, "three")
-        return self._page_file(request, _inside(folder, request.match_info["inside"]))
+        return await self._page_file(request, _inside(folder, request.match_info["inside"]))
 
-    def _page_file(self, request: web.Request, path: Optional[str]) -> web.StreamResponse:
-        response = file_response(path, page_type(path or ""))
+    async def _page_file(self, request: web.Request,
+                         path: Optional[str]) -> web.StreamResponse:
+        kept = _CHECKED
         stamp = request.match_info.get("stamp")
         if stamp is not None:
             # A page that was opened while the world was loading was given by another server.
             self._stamp = self._stamp or self.stamp()
             if stamp == self._stamp:
-                response.headers[hdrs.CACHE_CONTROL] = _FOR_GOOD
+                kept = _FOR_GOOD
+        kind = page_type(path or "")
+        response: Optional[web.StreamResponse] = None
+        if path is not None:
+            response = await self._compressed.response(request, path, kind, kept)
+        if response is None:
+            response = file_response(path, kind)
+        response.headers[hdrs.CACHE_CONTROL] = kept
         return response
 
     def stamp(self) -> str:
