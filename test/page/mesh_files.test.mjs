@@ -2,6 +2,7 @@ import assert from 'node:assert/strict';
 import {test} from 'node:test';
 import './with_plain_three.mjs';
 
+const {fillNormals} = await import('../../web/js/view/facet_normals.js');
 const {Meshes, asGazeboReads} = await import('../../web/js/view/mesh_files.js');
 
 test('a picture that is missing is told by its name, also where that has a bare %', () => {
@@ -39,4 +40,17 @@ test('a COLLADA material has one picture: of its diffuse colour, else of another
     `<lambert><diffuse>${red}${two}</diffuse><emission></emission></lambert>`);
   assert.equal(asGazeboReads(`<blinn><emission>${two}</emission><specular>${one}</specular></blinn>`),
     `<blinn><diffuse>${one}</diffuse><emission>${two}</emission><specular></specular></blinn>`);
+});
+
+test('facets of an STL file without normals get them from their corners', () => {
+  const flat = [0, 0, 0, 2, 0, 0, 0, 2, 0];
+  const upright = [0, 0, 0, 0, 2, 0, 0, 0, 2];
+  const point = [1, 1, 1, 1, 1, 1, 1, 1, 1];
+  const given = [0, 0, -1, 0, 0, -1, 0, 0, -1];
+  const normal = new Float32Array([...Array(18).fill(0), ...given, ...Array(9).fill(0)]);
+  fillNormals([...flat, ...upright, ...flat, ...point], normal);
+  assert.deepEqual([...normal.slice(0, 9)], [0, 0, 1, 0, 0, 1, 0, 0, 1]);
+  assert.deepEqual([...normal.slice(9, 18)], [1, 0, 0, 1, 0, 0, 1, 0, 0]);
+  assert.deepEqual([...normal.slice(18, 27)], given);
+  assert.deepEqual([...normal.slice(27)], Array(9).fill(0));
 });

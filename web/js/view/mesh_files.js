@@ -5,6 +5,7 @@ import {
   BufferAttribute, BufferGeometry, Camera, DoubleSide, Light, LoadingManager, Mesh, MeshPhongMaterial,
   MeshStandardMaterial, SkinnedMesh,
 } from 'three';
+import {fillNormals} from './facet_normals.js';
 /** @import {Color, Material, Matrix4, Object3D, Texture} from 'three' */
 /** @import {Geometry} from '../protocol.js' */
 
@@ -98,7 +99,9 @@ async function readCollada(url, manager) {
 async function readStl(url, manager) {
   const [{STLLoader}, content] = await Promise.all([
     import('three/addons/loaders/STLLoader.js'), bytes(url, manager)]);
-  return new Mesh(new STLLoader().parse(content), plainMaterial);
+  const geometry = new STLLoader().parse(content);
+  fillNormals(geometry.attributes.position.array, geometry.attributes.normal.array);
+  return new Mesh(geometry, plainMaterial);
 }
 
 /** The simulator's form of PLY files. @param {string} url @param {LoadingManager} manager */
