@@ -15,6 +15,7 @@ from pathlib import Path
 import pytest
 
 from my_simulations.grading import box, cell
+from my_simulations.grading.box_support import isolation
 
 REPOSITORY = Path(__file__).resolve().parents[2]
 GRADE = [sys.executable, str(REPOSITORY / "scripts" / "grade")]
@@ -172,6 +173,7 @@ def test_a_robot_is_driven_by_its_topic_and_its_plugins_run_once(tmp_path):
 
 
 def test_hostile_programs_change_no_other_mark(tmp_path):
+    assert isolation() == "", "a hostile program must not run without isolation"
     names = [*HOSTILE, "good"]
     programs = {name: text.format(folder=str(tmp_path), names=names) if name == "delete" else text
                 for name, text in HOSTILE.items()}

@@ -7,6 +7,7 @@ import os
 
 import pytest
 
+from my_simulations.cli import grade_command
 from my_simulations.cli.grade_command import main
 
 BALL = """<model name="{name}"><pose>{x} 0 {z} 0 0 0</pose><link name="l">
@@ -102,6 +103,19 @@ def test_a_world_that_exceeds_the_time_leaves_the_checks_before_it(folder, capsy
     assert points(rows["slow"])[2:] == [0, 0, 0] or points(rows["slow"])[3] == 1
     assert "not finished within 4 s" in (
         folder / "marks" / "students" / "slow" / "index.html").read_text()
+
+
+def test_programs_do_not_run_where_they_cannot_be_isolated(folder, capsys, monkeypatch):
+    monkeypatch.setattr(grade_command, "isolation", lambda: "this system permits no namespaces")
+    submit(folder, "anna", ("ball", 0, 3))
+    status, rows = grade(folder, "anna")
+    assert (status, points(rows["anna"])[0]) == (0, 1)
+    assert "world files are graded without isolation" in capsys.readouterr().err
+    (folder / "lab.yaml").write_text(LAB.replace('world: "*.world"', "run: go.py").replace(
+        "lab: fall", "lab: fall\nworld: worlds/empty.world"))
+    assert main(["grade", "lab.yaml", "anna", "--out", "other"]) == 2
+    assert "--no-isolation" in capsys.readouterr().err
+    assert not (folder / "other").exists()
 
 
 def test_a_submission_that_is_too_large_is_told_so(folder):

@@ -8,7 +8,7 @@ import threading
 from typing import List, Optional, Sequence
 
 from ..errors import CommandError, InputError
-from ..grading.assignment import Assignment
+from ..grading.assignment import Assignment, Launch, Rostest
 from ..grading.assignment_file import read_assignment
 from ..grading.box_support import isolation
 from ..grading.grader import Grader
@@ -81,7 +81,7 @@ def main(argv: Optional[Sequence[str]] = None) -> int:
 
 def _grade(assignment: Assignment, options: argparse.Namespace) -> int:
     submissions = submissions_of(options.submissions)
-    namespaces = not options.no_isolation and _isolation_is_there()
+    namespaces = not options.no_isolation and _isolation_is_there(assignment)
     lock = threading.Lock()
     count: List[Mark] = []
 
@@ -101,11 +101,16 @@ def _grade(assignment: Assignment, options: argparse.Namespace) -> int:
     return OK if all(mark.status == GRADED for mark in marks) else NOT_ALL
 
 
-def _isolation_is_there() -> bool:
+def _isolation_is_there(assignment: Assignment) -> bool:
+    """Whether submissions can be isolated. Raises CommandError if their programs would not be."""
     fault = isolation()
+    if fault and (assignment.form.run or assignment.of(Launch, Rostest)):
+        raise CommandError(f"{fault}: programs of submissions could change all that you can. Grade"
+                           " as root, or permit user namespaces; --no-isolation runs them"
+                           " nevertheless")
     if fault:
-        print(f"{NAME}: warning: {fault}; a submission can read and change what you can, and see"
-              " the processes of other submissions", file=sys.stderr)
+        print(f"{NAME}: warning: {fault}; world files are graded without isolation",
+              file=sys.stderr)
     return not fault
 
 
