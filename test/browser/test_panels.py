@@ -606,3 +606,12 @@ def test_several_models_are_set_together_and_an_empty_selection_gives_room(edito
                  "editor.store.model(name).links[0].collisions[0].surface.mu === 0.25)",
                  "the friction of both")
     editor.until("editor.store.history.undo[0] === 'Set friction of 2 models to 0.25'", "one step")
+
+
+def test_rows_of_the_tree_say_whether_they_are_selected(editor):
+    with_box(editor)
+    editor.get("editor.store.select(['unit_box'])")
+    for name, selected in (("unit_box", "true"), ("ground_plane", "false")):
+        row = editor.row(name)
+        wait_for(lambda one=row, said=selected: one.get_attribute("aria-selected") == said,
+                 f"the row of {name}")

@@ -101,6 +101,20 @@ test('what is refused becomes an issue, and the action says so', async () => {
   assert.deepEqual(store.issues, [issue]);
 });
 
+test('nothing to undo is a note, and other refusals are errors', async () => {
+  const {actions, connection, store} = page();
+  const refused = (message) => new RequestError([{severity: 'error', code: 'unusable', message}]);
+  connection.answers.undo = refused('nothing to undo');
+  assert.equal((await actions.undo()).ok, false);
+  connection.answers.redo = refused('nothing to redo');
+  await actions.redo();
+  connection.answers.undo = refused("cannot undo 'Insert a': no model");
+  await actions.undo();
+  assert.deepEqual(store.issues.map(({severity, message}) => [severity, message]), [
+    ['note', 'There is nothing to undo.'], ['note', 'There is nothing to redo.'],
+    ['error', "cannot undo 'Insert a': no model"]]);
+});
+
 test('saving asks for a name only when the world has none', async () => {
   const {actions, connection, store} = page();
   const dialogs = [];

@@ -323,7 +323,9 @@ export function createActions({store, connection}) {
    * @param {number} [to]
    */
   async function moveInHistory(which, to) {
-    const outcome = await ask(which, to === undefined ? {} : {to});
+    const outcome = await ask(which, to === undefined ? {} : {to}, {quiet: true});
+    if (outcome.issues.some(({message}) => message === `nothing to ${which}`)) note(`There is nothing to ${which}.`);
+    else outcome.issues.forEach((issue) => store.addIssue(issue));
     const {label, by = []} = outcome.value ?? {};
     if (label && by.length) {
       const done = {undo: 'Undid', redo: 'Redid'}[which];

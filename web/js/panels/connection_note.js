@@ -19,8 +19,8 @@ export function mountConnectionNote(element, {store, connection}) {
   let loading = null;
   const words = () => {
     if (connection.refused) {
-      return 'The simulator was started again, with a new token. Run “gzclient”: it opens the ' +
-        'editor, and this page connects again.';
+      return 'This address now belongs to another start of a simulator, or to another simulator. ' +
+        'Run “gzclient”: it opens the editor of the present one.';
     }
     if (loading) return loading.title || 'Loading the world';
     return begun ? 'Connection to the simulator lost. Reconnecting…' : 'Connecting to the simulator…';

@@ -125,7 +125,7 @@ export class Tree {
         role: 'treeitem',
         style: `top: ${at * ROW}px; padding-left: ${indent(row)}px`,
         'aria-level': row.level,
-        'aria-selected': this.selected.has(row.id),
+        'aria-selected': String(this.selected.has(row.id)),
         'aria-expanded': row.expandable ? String(row.open) : null,
         'aria-setsize': this.rows.length,
         'aria-posinset': at + 1,
