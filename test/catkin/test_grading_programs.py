@@ -62,6 +62,7 @@ checks:
   - {{points: 1, name: odometry, topic: /odom, type: nav_msgs/Odometry, rate: 10, within: 2}}
   - {{points: 1, name: twice, topic: /odom, rate: 80, within: 2}}
   - {{points: 1, name: falls, require: pose.robo.z > 1, within: 2}}
+  - {{points: 1000, name: way, require: pose.robo.x > 5, within: 2, partial: final(pose.robo.x)}}
 """
 DRIVER = """import rospy
 from geometry_msgs.msg import Twist
@@ -168,8 +169,12 @@ def test_a_program_is_marked_for_what_it_does_in_sim_time(tmp_path, words):
 
 
 def test_a_robot_is_driven_by_its_topic_and_its_plugins_run_once(tmp_path):
-    rows, _ = grade(tmp_path, ROBOT, {"driver": DRIVER})
+    rows, _ = grade(tmp_path, ROBOT, {"driver": DRIVER, "other": DRIVER}, "--jobs", "2")
     assert points(rows["driver"], "moves", "odometry", "twice", "falls") == [2, 1, 0, 0]
+    assert 150.0 < points(rows["driver"], "way")[0] < 700.0
+    # One command more or less, each 0.1 s, changes the way by 3 %.
+    assert points(rows["other"], "way")[0] == pytest.approx(points(rows["driver"], "way")[0],
+                                                            rel=0.1)
 
 
 def test_hostile_programs_change_no_other_mark(tmp_path):

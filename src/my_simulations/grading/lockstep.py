@@ -10,7 +10,7 @@ import contextlib
 import os
 import threading
 import time
-from typing import Dict, Optional
+from typing import Callable, Dict, Optional
 
 from . import box
 from .program import Program
@@ -21,6 +21,7 @@ _BUSY_LOOK_S = 0.002
 _LOOK_SHARE = 0.1     # of the time, at most, is spent on looking
 _STUCK_LOOKS = 400    # all wait, but bytes stay unread
 _LONGEST_S = 60.0     # wall time of one wait, whatever the program does
+_FIRST_S = 1.0        # wall time in which a program sees the first step
 _START_S = 5.0        # processor time to start, s
 
 
@@ -39,8 +40,14 @@ class Lockstep:
         self._sim = 0.0
         self._began: Optional[float] = None
 
-    def start(self) -> None:
-        """Wait until the program has started and waits for the world."""
+    def start(self, step: Callable[[], object]) -> None:
+        """Wait until the program has started and waits for the world.
+
+        `step` makes the first step: rospy looks for a sim time above 0 every 0.3 s of wall time.
+        """
+        self._wait(_START_S)
+        step()
+        time.sleep(_FIRST_S if self._program.running else 0.0)
         self._wait(_START_S)
         self._began = time.monotonic()
 

@@ -54,7 +54,7 @@ class RosGraph:
             self._node.call(check.service, check.type_name)
         self._program = program
         self._lockstep = Lockstep(program, os.getpid())
-        self._lockstep.start()
+        self._lockstep.start(lambda: self._world.step(1))
 
     def step(self, steps: int) -> None:
         """Make steps, then wait until the program has done what follows from them."""
