@@ -253,7 +253,7 @@ def test_my_world_has_the_lab_sheets_arguments_and_passes_them_on():
     sheet = root.find("include[@file='$(find gazebo_ros)/launch/empty_world.launch']")
     assert {arg.get("name"): arg.get("value") for arg in sheet} == {
         "world_name": "$(arg world)", "debug": "$(arg debug)", "gui": "$(arg gui)",
-        "paused": "$(arg pause)", "use_sim_time": "true"}
+        "paused": "$(arg pause)", "use_sim_time": "true", "extensions": "true"}
     params = {p.get("name"): p.get("value") or p.get("command") for p in root.findall("param")}
     assert params["robot_description"] == "cat '$(find my_simulations)/urdf/robo.urdf'"
     assert params["gazebo/spawn_robot"] == "true"
