@@ -71,7 +71,7 @@ def case(tmp_path, monkeypatch, request):
 
 
 @pytest.mark.parametrize(("source", "line", "said"), [
-    ("x = (1,\ny = 2\n", 1, "SyntaxError"),
+    ("x = = 1\n", 1, "SyntaxError"),
     ("import no_such_module_at_all\n", 1, "ModuleNotFoundError"),
     ("\nundefined_name\n", 2, "NameError"),
     ("import sys\nsys.exit(3)\n", 2, "SystemExit: 3"),
