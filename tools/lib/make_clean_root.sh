@@ -95,6 +95,7 @@ enter() {
 
 begin "A clean root of Debian $SUITE"
 mkdir -p -- "$ROOT" "$LOGS"
+mount --bind "$ROOT" "$ROOT"   # "/" is a mount point then, as on a machine: programs may mount it read-only
 make_root
 clone_commit
 finish
