@@ -211,8 +211,8 @@ def test_a_program_reaches_what_it_needs_below_a_closed_folder_and_nothing_else(
     tmp_path.chmod(0o755)
     wanted = [str(closed / name) for name in ("ws/src/package.py", "one.txt")]
     code = "import os\nprint([open(name).read() for name in {!r}], os.listdir({!r}))"
-    spec = {"parent": os.getpid(), "command": [sys.executable, "-c", code.format(
-                wanted, str(closed))],
+    spec = {"parent": os.getpid(), "command": ["/usr/bin/python3", "-c", code.format(
+                wanted, str(closed))],   # that of the workspace may be below a closed folder
             "environment": dict(os.environ), "cwd": "/", "user": 61000,
             "private": [str(tmp_path / "judge")], "needed": [str(closed / "ws"), wanted[1]],
             "bytes": 1 << 20, "memory_bytes": 1 << 30, "processor_seconds": 20, "processes": 50}
