@@ -4,8 +4,9 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Any, Optional, Tuple
 
-from ..geometry import Pose, Vec3
+from ..geometry import Vec3
 from ..studies.expressions import Expression
+from ..studies.study import PlacedModel
 
 STATIC, DYNAMIC, MODEL, LIGHT, LINK, JOINT, PLUGIN = (
     "static", "dynamic", "model", "light", "link", "joint", "plugin")
@@ -181,15 +182,6 @@ class GradeLimits:
 
 
 @dataclass(frozen=True)
-class Furniture:
-    """A model that the assignment adds to the world, such as the robot."""
-
-    name: str
-    file: str
-    pose: Pose
-
-
-@dataclass(frozen=True)
 class Assignment:
     """An assignment.
 
@@ -208,7 +200,7 @@ class Assignment:
     file: str
     form: SubmissionForm
     world: str
-    models: Tuple[Furniture, ...]
+    models: Tuple[PlacedModel, ...]
     sample: float
     limits: GradeLimits
     checks: Tuple[Check, ...] = field(default_factory=tuple)

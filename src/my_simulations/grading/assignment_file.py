@@ -4,16 +4,12 @@ from __future__ import annotations
 import os
 from typing import Any, Dict, List, Mapping, Optional, Tuple
 
-from ..errors import CommandError, InputError, Issue, errors_of
-from ..geometry import Pose
-from ..objects.yaml_source import read_yaml
-from ..python_api.plain_values import pose_of
-from ..studies.value_reader import kind_of
+from ..errors import Issue
+from ..studies.value_reader import kind_of, read_document
 from .assignment import (
     Assignment,
     Check,
     EntityCount,
-    Furniture,
     GradeLimits,
     SubmissionForm,
     Timed,
@@ -36,13 +32,7 @@ def read_assignment(file: str) -> Tuple[Assignment, List[Issue]]:
     Raises:
         InputError: the file has faults; all of them are named.
     """
-    tree, source, issues = read_yaml(file, "")
-    reader = _AssignmentReader(source, os.path.dirname(os.path.abspath(file)))
-    reader.issues += issues
-    found = reader.assignment(tree, os.path.abspath(file))
-    if found is None or errors_of(reader.issues):
-        raise InputError(reader.issues)
-    return found, reader.issues
+    return read_document(file, _AssignmentReader, _AssignmentReader.assignment)
 
 
 class _AssignmentReader(AssignmentValues):
@@ -64,7 +54,7 @@ class _AssignmentReader(AssignmentValues):
         stem = os.path.splitext(os.path.basename(file))[0]
         return Assignment(
             self.text(top.get("lab", stem), ("lab",)), file, form, world,
-            self._models(top.get("models")),
+            self.models(top.get("models")),
             self.number(top.get("sample", 0.01), ("sample",), above=0.0, most=_LONGEST_S),
             self._limits(top.get("limits")), checks)
 
@@ -73,20 +63,6 @@ class _AssignmentReader(AssignmentValues):
         inside = self.mapping(value, path, ("world", "run"))
         return SubmissionForm(self.names(inside.get("world"), (*path, "world")),
                               self.names(inside.get("run"), (*path, "run")))
-
-    def _models(self, value: Any) -> Tuple[Furniture, ...]:
-        found = []
-        for name, entry in self.mapping(value, ("models",)).items():
-            path = ("models", name)
-            inside = self.mapping(entry, path, ("file", "pose"))
-            pose = Pose()
-            if "pose" in inside:
-                try:
-                    pose = pose_of(self.numbers(inside["pose"], (*path, "pose"), (3, 6, 7)))
-                except CommandError as fault:
-                    self.fault((*path, "pose"), str(fault))
-            found.append(Furniture(name, self.file(inside.get("file"), (*path, "file")), pose))
-        return tuple(found)
 
     def _limits(self, value: Any) -> GradeLimits:
         inside = self.mapping(value, ("limits",), _LIMITS)

@@ -10,8 +10,8 @@ from .variation import Parameter
 
 
 @dataclass(frozen=True)
-class StudyModel:
-    """A model that every case spawns.
+class PlacedModel:
+    """A model that is added to the world of a study or an assignment.
 
     Attributes:
         name: in the world.
@@ -116,7 +116,7 @@ class Study:
     profile: str
     objects: Tuple[str, ...]
     object_list: str
-    models: Tuple[StudyModel, ...]
+    models: Tuple[PlacedModel, ...]
     duration: float
     seeds: Seeds
     plan: Plan

@@ -4,14 +4,11 @@ from __future__ import annotations
 import os
 from typing import Any, Dict, List, Mapping, Optional, Sequence, Tuple
 
-from ..errors import CommandError, InputError, Issue, errors_of
-from ..geometry import Pose
-from ..objects.yaml_source import KeyPath, read_yaml
-from ..python_api.plain_values import pose_of
+from ..errors import Issue, errors_of
 from .expressions import Expression, ExpressionError, parse
 from .scenario_files import SCENARIO, scenarios_named
-from .study import Limits, Plan, Seeds, Study, StudyModel, Trajectory
-from .value_reader import ValueReader, kind_of
+from .study import Limits, Plan, Seeds, Study, Trajectory
+from .value_reader import ValueReader, kind_of, read_document
 from .variation import FORMS, SCENARIO_FORMS, Parameter, Target
 from .variation_file import name_of_column, parameter_of
 
@@ -32,13 +29,7 @@ def read_study(file: str) -> Tuple[Study, List[Issue]]:
     Raises:
         InputError: the file has faults; all of them are named.
     """
-    tree, source, issues = read_yaml(file, "")
-    reader = StudyReader(source, os.path.dirname(os.path.abspath(file)))
-    reader.issues += issues
-    study = reader.study(tree, os.path.abspath(file))
-    if study is None or errors_of(reader.issues):
-        raise InputError(reader.issues)
-    return study, reader.issues
+    return read_document(file, StudyReader, StudyReader.study)
 
 
 class StudyReader(ValueReader):
@@ -68,8 +59,8 @@ class StudyReader(ValueReader):
             self.world(top.get("world", "worlds/empty.world"), ("world",)),
             self.text(top["profile"], ("profile",)) if "profile" in top else "",
             self.names(top.get("objects"), ("objects",)),
-            self._file(top["object_list"], ("object_list",)) if "object_list" in top else "",
-            self._models(top.get("models")),
+            self.file(top["object_list"], ("object_list",)) if "object_list" in top else "",
+            self.models(top.get("models")),
             self.number(top.get("duration", 1), ("duration",), above=0.0, most=1e6),
             self._seeds(top.get("seeds")), plan, parameters, measure, require,
             self.number(top.get("sample", 0.01), ("sample",), above=0.0),
@@ -132,29 +123,6 @@ class StudyReader(ValueReader):
         if study.count > MOST_CASES and not errors_of(self.issues):
             self.fault(("vary",), f"a study has at most {MOST_CASES} cases, this one has"
                                   f" {study.count}")
-
-    def _file(self, value: Any, path: KeyPath) -> str:
-        name = self.text(value, path)
-        found = os.path.join(self._folder, os.path.expanduser(name))
-        if name and not os.path.isfile(found):
-            self.fault(path, f"there is no file {found}", "paths start at the folder of the study",
-                       "file-not-found")
-        return os.path.abspath(found)
-
-    def _models(self, value: Any) -> Tuple[StudyModel, ...]:
-        found = []
-        for name, entry in self.mapping(value, ("models",)).items():
-            path = ("models", name)
-            inside = self.mapping(entry, path, ("file", "pose"))
-            pose = Pose()
-            if "pose" in inside:
-                numbers = self.numbers(inside["pose"], (*path, "pose"), (3, 6, 7))
-                try:
-                    pose = pose_of(numbers)
-                except CommandError as fault:
-                    self.fault((*path, "pose"), str(fault))
-            found.append(StudyModel(name, self._file(inside.get("file"), (*path, "file")), pose))
-        return tuple(found)
 
     def _seeds(self, value: Any) -> Seeds:
         if value is None:

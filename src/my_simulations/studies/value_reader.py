@@ -3,13 +3,46 @@ from __future__ import annotations
 
 import difflib
 import math
-from typing import Any, Dict, List, Mapping, Sequence, Tuple
+import os
+from typing import Any, Callable, Dict, List, Mapping, Optional, Sequence, Tuple, TypeVar
 
-from ..errors import Issue, error
-from ..geometry import is_finite_number
-from ..objects.yaml_source import KeyPath, Source
+from ..errors import CommandError, InputError, Issue, error, errors_of
+from ..geometry import Pose, is_finite_number
+from ..objects.yaml_source import KeyPath, Source, read_yaml
+from ..python_api.plain_values import pose_of
 from ..resources.resolver import Resolver, ResourceNotFoundError
 from ..resources.world_lookup import advice_on, find_world
+from .study import PlacedModel
+
+Reader = TypeVar("Reader", bound="ValueReader")
+Document = TypeVar("Document")
+
+
+def read_document(file: str, make: "Callable[[Source, str], Reader]",
+                  build: "Callable[[Reader, Any, str], Optional[Document]]",
+                  ) -> "Tuple[Document, List[Issue]]":
+    """Read a YAML file; relative paths in it start at its folder.
+
+    Args:
+        file: path of the file.
+        make: makes the reader.
+        build: builds the document from the tree and the absolute path of the file; None if the
+            tree has another form.
+
+    Returns:
+        The document, and warnings.
+
+    Raises:
+        InputError: the file has faults; all of them are named.
+    """
+    tree, source, issues = read_yaml(file, "")
+    path = os.path.abspath(file)
+    reader = make(source, os.path.dirname(path))
+    reader.issues += issues
+    found = build(reader, tree, path)
+    if found is None or errors_of(reader.issues):
+        raise InputError(reader.issues)
+    return found, reader.issues
 
 
 class ValueReader:
@@ -18,7 +51,12 @@ class ValueReader:
     Args:
         source: where the values stand.
         folder: where relative paths start.
+
+    Attributes:
+        document: the kind of document, for messages.
     """
+
+    document = "study"
 
     def __init__(self, source: Source, folder: str) -> None:
         self.issues: List[Issue] = []
@@ -30,6 +68,31 @@ class ValueReader:
               code: str = "study-value") -> None:
         """Note a fault of the value at a path of keys."""
         self.issues.append(error(code, message, hint=hint, **self._source.where(path)))
+
+    def file(self, value: Any, path: KeyPath) -> str:
+        """The absolute path of an existing file."""
+        name = self.text(value, path)
+        found = os.path.join(self._folder, os.path.expanduser(name))
+        if name and not os.path.isfile(found):
+            self.fault(path, f"there is no file {found}",
+                       f"paths start at the folder of the {self.document}", "file-not-found")
+        return os.path.abspath(found)
+
+    def models(self, value: Any) -> Tuple[PlacedModel, ...]:
+        """The models of the key `models`: a mapping of names to files and poses."""
+        found = []
+        for name, entry in self.mapping(value, ("models",)).items():
+            path = ("models", name)
+            inside = self.mapping(entry, path, ("file", "pose"))
+            pose = Pose()
+            if "pose" in inside:
+                numbers = self.numbers(inside["pose"], (*path, "pose"), (3, 6, 7))
+                try:
+                    pose = pose_of(numbers)
+                except CommandError as fault:
+                    self.fault((*path, "pose"), str(fault))
+            found.append(PlacedModel(name, self.file(inside.get("file"), (*path, "file")), pose))
+        return tuple(found)
 
     def mapping(self, value: Any, path: KeyPath, known: Sequence[str] = ()) -> Dict[str, Any]:
         """A mapping with text keys, of the known ones only if any are given."""
