@@ -13,7 +13,9 @@ from typing import Callable, Dict, Iterable, List, NamedTuple, Optional, Set
 import pybullet
 
 from ...geometry import Pose, Vec3, norm, scale, subtract
+from ..run_state import RestPlace
 from .bodies import Axis, Body, put_axis
+from .contact_settling import place_of
 from .link_states import motion
 from .step_helper import FAR
 
@@ -39,14 +41,6 @@ class _Start(NamedTuple):
     limit: float
 
 
-class _Stop(NamedTuple):
-    """A stopped body, its pose, and its joint positions."""
-
-    body: Body
-    pose: Pose
-    joints: List[float]
-
-
 class DivergenceStop:
     """Checks the first link of each moving body every 0.2 s of sim time.
 
@@ -62,7 +56,7 @@ class DivergenceStop:
         self._bodies: Dict[int, Body] = {}
         self._starts: Dict[int, Optional[_Start]] = {}
         self._new: Dict[int, Body] = {}
-        self._stops: Dict[int, _Stop] = {}
+        self._stops: Dict[int, RestPlace] = {}
         self._period = 1
 
     def configure(self, step_size: float) -> None:
@@ -84,12 +78,12 @@ class DivergenceStop:
     @property
     def stopped(self) -> List[Body]:
         """The stopped bodies."""
-        return [stop.body for stop in self._stops.values()]
+        return [self._bodies[uid] for uid in self._stops]
 
     def stop(self, bodies: Iterable[Body]) -> None:
         """Keep bodies in place, at rest."""
         for body in bodies:
-            self._stops[body.uid] = _stop_of(body)
+            self._stops[body.uid] = place_of(body)
 
     def forget(self, body: Body) -> None:
         """Forget a removed body."""
@@ -120,8 +114,8 @@ class DivergenceStop:
 
     def after(self, step: int, dt: float, gravity: Vec3) -> None:
         """Put stopped bodies back, at rest."""
-        for stop in self._stops.values():
-            _put(stop)
+        for uid, place in self._stops.items():
+            _put(self._bodies[uid], place)
 
     def _check(self, body: Body, step: int, dt: float, gravity: Vec3) -> None:
         start = self._starts.get(body.uid)
@@ -136,9 +130,8 @@ class DivergenceStop:
         else:
             return
         cause = self._cause(body, start, now.linear, (step - start.step) * dt, gravity)
-        stop = _stop_of(body)
-        self._stops[body.uid] = stop
-        _put(stop)
+        place = self._stops[body.uid] = place_of(body)
+        _put(body, place)
         self._moved(body)
         self._report(body, f"{what} and was stopped; likely cause: {cause}")
 
@@ -159,20 +152,15 @@ class DivergenceStop:
         return "it overlapped another body, or what touches it is driven too fast"
 
 
-def _stop_of(body: Body) -> _Stop:
-    return _Stop(body, Pose(*pybullet.getBasePositionAndOrientation(body.uid)),
-                 [pybullet.getJointState(body.uid, axis.index)[0] for axis in body.axes])
-
-
-def _put(stop: _Stop) -> None:
-    body = stop.body
-    for axis, position in zip(body.axes, stop.joints):
+def _put(body: Body, place: RestPlace) -> None:
+    for axis, position in zip(body.axes, place.positions):
         put_axis(body, axis, position)
     for ball in body.balls:
         turn = pybullet.getJointStateMultiDof(body.uid, ball.index)[0]
         pybullet.resetJointStateMultiDof(body.uid, ball.index, turn, _STILL)
-    pybullet.resetBasePositionAndOrientation(body.uid, stop.pose.position, stop.pose.orientation)
-    pybullet.resetBaseVelocity(body.uid, _STILL, _STILL)
+    if place.base is not None:
+        pybullet.resetBasePositionAndOrientation(body.uid, *place.base)
+        pybullet.resetBaseVelocity(body.uid, _STILL, _STILL)
 
 
 def _odd_inertia(body: Body) -> str:
