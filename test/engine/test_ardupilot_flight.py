@@ -2,10 +2,9 @@
 from __future__ import annotations
 
 import math
-import socket
-import struct
 
 import pytest
+from autopilot import Autopilot
 from plugin_case import PluginCase, kept
 from wheeled_robots import plugin
 
@@ -21,30 +20,6 @@ RADIUS, AREA, LIFT_SLOPE, ANGLE, DENSITY = 0.084, 0.002, 4.25, 0.3, 1.2041
 # Lift of four blades, each 1/2 rho (omega r)^2 A c, divided by the square of the rate.
 LIFT = 4 * 0.5 * DENSITY * RADIUS ** 2 * AREA * LIFT_SLOPE * ANGLE
 DOWN = quat_from_rpy(math.pi, 0.0, 0.0)
-
-
-class Autopilot:
-    """Holds a height by the states that a vehicle sends."""
-
-    def __init__(self):
-        self._socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
-        self._socket.bind(("127.0.0.1", 0))
-        self._socket.settimeout(30.0)
-        free = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
-        free.bind(("127.0.0.1", 0))
-        self._vehicle = free.getsockname()
-        free.close()
-        self.ports = (f"<fdm_port_in>{self._vehicle[1]}</fdm_port_in>"
-                      f"<fdm_port_out>{self._socket.getsockname()[1]}</fdm_port_out>")
-
-    def send(self, channel):
-        self._socket.sendto(struct.pack("<2f", channel, channel), self._vehicle)
-
-    def state(self):
-        return struct.unpack("<17d", self._socket.recv(4096))
-
-    def close(self):
-        self._socket.close()
 
 
 @pytest.fixture
@@ -92,13 +67,14 @@ def vehicle(ports):
 def test_an_autopilot_holds_a_height_by_the_states_it_receives(case, autopilot):
     one = case(vehicle(autopilot.ports))
     channel = math.sqrt(TOTAL * G / LIFT) / MOST_RATE
-    autopilot.send(channel)
+    autopilot.send(channel, channel)
     one.sim.clock.advance(20)   # the plugin finds the first packet
     state = autopilot.state()
     for _ in range(6000):
         height, rise = -state[16], -state[13]
         thrust = TOTAL * (G + 4.0 * (2.0 - height) - 3.0 * rise)
-        autopilot.send(math.sqrt(max(0.0, thrust) / LIFT) / MOST_RATE)
+        channel = math.sqrt(max(0.0, thrust) / LIFT) / MOST_RATE
+        autopilot.send(channel, channel)
         one.sim.clock.advance(1)
         state = autopilot.state()
     assert state[0] == pytest.approx(6.02, abs=1e-6)   # one packet for each step
