@@ -80,7 +80,7 @@ def test_a_prepared_model_is_loaded_without_making_a_shape(lab: Lab, made, monke
     assert lab.apply(ContinuePreparation(77)) is False
     lab.load(MODEL, meshes=meshes)
     assert len(made) == 3
-    lab.load(MODEL, (0.0, 0.0, -5.0), meshes=meshes)   # what is used once is not used again
+    lab.load(MODEL, (0.0, 0.0, -5.0), meshes=meshes)   # prepared shapes are used once
     assert len(made) == 6
 
 

@@ -35,7 +35,7 @@ class LiveRobot(unittest.TestCase):
         for name, messages in expected.items():
             for one in messages:
                 ours, theirs = found[name][one.header.stamp.to_nsec()], from_ros(one)
-                ours.header.seq = theirs.header.seq = 0   # counts since somebody listens
+                ours.header.seq = theirs.header.seq = 0   # counts from the first subscriber on
                 self.assertEqual(ours, theirs, name)
 
 

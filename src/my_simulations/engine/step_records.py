@@ -135,7 +135,7 @@ class RecordWriter:
         """Where a record of `size` words fits, in words from the first one."""
         words = self._words
         written, read = words[RECORDS_WRITTEN], words[RECORDS_READ]
-        keep_order()   # what was read is overwritten only then
+        keep_order()   # released records are overwritten only then
         if written == read:
             return 0   # the memory that is touched stays small
         if written - read >= RECORDS:

@@ -35,7 +35,7 @@ def grade_in_box(assignment: Assignment, submission: Submission, slot: int, hidd
 
     Args:
         assignment: the assignment.
-        submission: what is graded.
+        submission: the submission to grade.
         slot: number of those that are graded side by side, from 0.
         hidden: files and folders that the submission must not see.
         folder: gets the files that belong to the mark, such as `replay.html`.

@@ -23,7 +23,7 @@ class CheckResult:
     Attributes:
         name: of the check.
         most: its points.
-        points: what was given, 0..most.
+        points: the points given, 0..most.
         reason: one sentence for the student; "" if all points were given without a remark.
         file: path in the submission that the reason is about; "" for none.
         line: in that file, from 1; 0 for none.

@@ -59,7 +59,7 @@ class ResultReader:
     """Collects the stream.
 
     Attributes:
-        results, notes, isolation: what was received.
+        results, notes, isolation: as received.
         files: names of files, which are in the folder.
         ended: whether the end was received.
     """

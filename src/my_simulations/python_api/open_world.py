@@ -283,7 +283,7 @@ class OpenWorld(WorldChanges):
         Args:
             origins: m, shape (n, 3), or (3,) for one origin of all rays.
             directions: shape (n, 3), or (3,) for one direction; of any length.
-            far: m; what is farther away is not met.
+            far: m; farther surfaces are not met.
             frame: model or link whose frame these are given in; "" for the world.
             visuals: meet what is drawn instead of what collides.
         """

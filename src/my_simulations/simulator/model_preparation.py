@@ -8,7 +8,7 @@ from ..engine.commands import ContinuePreparation, PrepareModel
 from .session import Session
 
 PLAIN_TRIANGLES = 50_000
-"""Models with no more triangles are loaded at once: the engine takes about 0.1 s for them."""
+"""Models of at most this size are loaded at once: the engine takes about 0.1 s for them."""
 
 
 def prepare_shapes(session: Session, model: Model, meshes: MeshTable) -> None:

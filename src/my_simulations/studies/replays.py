@@ -49,7 +49,7 @@ def keep_replays(plan: CasePlan, folder: StudyFolder, most: int, tell: Callable[
         plan: of the study.
         folder: of its results.
         most: number of cases that have a replay at the end.
-        tell: gets a line if no more replays can be written.
+        tell: gets a line if replays can no longer be written.
         record: opens a state log by its path.
         write: writes a replay.
     """

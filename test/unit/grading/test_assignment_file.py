@@ -1,4 +1,4 @@
-"""Assignment files: what is read, and which faults are named with their lines."""
+"""Assignment files: their values, and faults that are named with their lines."""
 from __future__ import annotations
 
 import pytest

@@ -1,4 +1,4 @@
-"""The simulator refuses models beyond the limits of a model and of a world, whoever made them."""
+"""The simulator refuses models beyond the limits of a model and of a world, of any origin."""
 from __future__ import annotations
 
 import pytest

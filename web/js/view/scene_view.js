@@ -255,7 +255,7 @@ export class View {
     this.#rig.frame(names);
   }
 
-  /** Before a switch to an orthographic view: what is looked at keeps its size. */
+  /** Before a switch to an orthographic view: the orbit target keeps its size. */
   keepScale() {
     this.#rig.keepScale();
   }
