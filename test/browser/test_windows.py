@@ -304,6 +304,23 @@ def test_a_clone_is_another_file_and_the_world_keeps_its_own(node, open_page):
     wait_for(lambda: {"box", "sphere"} <= set(editor.names()), "the clone's models")
 
 
+def test_a_name_typed_before_the_folder_is_known_is_saved_in_that_folder(node, open_page):
+    editor = open_page.first
+    editor.get("""(() => { const {connection} = editor, ask = connection.request.bind(connection);
+        connection.request = async (kind, ...rest) => {
+          if (kind === 'folders') await new Promise((go) => { window.tellFolder = go; });
+          return ask(kind, ...rest);
+        }; })()""")
+    choose(editor, "File", "Clone World")
+    editor.field("File name").fill("early.world")
+    editor.page.keyboard.press("Enter")
+    editor.page.get_by_role("alert").get_by_text("Working ...").wait_for()
+    editor.get("window.tellFolder()")
+    dialog = editor.page.get_by_role("dialog", name="World Cloned")
+    command = dialog.get_by_label("Command").input_value()
+    assert command.endswith(f"gazebo {os.path.join(node.typed, 'early.world')}")
+
+
 def test_what_moves_is_seen_in_the_first_view_of_a_walled_room(open_page):
     outcome = open_page.first.get(f"editor.actions.open({LAB_COURSE!r}, {{discard: true}})")
     assert outcome["ok"], outcome

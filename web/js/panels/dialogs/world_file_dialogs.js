@@ -62,8 +62,21 @@ class FolderList {
 
   #rove;
 
+  /** Ends when the folder that was asked for last is shown or refused. @type {Promise<void>} */
+  arrived = Promise.resolve();
+
+  /** Shows a folder; without a path, the one the server starts in. @param {string} [path] */
+  go(path) {
+    const before = this.arrived;
+    this.arrived = (async () => {
+      await before;
+      await this.#load(path);
+    })();
+    return this.arrived;
+  }
+
   /** @param {string} [path] */
-  async go(path) {
+  async #load(path) {
     try {
       this.listing = await this.request('folders', path ? {path} : {});
     } catch (fault) {
@@ -235,8 +248,10 @@ async function filesDialog(
       dialog.say(nameless);
       return false;
     }
-    const folder = wanted.startsWith('/') ? null : folders.listing?.path;
-    return run(folder ? joined(folder, wanted) : wanted);
+    if (wanted.startsWith('/')) return run(wanted);
+    // A name belongs to the folder that is shown, which the server may not have told yet.
+    await folders.arrived;
+    return folders.listing ? run(joined(folders.listing.path, wanted)) : false;
   };
   const dialog = new Dialog({
     title,
