@@ -1,14 +1,18 @@
 """A recorded run as one file: opened from the disk, without a server."""
 from __future__ import annotations
 
+import os
 import struct
 import zlib
 
 import pytest
 from support import wait_for
 
+import my_simulations
 from my_simulations.cli.replay_command import main
+from my_simulations.editor.logs.state_log import MESSAGE, LogReader
 from my_simulations.editor.logs.world_record import LogRecord
+from my_simulations.errors import CommandError
 from my_simulations.python_api import open_world
 
 OBJ = """mtllib stone.mtl
@@ -105,4 +109,43 @@ def test_the_camera_turns_and_an_edit_is_refused(browser, page_file):
     replay.until("editor.store.issues.length === 1", "the note that nothing can be changed")
     assert "recording" in replay.get("editor.store.issues[0].message")
     assert "ball" in replay.names()
+    replay.close()
+
+
+def recorded(path):
+    """Kinds of the notes in a log that is being written; empty if it does not exist yet."""
+    try:
+        log = LogReader(str(path))
+    except CommandError:
+        return []
+    try:
+        after = [kind for kind, _ in log.notes(-1, len(log.times(0.0)))]
+        return after if log.end > 3.0 else []
+    finally:
+        log.close()
+
+
+def test_contacts_and_chosen_topics_are_shown_by_switches(browser, launch, tmp_path, monkeypatch):
+    folder = tmp_path / "recorded"
+    monkeypatch.setenv("MY_SIMULATIONS_RECORD", str(folder))
+    monkeypatch.setenv("MY_SIMULATIONS_RECORD_TOPICS", "/scan /odom")
+    node = launch(os.path.join(os.path.dirname(os.path.abspath(__file__)), "robot.world"),
+                  "paused:=false")
+    wait_for(lambda: recorded(folder / "state.log").count(MESSAGE) > 20, "recorded messages")
+    node.close()
+    page = tmp_path / "run.html"
+    assert my_simulations.replay(str(folder), str(page)) == []
+    replay = browser.open(page.as_uri())
+    replay.until("editor.topics.list.map(({name}) => name).sort().join() === '/odom,/scan'",
+                 "the list of topics")
+    replay.page.get_by_label("Log time").evaluate(
+        "(slider) => { slider.value = '2'; slider.dispatchEvent(new Event('input')); }")
+    replay.until("editor.view.drawnTopics.includes('/scan')", "the laser's fan")
+    replay.until("editor.view.drawnTopics.includes('/odom')", "the path of the odometry")
+    assert replay.get("editor.view.contactMarks") == 0
+    replay.page.get_by_label("Contacts").check()
+    replay.until("editor.view.contactMarks > 0", "the contacts of the wheels")
+    replay.page.get_by_label("/scan").uncheck()
+    replay.until("editor.view.drawnTopics.join() === '/odom'", "the odometry alone")
+    assert replay.faults == []
     replay.close()

@@ -4,6 +4,7 @@ import {LogConnection} from '../../web/js/replay/log_connection.js';
 import {partsOf, pathOf, resolverOf, unpacked} from '../../web/js/replay/page_files.js';
 import {between, StateLog} from '../../web/js/replay/state_log.js';
 import {Store} from '../../web/js/store.js';
+import {decodeTopicFrame} from '../../web/js/topics/topic_frames.js';
 import {near} from './near.mjs';
 
 const DOCUMENT = 1;
@@ -135,4 +136,58 @@ test('the data of a page is taken apart, and addresses lead into it', async () =
   assert.match(resolve('/resource/other.png'), /^data:/);
   assert.equal(resolve('blob:null/1'), 'blob:null/1');
   assert.equal(pathOf('file:///C:/resource/100%.png'), '/resource/100%.png');
+});
+
+const CONTACTS = 4;
+const TOPICS = 5;
+const MESSAGE = 6;
+const json = (value) => bytes(JSON.stringify(value));
+
+function message(topic, stamp, view) {
+  let text = JSON.stringify({topic, frame: 'odom', stamp, view});
+  text += ' '.repeat((8 - (text.length + 8) % 8) % 8);
+  return joined([new Uint8Array(new Uint32Array([3, text.length]).buffer), bytes(text)]);
+}
+
+const contact = (depth) => ({a: 'a::link', b: 'b::link', position: [0, 0, 0], normal: [0, 0, 1], depth, force: 1});
+const odometry = (x) => ({type: 'odometry', child: 'base', pose: [x, 0, 0, 0, 0, 0, 1], linear: [0, 0, 0], angular: [0, 0, 0]});
+const range = (distance) => ({type: 'range', range: distance, range_min: 0, range_max: 9, field_of_view: 0});
+
+/** A log with contacts and two topics, and everything that a page receives of it. */
+function noted() {
+  const topics = ['/odom', '/range'].map((name) => ({name, type: 't', publishers: 1, subscribers: 0}));
+  const log = new StateLog(joined([bytes('my_simulations state log 1\n'), ...record(DOCUMENT, 0, world('a')),
+    ...record(WHOLE, 0, poses(at(1, 0))), ...record(TOPICS, 0, json(topics)),
+    ...record(CONTACTS, 0, json([contact(0)])), ...record(MESSAGE, 0, message('/odom', 0, odometry(0))),
+    ...record(MOVED, 0.1, poses(at(1, 1))), ...record(MESSAGE, 0.1, message('/odom', 0.1, odometry(1))),
+    ...record(MESSAGE, 0.1, message('/range', 0.1, range(5))), ...record(MOVED, 0.2, poses(at(1, 2))),
+    ...record(CONTACTS, 0.2, json([contact(1), contact(2)])),
+    ...record(MESSAGE, 0.2, message('/range', 0.2, range(4)))]));
+  const {connection, store} = player(log);
+  const got = [];
+  connection.listen('frame', ({detail}) => {
+    const head = decodeTopicFrame(detail)?.head;
+    if (head) got.push([head.topic, head.stamp, store.worldPose('a')[0]]);
+  });
+  store.listen('watch', ({detail}) => got.push(['contacts', detail.contacts.length]));
+  return {log, connection, take: () => got.splice(0)};
+}
+
+test('contacts and messages of topics are shown only if they are watched', async () => {
+  const {log, connection, take} = noted();
+  assert.ok(log.hasContacts);
+  assert.deepEqual((await connection.request('topics', {})).topics.map(({name}) => name), ['/odom', '/range']);
+  await connection.request('log_seek', {time: 0.2});
+  assert.deepEqual(take(), []);
+  await connection.request('watch', {topics: ['contacts', 'ros:/range']});
+  assert.deepEqual(take(), [['contacts', 2], ['/range', 0.2, 2]]);
+});
+
+test('a path is shown from its beginning, where the robot was then, also after a way back', async () => {
+  const {connection, take} = noted();
+  await connection.request('log_seek', {time: 0.2});
+  await connection.request('watch', {topics: ['ros:/odom', 'contacts']});
+  assert.deepEqual(take(), [['/odom', 0, 0], ['/odom', 0.1, 2], ['contacts', 2]]);
+  await connection.request('log_seek', {time: 0.1});
+  assert.deepEqual(take().filter(([name]) => name === '/odom'), [['/odom', 0, 0], ['/odom', 0.1, 1]]);
 });

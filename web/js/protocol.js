@@ -489,7 +489,7 @@ export const FRAME_RECORD_BYTES = 32;
 
 /** @typedef {{
  *  type: 'log', state: 'idle'|'recording'|'open'|'playing', name: string, begin: number,
- *  end: number, time: number, rate: number
+ *  end: number, time: number, rate: number, contacts?: boolean|null
  *}} LogPush */
 
 /** @typedef {{type: 'shutdown', reason: string}} ShutdownPush */

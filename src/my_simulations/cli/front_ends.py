@@ -52,8 +52,10 @@ class FrontEnds:
             raise CommandError(_MISSING.format(missing)) from missing
 
     def record(self, simulator: "Simulator", resolver: "Resolver", wanted: "Recording",
-               tell: "Callable[[Issue], None]") -> "Recorder":
+               tell: "Callable[[Issue], None]", topics: Any = None) -> "Recorder":
         """Start a state log in the given folder, else in the editor's log folder.
+
+        `topics` is the `TopicGraph` of the node; None if no topics are recorded.
 
         Raises CommandError: it cannot be written, or a dependency is not installed.
         """
@@ -64,7 +66,8 @@ class FrontEnds:
             from ..editor.logs.recorder import Recorder, path_of
 
             path = path_of(wanted.path, EditorOptions().data_dir)
-            recorder = Recorder(simulator, resolver, path, wanted.period, tell)
+            recorder = Recorder(simulator, resolver, path, wanted.period, tell, topics,
+                                wanted.topics)
         except ImportError as missing:
             raise CommandError(_MISSING.format(missing)) from missing
         self._logs.append(recorder.path)

@@ -2,9 +2,10 @@
 from __future__ import annotations
 
 import argparse
+import math
 import os
 import sys
-from typing import Optional, Sequence
+from typing import List, Optional, Sequence
 
 from ..editor.logs.replay_page import STATES_HZ, write_replay
 from ..editor.logs.state_log import FILE
@@ -31,6 +32,8 @@ def parser() -> argparse.ArgumentParser:
     made.add_argument("--rate", type=float, default=STATES_HZ, metavar="HZ", help="states for each"
                       " second of sim time; the page interpolates between them (default:"
                       " %(default)g)")
+    made.add_argument("--last", type=float, default=math.inf, metavar="SECONDS",
+                      help="only so many seconds of sim time at the end of the run (default: all)")
     return made
 
 
@@ -45,12 +48,10 @@ def main(argv: Optional[Sequence[str]] = None) -> int:
         0 on success, 1 on failure, 2 for an invalid command line.
     """
     options = parser().parse_args((sys.argv if argv is None else list(argv))[1:])
-    log = log_of(options.run)
     stem = os.path.splitext(os.path.basename(os.path.abspath(options.run)))[0]
     output = options.output or f"{stem}.html"
     try:
-        missing = write_replay(log, output, Resolver.from_environment(), options.title,
-                               options.rate)
+        missing = replay(options.run, output, options.title, options.rate, options.last)
     except CommandError as fault:
         print(f"{NAME}: {fault}", file=sys.stderr)
         return 1
@@ -59,6 +60,26 @@ def main(argv: Optional[Sequence[str]] = None) -> int:
               file=sys.stderr)
     print(os.path.abspath(output), flush=True)
     return 0
+
+
+def replay(run: str, output: str, title: str = "", rate: float = STATES_HZ,
+           last: float = math.inf) -> List[str]:
+    """Write a recorded run as one HTML file.
+
+    Args:
+        run: a state log, or the folder that contains it.
+        output: the HTML file; one that exists is replaced.
+        title: title of the page; default: name of the run.
+        rate: states for each second of sim time, between which the page interpolates.
+        last: only so many seconds of sim time at the end of the run.
+
+    Returns:
+        Addresses of meshes and pictures that were not found.
+
+    Raises:
+        CommandError: the run cannot be read or the file cannot be written.
+    """
+    return write_replay(log_of(run), output, Resolver.from_environment(), title, rate, last)
 
 
 def log_of(run: str) -> str:

@@ -27,11 +27,11 @@ def _log(path: str) -> Record:
     return LogRecord(path)
 
 
-def _write_replay(log: str, path: str, title: str) -> None:
+def _write_replay(log: str, path: str, title: str, last: float) -> None:
     from ..editor.logs.replay_page import write_replay
     from ..resources.resolver import Resolver
 
-    write_replay(log, path, Resolver.from_environment(), title)
+    write_replay(log, path, Resolver.from_environment(), title, last=last)
 
 
 if __name__ == "__main__":

@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import contextlib
+import math
 import os
 import tempfile
 from typing import Callable, List, Protocol
@@ -19,8 +20,12 @@ from .table import rows_in_order
 REPLAYS = "replays"
 _EVERY_S = 1.0 / 30.0
 
-WriteReplay = Callable[[str, str, str], None]
-"""Writes the state log of the first path as a replay to the second path, with a title."""
+_LAST_S = 30.0    # of a scenario, at its end: what has failed ends it
+
+WriteReplay = Callable[[str, str, str, float], None]
+"""Writes the end of a state log as a replay: path of the log, path of the replay, title, s of sim
+time.
+"""
 
 
 class Record(Protocol):
@@ -70,7 +75,7 @@ def keep_replays(plan: CasePlan, folder: StudyFolder, most: int, tell: Callable[
         title = f"{plan.study.name}, case {row.case}"
         try:
             if plan.study.scenarios:
-                write(_recording(folder, row), path, title)
+                write(_recording(folder, row), path, title, _LAST_S)
             else:
                 _record_again(plan, case, path, title, record, write)
         except SimulationError as fault:
@@ -96,4 +101,4 @@ def _record_again(plan: CasePlan, case: Case, path: str, title: str,
         log = os.path.join(folder, "state.log")
         with opened(plan, case) as world, contextlib.closing(record(log)) as file:
             play(world, plan.study.duration, _EVERY_S, [file.look])
-        write(log, path, title)
+        write(log, path, title, math.inf)

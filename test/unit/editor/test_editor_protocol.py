@@ -16,7 +16,7 @@ from my_simulations.building.plan_json import plan_to_json
 from my_simulations.description import actor, light, model, shapes, surroundings, world
 from my_simulations.editor.scene.plain_json import HIDDEN
 from my_simulations.editor.scene.scene_json import NAMES, Documents
-from my_simulations.editor.topics.live_topics import TOPIC
+from my_simulations.editor.topics.topic_frame import TOPIC
 from my_simulations.editor.transport.http_pages import Pages
 from my_simulations.editor.transport.pose_messages import (
     HEAD,

@@ -12,7 +12,7 @@ from my_simulations.description.light import Light
 from my_simulations.description.model import Inertial, Joint, JointAxis, Link, Model
 from my_simulations.description.shapes import Box, Collision, Visual
 from my_simulations.description.world import World
-from my_simulations.editor.topics.live_topics import TOPIC
+from my_simulations.editor.topics.topic_frame import TOPIC
 from my_simulations.engine.inline_engine import InlineEngine
 from my_simulations.engine.kinematic_backend import KinematicBackend
 from my_simulations.geometry import Pose

@@ -1,10 +1,14 @@
 /** Stands in for the connection to a simulator: it plays a state log that the page contains. */
 import {RequestError} from '../connection.js';
 import {Emitter} from '../emitter.js';
+import {decodeTopicFrame} from '../topics/topic_frames.js';
 import {FRAME_HEAD, FRAME_HEAD_BYTES, FRAME_KINDS, FRAME_RECORD, FRAME_RECORD_BYTES} from '../protocol.js';
 /** @import {ConnectionEvents} from '../connection.js' */
-/** @import {StateLog} from './state_log.js' */
+/** @import {Note, StateLog} from './state_log.js' */
 
+const TOPIC = 'ros:';
+/** Messages of this type are drawn as a path, which needs all of them. */
+const PATH = 'odometry';
 const READ_ONLY = 'This is a recording: nothing in it can be changed.';
 
 /**
@@ -42,6 +46,10 @@ export class LogConnection extends Emitter {
   #document = -2;
   /** Poses that the page has. @type {Map<number, Float64Array>} */
   #shown = new Map();
+  /** Topics that the page shows. @type {Set<string>} */
+  #watched = new Set();
+  /** Number of the last state whose contacts and messages were shown. */
+  #noted = -1;
   /** Wall time of the last frame, ms; null while the log stands still. @type {number|null} */
   #before = null;
 
@@ -81,12 +89,25 @@ export class LogConnection extends Emitter {
       this.#play(given.rate ?? 1);
       return reply({});
     }
-    if (type === 'watch') return reply({});
+    if (type === 'topics') return reply({available: true, topics: this.#log.topics});
+    if (type === 'watch') {
+      this.#watch(/** @type {{topics?: string[]}} */ (fields ?? {}).topics ?? []);
+      return reply({});
+    }
     return Promise.reject(new RequestError([{severity: 'note', code: 'replay', message: READ_ONLY}]));
   }
 
   /** Notices to other users: a recording has none. */
   send() {}
+
+  /** @param {string[]} topics */
+  #watch(topics) {
+    const added = topics.some((topic) => !this.#watched.has(topic));
+    this.#watched = new Set(topics);
+    if (!added) return;
+    this.#noted = -1;
+    this.#show();
+  }
 
   /** @param {number} time  s */
   #seek(time) {
@@ -120,14 +141,74 @@ export class LogConnection extends Emitter {
   }
 
   #show() {
-    const {document, poses} = this.#log.seek(this.#time);
+    const {document, poses, state} = this.#log.seek(this.#time);
     if (document !== this.#document && document >= 0) {
       this.#document = document;
       this.#shown.clear();
       this.emit('message', {type: 'world', revision: document, document: this.#log.document(document)});
     }
     this.emit('message', {type: 'log', state: this.#rate ? 'playing' : 'open', name: this.#name,
-      begin: this.#log.begin, end: this.#log.end, time: this.#time, rate: this.#rate});
+      begin: this.#log.begin, end: this.#log.end, time: this.#time, rate: this.#rate,
+      contacts: this.#log.hasContacts});
+    if (state < this.#noted) this.#noted = -1;
+    const notes = this.#log.notes(this.#noted, state);
+    const started = this.#noted < 0 ? this.#startPaths(notes, document) : new Set();
+    this.#showPoses(poses, document);
+    this.#showNotes(notes.filter((note) => !started.has(note)), document);
+    this.#noted = state;
+  }
+
+  /**
+   * Shows the first message of each path with the poses of its time, to which its frame refers.
+   * @param {Note[]} notes
+   * @param {number} document
+   * @returns {Set<Note>} the notes that were shown
+   */
+  #startPaths(notes, document) {
+    const found = new Set();
+    const known = new Set();
+    for (const note of notes) {
+      const head = this.#watchedHead(note);
+      if (head?.view.type !== PATH || known.has(head.topic)) continue;
+      const before = this.#log.seek(this.#log.timeOf(note.state));
+      if (before.document !== document) continue;
+      known.add(head.topic);
+      found.add(note);
+      this.#showPoses(before.poses, document);
+      this.emit('frame', /** @type {ArrayBuffer} */ (note.frame));
+    }
+    return found;
+  }
+
+  /**
+   * Shows the last contacts, the last message of each topic, and all messages of paths.
+   * @param {Note[]} notes
+   * @param {number} document
+   */
+  #showNotes(notes, document) {
+    /** @type {Map<string, ArrayBuffer>} */
+    const last = new Map();
+    for (const note of notes) {
+      const head = this.#watchedHead(note);
+      if (!head || !note.frame) continue;
+      if (head.view.type !== PATH) last.set(head.topic, note.frame);
+      else if (this.#log.seek(this.#log.timeOf(note.state)).document === document) this.emit('frame', note.frame);
+    }
+    const contacts = notes.filter((note) => note.contacts).at(-1)?.contacts;
+    if (contacts && this.#watched.has('contacts')) {
+      this.emit('message', {type: 'watch', topic: 'contacts', time: this.#time, contacts});
+    }
+    for (const frame of last.values()) this.emit('frame', frame);
+  }
+
+  /** The head of a message that the page shows; null for other notes. @param {Note} note */
+  #watchedHead({frame}) {
+    const head = frame && decodeTopicFrame(frame)?.head;
+    return head && this.#watched.has(TOPIC + head.topic) ? head : null;
+  }
+
+  /** @param {Map<number, Float64Array>} poses @param {number} document */
+  #showPoses(poses, document) {
     const moved = new Map([...poses].filter(([id, pose]) => this.#hasMoved(id, pose)));
     for (const [id, pose] of moved) this.#shown.set(id, pose);
     if (moved.size) this.emit('frame', frameOf(moved, document, this.#time));

@@ -1,7 +1,7 @@
 /** Puts a replay page together: the view, a time bar, and the recording that the page contains. */
 import {createActions} from '../actions.js';
 import {faultText} from '../panels/dialog.js';
-import {byId} from '../panels/dom.js';
+import {byId, h} from '../panels/dom.js';
 import {Notices} from '../panels/notices.js';
 import {mountTheme} from '../panels/theme.js';
 import {TimeBar} from '../panels/timebar.js';
@@ -16,6 +16,33 @@ import {StateLog} from './state_log.js';
 /** @import {Page} from '../panels/panels.js' */
 
 const STEP_S = 0.05;
+/** Messages of other types are shown in windows of the editor only. */
+const DRAWN = Object.freeze([
+  'sensor_msgs/LaserScan', 'sensor_msgs/Range', 'sensor_msgs/PointCloud', 'sensor_msgs/PointCloud2',
+  'nav_msgs/Odometry', 'nav_msgs/Path', 'nav_msgs/OccupancyGrid', 'geometry_msgs/PoseArray',
+  'geometry_msgs/PoseStamped', 'geometry_msgs/PoseWithCovarianceStamped', 'gazebo_msgs/ContactsState',
+  'visualization_msgs/Marker', 'visualization_msgs/MarkerArray',
+]);
+
+/**
+ * Switches for what is recorded besides poses: contacts, and each topic that can be drawn.
+ * @param {StateLog} log
+ * @param {Page} page
+ * @returns {HTMLElement[]}
+ */
+function switchesOf(log, {store, topics}) {
+  /** @param {string} name @param {boolean} on @param {(on: boolean) => void} set */
+  const made = (name, on, set) => {
+    const box = /** @type {HTMLInputElement} */ (h('input', {type: 'checkbox', checked: on}));
+    box.addEventListener('change', () => set(box.checked));
+    set(on);
+    return h('label', {}, box, name);
+  };
+  const contacts = log.hasContacts ? [made('Contacts', false, (on) => store.setOverlay('contacts', on))] : [];
+  topics.sense(false);
+  const drawn = log.topics.filter(({type}) => DRAWN.includes(type));
+  return [...contacts, ...drawn.map(({name}) => made(name, true, (on) => topics.show(name, on)))];
+}
 
 /** @param {KeyboardEvent} event @param {Page} page */
 function onKey(event, {store, actions}) {
@@ -33,7 +60,8 @@ async function start() {
   const data = byId('data');
   const {name, log, files} = partsOf(await unpacked(data.textContent ?? ''));
   data.remove();
-  const player = new LogConnection(new StateLog(log), name);
+  const recorded = new StateLog(log);
+  const player = new LogConnection(recorded, name);
   // It has all that the page uses of a connection to a simulator.
   const connection = /** @type {Connection} */ (/** @type {unknown} */ (player));
   const store = new Store(connection);
@@ -51,6 +79,8 @@ async function start() {
     resolveUrl: resolverOf(files)});
   document.addEventListener('keydown', (event) => onKey(event, page));
   player.open();
+  topics.read();
+  byId('switches').append(...switchesOf(recorded, page));
   document.title = `${name} – replay`;
   Object.assign(window, {editor: page});
 }

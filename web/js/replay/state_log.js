@@ -1,9 +1,12 @@
 /** Reads a state log: world documents and link poses by sim time (`editor/logs/state_log.py`). Pure. */
-/** @import {World} from '../protocol.js' */
+/** @import {Contact, Topic, World} from '../protocol.js' */
 
 const DOCUMENT = 1;
 const WHOLE = 2;
 const MOVED = 3;
+const CONTACTS = 4;
+const TOPICS = 5;
+const MESSAGE = 6;
 const MAGIC = 'my_simulations state log 1\n';
 const HEAD_BYTES = 13;
 const RECORD_BYTES = 32;
@@ -11,6 +14,14 @@ const RECORD_BYTES = 32;
 const LONGEST_GAP = 0.5;
 
 /** @typedef {{kind: number, time: number, at: number, size: number}} LogRecord */
+
+/**
+ * What belongs to a state: contacts, or a binary frame with a message of a topic.
+ * @typedef {object} Note
+ * @property {number} state  number of the state
+ * @property {Contact[]|null} contacts
+ * @property {ArrayBuffer|null} frame
+ */
 
 /**
  * Sim times that never decrease: after a reset of sim time they continue from the last one.
@@ -47,6 +58,10 @@ export class StateLog {
   #view;
   /** @type {LogRecord[]} */
   #records = [];
+  /** Records of contacts and messages, with the number of their state. @type {[number, LogRecord][]} */
+  #notes = [];
+  /** The topics whose messages are recorded. @type {Topic[]} */
+  topics = [];
   /** Indices of records that hold states, and their log times, s. @type {number[]} */
   #states = [];
   /** @type {number[]} */
@@ -64,7 +79,7 @@ export class StateLog {
     const magic = new TextDecoder().decode(bytes.subarray(0, MAGIC.length));
     if (magic !== MAGIC) throw new Error('The recording is not a state log.');
     this.#scan();
-    this.#states = this.#records.flatMap(({kind}, index) => (kind === DOCUMENT ? [] : [index]));
+    this.#states = this.#records.flatMap(({kind}, index) => (kind === WHOLE || kind === MOVED ? [index] : []));
     if (!this.#states.length) throw new Error('The recording contains no states.');
     this.#times = logTimes(this.#states.map((index) => this.#records[index].time));
   }
@@ -78,30 +93,60 @@ export class StateLog {
   /**
    * The world document that is valid at a time, and the poses at that time.
    * @param {number} time  s
-   * @returns {{document: number, poses: Map<number, Float64Array>}}  number of the document; -1: none
+   * @returns {{document: number, poses: Map<number, Float64Array>, state: number}}  number of the
+   *   document, -1: none; and of the last state that is not after the time
    */
   seek(time) {
     const position = this.#position(time);
     const target = this.#states[position];
     this.#apply(target);
-    return {document: this.#documentBefore(target), poses: this.#interpolated(position, time)};
+    return {document: this.#documentBefore(target), poses: this.#interpolated(position, time),
+      state: position};
+  }
+
+  /** The log time of a state, s. @param {number} state */
+  timeOf(state) { return this.#times[state]; }
+
+  /** Whether the log contains contacts. */
+  get hasContacts() { return this.#notes.some(([, {kind}]) => kind === CONTACTS); }
+
+  /**
+   * Contacts and messages of the states after one, up to another one.
+   * @param {number} after  number of a state; -1: from the beginning
+   * @param {number} upto  number of a state
+   * @returns {Note[]}
+   */
+  notes(after, upto) {
+    return this.#notes.filter(([state]) => state > after && state <= upto).map(([state, {kind, at, size}]) => {
+      const bytes = new Uint8Array(this.#view.buffer, this.#view.byteOffset + at, size);
+      return {state, contacts: kind === CONTACTS ? JSON.parse(new TextDecoder().decode(bytes)) : null,
+        frame: kind === MESSAGE ? bytes.slice().buffer : null};
+    });
   }
 
   /** The world document of a number that `seek` returned. @param {number} number @returns {World} */
   document(number) {
-    const {at, size} = this.#records[number];
-    const bytes = new Uint8Array(this.#view.buffer, this.#view.byteOffset + at, size);
-    return JSON.parse(new TextDecoder().decode(bytes));
+    return this.#json(this.#records[number]);
+  }
+
+  /** @param {LogRecord} record */
+  #json({at, size}) {
+    return JSON.parse(new TextDecoder().decode(new Uint8Array(this.#view.buffer, this.#view.byteOffset + at, size)));
   }
 
   #scan() {
     let at = MAGIC.length;
+    let state = -1;
     while (at + HEAD_BYTES <= this.#view.byteLength) {
       const kind = this.#view.getUint8(at);
       const size = this.#view.getUint32(at + 9, true);
       const end = at + HEAD_BYTES + size;
-      if (![DOCUMENT, WHOLE, MOVED].includes(kind) || end > this.#view.byteLength) return;
-      this.#records.push({kind, time: this.#view.getFloat64(at + 1, true), at: at + HEAD_BYTES, size});
+      if (kind < DOCUMENT || kind > MESSAGE || end > this.#view.byteLength) return;
+      const record = {kind, time: this.#view.getFloat64(at + 1, true), at: at + HEAD_BYTES, size};
+      if (kind === WHOLE || kind === MOVED) state++;
+      if (kind === CONTACTS || kind === MESSAGE) this.#notes.push([Math.max(0, state), record]);
+      else if (kind === TOPICS) this.topics = this.#json(record);
+      else this.#records.push(record);
       at = end;
     }
   }

@@ -152,9 +152,9 @@ export class Overlays {
     store.listen('watch', ({detail}) => {
       if (detail.topic === 'contacts') this.#showContacts(detail.contacts ?? []);
     });
-    // They are of the running world, which tells of them again only once it goes on.
+    // Contacts of the running world do not belong to a log that is shown instead.
     store.listen('log', () => {
-      this.#contacts.visible = !store.showsLog;
+      this.#contacts.visible = !store.showsLog || Boolean(store.log?.contacts);
       stage.invalidate();
     });
   }

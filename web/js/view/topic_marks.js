@@ -39,6 +39,8 @@ class Mark {
   trail = [];
   /** The odometry's frame in the world, since it was first seen. @type {Pose7|null} */
   anchor = null;
+  /** Stamp of the last message, s. */
+  stamp = -Infinity;
 
   /** @param {number} color */
   constructor(color) {
@@ -193,7 +195,7 @@ export class TopicMarks {
       case 'contacts': return inFrame(contactsShape(view));
       case 'map':
         return inFrame(mapShape(view, new Uint8Array(buffer, start, view.width * view.height)));
-      case 'odometry': return this.#addTrail(mark, topic, view);
+      case 'odometry': return this.#addTrail(mark, topic, head.stamp, view);
       case 'transforms': return this.#addFrames(mark);
       case 'markers': {
         const now = this.#clock.at(performance.now());
@@ -207,13 +209,15 @@ export class TopicMarks {
    * Odometry is drawn from where the robot was when it was first seen, so that its drift shows.
    * @param {Mark} mark
    * @param {string} topic
+   * @param {number} stamp  s
    * @param {OdometryView} view
    */
-  #addTrail(mark, topic, {child, pose}) {
+  #addTrail(mark, topic, stamp, {child, pose}) {
     const last = mark.trail.at(-1);
     const [x, y, z] = pose;
     const way = last ? Math.hypot(x - last[0], y - last[1], z - last[2]) : 0;
-    if (way > JUMP) Object.assign(mark, {trail: [], anchor: null});
+    if (way > JUMP || stamp < mark.stamp) Object.assign(mark, {trail: [], anchor: null});
+    mark.stamp = stamp;
     mark.anchor ??= this.#anchor(topic, child, pose);
     if (!mark.anchor) return;
     if (!mark.trail.length || way > STEP) mark.trail.push([x, y, z]);

@@ -6,14 +6,16 @@ import itertools
 import os
 import threading
 import time
-from typing import Callable, Optional
+from typing import Callable, Optional, Sequence
 
 from ...errors import CommandError, Issue, error
 from ...resources.resolver import Resolver
 from ...simulator.simulator import Simulator
 from ..scene.scene_changes import Mirror
 from ..scene.scene_json import Documents
+from ..topic_source import TopicSource
 from ..transport.pose_reader import PoseReader
+from .log_notes import notes_of
 from .state_log import FILE, LogWriter, new_name
 
 _USUAL_HZ = 60.0
@@ -54,19 +56,23 @@ class Recorder:
         path: the file, which must not be there.
         period: least sim time between states, s; 0 or less for 60 states in a second of wall time.
         tell: hears of a log that ended before the world.
+        source: the ROS topics; None if there are none.
+        topics: names of topics whose messages are recorded.
 
     Raises:
         CommandError: it cannot be written.
     """
 
     def __init__(self, simulator: Simulator, resolver: Resolver, path: str, period: float,
-                 tell: Callable[[Issue], None]) -> None:
+                 tell: Callable[[Issue], None], source: Optional[TopicSource] = None,
+                 topics: Sequence[str] = ()) -> None:
         self.path = path
         self._simulator = simulator
         self._period = max(0.0, period)
         self._tell = tell
         self._mirror = Mirror(simulator, Documents(resolver))
         self._reader = PoseReader(simulator)
+        self._notes = notes_of(simulator, source, topics)
         self._revision = self._sequence = -1
         self._turn = -1
         self._described = float("-inf")
@@ -103,6 +109,8 @@ class Recorder:
             self._look(writer)
         finally:
             writer.close()
+            for notes in self._notes:
+                notes.close()
 
     def _run(self) -> None:
         writer = self._writer
@@ -129,6 +137,8 @@ class Recorder:
         if poses is not None:
             self._sequence, self._turn = sequence, turn
             writer.poses(poses)
+            for notes in self._notes:
+                notes.look(writer, poses.sim_time)
 
     def _describe(self, writer: LogWriter) -> bool:
         """Write the world's description, unless the last one was but now and took long."""

@@ -4,26 +4,31 @@ from __future__ import annotations
 import base64
 import gzip
 import json
+import math
 import os
 import struct
 import tempfile
-from typing import Any, Dict, List, Tuple
+from typing import Any, Dict, Iterable, List, Tuple
 
 from ...errors import CommandError
 from ...resources.resolver import Resolver
 from ...simulator.safe_file import write_whole
 from ..scene.content_types import resource_type
+from ..topics.topic_frame import frame_of, parts_of
 from ..transport.page_bundle import FOLDER, sources_of
 from ..transport.page_files import PageFiles, node_modules
 from ..transport.pose_messages import Poses
 from .replay_files import ReplayFiles
-from .state_log import LogReader, LogWriter
+from .state_log import CONTACTS, MESSAGE, TOPICS, LogReader, LogWriter
 
 PROGRAM = "replay.js"
 """The packed program of the page, which the set-up makes beside the packed editor."""
 
 STATES_HZ = 30.0
 """States a second of sim time that a page contains; it interpolates between them."""
+
+_MESSAGES_S = 0.1
+"""Least sim time between two messages of a topic that a page contains."""
 
 _STYLES = ("theme", "layout", "widgets", "panels")
 _GRID = 2.0 ** -14
@@ -32,7 +37,7 @@ _SIZE = struct.Struct("<I")
 
 
 def write_replay(log: str, path: str, resolver: Resolver, name: str = "",
-                 states_hz: float = STATES_HZ) -> List[str]:
+                 states_hz: float = STATES_HZ, last: float = math.inf) -> List[str]:
     """Write the page.
 
     Args:
@@ -41,6 +46,7 @@ def write_replay(log: str, path: str, resolver: Resolver, name: str = "",
         resolver: finds the meshes and pictures of the models.
         name: title of the page; default: the folder of the log, or its file.
         states_hz: most states for each second of sim time.
+        last: only so many s of sim time at the end of the log.
 
     Returns:
         Addresses of meshes and pictures that were not found.
@@ -50,7 +56,7 @@ def write_replay(log: str, path: str, resolver: Resolver, name: str = "",
             cannot be written.
     """
     files = ReplayFiles(resolver)
-    states = _thinned(log, states_hz, files)
+    states = _thinned(log, states_hz, last, files)
     data = _packed(_container(name or _name_of(log), states, files.found))
     page = (_template().replace("/*STYLE*/", _styles()).replace("/*PROGRAM*/", _program())
             .replace("/*DATA*/", data))
@@ -63,29 +69,73 @@ def _name_of(log: str) -> str:
     return os.path.basename(folder) if file == "state.log" else file
 
 
-def _thinned(log: str, states_hz: float, files: ReplayFiles) -> bytes:
+def _thinned(log: str, states_hz: float, last: float, files: ReplayFiles) -> bytes:
     """The log with fewer states and rounded poses; adds the files of its worlds to `files`."""
     import numpy as np
 
     if not states_hz > 0.0:
         raise CommandError(f"states a second must be above 0, is {states_hz:g}")
+    if not last > 0.0:
+        raise CommandError(f"the recorded time must be above 0, is {last:g} s")
     reader = LogReader(log)
     try:
         with tempfile.TemporaryDirectory(prefix="my_simulations_replay_") as folder:
             writer = LogWriter(os.path.join(folder, "state.log"))
-            known = -2
+            known, noted = -2, -1
+            notes = _ThinNotes(writer)
             for time in reader.times(1.0 / states_hz):
+                if time < reader.end - last:
+                    continue
                 number, poses = reader.seek(time)
                 if number != known:
                     writer.document(time, _shown(json.loads(reader.text(number)), files))
                     known = number
                 values = np.round(poses.values / _GRID) * _GRID
                 writer.poses(Poses(poses.ids, values.astype(np.float32), 0, time, time))
+                notes.add(time, reader.notes(noted, poses.step))
+                noted = poses.step
             writer.close()
             with open(writer.path, "rb") as stream:
                 return stream.read()
     finally:
         reader.close()
+
+
+class _ThinNotes:
+    """Writes the newest contacts and messages, and rounds what compresses badly."""
+
+    def __init__(self, writer: LogWriter) -> None:
+        self._writer = writer
+        self._waiting: Dict[str, bytes] = {}
+        self._due: Dict[str, float] = {}
+
+    def add(self, time: float, notes: Iterable[Tuple[int, bytes]]) -> None:
+        """Take the notes since the last state, and write what is due at this one."""
+        contacts = b""
+        for kind, data in notes:
+            if kind == CONTACTS:
+                contacts = data
+            elif kind == TOPICS:
+                self._writer.note(TOPICS, time, data)
+            else:
+                self._waiting[parts_of(data)[0]["topic"]] = data
+        if contacts:
+            self._writer.note(CONTACTS, time, contacts)
+        for topic in list(self._waiting):
+            if time >= self._due.get(topic, time) - 1e-9:
+                self._due[topic] = time + _MESSAGES_S
+                self._writer.note(MESSAGE, time, _rounded(self._waiting.pop(topic)))
+
+
+def _rounded(frame: bytes) -> bytes:
+    """A frame whose ranges are multiples of 1 mm (exactly: 2^-10 m); others as they are."""
+    import numpy as np
+
+    head, payload = parts_of(frame)
+    if head["view"]["type"] != "scan":
+        return frame
+    ranges = np.frombuffer(payload, dtype="<f4")
+    return frame_of(head, (np.round(ranges * 1024.0) / 1024.0).astype("<f4").tobytes())
 
 
 def _shown(document: Dict[str, Any], files: ReplayFiles) -> Dict[str, Any]:

@@ -1,8 +1,10 @@
 """State logs: what moved and what changed, in one file, to be looked at again later.
 
 A file begins with `MAGIC`; each record is a kind (u8), a sim time (f64, s), a size (u32) and so
-many bytes: a world document (JSON), all poses, or those that moved. Little endian. A file that was
-cut off by a crash is good up to its last whole record.
+many bytes: a world document (JSON), all poses, those that moved, contacts (JSON, as the push
+`watch` has them), the list of recorded topics (JSON, `Topic` of the protocol), or a message of a
+topic (a frame as pages receive it). Contacts and messages belong to the state before them. Little
+endian. A file that was cut off by a crash is good up to its last whole record.
 """
 from __future__ import annotations
 
@@ -12,7 +14,7 @@ import os
 import struct
 from dataclasses import dataclass
 from time import strftime
-from typing import Any, BinaryIO, Dict, List, Optional, Tuple
+from typing import Any, BinaryIO, Dict, Iterator, List, Optional, Tuple
 
 from ...errors import CommandError
 from ..transport.pose_messages import HEAD_BYTES, LOG, Poses, SentPoses, record_type
@@ -21,7 +23,8 @@ FILE = "state.log"
 """What a log is called, in a folder that bears its name (Gazebo behaviour)."""
 
 MAGIC = b"my_simulations state log 1\n"
-DOCUMENT, WHOLE, MOVED = 1, 2, 3
+DOCUMENT, WHOLE, MOVED, CONTACTS, TOPICS, MESSAGE = 1, 2, 3, 4, 5, 6
+_STATES, _NOTES = (WHOLE, MOVED), (CONTACTS, TOPICS, MESSAGE)
 
 _RECORD = struct.Struct("<BdI")
 _WHOLE_EVERY_S = 5.0
@@ -43,6 +46,7 @@ class LogWriter:
         self.begin: Optional[float] = None
         self.end = 0.0
         self._written = float("-inf")
+        self._notes: Dict[int, bytes] = {CONTACTS: b"[]", TOPICS: b"[]"}
         try:
             os.makedirs(os.path.dirname(path), exist_ok=True)
             self._file: BinaryIO = open(path, "xb")
@@ -66,8 +70,20 @@ class LogWriter:
         frame = self._sent.frame(LOG, 0, poses)
         if frame or whole:  # a world without links has states, too
             self._write(WHOLE if whole else MOVED, time, frame[HEAD_BYTES:])
+            self._written = time
         self.begin = time if self.begin is None else self.begin
         self.end = time
+
+    def note(self, kind: int, time: float, data: bytes) -> None:
+        """Add contacts, a list of topics or a message to the last state; s of sim time.
+
+        Contacts and lists are written only if they differ from the last ones.
+        """
+        if self._notes.get(kind) == data:
+            return
+        if kind != MESSAGE:
+            self._notes[kind] = data
+        self._write(kind, time, data)
 
     def flush(self) -> None:
         """Make what was written so far survive the end of this process. Raises CommandError."""
@@ -90,7 +106,6 @@ class LogWriter:
     def _write(self, kind: int, time: float, data: bytes) -> None:
         try:
             self._file.write(_RECORD.pack(kind, time, len(data)) + data)
-            self._written = time
         except OSError as fault:
             raise CommandError(f"{self.path} cannot be written: {fault.strerror}") from fault
 
@@ -122,7 +137,7 @@ class LogReader:
             self._file.close()
             raise CommandError(f"{path} is not a state log")
         self._records = self._scan(os.fstat(self._file.fileno()).st_size)
-        self._states = [n for n, record in enumerate(self._records) if record.kind != DOCUMENT]
+        self._states = [n for n, record in enumerate(self._records) if record.kind in _STATES]
         if not self._states:
             self._file.close()
             raise CommandError(f"{path} contains no states")
@@ -140,9 +155,11 @@ class LogReader:
         after each document.
         """
         found: List[float] = []
-        for record, time in zip(self._states, self._times):
-            changed = record == 0 or self._records[record - 1].kind == DOCUMENT
-            if not found or changed or time >= found[-1] + period - 1e-9:
+        before = -1
+        for state, time in zip(self._states, self._times):
+            kinds = [record.kind for record in self._records[before + 1:state]]
+            before = state
+            if not found or DOCUMENT in kinds or time >= found[-1] + period - 1e-9:
                 found.append(time)
         return found if found[-1] == self.end else [*found, self.end]
 
@@ -162,6 +179,20 @@ class LogReader:
         values = np.array(list(self._poses.values()), dtype=np.float32).reshape(-1, 7)
         shown = min(max(time, self.begin), self.end)
         return self._document_at(target), Poses(ids, values, position, shown, shown)
+
+    def notes(self, after: int, upto: int) -> Iterator[Tuple[int, bytes]]:
+        """Kind and content of all contacts, lists of topics and messages of some states.
+
+        Args:
+            after: number of the last state (`Poses.step` of `seek`) whose notes are not wanted; -1
+                for none.
+            upto: number of the last state whose notes are wanted.
+        """
+        begin = self._states[after + 1] if after >= 0 else 0
+        end = self._states[upto + 1] if upto + 1 < len(self._states) else len(self._records)
+        for record in self._records[begin:end]:
+            if record.kind in _NOTES:
+                yield record.kind, self._bytes(record)
 
     def text(self, number: int) -> bytes:
         """The JSON of the world document of that number."""
@@ -183,7 +214,7 @@ class LogReader:
     def _apply(self, record: _Record) -> None:
         import numpy as np
 
-        if record.kind == DOCUMENT:
+        if record.kind not in _STATES:
             return
         table = np.frombuffer(self._bytes(record), dtype=record_type())
         if record.kind == WHOLE:
@@ -205,7 +236,7 @@ class LogReader:
                 return found
             kind, time, length = _RECORD.unpack(head)
             at += _RECORD.size
-            if kind not in (DOCUMENT, WHOLE, MOVED) or length > _LARGEST or at + length > size:
+            if kind not in (DOCUMENT, *_STATES, *_NOTES) or length > _LARGEST or at + length > size:
                 return found  # cut off, or no record
             found.append(_Record(kind, time, at, length))
             at += length

@@ -10,6 +10,7 @@ from ...resources.resolver import Resolver
 from ..scene.scene_changes import Mirror
 from ..scene.scene_json import Documents
 from ..transport.pose_reader import PoseReader
+from .log_notes import ContactNotes
 from .state_log import LogWriter
 
 
@@ -29,6 +30,7 @@ class LogRecord:
         self._writer = LogWriter(os.path.abspath(path))
         self._documents = Documents(Resolver.from_environment())
         self._reader: Optional[PoseReader] = None
+        self._contacts: Optional[ContactNotes] = None
         self._revision = -1
 
     def look(self, world: OpenWorld) -> None:
@@ -42,6 +44,8 @@ class LogRecord:
         poses = self._reader.read(self._revision, 0.0)
         if poses is not None:
             self._writer.poses(poses)
+            self._contacts = self._contacts or ContactNotes(simulator)
+            self._contacts.look(self._writer, poses.sim_time)
 
     def close(self) -> None:
         """Finish the file."""

@@ -7,8 +7,6 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
-import json
-import struct
 from concurrent.futures import Executor
 from typing import Any, Callable, Dict, List, Optional, Set
 
@@ -18,20 +16,10 @@ from ..transport.browser_client import Client, encoded
 from ..transport.hub import Hub
 from ..transport.watch_requests import PREFIX
 from .message_views import Viewer
+from .topic_frame import frame_of
 
-TOPIC = 3
-"""Kind of the frames (`frames` of the protocol)."""
-
-_HEAD = struct.Struct("<II")
 _LOOK_S = 1.0
 """How soon a topic with its first publisher is found."""
-
-
-def frame_of(head: Dict[str, Any], payload: bytes) -> bytes:
-    """A frame of a page; the payload begins at a multiple of 8."""
-    text = json.dumps(head, separators=(",", ":"), allow_nan=False).encode()
-    text += b" " * (-(len(text) + _HEAD.size) % 8)
-    return _HEAD.pack(TOPIC, len(text)) + text + payload
 
 
 class LiveTopic:

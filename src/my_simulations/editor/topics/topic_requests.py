@@ -6,13 +6,13 @@ from concurrent.futures import ThreadPoolExecutor
 from typing import Any, Dict, List, Optional
 
 from ...errors import CommandError
-from ..scene.plain_json import plain
 from ..topic_source import ListedTopic, TopicSource
 from ..transport.browser_client import Client
 from ..transport.hub import Hub
 from ..transport.web_socket import Route
 from .driving import Driving
 from .live_topics import LiveTopic, LiveTopics
+from .topic_frame import document_of
 
 
 class TopicRequests:
@@ -65,12 +65,7 @@ def _ordered(listed: List[ListedTopic]) -> List[ListedTopic]:
 
 
 def _document(one: ListedTopic, heard: Optional[LiveTopic]) -> Dict[str, Any]:
-    found: Dict[str, Any] = {"name": one.name, "type": one.kind, "publishers": one.publishers,
-                             "subscribers": one.subscribers}
-    if one.model:
-        found.update(model=one.model, driven=one.driven)
-    if one.link:
-        found["mount"] = {"link": one.link, "pose": plain(one.pose)}
+    found = document_of(one)
     if heard is not None and heard.subscription is not None:
         found.update(hz=heard.hz, bytes_per_s=heard.bytes_per_s)
     return found

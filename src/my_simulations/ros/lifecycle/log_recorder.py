@@ -1,7 +1,7 @@
 """Records the state log of `--record`; the function that starts it is passed in by `cli`."""
 from __future__ import annotations
 
-from typing import Callable, Optional, Protocol
+from typing import Any, Callable, Optional, Protocol
 
 import rospy
 
@@ -21,16 +21,18 @@ class RunningRecorder(Protocol):
         """Close the log. Raises CommandError: it could not be completed."""
 
 
-StartRecording = Callable[[Simulator, Resolver, Recording, Callable[[Issue], None]],
+StartRecording = Callable[[Simulator, Resolver, Recording, Callable[[Issue], None], Any],
                           RunningRecorder]
-"""Starts a log; the function receives an issue if it stops early. Raises CommandError."""
+"""Starts a log; the function receives an issue if it stops early. The last argument is the
+`TopicGraph`, or None. Raises CommandError.
+"""
 
 
 def begin(start: StartRecording, simulator: Simulator, resolver: Resolver,
-          wanted: Recording) -> Optional[RunningRecorder]:
+          wanted: Recording, topics: Any) -> Optional[RunningRecorder]:
     """Start the log; None, with a logged error, if it cannot be written."""
     try:
-        recorder = start(simulator, resolver, wanted, log_issue)
+        recorder = start(simulator, resolver, wanted, log_issue, topics)
     except CommandError as fault:
         rospy.logerr("cannot record a state log: %s", fault)
         return None

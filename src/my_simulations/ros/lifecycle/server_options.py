@@ -5,7 +5,7 @@ import argparse
 import os
 from dataclasses import dataclass, field
 from math import isfinite
-from typing import List, Optional, Sequence
+from typing import List, Optional, Sequence, Tuple
 
 from ..arguments import Parser, number
 
@@ -18,6 +18,9 @@ ENGINES = ("ode", "bullet", "dart", "simbody")
 
 RECORD_VARIABLE = "MY_SIMULATIONS_RECORD"
 """Environment variable with the folder in which each server records a state log."""
+
+TOPICS_VARIABLE = "MY_SIMULATIONS_RECORD_TOPICS"
+"""Environment variable with names of topics that state logs contain, separated by spaces."""
 
 RECORD_ENCODINGS = ("zlib", "bz2", "txt")
 """Values of Gazebo's option `--record_encoding`."""
@@ -34,6 +37,7 @@ class Recording:
         period: least seconds of sim time between states; negative for every state.
         filter: names of models; ignored.
         resources: include meshes and textures; ignored.
+        topics: names of topics whose messages the log contains.
     """
 
     on: bool = False
@@ -42,6 +46,7 @@ class Recording:
     period: float = -1.0
     filter: str = ""
     resources: bool = False
+    topics: Tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -121,6 +126,9 @@ def _add_recording(made: argparse.ArgumentParser) -> None:
                       help="ignored: all models are recorded")
     made.add_argument("--record_resources", action="store_true",
                       help="ignored: logs do not contain meshes and textures")
+    made.add_argument("--record_topics", metavar="NAMES", default="",
+                      help="topics that the log contains, such as /scan,/odom (default: those of"
+                      f" the environment variable {TOPICS_VARIABLE})")
 
 
 def _count(text: str) -> int:
@@ -169,10 +177,16 @@ def parse(argv: Sequence[str], program: str = "gzserver") -> ServerOptions:
         given.record, given.record_path = True, given.record_path or folder
     recording = Recording(
         given.record, given.record_encoding, given.record_path, given.record_period,
-        given.record_filter, given.record_resources)
+        given.record_filter, given.record_resources,
+        _topics(given.record_topics or os.environ.get(TOPICS_VARIABLE, "")))
     return ServerOptions(
         world=given.world, paused=given.pause, verbose=given.verbose, notices=_notices(given),
         seed=given.seed, iterations=given.iters, profile=given.profile, recording=recording)
+
+
+def _topics(text: str) -> Tuple[str, ...]:
+    """Names separated by commas or spaces, each with a leading slash."""
+    return tuple("/" + name.strip("/") for name in text.replace(",", " ").split())
 
 
 def _notices(given: argparse.Namespace) -> List[str]:

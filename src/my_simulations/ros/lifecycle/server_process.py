@@ -308,7 +308,7 @@ class Server:
         self._profile.mark("services and topics registered")
         node.start_publishing()
         node.spawn_robot()
-        self._record(loader)
+        self._record(loader, node)
         if not self._options.paused:
             loader.simulator.clock.unpause()
         self._profile.mark("running")
@@ -322,14 +322,15 @@ class Server:
             self._say(line)
         return node
 
-    def _record(self, loader: WorldLoader) -> None:
+    def _record(self, loader: WorldLoader, node: Any) -> None:
         """Start the state log; the clock is published by now, and the world is still paused."""
         wanted = self._options.recording
         if self._start_recording is None or not wanted.on:
             return
         from .log_recorder import begin
 
-        self._recorder = begin(self._start_recording, loader.simulator, loader.resolver, wanted)
+        self._recorder = begin(self._start_recording, loader.simulator, loader.resolver, wanted,
+                               node.topic_graph() if wanted.topics else None)
         self._profile.mark("state log begun")
 
     def _make_editor_launcher(self) -> "Optional[EditorLauncher]":
