@@ -5,6 +5,7 @@ import importlib.util
 import itertools
 import os
 import re
+import sys
 import xml.etree.ElementTree as ElementTree
 
 import content_reader as reader
@@ -157,6 +158,32 @@ def test_the_meshes_are_what_their_script_writes():
     for name in made:
         if name.endswith(".dae"):
             assert written[name] == made[name], name
+
+
+def generated_models():
+    """Content by path below models/, from the descriptions in tools/generate/content."""
+    folder = str(ROOT / "tools" / "generate")
+    sys.path.insert(0, folder)
+    try:
+        return importlib.import_module("make_models").files()
+    finally:
+        sys.path.remove(folder)
+
+
+def words(content):
+    """Text between numbers, and the numbers."""
+    text = content.decode()
+    number = r"(?<![A-Za-z0-9_])-?[0-9]+(?:\.[0-9]+)?(?:e-?[0-9]+)?(?![A-Za-z0-9_])"
+    return re.split(number, text), [float(found) for found in re.findall(number, text)]
+
+
+def test_the_models_are_what_their_descriptions_make():
+    for path, made in generated_models().items():
+        (text, numbers), (made_text, made_numbers) = map(
+            words, ((ROOT / "models" / path).read_bytes(), made))
+        assert text == made_text, path
+        rounding = 0.011 if path.endswith(".dae") else 1e-6
+        np.testing.assert_allclose(numbers, made_numbers, atol=rounding)
 
 
 @pytest.mark.parametrize("mesh,size,unit,up_axis", [
