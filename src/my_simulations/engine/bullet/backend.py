@@ -44,7 +44,6 @@ from .contact_readout import read_contacts
 from .helper_set import HelperSet
 from .initial_state_cache import InitialStateCache, Start
 from .joint_constraints import Constraints
-from .row_reader import RowReader
 from .run_states import RunStates
 from .shape_preparation import ShapePreparation
 from .state_restore import Entry, inherited, restore
@@ -65,7 +64,7 @@ class BulletBackend:
         self._loop, self._readout = self._helpers.loop, self._helpers.readout
         self._waker, self._forces = self._helpers.waker, self._helpers.forces
         self._mover, self._notices = self._helpers.mover, self._helpers.notices
-        self._row_reader = RowReader(self._readout, self._rows, self._axes)
+        self._row_reader = self._helpers.row_reader
         self._starts = InitialStateCache(self._readout)
         run_states = RunStates(self._helpers, self._bodies, self._rows)
         self._put_off: Optional[List[Start]] = None

@@ -28,6 +28,7 @@ from .planar_motion import PlanarMotion
 from .residual_friction import ResidualFriction
 from .restored_sleep import RestoredSleep
 from .rolling_contacts import RollingContacts
+from .row_reader import RowReader
 from .seam_contacts import SeamContacts
 from .sliding import Sliding
 from .state_readout import StateReadout
@@ -48,6 +49,7 @@ class HelperSet:
         loop: makes the steps, with the helpers around them.
         notices: what users are told of bodies.
         readout: the tables of states.
+        row_reader: single rows of these tables as they are now.
         waker: wakes what a command reaches.
         mover: puts models, links and joints elsewhere.
         book: the constraints of joints.
@@ -95,10 +97,11 @@ class HelperSet:
         self._stop = SurfaceStop()
         self.divergence = DivergenceStop(self.notices.stopped, lambda: self.forces.loaded_bodies,
                                           self.readout.touch)
-        self.mover = StateSetter(rows, axes, self.readout, self.waker, self.forces, self._spin,
-                                 (self.holds.moved, self.divergence.put))
+        self.row_reader = RowReader(self.readout, rows, axes)
+        self.mover = StateSetter(rows, axes, self.readout, self.row_reader, self.waker,
+                                 self.forces, self._spin, (self.holds.moved, self.divergence.put))
         self.motors = JointMotors(axes, driver.around)
-        self.planar = PlanarMotion(models, self.mover.model_pose, driver.around)
+        self.planar = PlanarMotion(models, self.mover.present_model_pose, driver.around)
         self.wrenches = JointWrenches(models, self.forces, self.sliding)
         # What acts around the steps, in the order in which it does.
         helpers = (self._friction, self._bounces, self.settling, self._decay, self.forces,

@@ -1,7 +1,8 @@
 """Puts bodies somewhere, and tells everyone who remembers where they were."""
 from __future__ import annotations
 
-from typing import Callable, Dict, Iterable, Optional, Tuple
+import struct
+from typing import Callable, Dict, Iterable, Optional, Sequence, Tuple
 
 import pybullet
 
@@ -22,25 +23,30 @@ from ...geometry import (
 )
 from ..api import CommandRefusedError, RemovedError
 from ..commands import Frame, LinkState, SetJoints, SetLinkState, SetModelState
+from ..ring import LINK_WIDTH
 from . import anchored_bodies, bodies
 from .bodies import Axis, Body, Part
 from .forces import Forces
 from .gyroscopic_rigid import GyroscopicRigid
+from .row_reader import RowReader
 from .state_readout import StateReadout
 from .state_restore import Entry, set_ball
 from .wake_up import WakeUp
+
+_ROW = struct.Struct(f"={LINK_WIDTH}d")
 
 
 class StateSetter:
     """Sets poses, velocities and joint positions of what is in the world."""
 
     def __init__(self, rows: Dict[int, Tuple[Body, Part]], axes: Dict[int, Tuple[Body, Axis]],
-                 readout: StateReadout, waker: WakeUp, forces: Forces, spin: GyroscopicRigid,
-                 put: Iterable[Callable[[Body], None]]) -> None:
+                 readout: StateReadout, row_reader: RowReader, waker: WakeUp, forces: Forces,
+                 spin: GyroscopicRigid, put: Iterable[Callable[[Body], None]]) -> None:
         """`rows` and `axes` are looked into, never changed: who has a row of the tables.
 
         Each of `put` is called with a body that was given a pose or velocity.
         """
+        self._row_reader = row_reader
         self._rows = rows
         self._axes = axes
         self._readout = readout
@@ -51,19 +57,16 @@ class StateSetter:
 
     def link_state(self, row: int) -> LinkState:
         """Of the link at a row, as last read."""
-        values = self._readout.links[row].tolist()
-        return LinkState(Pose((values[0], values[1], values[2]),
-                              (values[3], values[4], values[5], values[6])),
-                         Twist((values[7], values[8], values[9]),
-                               (values[10], values[11], values[12])))
+        return _link_state(self._readout.links[row].tolist())
 
     def model_pose(self, entry: Entry) -> Pose:
-        """Where the model frame is: its canonical link's pose says it."""
-        if not entry.model.links:
-            return entry.pose
-        lead = _canonical(entry)
-        return compose(self.link_state(entry.first_row + lead).pose,
-                       inverse(entry.model.links[lead].pose))
+        """Where the model frame was when the tables were last read."""
+        return _model_pose(entry, lambda row: self.link_state(row).pose)
+
+    def present_model_pose(self, entry: Entry) -> Pose:
+        """Where the model frame is now, between any two steps."""
+        return _model_pose(entry, lambda row: _link_state(
+            _ROW.unpack(self._row_reader.read_links((row,)))).pose)
 
     def set_model(self, command: SetModelState, entry: Entry) -> None:
         """Move all bodies of a model. Raises CommandRefusedError."""
@@ -182,6 +185,22 @@ class StateSetter:
             put(body)
         self._spin.moved(body)
         self._readout.touch(body)
+
+
+def _link_state(values: Sequence[float]) -> LinkState:
+    """The state in a row of the link table."""
+    return LinkState(Pose((values[0], values[1], values[2]),
+                          (values[3], values[4], values[5], values[6])),
+                     Twist((values[7], values[8], values[9]),
+                           (values[10], values[11], values[12])))
+
+
+def _model_pose(entry: Entry, link_pose: Callable[[int], Pose]) -> Pose:
+    """The pose of the model frame by that of its canonical link, which `link_pose` reads."""
+    if not entry.model.links:
+        return entry.pose
+    lead = _canonical(entry)
+    return compose(link_pose(entry.first_row + lead), inverse(entry.model.links[lead].pose))
 
 
 def _canonical(entry: Entry) -> int:
