@@ -288,7 +288,7 @@ class PluginHost:
     def _go_on(self, settings: int, moment: Moment) -> None:
         """Let the engine run to the next step at which a plugin acts."""
         if self._settings is None:
-            self._schedule.make_anew(self._clock_was_set(moment))
+            self._schedule.make_anew(self._was_set_back(moment))
         if settings != self._settings or self._observations.changed:
             rules = self._observations.new_rules(self._graph.transforms_wanted,
                                                  settings != self._settings)
@@ -297,8 +297,10 @@ class PluginHost:
         self._sync.allow(settings, self._schedule.next_step)
         self._moment, self._settings = moment, settings
 
-    def _clock_was_set(self, moment: Moment) -> bool:
-        return self._moment is not None and moment.clock_sets != self._moment.clock_sets
+    def _was_set_back(self, moment: Moment) -> bool:
+        before = self._moment
+        return (before is not None and moment.clock_sets != before.clock_sets
+                and moment.sim_ns < before.sim_ns)
 
     def _publish(self) -> None:
         touched, self._touched = self._touched, {}
@@ -330,7 +332,7 @@ class PluginHost:
         resets = self._simulator.resets
         calls: List[str] = []
         if before is not None and moment.clock_sets != before.clock_sets:
-            self._schedule.make_anew(True)
+            self._schedule.make_anew(moment.sim_ns < before.sim_ns)
             for running in self._at_work():
                 running.context.sensing.forget()
             if resets.simulation_resets != self._simulation_resets:

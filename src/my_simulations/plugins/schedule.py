@@ -92,11 +92,11 @@ class Schedule:
             heapq.heappop(self._heap)
         return self._heap[0][0] if self._heap else None
 
-    def make_anew(self, clock_was_set: bool) -> None:
-        """Count from `moment` on; with another clock, what was to be done once is over."""
+    def make_anew(self, was_set_back: bool) -> None:
+        """Count from `moment` on; if sim time was set back, what was to be done once is over."""
         before, self._heap = self._heap, []
         for _, number, scheduled in before:
-            if scheduled.single and clock_was_set:
+            if scheduled.single and was_set_back:
                 scheduled.end()
             if not scheduled.ended:
                 self._put(number, scheduled)

@@ -40,7 +40,7 @@ class StepwiseChange:
 
     def begin_after(self, ns: int) -> Ending:
         """Begin at the first step of the rate that is later than a sim time (ns)."""
-        due = ns + 1
+        due = ns + 2   # steps may begin a nanosecond early
         if self._period is not None:
             number = ns * self._period // _NS + 1
             due = -(-number * _NS // self._period)
