@@ -28,8 +28,12 @@ class TimeOut:
         self._since_ns = self._context.now_ns
 
     @property
+    def end_ns(self) -> int:
+        """The last sim time at which it is not over, ns."""
+        self._since_ns = min(self._since_ns, self._context.now_ns)
+        return self._since_ns + self.ns
+
+    @property
     def is_over(self) -> bool:
         """Whether more than that time has passed."""
-        now = self._context.now_ns
-        self._since_ns = min(self._since_ns, now)
-        return now - self._since_ns > self.ns
+        return self._context.now_ns > self.end_ns

@@ -46,7 +46,7 @@ class DiffDrive(OdometryDrive):
         hertz = p.number("updateRate", 100.0)
         self._change = StepwiseChange(context, hertz, self._accelerate)
         self._command = VelocityCommand(context, p.text("commandTopic", "cmd_vel"),
-                                        changed=self._change.begin)
+                                        change=self._change)
         self.reset()
         # Encoders count at all updates, with and without subscribers.
         topics = [*self._odometer.topics, *(self._states.topics if self._states else [])]

@@ -19,6 +19,7 @@ from ..context import PluginError, Publication
 from ..frames import prefixed, stamped
 from ..parameters import namespace_or
 from ..sensors.rays import fan_of
+from ..stepwise_change import StepwiseChange
 from .odometry import Odometer, WheelTurns, planar
 from .wheels import VelocityCommand, WheelStates
 
@@ -53,16 +54,20 @@ class Kobuki(Plugin):
         self._states = WheelStates(context, self._wheels, motion=True,
                                    frame=prefixed(context, "base_link"))
         prefix = str(context.parameter("base_prefix", "mobile_base")).strip("/")
+        hertz = p.number("update_rate", 0.0)
+        hertz = hertz if hertz > 0.0 else _HERTZ
+        self._change = StepwiseChange(context, hertz, self._follow)
         self._command = VelocityCommand(context, f"{prefix}/commands/velocity",
-                                        p.number("velocity_command_timeout", 0.6))
+                                        p.number("velocity_command_timeout", 0.6), self._change)
         context.subscribe(f"{prefix}/commands/reset_odometry", "std_msgs/Empty",
                           lambda message: self._begin_count(), 10)
         self._imu_topic = context.publish(f"{prefix}/sensors/imu_data", "sensor_msgs/Imu")
         self._events = KobukiEvents(self, prefix)
         self._powered = True
         self.reset()
-        hertz = p.number("update_rate", 0.0)
-        context.every(hertz if hertz > 0.0 else _HERTZ, self.update)
+        context.observe(hertz, self.tell, transforms=self._broadcasts, remembers=True, topics=[
+            *self._states.topics, *self._odometer.topics, self._imu_topic])
+        self._events.follow(hertz)
 
     def _sensor(self, name: str) -> Tuple[str, Sensor]:
         return sensor_named(self, name)
@@ -70,23 +75,26 @@ class Kobuki(Plugin):
     def power(self, on: bool) -> None:
         """Switch the motors on or off."""
         self._powered = on
+        self._change.begin()
 
     def reset(self) -> None:
         """Stand, and count from here."""
         self._command.stop()
+        self._change.end()
         self._begin_count()
+        self._turns.forget()
+        self._heading = self._yaw()
         self.clock_set()
         self._drive()
 
     def clock_set(self) -> None:
         """Accelerations are of what comes."""
+        self._command.clock_set()
         self._last_ns, self._before = self.context.now_ns, self._imu_velocity()
         self._events.clock_set()
 
     def _begin_count(self) -> None:
         self._place = (0.0, 0.0, 0.0)
-        self._turns.forget()
-        self._heading = self._yaw()
 
     def _yaw(self) -> float:
         return rpy_from_quat(self.context.link(self._imu_link).pose.orientation)[2]
@@ -95,8 +103,8 @@ class Kobuki(Plugin):
         link = self.context.link(self._imu_link)
         return velocity_at(link.pose, link.twist, self._imu.pose)
 
-    def update(self) -> None:
-        """Odometry and sensors first, then the command."""
+    def tell(self) -> None:
+        """Publish joint states, odometry and IMU, as they are before the command of an update."""
         now = self.context.now_ns
         dt = (now - self._last_ns) * 1e-9
         self._last_ns = now
@@ -105,9 +113,11 @@ class Kobuki(Plugin):
         self._states.send()
         self._tell_odometry(dt)
         self._tell_imu(dt)
-        self._events.update()
+
+    def _follow(self, dt: float) -> bool:
         self._command.look()
         self._drive()
+        return True
 
     def _tell_odometry(self, dt: float) -> None:
         """The way is that of the wheels, the heading that of the gyroscope, as on the real base."""
@@ -177,22 +187,44 @@ class KobukiEvents:
         """What was asked belongs to another time."""
         self._look_again_ns = 0
 
-    def update(self) -> None:
-        """Compare with what was before, and tell."""
+    def follow(self, hertz: float) -> None:
+        """Publish at a rate in Hz while there are subscribers."""
         if not self._topics:
             return
-        contacts = self._context.contacts()
-        self._change("events/bumper", "bumper", "BumperEvent", self._pressed,
-                     self._bumps(contacts))
+        cliff, core = self._topics["events/cliff"], self._topics["sensors/core"]
+        self._context.observe(hertz, self._update_cliffs, [cliff, core], world=True)
+        self._context.observe(
+            hertz, self.update, [self._topics["events/bumper"], self._topics["events/wheel_drop"],
+                                 core], resume=self._resume, contacts=True)
+
+    def update(self) -> None:
+        """Publish what differs from the last update, and the state of all sensors."""
+        bumps, drops = self._contact_states()
+        self._change("events/bumper", "bumper", "BumperEvent", self._pressed, bumps)
+        self._change("events/wheel_drop", "wheel", "WheelDropEvent", self._dropped, drops)
+        self._publish_state()
+
+    def _resume(self) -> None:
+        """Events are differences to the first update with subscribers."""
+        self._pressed, self._dropped = self._contact_states()
+        self._publish_state()
+
+    def _contact_states(self) -> Tuple[Dict[str, bool], Dict[str, bool]]:
+        """Which bumpers are pressed, and which wheels have dropped."""
+        contacts, model = self._context.contacts(), self._context.model
         touching = {name for one, other, _ in contacts for name in (one, other)}
-        model = self._context.model
-        self._change("events/wheel_drop", "wheel", "WheelDropEvent", self._dropped,
-                     {side: f"{model}::{link}" not in touching
-                      for side, link in self._drops.items()})
-        core, now = self._topics["sensors/core"], self._context.now_ns
-        if now >= self._look_again_ns and (core.wanted or self._topics["events/cliff"].wanted):
+        return self._bumps(contacts), {side: f"{model}::{link}" not in touching
+                                       for side, link in self._drops.items()}
+
+    def _update_cliffs(self) -> None:
+        """Cast the rays again, once those before have been answered."""
+        now = self._context.now_ns
+        if now >= self._look_again_ns:
             self._look_again_ns = now + _PATIENCE_NS
             self._look(list(_SIDES), {})
+
+    def _publish_state(self) -> None:
+        core = self._topics["sensors/core"]
         if core.wanted:
             core.publish(self._state())
 

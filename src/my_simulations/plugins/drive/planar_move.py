@@ -27,13 +27,10 @@ class PlanarMove(Plugin):
                                   p.text("odometryFrame", "odom"),
                                   p.text("robotBaseFrame", "base_footprint"))
         timeout = p.number("cmdTimeout", -1.0)
-        self._change = StepwiseChange(context, 100.0, self._follow)
+        self._change = StepwiseChange(context, 100.0 if timeout < 0.0 else 0.0, self._follow)
         self._command = VelocityCommand(context, p.text("commandTopic", "cmd_vel"),
-                                        timeout if timeout >= 0.0 else None,
-                                        self._change.begin if timeout < 0.0 else lambda: None)
+                                        timeout if timeout >= 0.0 else None, self._change)
         self._last: Tuple[int, Pose] = (context.now_ns, context.pose)
-        if timeout >= 0.0:
-            context.every(0.0, self.move)
         hertz = p.number("odometryRate", 20.0)
         if hertz > 0.0:
             context.observe(hertz, self.tell, self._odometer.topics, transforms=True,
@@ -49,6 +46,7 @@ class PlanarMove(Plugin):
 
     def clock_set(self) -> None:
         """Velocities are of what comes."""
+        self._command.clock_set()
         self._last = (self.context.now_ns, self.context.pose)
 
     def _follow(self, dt: float) -> bool:

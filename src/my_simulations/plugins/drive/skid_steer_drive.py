@@ -34,7 +34,7 @@ class SkidSteerDrive(Plugin):
         hertz = p.number("updateRate", 100.0)
         self._change = StepwiseChange(context, hertz, self._follow)
         self._command = VelocityCommand(context, p.text("commandTopic", "cmd_vel"),
-                                        changed=self._change.begin)
+                                        change=self._change)
         self.reset()
         context.observe(hertz, self.tell, self._odometer.topics, transforms=self._broadcasts)
 

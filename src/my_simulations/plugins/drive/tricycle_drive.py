@@ -4,21 +4,25 @@ Parameters, defaults, topics and laws are those of gazebo_plugins. Where it diff
 are those of the links; which encoder wheel is on the left is seen from where it is (the original
 subtracts the right one from the left one, and its own robot has the names the other way round);
 the acceleration acts where the wheel gets faster, the deceleration where it gets slower; a steering
-speed steers to the angle, and not to the speed of the wheel.
+speed steers to the angle, and not to the speed of the wheel; a servo of the engine holds the angle,
+so `<steeringAngleTolerance>` has no effect.
 """
 from __future__ import annotations
 
 import math
 from typing import Tuple
 
+from ...engine.drive_commands import JointServo
 from ...geometry import inverse, transform
 from ..context import Joint
 from ..parameters import namespace_or
+from ..stepwise_change import StepwiseChange
 from .odometry import Odometer, WheelCounter
 from .odometry_drive import OdometryDrive
 from .wheels import VelocityCommand, WheelFrames, WheelStates
 
 _MOST_STEERING = math.pi / 2.0
+_SAME_ANGLE = 1e-6   # rad
 
 
 class TricycleDrive(OdometryDrive):
@@ -34,7 +38,6 @@ class TricycleDrive(OdometryDrive):
         self._deceleration = p.number("wheelDeceleration", self._acceleration)
         self._speed_tolerance = p.number("wheelSpeedTolerance", 0.01)
         self._steering_speed = p.number("steeringSpeed", 0.0)
-        self._angle_tolerance = p.number("steeringAngleTolerance", 0.01)
         self._encoder = p.choice("odometrySource", {"encoder": True, "world": False}, False)
         self._steering = context.joint(p.text("steeringJoint", "front_steering_joint"))
         self._wheel = context.joint(p.text("actuatedWheelJoint", "front_wheel_joint"))
@@ -50,13 +53,13 @@ class TricycleDrive(OdometryDrive):
         self._frames = WheelFrames(context, joints) if p.flag("publishWheelTF", False) else None
         self._states = WheelStates(context, joints, motion=True) \
             if p.flag("publishWheelJointState", False) else None
-        self._command = VelocityCommand(context, p.text("commandTopic", "cmd_vel"))
-        self.reset()
         hertz = p.number("updateRate", 100.0)
+        self._change = StepwiseChange(context, hertz, self._follow)
+        self._command = VelocityCommand(context, p.text("commandTopic", "cmd_vel"),
+                                        change=self._change)
+        self.reset()
         context.observe(hertz, self.tell, transforms=True, remembers=self._encoder, topics=[
             *self._odometer.topics, *(self._states.topics if self._states else [])])
-        self._last_drive_ns = context.now_ns
-        context.every(hertz, self.update)
 
     def _by_side(self, left: Joint, right: Joint) -> Tuple[Joint, Joint]:
         """The wheel further to the left first."""
@@ -68,9 +71,11 @@ class TricycleDrive(OdometryDrive):
     def reset(self) -> None:
         """Stand, and count from here."""
         self._command.stop()
+        self._change.end()
         self._counter.reset()
         self.clock_set()
-        self._drive(0.0, 0.0)
+        self._wheel.drive(0.0, self._torque)
+        self._change.begin()   # turns the steering to 0
 
     def tell(self) -> None:
         """Odometry, as it is before the command of the same update (as the original)."""
@@ -82,31 +87,30 @@ class TricycleDrive(OdometryDrive):
         if self._states is not None:
             self._states.send()
 
-    def update(self) -> None:
-        """Follow the command."""
-        dt = (self.context.now_ns - self._last_drive_ns) * 1e-9
-        self._last_drive_ns = self.context.now_ns
-        if dt <= 0.0:
-            return  # time was set back
-        self._drive(self._command.x, dt)
-        self._steer(max(-_MOST_STEERING, min(_MOST_STEERING, self._command.yaw)), dt)
+    def _follow(self, dt: float) -> bool:
+        """Follow the command; whether motor and servo have the whole of it."""
+        self._steer(max(-_MOST_STEERING, min(_MOST_STEERING, self._command.yaw)))
+        wanted, present = self._command.x / self._radius, self._wheel.velocity
+        rate = self._accelerated(wanted, present, dt)
+        self._wheel.drive(rate, self._torque)
+        return rate == wanted
 
-    def _drive(self, speed: float, dt: float) -> None:
-        wanted, present = speed / self._radius, self._wheel.velocity
+    def _accelerated(self, wanted: float, present: float, dt: float) -> float:
+        """The rate of the wheel after `dt` s, rad/s."""
         if self._acceleration > 0.0:
             slower = abs(wanted) < abs(present) and wanted * present >= 0.0
             most = (self._deceleration if slower else self._acceleration) * dt
             if abs(wanted - present) > max(most, self._speed_tolerance):
-                wanted = present + math.copysign(most, wanted - present)
-        self._wheel.drive(wanted, self._torque)
+                return present + math.copysign(most, wanted - present)
+        return wanted
 
-    def _steer(self, wanted: float, dt: float) -> None:
+    def _steer(self, wanted: float) -> None:
         """With a steering speed the motor turns; without one the wheel is turned at once."""
-        ahead = wanted - self._steering.position
-        rate = 0.0
-        if self._steering_speed <= 0.0:
-            if abs(ahead) > 1e-6:
-                self.context.set_joint_positions({self._steering.name: wanted})
-        elif abs(ahead) > self._angle_tolerance:
-            rate = math.copysign(min(self._steering_speed, abs(ahead) / dt), ahead)
-        self._steering.drive(rate, self._torque)
+        if self._steering_speed > 0.0:
+            self._steering.steer(JointServo(
+                0, "position", target=wanted, most_rate=self._steering_speed,
+                most_effort=self._torque))
+            return
+        self._steering.steer(JointServo(0, "position", target=wanted))
+        if abs(wanted - self._steering.position) > _SAME_ANGLE:
+            self.context.set_joint_positions({self._steering.name: wanted})

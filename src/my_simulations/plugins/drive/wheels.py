@@ -1,12 +1,13 @@
 """What drives with wheels share: commands, wheel frames, joint states of wheels."""
 from __future__ import annotations
 
-from typing import Any, Callable, List, Optional, Sequence
+from typing import Any, List, Optional, Sequence
 
 from ...geometry import compose, inverse
-from ..context import Context, Joint, Publication
+from ..context import Context, Ending, Joint, Publication
 from ..finite_messages import finite_only
 from ..frames import prefixed, stamped
+from ..stepwise_change import StepwiseChange
 from ..time_out import TimeOut
 
 
@@ -19,30 +20,49 @@ class VelocityCommand:
     """
 
     def __init__(self, context: Context, topic: str, timeout: Optional[float] = None,
-                 changed: Callable[[], None] = lambda: None) -> None:
+                 change: Optional[StepwiseChange] = None) -> None:
         """`timeout`: s of sim time after which a command expires; None for never.
 
-        `changed` is called when a command has come.
+        `change` begins when a command has come, and again at its first step after the timeout.
         """
-        self._changed = changed
+        self._context, self._change = context, change
         self._time_out = TimeOut(context, timeout) if timeout is not None else None
+        self._expiry: Optional[Ending] = None
         self.stop()
         context.subscribe(topic, "geometry_msgs/Twist", finite_only(context, topic, self._hear))
 
     def stop(self) -> None:
         """As if none had come."""
         self.x = self.y = self.yaw = 0.0
+        self._end_expiry()
+
+    def clock_set(self) -> None:
+        """A command that is in force expires by the new clock."""
+        if self._expiry is not None:
+            self._begin_expiry()
 
     def _hear(self, message: Any) -> None:
         self.x, self.y, self.yaw = message.linear.x, message.linear.y, message.angular.z
         if self._time_out is not None:
             self._time_out.begin()
-        self._changed()
+        if self._change is not None:
+            self._begin_expiry()
+            self._change.begin()
 
     def look(self) -> None:
         """Forget a command that is too old."""
         if self._time_out is not None and self._time_out.is_over:
             self.stop()
+
+    def _begin_expiry(self) -> None:
+        self._end_expiry()
+        if self._time_out is not None and self._change is not None:
+            self._expiry = self._change.begin_after(self._time_out.end_ns)
+
+    def _end_expiry(self) -> None:
+        if self._expiry is not None:
+            self._expiry.end()
+            self._expiry = None
 
 
 class WheelFrames:

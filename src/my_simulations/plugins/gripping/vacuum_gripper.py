@@ -6,11 +6,11 @@ fixed joint; there they are drawn to the link's origin.
 """
 from __future__ import annotations
 
-from typing import List, Tuple
+from typing import List, Optional, Tuple
 
 from ...geometry import norm, subtract
 from ..base import Plugin
-from ..context import PluginError
+from ..context import Ending, PluginError
 from ..parameters import namespace_or
 
 _REACH = 0.05   # m, between the origins of the links
@@ -32,7 +32,8 @@ class VacuumGripper(Plugin):
         self._topic = context.publish(p.text("topicName"), "std_msgs/Bool")
         context.serve("on", "std_srvs/Empty", lambda request, response: self._switch(True))
         context.serve("off", "std_srvs/Empty", lambda request, response: self._switch(False))
-        context.every(_HERTZ, self.update)
+        self._search: Optional[Ending] = None   # while it is on
+        context.observe(_HERTZ, self.tell, [self._topic])
 
     def reset(self) -> None:
         """Nothing is held, and it stays on or off as it is."""
@@ -42,24 +43,30 @@ class VacuumGripper(Plugin):
         if on == self._on:
             self.context.warn(f"it is {'on' if on else 'off'} already")
         self._on = on
-        if not on:
+        if on and self._search is None:
+            self._search = self.context.every(_HERTZ, self._take)
+        elif not on:
+            self._end_search()
             self._let_go()
+
+    def _end_search(self) -> None:
+        if self._search is not None:
+            self._search.end()
+            self._search = None
 
     def _let_go(self) -> None:
         for joint, _ in self._held:
             self.context.detach(joint)
         self._held = []
 
-    def update(self) -> None:
-        """Take what is close, and tell."""
-        if self._on:
-            self._take()
-        if self._topic.wanted:
-            message = self.context.message("std_msgs/Bool")
-            message.data = bool(self._held)
-            self._topic.publish(message)
+    def tell(self) -> None:
+        """Publish whether it holds something."""
+        message = self.context.message("std_msgs/Bool")
+        message.data = bool(self._held)
+        self._topic.publish(message)
 
     def _take(self) -> None:
+        """Attach the links that are close."""
         context, here = self.context, self._link.pose.position
         models = context.models()
         self._held = [one for one in self._held if one[1].partition("::")[0] in models]
