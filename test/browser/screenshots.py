@@ -209,9 +209,15 @@ def lift(editor, strip, at):
     strip.take(300)
 
 
+def house(editor):
+    """The first view of the world itself, which its file gives."""
+    editor.page.keyboard.press("Home")
+
+
 FILM = "editor-film"
 PICTURES = [
     ("editor-room", "lab_room.world", "dark", room),
+    ("editor-house", "house.world", "dark", house),
     ("editor-library", "worlds/empty.world", "light", library),
     ("editor-plots", "worlds/empty.world", "dark", plots),
     ("editor-model", "worlds/empty.world", "dark", model),
