@@ -249,3 +249,49 @@ def test_launch_files_and_rostests_are_run(tmp_path):
     assert "nothing.launch" in found[0]["output"]
     assert found[1]["output"].startswith("1 of 2 tests passed")
     assert os.listdir(tmp_path / "good") == ["my_world.launch"]
+
+
+FORGED = """<launch>
+  <arg name="submission"/>
+  <include file="$(arg submission)/go.launch"/>
+  <test test-name="missing" pkg="rostest" type="paramtest" time-limit="60">
+    <param name="param_name_target" value="/nothing"/><param name="test_duration" value="6"/>
+  </test>
+</launch>
+"""
+FORGER = """#!/usr/bin/env python3
+import pathlib, time
+good = '<testsuite tests="1" failures="0" errors="0"><testcase name="t" classname="c"/></testsuite>'
+scratch = pathlib.Path(__file__).resolve().parents[2]
+until = time.monotonic() + 5.0
+while time.monotonic() < until:
+    for folder in ["home/results", "home/results/grade", "tests/results/grade", "tests/test"]:
+        for name in ("rosunit-missing.xml", "rostest-lab.xml", "lab.test", "results.json"):
+            try:
+                (scratch / folder).mkdir(parents=True, exist_ok=True)
+                (scratch / folder / name).write_text(good)
+            except OSError:
+                pass
+    time.sleep(0.2)
+"""
+PACKAGE = """<package><name>{}</name><version>1.0.0</version><description>d</description>
+<maintainer email="a@b.example">m</maintainer><license>MIT</license></package>"""
+
+
+def test_a_submission_cannot_forge_the_results_of_a_rostest(tmp_path):
+    assert isolation() == "", "forged results need isolation"
+    (tmp_path / "lab.test").write_text(FORGED)
+    cheat, fake = tmp_path / "forger" / "cheat", tmp_path / "forger" / "rostest"
+    for folder, name, text in ((cheat, "forge.py", FORGER),
+                               (fake, "paramtest", "#!/bin/sh\ntouch passed\n")):
+        folder.mkdir(parents=True)
+        (folder / "package.xml").write_text(PACKAGE.format(folder.name))
+        (folder / name).write_text(text)
+        (folder / name).chmod(0o755)
+    rows, students = grade(tmp_path, "checks: [{points: 4, name: test, rostest: lab.test}]\n", {
+        "forger": "<launch><node name='forge' pkg='cheat' type='forge.py'/>"
+                  "<test test-name='easy' pkg='rostest' type='paramtest'/></launch>"},
+        name="go.launch")
+    said = json.loads((students / "forger" / "results.json").read_text())["tests"][0]["output"]
+    assert points(rows["forger"], "test") == [0], said
+    assert said.startswith("0 of 1 tests passed"), said

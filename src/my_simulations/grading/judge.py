@@ -24,7 +24,7 @@ from .assignment_file import read_assignment
 from .file_checks import MISSING, WorldFile, check_files, read_world_file
 from .launch_checks import LaunchChecks
 from .mark import CheckResult, GradingError, result
-from .program import OUTPUT, Program
+from .program import OUTPUT, Program, submission_account
 from .program_graph import RosGraph, graph_environment
 from .result_stream import ResultWriter
 from .submission import matching
@@ -144,7 +144,7 @@ class Judge:
         path = os.path.join(self._folder, file)
         command = [sys.executable, path] if file.endswith(".py") else [path]
         return Program(command, os.path.dirname(path), self._scratch, self._assignment.limits,
-                       self._slot, graph_environment(uri))
+                       submission_account(self._scratch, self._slot), graph_environment(uri))
 
     def _refuse_timed(self, reason: str, file: str = "", line: int = 0) -> None:
         found: List[CheckResult] = [result(check, 0.0, f"the world does not run: {reason}", file,

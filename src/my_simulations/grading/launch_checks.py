@@ -6,16 +6,18 @@ import os
 import re
 import shutil
 import time
-from typing import Dict, List, Sequence
+from typing import List, Sequence, Tuple
 
+from ..child_process import wait_or_kill
 from ..errors import InputError
 from ..ros.lifecycle import master_api
 from ..studies.junit import results_below
 from ..studies.scenario_files import declared_arguments
 from .assignment import Assignment, Launch, Rostest
 from .mark import CheckResult, GradingError, result
-from .program import Program
-from .program_graph import free_port, graph_environment
+from .program import TESTS, Program, submission_account, tester_account
+from .program_graph import free_port, graph_environment, start_master
+from .rostest_parts import STARTED, divided
 from .submission import matching
 
 _POLL_S = 0.1
@@ -67,22 +69,47 @@ class LaunchChecks:
         return result(check, 1.0)
 
     def rostest(self, check: Rostest) -> CheckResult:
-        """Run a rostest of the assignment; its argument `submission` is the folder, if declared."""
+        """Run a rostest of the assignment; its argument `submission` is the folder, if declared.
+
+        The nodes of the file run as the submission. The tests run as another user, whose files
+        and processes the submission cannot reach.
+        """
         if shutil.which("rostest") is None:
             raise GradingError("rostest is not installed")
-        file = self._copied(check.file)
-        words = [file, *check.arguments]
+        started, tests = self._copied(check.file)
+        words = [*check.arguments]
         try:
-            declared = declared_arguments(file)
+            declared = declared_arguments(check.file)
         except InputError as fault:
             raise GradingError(str(fault.first)) from None
         if "submission" in declared:
             words.append(f"submission:={self._folder}")
-        results = os.path.join(self._scratch, "home", "results")
-        command = ["rostest", "--pkgdir", os.path.dirname(file), "--package", "grade",
+        uri, master = start_master()
+        try:
+            with contextlib.closing(self._program(["roslaunch", started, *words], uri)) as program:
+                reason = self._wait_for_start(program, uri)
+                if reason:
+                    return result(check, 0.0, f"no test ran: {reason}")
+                return self._run_tests(check, [tests, *words], uri)
+        finally:
+            master.terminate()
+            wait_or_kill(master, _END_S)
+
+    def _run_tests(self, check: Rostest, words: Sequence[str], uri: str) -> CheckResult:
+        """Run the tests of a rostest; `words` are the file and its arguments."""
+        account = tester_account(self._scratch, self._slot)
+        results = os.path.join(account.home, "results")
+        folder = os.path.dirname(words[0])
+        command = ["rostest", "--reuse-master", "--pkgdir", folder, "--package", "grade",
                    "--results-base-dir", results, *words]
+        # A package of the submission must not take the place of one that a test names.
+        packages = os.pathsep.join([os.environ.get("ROS_PACKAGE_PATH", ""),
+                                    *package_folders(self._folder)])
+        environment = {**graph_environment(uri), "ROS_PACKAGE_PATH": packages,
+                       "ROS_TEST_RESULTS_DIR": results}
         until = time.monotonic() + check.seconds
-        with contextlib.closing(self._program(command, "", results)) as program:
+        with contextlib.closing(Program(command, folder, self._scratch, self._assignment.limits,
+                                        account, environment)) as program:
             while program.running and time.monotonic() < until:
                 time.sleep(_POLL_S)
             timed_out = program.running
@@ -98,26 +125,50 @@ class LaunchChecks:
         return result(check, passed / found.tests, found.first and
                       f"{passed} of {found.tests} tests passed; {found.first}")
 
-    def _copied(self, file: str) -> str:
-        """A copy of a test with the files beside it, which the user of the program can read."""
-        folder = os.path.join(self._scratch, "test")
-        os.makedirs(folder, exist_ok=True)
-        for entry in os.scandir(os.path.dirname(file)):
-            if entry.is_file(follow_symlinks=False) and entry.stat().st_size <= _LARGEST:
-                shutil.copy(entry.path, folder)
-        for name in os.listdir(folder):
-            path = os.path.join(folder, name)
-            os.chmod(path, 0o755 if os.access(path, os.X_OK) else 0o644)
-        return os.path.join(folder, os.path.basename(file))
+    def _copied(self, file: str) -> Tuple[str, str]:
+        """Copies of a rostest: of its nodes for the submission, of its tests for the tester.
 
-    def _program(self, words: Sequence[str], uri: str, results: str = "") -> Program:
+        Each has the files beside the rostest, as its user can read them.
+        """
+        try:
+            parts = divided(file)
+        except InputError as fault:
+            raise GradingError(str(fault.first)) from None
+        copies = []
+        for part, above in zip(parts, (self._scratch, os.path.join(self._scratch, TESTS))):
+            folder = os.path.join(above, "test")
+            os.makedirs(folder, exist_ok=True)
+            for entry in os.scandir(os.path.dirname(file)):
+                if entry.is_file(follow_symlinks=False) and entry.stat().st_size <= _LARGEST:
+                    shutil.copy(entry.path, folder)
+            copies.append(os.path.join(folder, os.path.basename(file)))
+            with open(copies[-1], "wb") as stream:
+                stream.write(part)
+            for name in os.listdir(folder):
+                path = os.path.join(folder, name)
+                os.chmod(path, 0o755 if os.access(path, os.X_OK) else 0o644)
+        return copies[0], copies[1]
+
+    @staticmethod
+    def _wait_for_start(program: Program, uri: str) -> str:
+        """Wait until the nodes of a rostest are being started; why they are not, or ""."""
+        until = time.monotonic() + _START_S
+        while time.monotonic() < until:
+            is_running = program.running
+            with contextlib.suppress(OSError):
+                if master_api.call(uri, "hasParam", _CALLER, STARTED):
+                    return ""
+            if not is_running:
+                return _fault(program)
+            time.sleep(_POLL_S)
+        return f"the nodes did not start within {_START_S:g} s"
+
+    def _program(self, words: Sequence[str], uri: str) -> Program:
         packages = os.pathsep.join([*package_folders(self._folder),
                                     os.environ.get("ROS_PACKAGE_PATH", "")])
-        more: Dict[str, str] = {"ROS_PACKAGE_PATH": packages, "ROS_TEST_RESULTS_DIR": results}
-        if uri:
-            more.update(graph_environment(uri))
-        return Program(words, self._folder, self._scratch, self._assignment.limits, self._slot,
-                       more)
+        return Program(words, self._folder, self._scratch, self._assignment.limits,
+                       submission_account(self._scratch, self._slot),
+                       {**graph_environment(uri), "ROS_PACKAGE_PATH": packages})
 
     def _wait_for_nodes(self, program: Program, uri: str, nodes: Sequence[str]) -> str:
         """The first node that does not come; "" if all are there."""

@@ -8,7 +8,8 @@ import signal
 import subprocess
 import sys
 import threading
-from typing import Dict, List, Optional, Sequence
+from dataclasses import dataclass
+from typing import Dict, List, Optional, Sequence, Tuple
 
 from ..resources.package_files import own_directory
 from . import box, cell
@@ -18,9 +19,51 @@ OUTPUT = "output.txt"
 _FIRST_USER = 61000
 """User id of the programs of slot 0: one that no account has (Debian policy, 9.2.2)."""
 
+_FIRST_TESTER = 62000
+"""As `_FIRST_USER`, of the tests of the assignment."""
+
+TESTS = "tests"
+"""Folder in the box that only the tests of the assignment see."""
+
 _LOOK_S = 0.1
 _END_S = 10.0
 _KEPT_OUTPUT = 200_000
+
+
+@dataclass(frozen=True)
+class Account:
+    """The user of a program in the box.
+
+    Attributes:
+        user: id, where the system permits other users.
+        home: home folder.
+        temporary: folder for temporary files.
+        owned: folders that the user owns.
+        hidden: folders that the program must not see.
+        output: file of what it prints.
+    """
+
+    user: int
+    home: str
+    temporary: str
+    owned: Tuple[str, ...]
+    hidden: Tuple[str, ...]
+    output: str
+
+
+def submission_account(scratch: str, slot: int) -> Account:
+    """The user of the submission."""
+    submission, home, temporary, judge, tests = (
+        os.path.join(scratch, name) for name in ("submission", "home", "tmp", "judge", TESTS))
+    return Account(_FIRST_USER + slot, home, temporary, (submission, home, temporary),
+                   (judge, tests), os.path.join(judge, OUTPUT))
+
+
+def tester_account(scratch: str, slot: int) -> Account:
+    """The user of the assignment's tests: the submission cannot reach its files and processes."""
+    judge, tests = (os.path.join(scratch, name) for name in ("judge", TESTS))
+    return Account(_FIRST_TESTER + slot, tests, os.path.join(tests, "tmp"), (tests,), (judge,),
+                   os.path.join(judge, "tests.txt"))
 
 
 class Program:
@@ -31,7 +74,7 @@ class Program:
         folder: working directory, in the submission.
         scratch: folder of the box.
         limits: of the assignment.
-        slot: number of the slot.
+        account: the user that it gets.
         environment: variables besides those of this process.
 
     Attributes:
@@ -41,20 +84,21 @@ class Program:
     """
 
     def __init__(self, command: Sequence[str], folder: str, scratch: str, limits: GradeLimits,
-                 slot: int, environment: Dict[str, str]) -> None:
+                 account: Account, environment: Dict[str, str]) -> None:
         self._limits = limits
-        self._output = os.path.join(scratch, "judge", OUTPUT)
+        self._output = account.output
         self.excess = ""
         self.watcher = 0
-        user = _FIRST_USER + slot
+        for path in (*account.owned, *account.hidden, account.temporary):
+            os.makedirs(path, exist_ok=True)
         spec = {"parent": os.getpid(), "command": list(command), "cwd": folder,
-                "environment": {**_environment(scratch), **environment},
-                "user": user, "private": [os.path.join(scratch, "judge")],
+                "environment": {**_environment(account), **environment},
+                "user": account.user, "private": list(account.hidden),
                 "needed": _needed(scratch),
                 "bytes": int(limits.file_mb * 1e6 / 2), "processes": limits.processes,
                 "memory_bytes": int(limits.memory_mb * 1e6),
                 "processor_seconds": int(limits.processor_seconds) + 1}
-        _give(scratch, user)
+        _give(account)
         with open(self._output, "ab") as output:
             self._process = subprocess.Popen(
                 [sys.executable, "-I", cell.__file__, json.dumps(spec)], cwd=folder,
@@ -117,15 +161,15 @@ class Program:
                 return
 
 
-def _environment(scratch: str) -> Dict[str, str]:
-    home = os.path.join(scratch, "home")
-    return {**os.environ, "BOX_ISOLATION": "", "HOME": home, "ROS_HOME": os.path.join(home, ".ros"),
-            "TMPDIR": os.path.join(scratch, "tmp"), "PYTHONUNBUFFERED": "1", "USER": "student"}
+def _environment(account: Account) -> Dict[str, str]:
+    return {**os.environ, "BOX_ISOLATION": "", "HOME": account.home,
+            "ROS_HOME": os.path.join(account.home, ".ros"), "TMPDIR": account.temporary,
+            "PYTHONUNBUFFERED": "1", "USER": "student"}
 
 
 def _needed(scratch: str) -> List[str]:
     """What programs of ROS read: this package, Python, and the packages of the workspace."""
-    found = [os.path.join(scratch, name) for name in ("submission", "home", "tmp", "test")]
+    found = [os.path.join(scratch, name) for name in ("submission", "home", "tmp", "test", TESTS)]
     found += [own_directory(), sys.prefix, sys.base_prefix,
              os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))]
     for name in ("CMAKE_PREFIX_PATH", "ROS_PACKAGE_PATH", "PYTHONPATH", "GAZEBO_MODEL_PATH",
@@ -140,11 +184,11 @@ def _needed(scratch: str) -> List[str]:
     return found
 
 
-def _give(scratch: str, user: int) -> None:
+def _give(account: Account) -> None:
     """Let the program's user own the folders that it writes, where there is such a user."""
-    waiting: List[str] = [os.path.join(scratch, name) for name in ("submission", "home", "tmp")]
+    user = account.user
     with contextlib.suppress(OSError):
-        for top in waiting:
+        for top in account.owned:
             os.chown(top, user, user)
             for folder, folders, names in os.walk(top):
                 for name in (*folders, *names):
