@@ -425,7 +425,7 @@ def test_a_falling_box_is_plotted_and_exported(editor, tmp_path):
 def test_what_was_recorded_is_replayed_with_a_slider(editor):
     name = with_box(editor)
     editor.get(f"editor.actions.move({{{name!r}: [0, 0, 3, 0, 0, 0, 1]}})")
-    editor.page.keyboard.press("Control+d")
+    editor.page.keyboard.press("Alt+r")
     dialog = editor.page.get_by_role("dialog", name="Log Data")
     dialog.get_by_role("textbox", name="Log name").fill("falling")
     dialog.get_by_role("button", name="Record").click()

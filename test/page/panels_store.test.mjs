@@ -107,7 +107,7 @@ test('every entry of every menu that has a hotkey or an action exists', async ()
   connection.close();
 });
 
-test('the context menu is that of Gazebo; a light takes no force and no overlays', async () => {
+test('the context menu is that of Gazebo, with Hide and Locked; a light takes no force and no overlays', async () => {
   const {store, actions, connection} = await connected();
   const page = {store, actions};
   const titles = (name) =>
@@ -120,6 +120,8 @@ test('the context menu is that of Gazebo; a light takes no force and no overlays
     'Apply Force/Torque',
     'Edit Model',
     'View',
+    'Hide',
+    'Locked',
     'Copy',
     'Paste',
     'Delete',

@@ -5,6 +5,7 @@
  * refused is also put into the store's issues, unless a dialog that shows it itself asks for `quiet`.
  */
 import {alignMoves} from './align.js';
+import {arrangeActions} from './arrange_actions.js';
 import {cameraActions} from './camera_actions.js';
 import {RequestError} from './connection.js';
 import {fileActions} from './file_actions.js';
@@ -36,7 +37,7 @@ import {NOTHING} from './nothing.js';
  */
 
 /** @typedef {'newWorld'|'open'|'saveAs'|'cloneWorld'|'applyForce'|'hotkeys'|'about'|'plot'|'logs'|'joints'|'topics'|'recover'|'importFiles'|
- *            'building'|'modelEditor'|'saveModel'|'togglePanels'|'find'|'rename'|'nextRegion'|'previousRegion'} DialogName */
+ *            'building'|'modelEditor'|'saveModel'|'togglePanels'|'find'|'rename'|'array'|'commands'|'nextRegion'|'previousRegion'} DialogName */
 
 /** @typedef {{name: DialogName, target?: string, entries?: Dropped[], place?: Vec3}} DialogRequest */
 
@@ -94,6 +95,7 @@ export function createActions({store, connection}) {
   const files = fileActions(parts);
   const camera = cameraActions(parts);
   const inserts = insertActions(parts);
+  const arrange = arrangeActions(parts);
 
   const actions = {
     /** @param {SceneView} theView */
@@ -170,6 +172,7 @@ export function createActions({store, connection}) {
     },
 
     ...inserts,
+    ...arrange,
 
     // ---- modes
     /**
@@ -189,7 +192,6 @@ export function createActions({store, connection}) {
     scaleMode: () => manipulate('scale'),
     snapMode: () => store.setMode(store.mode === 'snap' ? 'select' : 'snap'),
     measureMode: () => store.setMode(store.mode === 'measure' ? 'select' : 'measure'),
-    selectAll: () => store.select(store.document?.models.map((model) => model.name) ?? []),
 
     // ---- align
     /**

@@ -194,10 +194,10 @@ def _log(words: List[str], _remappings: Sequence[str]) -> int:
     made.add_argument("-i", "--info", action="store_true", help="print start, end and duration")
     made.add_argument("-f", "--file", metavar="FILE", help="the log")
     made.add_argument("-d", "--record", type=int, choices=(0, 1),
-                      help="not supported: use gzserver -r, or Ctrl+D in the editor")
+                      help="not supported: use gzserver -r, or Alt+R in the editor")
     options = made.parse_args(words)
     if options.record is not None:
-        made.error("not supported; record with gzserver -r, recording:=true, or Ctrl+D in the "
+        made.error("not supported; record with gzserver -r, recording:=true, or Alt+R in the "
                    "editor")
     if not (options.info and options.file):
         made.error("give -i -f FILE")

@@ -1,29 +1,54 @@
-/** One line over the view that tells a newcomer how to look round, until it is closed. */
-import {h, remembered} from './dom.js';
+/** One line over the view that names the keys and the mouse of the tool in use, until it is closed. */
+import {fill, h, remembered} from './dom.js';
 import {icon} from './icons.js';
+/** @import {Mode, Store} from '../store.js' */
 
-/** @type {[string, string][]} */
-const HINTS = [
+/** @typedef {[string, string][]} Hints  keys, and what they do */
+
+/** @type {Hints} */
+const LOOKING = [
   ['drag', 'pan'], ['Shift+drag', 'turn'], ['wheel', 'zoom'], ['click', 'select'], ['T R S', 'move, rotate, scale'],
-  ['Space', 'play'], ['F1', 'all keys'],
+  ['Space', 'play'], ['Ctrl+K', 'all commands'], ['F1', 'all keys'],
 ];
 
-/** @type {[string, string][]} */
-const TOUCH_HINTS = [
+/** @type {Hints} */
+const TOUCH = [
   ['one finger', 'turn'], ['two', 'pan, zoom'], ['tap', 'select'], ['hold', 'menu'],
 ];
 
-/** @param {HTMLElement} element  what the line lies in */
-export function mountHints(element) {
+/** @type {Record<Mode, Hints>} */
+const BY_MODE = {
+  select: LOOKING,
+  translate: [['drag a handle or the model', 'move'], ['X Y Z', 'along one axis'], ['Ctrl', 'snap to 1 m'],
+    ['Shift', 'world axes'], ['Esc', 'end']],
+  rotate: [['drag a ring', 'rotate'], ['X Y Z', 'about one axis'], ['Ctrl', 'snap to 45°'], ['Shift', 'world axes'],
+    ['Esc', 'end']],
+  scale: [['drag a handle', 'scale'], ['X Y Z', 'one axis'], ['Shift', 'all axes'], ['Ctrl', 'snap to 1 m'], ['Esc', 'end']],
+  snap: [['click a face', 'that moves'], ['click a second face', 'where it goes'], ['Esc', 'end']],
+  measure: [['click two points', 'distance'], ['click a third', 'angle'], ['Esc', 'end']],
+  insert: [['click', 'place'], ['Ctrl', 'snap to 1 m'], ['Esc', 'cancel']],
+  connect: [['click a link', 'parent'], ['click another link', 'child'], ['Esc', 'cancel']],
+};
+
+/**
+ * @param {HTMLElement} element  what the line lies in
+ * @param {Store} store
+ */
+export function mountHints(element, store) {
   if (remembered.get('hints-closed', false)) return;
-  const hints = matchMedia('(pointer: coarse)').matches ? TOUCH_HINTS : HINTS;
-  const line = h('div', {class: 'hint-line', role: 'note', 'aria-label': 'Hints'},
-    h('div', {class: 'hints'},
-      ...hints.map(([keys, what]) => h('span', {}, h('kbd', {text: keys}), ` ${what}`))),
+  const touch = matchMedia('(pointer: coarse)').matches;
+  const hints = h('div', {class: 'hints'});
+  const line = h('div', {class: 'hint-line', role: 'note', 'aria-label': 'Hints'}, hints,
     h('button', {type: 'button', class: 'plain', 'aria-label': 'Close the hints', title: 'Close the hints',
       onclick: () => {
         remembered.set('hints-closed', true);
         line.remove();
       }}, icon('close')));
+  const show = () => {
+    const rows = touch && store.mode === 'select' ? TOUCH : BY_MODE[store.mode];
+    fill(hints, ...rows.map(([keys, what]) => h('span', {}, h('kbd', {text: keys}), ` ${what}`)));
+  };
+  store.listen('mode', show);
+  show();
   element.append(line);
 }

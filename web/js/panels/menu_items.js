@@ -41,6 +41,8 @@ const OF_THE_SELECTION = [
 /** @type {readonly ThemeName[]} */
 const THEMES = ['auto', 'dark', 'light'];
 
+const AXES = /** @type {const} */ (['X', 'Y', 'Z']);
+
 const LINE = {separator: true};
 
 /**
@@ -98,8 +100,17 @@ export function menus(page) {
         LINE,
         item('Copy', 'copy', {enabled: wholes}),
         item('Paste', 'paste', {enabled: () => Boolean(store.clipboard)}),
+        item('Duplicate', 'duplicate', {enabled: wholes}),
+        item('Array…', 'arrayOfSelection', {enabled: wholes}),
         item('Delete', 'remove', {enabled: () => store.selection.length > 0}),
         item('Select All', 'selectAll'),
+        LINE,
+        ...AXES.map((axis) => item(`Distribute Along ${axis}`, `distribute${axis}`, {enabled: () => store.selection.length > 2})),
+        LINE,
+        item('Hide Selection', 'hide', {enabled: () => store.selection.length > 0}),
+        item('Show Hidden Models', 'showHidden'),
+        item('Lock or Unlock Selection', 'lock', {enabled: () => store.selection.length > 0}),
+        item('Unlock All', 'unlockAll'),
         LINE,
         item('Reset Model Poses', 'resetPoses'),
         item('Reset World', 'resetWorld'),
@@ -177,7 +188,7 @@ export function menus(page) {
         })),
       ],
     },
-    {title: 'Help', items: () => [item('Hotkey Chart', 'hotkeys'), item('About', 'about')]},
+    {title: 'Help', items: () => [item('Command Search…', 'commands'), item('Hotkey Chart', 'hotkeys'), item('About', 'about')]},
   ];
 }
 
@@ -252,6 +263,11 @@ export function contextMenu(page, name) {
     LINE,
     ...view,
     ...(light ? [] : [LINE]),
+    ...(model ? [
+      store.overlay('hidden', model) ? {title: 'Show', run: () => actions.showHidden([model])}
+        : {title: 'Hide', keys: keysOf('hide'), run: () => actions.hide([model])},
+      {title: 'Locked', keys: keysOf('lock'), checked: () => store.overlay('locked', model), run: () => actions.lock([model])},
+      LINE] : []),
     {title: 'Copy', keys: keysOf('copy'), run: () => actions.copy(chosen)},
     {
       title: 'Paste',

@@ -78,7 +78,7 @@ export function mountPanels(document, parts) {
     ),
   );
   mountConnectionNote(byId('centre'), page);
-  mountHints(byId('view'));
+  mountHints(byId('view'), page.store);
   mountDrawer();
   return page;
 }

@@ -88,7 +88,7 @@ export function mountToolBar(element, page) {
     record.setAttribute('aria-pressed', String(video.recording));
     record.title = video.recording ? 'Stop recording and save video' : 'Record video';
   });
-  const log = button('log', 'Log data (Ctrl+D)', () => actions.logs());
+  const log = button('log', 'Log data (Alt+R)', () => actions.logs());
   const plot = button('plot', 'Plot (Ctrl+P)', () => actions.plot());
   const joints = button('joints', 'Joints panel', () => actions.joints());
   const topics = button('topics', 'Topics (Alt+T)', () => actions.topics());

@@ -4,6 +4,8 @@ import {closeDialogs} from './dialog.js';
 import {aboutDialog, hotkeyDialog} from './dialogs/help_dialogs.js';
 import {cloneDialog, newWorld, openDialog, saveAsDialog} from './dialogs/world_file_dialogs.js';
 import {forceDialog} from './dialogs/force_dialog.js';
+import {arrayDialog} from './dialogs/array_dialog.js';
+import {commandDialog} from './dialogs/command_dialog.js';
 import {logsDialog} from './dialogs/log_dialog.js';
 import {importDialog} from './dialogs/import_dialog.js';
 import {recoverDialog} from './dialogs/recover_dialog.js';
@@ -99,6 +101,8 @@ export class Windows {
       saveModel: () => this.#model?.save(),
       togglePanels: () => document.body.classList.toggle('bare'),
       find: () => this.#inWorld((world) => world.find()),
+      array: () => arrayDialog(this.page),
+      commands: () => commandDialog(this.page),
       rename: () => this.#inWorld((world) => world.rename()),
       nextRegion: () => goToRegion(1),
       previousRegion: () => goToRegion(-1),

@@ -7,6 +7,9 @@ import {rowOf, worldRows} from './world_rows.js';
 import {lyingBar, splitter} from './splitter.js';
 /** @import {Row} from './world_rows.js' */
 
+/** What of a model this browser's user has chosen, as tags of its row. */
+const FLAGS = /** @type {const} */ (['hidden', 'locked']);
+
 export class WorldTab {
   /**
    * @param {HTMLElement} element
@@ -52,6 +55,7 @@ export class WorldTab {
     this.update = onceAFrame(() => this.#update());
     for (const event of /** @type {const} */ (['document', 'entity'])) this.store.listen(event, this.update);
     this.store.listen('selection', () => this.#followSelection());
+    this.store.listen('overlays', () => this.tree.draw());
     this.store.listen('people', () => this.tree.draw());
     /** @type {boolean|null} */
     let paused = null;
@@ -164,7 +168,8 @@ export class WorldTab {
     }
     if (row.kind === 'model') {
       const model = this.store.document?.models.find((one) => one.name === row.name);
-      return model?.static && h('span', {class: 'tag', text: 'static'});
+      const tags = [model?.static && 'static', ...FLAGS.map((flag) => model && this.store.overlay(flag, model.name) && flag)];
+      return h('span', {class: 'tags'}, ...tags.map((text) => text && h('span', {class: 'tag', text})));
     }
     if (row.kind === 'physics' && this.store.stats.paused) {
       return h('span', {class: 'tag', text: 'paused'});

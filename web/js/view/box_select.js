@@ -36,6 +36,7 @@ export class BoxSelect {
     this.cancel();
     const models = this.#store.document?.models ?? [];
     this.#store.select(models.map(({name}) => name).filter((name) => {
+      if (this.#store.overlay('locked', name)) return false;
       const pixel = this.#pixelOf(name);
       return pixel !== null && (pixel[0] - x) * (pixel[0] - lastX) < 0 &&
         (pixel[1] - y) * (pixel[1] - lastY) < 0;

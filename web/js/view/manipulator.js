@@ -10,6 +10,7 @@ import {axisOf, graspedPoint, isNothing, numbersOf} from './grasp.js';
 /** @import {Pose7, Vec3} from '../pose.js' */
 /** @import {Ray} from '../drag_math.js' */
 /** @import {Under} from './selector.js' */
+/** @import {EntityRef} from '../store.js' */
 /** @import {ViewParts} from './view.js' */
 
 /** @type {Record<AxisName, 0|1|2>} */
@@ -68,7 +69,7 @@ export class Manipulator {
     this.#picker = picker;
     this.#stage = stage;
     this.#gizmo = new Gizmo(stage.scene);
-    for (const event of /** @type {const} */ (['selection', 'mode', 'document', 'entity'])) {
+    for (const event of /** @type {const} */ (['selection', 'mode', 'document', 'entity', 'overlays'])) {
       store.listen(event, () => {
         this.#dropGone();
         this.update();
@@ -84,13 +85,16 @@ export class Manipulator {
     if (!isGizmoMode(mode)) return null;
     const name = selection.at(-1);
     const entity = name ? this.#store.entity(name) : null;
-    if (!name || !entity) return null;
+    if (!name || !entity || this.#isLocked(entity)) return null;
     if (entity.kind === 'link') {
       return this.#store.modelEditing?.name === entity.model.name ? name : entity.model.name;
     }
     if (entity.kind === 'light' && mode === 'scale') return null;
     return name;
   }
+
+  /** @param {EntityRef} entity */
+  #isLocked({model}) { return Boolean(model && this.#store.overlay('locked', model.name)); }
 
   /** Puts the handles where the target is shown. */
   update() {

@@ -293,6 +293,7 @@ export class Models {
    */
   #addVisual(view, linkView, visual) {
     const {name} = view.document;
+    if (this.#store.overlay('hidden', name)) return;
     if (this.#store.overlays.hiddenLayers.has(visual.layer ?? 0)) return;
     const look = {
       opacity: this.#store.overlay('transparent', name) || this.#faded.has(name) ? 0.5 : 1,

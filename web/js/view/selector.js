@@ -35,11 +35,12 @@ export class Selector {
 
   /**
    * @param {MousePoint} mousePoint
+   * @param {(model: string) => boolean} [accept]
    * @returns {{name: string, link?: string, point: number[], plane?: boolean}|null}
    */
-  under({clientX, clientY}) {
+  under({clientX, clientY}, accept = () => true) {
     const body = this.#picker.nearest(this.#batches.items(), clientX, clientY,
-      (owner) => owner.model !== undefined);
+      (owner) => owner.model !== undefined && accept(owner.model));
     const icons = this.#lights.icons;
     const [light] = this.#picker.objects([...icons.values()], clientX, clientY)
       .filter(({object}) => object instanceof Mesh);
@@ -52,9 +53,9 @@ export class Selector {
     return {name: model, link, point: body.point, plane};
   }
 
-  /** What a drag may take hold of. @param {MousePoint} event */
+  /** What a drag may take hold of; locked models are passed over. @param {MousePoint} event */
   movable(event) {
-    const hit = this.under(event);
+    const hit = this.under(event, (model) => !this.#store.overlay('locked', model));
     return hit && !hit.plane ? hit : null;
   }
 

@@ -1,0 +1,100 @@
+"""Copies, arrays, hidden and locked models, and the search for commands."""
+from __future__ import annotations
+
+from pytest import approx
+from support import wait_for
+
+
+def with_box(editor, place=(0.0, 0.0)):
+    return editor.place("Box", (*place, 0.0))
+
+
+def test_a_duplicate_stands_beside_and_is_one_step(editor):
+    with_box(editor)
+    editor.page.keyboard.press("Control+d")
+    wait_for(lambda: "unit_box_clone" in editor.names(), "the copy")
+    editor.until("editor.store.selection.join() === 'unit_box_clone'", "its selection")
+    own, other = (editor.model(name)["pose"] for name in ("unit_box", "unit_box_clone"))
+    assert other[0] - own[0] == approx(1.1, abs=0.01)
+    assert other[1:3] == approx(own[1:3], abs=0.01)
+    editor.until("editor.store.history.undo[0] === 'Duplicate unit_box'", "the label")
+    editor.page.keyboard.press("Control+z")
+    wait_for(lambda: "unit_box_clone" not in editor.names(), "the copy's end")
+
+
+def test_an_array_is_typed_in_a_dialog(editor):
+    with_box(editor)
+    editor.page.get_by_role("menuitem", name="Edit", exact=True).click()
+    editor.page.get_by_role("menuitem", name="Array…").click()
+    dialog = editor.page.get_by_role("dialog", name="Array")
+    dialog.get_by_label("Count X").fill("2")
+    dialog.get_by_label("Count Y").fill("0")
+    dialog.get_by_text("Each count must be a whole number").wait_for()
+    dialog.get_by_label("Count Y").fill("3")
+    dialog.get_by_label("Spacing Y").fill("1.5")
+    dialog.get_by_text("5 copies are added.").wait_for()
+    dialog.get_by_role("button", name="Create").click()
+    dialog.wait_for(state="detached")
+    wait_for(lambda: len(editor.names()) == 7, "ground and six boxes")
+    places = {(round(x, 1), round(y, 1)) for x, y in (
+        editor.model(name)["pose"][:2] for name in editor.names() if name != "ground_plane")}
+    assert places == {(x, y) for x in (0.0, 1.1) for y in (0.0, 1.5, 3.0)}
+    editor.page.keyboard.press("Control+z")
+    wait_for(lambda: len(editor.names()) == 2, "all copies undone at once")
+
+
+def test_three_models_get_equal_gaps(editor):
+    for name, x in (("left", 0.0), ("middle", 1.2), ("right", 4.0)):
+        editor.get(f"editor.actions.edit({{kind: 'insert', shape: 'box', name: '{name}',"
+                   f" pose: [{x}, 0, 0.5, 0, 0, 0, 1]}})")
+    wait_for(lambda: len(editor.names()) == 4, "three boxes")
+    editor.until("['left', 'middle', 'right'].every((one) => editor.view.bounds(one))", "all drawn")
+    editor.get("editor.store.select(['right', 'left', 'middle'])")
+    editor.page.get_by_role("menuitem", name="Edit", exact=True).click()
+    editor.page.get_by_role("menuitem", name="Distribute Along X").click()
+    wait_for(lambda: editor.model("middle")["pose"][0] == approx(2.0, abs=0.01), "the middle")
+    editor.until("editor.store.history.undo[0]?.startsWith('Distribute')", "its label")
+
+
+def test_hidden_and_locked_models_are_passed_over_by_the_mouse(editor):
+    with_box(editor)
+    middle = (0.0, 0.0, 0.5)
+    editor.page.keyboard.press("l")
+    row = editor.row("unit_box")
+    row.get_by_text("locked").wait_for()
+    editor.page.keyboard.press("Escape")
+    editor.click(middle)
+    editor.frame()
+    assert editor.get("editor.store.selection.length") == 0
+    row.click()
+    editor.page.locator("#view").focus()
+    editor.page.keyboard.press("l")
+    row.get_by_text("locked").wait_for(state="detached")
+    editor.page.keyboard.press("h")
+    row.get_by_text("hidden").wait_for()
+    editor.until("editor.view.bounds('unit_box') === null", "nothing drawn")
+    editor.click(middle)
+    assert editor.get("editor.store.selection.length") == 0
+    editor.page.keyboard.press("Alt+h")
+    editor.until("editor.view.bounds('unit_box') !== null", "the box again")
+    editor.click(middle)
+    editor.until("editor.store.selection.join() === 'unit_box'", "the box under the mouse")
+
+
+def test_a_command_is_found_by_a_part_of_its_name(editor):
+    editor.page.keyboard.press("Control+k")
+    dialog = editor.page.get_by_role("dialog", name="Commands")
+    dialog.get_by_role("combobox").fill("insert cyl")
+    dialog.get_by_role("option", selected=True).get_by_text("Insert cylinder").wait_for()
+    editor.page.keyboard.press("Enter")
+    dialog.wait_for(state="detached")
+    editor.until("editor.store.placing?.shape === 'cylinder'", "the cylinder at the mouse")
+    editor.page.locator(".hint-line").get_by_text("place").wait_for()
+    editor.page.keyboard.press("Escape")
+    editor.page.keyboard.press("Control+k")
+    dialog.get_by_role("combobox").fill("grid")
+    editor.page.keyboard.press("ArrowDown")
+    editor.page.keyboard.press("ArrowUp")
+    editor.page.keyboard.press("Enter")
+    editor.until("editor.store.overlays.scene.grid === false", "the grid's end")
+    editor.get("editor.store.setOverlay('grid', true)")

@@ -1,0 +1,96 @@
+import assert from 'node:assert/strict';
+import {test} from 'node:test';
+import {createActions} from '../../web/js/actions.js';
+import {arrayOffsets, clearSpacing, distributeMoves} from '../../web/js/arrange.js';
+import {commandsOf, matching} from '../../web/js/panels/dialogs/command_dialog.js';
+import {Store} from '../../web/js/store.js';
+import {near} from './near.mjs';
+import {requestFault} from './protocol.mjs';
+import {NotingConnection, world} from './scene.mjs';
+
+function page() {
+  const connection = new NotingConnection();
+  const store = new Store(connection);
+  const actions = createActions({store, connection});
+  store.receive({type: 'world', revision: 1, document: world()});
+  connection.answers.copy = {text: '<sdf/>'};
+  return {connection, store, actions};
+}
+
+const box = (name, x, size) => ({name, pose: [x, 0, 0.5, 0, 0, 0, 1],
+  min: [x - size / 2, -0.5, 0], max: [x + size / 2, 0.5, 1]});
+
+test('an array has a place for each cell but the original', () => {
+  assert.deepEqual(arrayOffsets([2, 2, 1], [1, 3, 5]), [[1, 0, 0], [0, 3, 0], [1, 3, 0]]);
+  assert.deepEqual(arrayOffsets([1, 1, 1], [1, 1, 1]), []);
+  assert.deepEqual(arrayOffsets([1, 1, 3], [1, 1, 0.5]), [[0, 0, 0.5], [0, 0, 1]]);
+});
+
+test('copies are as far apart as the selection is wide, and a little', () => {
+  near(clearSpacing([box('a', 0, 1), box('b', 2, 2)]), [3.6, 1.1, 1.1]);
+  near(clearSpacing([{min: [-50, -50, 0], max: [50, 50, 0]}]), [10.1, 10.1, 0.1]);
+  near(clearSpacing([]), [1, 1, 1]);
+});
+
+test('distributed models have equal gaps between boxes of different sizes', () => {
+  const boxes = [box('right', 10, 2), box('left', 0, 1), box('small', 1, 0.5), box('large', 2, 3)];
+  const moves = distributeMoves(boxes, 'x');
+  assert.deepEqual(Object.keys(moves), ['small', 'large']);
+  // From 0.5 to 9 there are 8.5 m, of which the two in between take 3.5 m.
+  near(moves.small.slice(0, 3), [0.5 + 5 / 3 + 0.25, 0, 0.5]);
+  near(moves.large.slice(0, 3), [9 - 5 / 3 - 1.5, 0, 0.5]);
+  assert.deepEqual(distributeMoves(boxes.slice(0, 2), 'x'), {});
+  assert.deepEqual(distributeMoves([box('a', 0, 1), box('b', 2, 1), box('c', 4, 1)], 'x'), {});
+});
+
+test('duplicating and arrays are one step, and what has come is selected', async () => {
+  const {connection, store, actions} = page();
+  store.select(['lamp', 'a']);
+  connection.answers.edit = {names: ['a_clone', 'lamp_clone']};
+  await actions.duplicate();
+  const [copy, edit] = connection.requests;
+  assert.deepEqual(copy, ['copy', {names: ['a', 'lamp']}]);
+  assert.equal(requestFault(...edit), null);
+  assert.equal(edit[1].op.label, 'Duplicate a, lamp');
+  assert.deepEqual(store.selection, ['a_clone', 'lamp_clone']);
+  store.select(['a']);
+  await actions.array([3, 2, 1], [1, 2, 0]);
+  const [, {op}] = connection.requests.at(-1);
+  const [x, y] = store.worldPose('a');
+  near(op.ops.map(({pose}) => pose[0] - x), [1, 2, 0, 1, 2]);
+  near(op.ops.map(({pose}) => pose[1] - y), [0, 0, 2, 2, 2]);
+  assert.throws(() => actions.array([100, 100, 1], [1, 1, 1]), RangeError);
+});
+
+test('hidden and locked models are left out of what all means', () => {
+  const {store, actions} = page();
+  const names = store.document.models.map(({name}) => name);
+  actions.selectAll();
+  assert.deepEqual(store.selection, names);
+  actions.hide(['a']);
+  assert.ok(!store.selection.includes('a'));
+  actions.selectAll();
+  assert.ok(!store.selection.includes('a'));
+  actions.showHidden();
+  store.select(['a']);
+  actions.lock();
+  actions.selectAll();
+  assert.ok(!store.selection.includes('a'));
+  actions.lock(['a']);
+  actions.selectAll();
+  assert.deepEqual(store.selection, names);
+});
+
+test('the command search knows menus, tools and keys, each once', () => {
+  const {store, actions} = page();
+  const theme = {get: () => 'auto', set: () => {}};
+  const commands = commandsOf({store, actions, theme, topics: {sensing: false}, notices: {}});
+  const titles = commands.map(({title}) => title);
+  for (const title of ['Screenshot', 'Grid', 'Insert box', 'Insert spot light', 'Translate', 'Hotkey Chart']) {
+    assert.equal(titles.filter((one) => one === title).length, 1, title);
+  }
+  assert.ok(!titles.includes('Duplicate'), 'nothing is selected');
+  assert.equal(matching(commands, 'spot ins')[0].title, 'Insert spot light');
+  assert.equal(matching(commands, 'pl')[0].title, 'Plot');
+  assert.deepEqual(matching(commands, 'no such thing'), []);
+});
