@@ -20,6 +20,7 @@ class Topic:
 
     Attributes:
         name: with a leading slash.
+        is_closed: whether it was closed; a look-up in `OpenWorld.topics` begins to listen again.
     """
 
     def __init__(self, graph: LocalGraph, name: str, advance: Callable[[int], None],
@@ -29,6 +30,7 @@ class Topic:
         self._latest: Optional[Message] = None
         self._count = 0
         self._kept: Deque[Message] = deque(maxlen=_KEPT)
+        self.is_closed = False
         self._end = graph.listen(name, self._arrived)
 
     def __repr__(self) -> str:
@@ -74,6 +76,7 @@ class Topic:
 
     def close(self) -> None:
         """Stop listening: robots do not compute what nothing listens to."""
+        self.is_closed = True
         self._end()
 
     def forget(self) -> None:
@@ -105,7 +108,7 @@ class Topics(Mapping[str, Topic]):
 
     def __getitem__(self, name: str) -> Topic:
         full = resolve_name(name)
-        if full not in self._open:
+        if full not in self._open or self._open[full].is_closed:
             kinds = self.kinds()
             if full not in kinds:
                 raise CommandError(f"there is no topic {full}; topics are"

@@ -176,7 +176,8 @@ class Builder:
 
         In its first step a rigid body has the inertia of its shape at the mass with which it was
         created (measured): what `changeDynamics` sets counts from the second step on. So if the
-        moments of the file are others, the body is created with a mass that gives their mean.
+        moments of the file are others, the body is created with a mass that gives their mean. The
+        moments of a shape are kept: PyBullet keeps some memory of each body that it creates.
         """
         def create(mass: float) -> int:
             uid: int = pybullet.createMultiBody(
@@ -184,14 +185,19 @@ class Builder:
                 useMaximalCoordinates=int(not self._articulated))
             return uid
 
-        uid = create(masses.mass)
         if self._articulated or masses.mass <= 0.0:
-            return uid
-        of_shape = pybullet.getDynamicsInfo(uid, BASE)[2]
+            return create(masses.mass)
+        known = self._shapes.moments
+        uid: Optional[int] = None
+        if (shape, masses.mass) not in known:
+            uid = create(masses.mass)
+            known[shape, masses.mass] = pybullet.getDynamicsInfo(uid, BASE)[2]
+        of_shape = known[shape, masses.mass]
         if all(own <= _OTHER * found and found <= _OTHER * own
                for own, found in zip(masses.moments, of_shape)) or sum(of_shape) <= 0.0:
-            return uid
-        pybullet.removeBody(uid)
+            return create(masses.mass) if uid is None else uid
+        if uid is not None:
+            pybullet.removeBody(uid)
         return create(masses.mass * sum(masses.moments) / sum(of_shape))
 
     def _part(self, number: int, index: int, masses: _Masses, link: Link) -> Part:

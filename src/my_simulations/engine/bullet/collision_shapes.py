@@ -104,7 +104,11 @@ class Recipe:
 
 
 class ShapeFactory:
-    """Knows what makes a shape. Meshes go through files of its own, removed at the end."""
+    """Knows what makes a shape. Meshes go through files of its own, removed at the end.
+
+    Attributes:
+        moments: of a new rigid body, in kg m^2, by the number of its shape and its mass.
+    """
 
     def __init__(self) -> None:
         self._scratch = Scratch()
@@ -115,6 +119,7 @@ class ShapeFactory:
         self._count = 0
         self._unseen = -1
         self._unused: Dict[str, List[int]] = {}
+        self.moments: Dict[Tuple[int, float], Tuple[float, float, float]] = {}
 
     def close(self) -> None:
         """Remove the mesh files."""
@@ -150,6 +155,7 @@ class ShapeFactory:
         """The simulation was reset, and what was made for it is gone; files stay."""
         self._unseen = -1
         self._unused.clear()
+        self.moments.clear()
 
     def recipes(self, collisions: Sequence[Collision], meshes: MeshTable, frame: Pose,
                 static: bool, whole: bool = False) -> List[Recipe]:
