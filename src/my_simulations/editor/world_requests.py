@@ -1,6 +1,7 @@
 """What the page may ask for, each with its handler and its thread."""
 from __future__ import annotations
 
+import asyncio
 import secrets
 from concurrent.futures import ThreadPoolExecutor
 from typing import Any, Callable, Dict, List
@@ -20,7 +21,7 @@ from .scene.plain_json import pose_of
 from .transport.browser_client import Client
 from .transport.error_messages import EditRefusedError
 from .transport.hub import Hub
-from .transport.web_socket import Route
+from .transport.web_socket import Handler, Route
 
 _MOST_STEPS = 100000
 _LISTED = 200
@@ -30,8 +31,9 @@ _LISTED = 200
 class Requests:
     """The requests about the world itself: editing, time and files.
 
-    Those that change the world run in one thread, in the order in which they came. Folders are
-    listed by another one, which a world that opens does not keep busy.
+    Those that change the world run in one thread, in the order in which they came. While another
+    world is being opened, which may take a minute, they are refused, and a second thread runs the
+    others. That thread always lists folders.
     """
 
     def __init__(self, hub: Hub, resolver: Resolver, history: History, files: WorldFiles,
@@ -54,17 +56,36 @@ class Requests:
 
     def routes(self) -> Dict[str, Route]:
         """By type of request."""
-        handlers: Dict[str, Callable[[Client, Dict[str, Any]], Any]] = {
-            "edit": self._edit, "copy": self._copy, "undo": self._undo, "redo": self._redo,
-            "play": self._play, "pause": self._pause, "step": self._step, "save": self._save,
-            "open": self._open, "new": self._new, "autosave": self._restore,
-            "drag_end": self._drag_end,
+        changes: Dict[str, Handler] = {
+            "edit": self._edit, "undo": self._undo, "redo": self._redo, "step": self._step,
+            "save": self._save, "open": self._open, "new": self._new,
         }
+        others: Dict[str, Handler] = {"copy": self._copy, "play": self._play, "pause": self._pause}
         return {"hello": Route(self._hello, None), "drag": Route(self._drag, None),
                 "folders": Route(self._folders, self._disk),
                 "new_folder": Route(self._new_folder, self._disk),
                 "presence": Route(self._presence, None),
-                **{kind: Route(handler, self.thread) for kind, handler in handlers.items()}}
+                "autosave": Route(self._recover, None),
+                "drag_end": Route(self._drag_end, self.thread),
+                **{kind: Route(self._in_turn(handler), None) for kind, handler in changes.items()},
+                **{kind: Route(self._soon(handler), None) for kind, handler in others.items()}}
+
+    def _in_turn(self, handler: Handler) -> Handler:
+        """A handler that runs after all changes before it; refused while another world opens."""
+        async def handle(client: Client, message: Dict[str, Any]) -> Any:
+            self._files.check_no_world_opens()
+            return await asyncio.get_running_loop().run_in_executor(
+                self.thread, handler, client, message)
+
+        return handle
+
+    def _soon(self, handler: Handler) -> Handler:
+        """As `_in_turn`; while another world opens, the second thread runs it."""
+        async def handle(client: Client, message: Dict[str, Any]) -> Any:
+            return await asyncio.get_running_loop().run_in_executor(
+                self._disk if self._files.opening else self.thread, handler, client, message)
+
+        return handle
 
     def close(self) -> None:
         """Carry out what was asked for, and end the threads."""
@@ -188,11 +209,15 @@ class Requests:
     # -- time ------------------------------------------------------------------------------------
 
     def _play(self, _client: Client, _message: Dict[str, Any]) -> Dict[str, Any]:
-        self._world.clock.unpause()
-        return self._time()
+        return self._set_paused(False)
 
     def _pause(self, _client: Client, _message: Dict[str, Any]) -> Dict[str, Any]:
-        self._world.clock.pause()
+        return self._set_paused(True)
+
+    def _set_paused(self, paused: bool) -> Dict[str, Any]:
+        clock = self._world.clock
+        if not clock.choose_while_loading(paused):
+            clock.pause() if paused else clock.unpause()
         return self._time()
 
     def _step(self, _client: Client, message: Dict[str, Any]) -> Dict[str, Any]:
@@ -244,6 +269,10 @@ class Requests:
             return value
         finally:
             self._changed()
+
+    async def _recover(self, client: Client, message: Dict[str, Any]) -> Any:
+        way = self._in_turn if message["action"] == "restore" else self._soon
+        return await way(self._restore)(client, message)
 
     def _restore(self, _client: Client, message: Dict[str, Any]) -> Dict[str, Any]:
         if message["action"] == "list":

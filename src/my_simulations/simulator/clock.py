@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import contextlib
+import threading
 from typing import Iterator, List, Tuple
 
 from ..engine.commands import (
@@ -31,6 +32,7 @@ class SimClock:
         self._paused = paused
         self._manual_stepping = False
         self._loading = False
+        self._choosing = threading.Lock()  # held while `_loading` and `_paused` change together
         self._steps = steps
         self._horizon = FOREVER
 
@@ -81,6 +83,16 @@ class SimClock:
             for command in self.resume_commands():
                 self._session.call(command)
 
+    def choose_while_loading(self, paused: bool) -> bool:
+        """Set whether the world that is being loaded starts paused; the engine is not asked.
+
+        Returns False, and changes nothing, if no world is being loaded.
+        """
+        with self._choosing:
+            if self._loading:
+                self._paused = paused
+            return self._loading
+
     def set_manual_stepping(self, manual: bool) -> None:
         """Turn manual stepping on or off: the world then advances by `advance` alone."""
         self._manual_stepping = manual
@@ -128,7 +140,8 @@ class SimClock:
         try:
             yield
         finally:
-            self._loading = False
+            with self._choosing:
+                self._loading = False
 
     def pause_after_recovery(self) -> None:
         """Stay paused after a restart of the engine, because stepping crashes it repeatedly."""

@@ -32,11 +32,15 @@ class Step:
 
 
 class History:
-    """Operations carried out on one world through `do`. Safe from any thread."""
+    """Operations carried out on one world through `do`. Safe from any thread.
+
+    Reads are answered while an operation is carried out, and show the state before it.
+    """
 
     def __init__(self, simulator: Simulator) -> None:
         self._simulator = simulator
-        self._lock = threading.RLock()
+        self._operating = threading.RLock()  # held while an operation is carried out
+        self._lock = threading.RLock()       # held for a moment, after `_operating` if both are
         self._done: List[Step] = []
         self._undone: List[Step] = []
         self._number = 0
@@ -95,16 +99,17 @@ class History:
 
         Raises CommandError; then nothing has changed.
         """
-        with self._lock:
+        with self._operating:
             inverse = operation.apply(self._simulator)
-            self._number += 1
-            self._done.append(Step(label, inverse, self._number, author))
-            self._undone.clear()
-            if len(self._done) > LONGEST:
-                self._base = self._done.pop(0).number
-                self._forgotten += 1
-                if self._saved is not None and self._saved < self._base:
-                    self._saved = None  # cannot be reached any more
+            with self._lock:
+                self._number += 1
+                self._done.append(Step(label, inverse, self._number, author))
+                self._undone.clear()
+                if len(self._done) > LONGEST:
+                    self._base = self._done.pop(0).number
+                    self._forgotten += 1
+                    if self._saved is not None and self._saved < self._base:
+                        self._saved = None  # cannot be reached any more
 
     def undo(self, to: int = 0) -> str:
         """Undo the newest step, or all down to the `to`-th newest; returns its label.
@@ -125,23 +130,26 @@ class History:
 
     def clear(self, dirty: bool = False) -> None:
         """Forget all steps, for another world."""
-        with self._lock:
+        with self._operating, self._lock:
             self._done.clear()
             self._undone.clear()
             self._base = self._forgotten = 0
             self._saved = None if dirty else 0
 
     def _move(self, source: List[Step], target: List[Step], to: int, verb: str) -> str:
-        with self._lock:
+        with self._operating:
             if not 0 <= to < len(source):
                 raise CommandError(f"nothing to {verb}")
             for _ in range(to + 1):
-                step = source.pop()
+                step = source[-1]
                 try:
                     inverse = step.inverse.apply(self._simulator)
                 except CommandError as fault:
-                    if not isinstance(fault, UnknownEntityError):
-                        source.append(step)
+                    if isinstance(fault, UnknownEntityError):
+                        with self._lock:
+                            source.pop()
                     raise CommandError(f"cannot {verb} {step.label!r}: {fault}") from fault
-                target.append(Step(step.label, inverse, step.number, step.author))
+                with self._lock:
+                    source.pop()
+                    target.append(Step(step.label, inverse, step.number, step.author))
             return step.label

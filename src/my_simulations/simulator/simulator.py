@@ -116,7 +116,8 @@ class Simulator:
         starts.
         """
         self._session.call(Batch(self._settings_of(self.world)))
-        self._fill()
+        with self.clock.stopped_while_loading():
+            self._fill()
         self._session.supervisor.engine.on_event(self._on_event)
         for command in self.clock.resume_commands():
             self._session.call(command)
@@ -134,18 +135,19 @@ class Simulator:
         session = self._session
         self.models.divide_meshes(world, meshes or {}, gently=True)  # the old world runs meanwhile
         with session.structure_lock:
-            restarts = session.supervisor.restarts
-            # The settings come first: the old world stays if the engine refuses them.
-            session.call(Batch((*self._settings_of(world), Pause(), Clear(),
-                                ClearTimedForces(self.wrenches.ids))))
-            self.models.forget_all()
-            self.wrenches.replace_all()
-            self.drives.forget_all()
-            if session.supervisor.restarts != restarts:  # the new engine received the old models
-                session.call(Batch((*self._settings_of(world), Pause(), Clear())))
-            session.world, self._world_meshes = world, meshes or {}
-            self.physics.adopt_world()
-            self._fill()
+            with self.clock.stopped_while_loading():
+                restarts = session.supervisor.restarts
+                # The settings come first: the old world stays if the engine refuses them.
+                session.call(Batch((*self._settings_of(world), Pause(), Clear(),
+                                    ClearTimedForces(self.wrenches.ids))))
+                self.models.forget_all()
+                self.wrenches.replace_all()
+                self.drives.forget_all()
+                if session.supervisor.restarts != restarts:  # the new engine received the old models
+                    session.call(Batch((*self._settings_of(world), Pause(), Clear())))
+                session.world, self._world_meshes = world, meshes or {}
+                self.physics.adopt_world()
+                self._fill()
             for command in self.clock.resume_commands():
                 session.call(command)
 
@@ -157,8 +159,7 @@ class Simulator:
     def _fill(self) -> None:
         """Load the models of the world into an empty engine that has its settings."""
         self.clock.begin(self.world.initial_ns, self.world.physics.max_step_size)
-        with self.clock.stopped_while_loading():
-            self.models.load_all(self._world_meshes)
+        self.models.load_all(self._world_meshes)
 
     def _on_event(self, event: Event) -> None:
         if event.kind == "refused":

@@ -35,6 +35,7 @@ class WorldFiles:
 
     Attributes:
         file: its path; "" for a world that was never saved.
+        opening: name of the world that is being read and loaded; "" for none.
     """
 
     def __init__(self, simulator: Simulator, resolver: Resolver, history: History,
@@ -48,6 +49,7 @@ class WorldFiles:
         self._lock = threading.RLock()
         self._ours: Set[str] = set()   # files that were opened or saved here: Save replaces them
         self.file = simulator.world.file
+        self.opening = ""
 
     def roots(self) -> List[str]:
         """Folders below which worlds are opened and saved; relative paths start in the first."""
@@ -167,10 +169,15 @@ class WorldFiles:
             self.file = file
 
     def _load(self, name: str, changed: Callable[[World], World]) -> None:
-        loaded = load_world(name, self._resolver, self._tell)
-        world = loaded.world
-        self._options.log(Issue(Severity.NOTE, "world-file", f"the world file is {world.file}"))
-        self._world.load_world(changed(world), loaded.meshes)
+        self.opening = os.path.basename(name)
+        try:
+            loaded = load_world(name, self._resolver, self._tell)
+            world = loaded.world
+            self._options.log(Issue(Severity.NOTE, "world-file",
+                                    f"the world file is {world.file}"))
+            self._world.load_world(changed(world), loaded.meshes)
+        finally:
+            self.opening = ""
 
     def folders(self, message: Dict[str, Any]) -> Dict[str, Any]:
         """`folders`: folders and world files below an allowed root."""
@@ -214,6 +221,12 @@ class WorldFiles:
         """The world as SDF, as it is now, with all that is in it."""
         world = present_world(self._world)
         return write_world(world, world.state)
+
+    def check_no_world_opens(self) -> None:
+        """Raises EditRefusedError while another world is read and loaded."""
+        if self.opening:
+            raise EditRefusedError("opening", f"the world {self.opening} is being opened",
+                                   "wait until it is open")
 
     def _check_discard(self, message: Dict[str, Any]) -> None:
         if self._history.dirty and not message.get("discard"):

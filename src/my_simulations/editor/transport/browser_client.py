@@ -55,6 +55,11 @@ class Client:
         """Whether data sent many times a second should be left out."""
         return self._waiting > _FULL
 
+    @property
+    def stuck(self) -> bool:
+        """Whether it is so far behind that it is to be disconnected."""
+        return self._waiting > _MOST_WAITING
+
     def post(self, message: Dict[str, Any]) -> None:
         """Queue a message."""
         self.append(encoded(message))
@@ -77,7 +82,7 @@ class Client:
             self._sending = True
             try:
                 while self._queue:
-                    if self._waiting > _MOST_WAITING:
+                    if self.stuck:
                         await self._socket.close(code=1013, message=b"too slow")
                         return
                     data = self._queue.popleft()

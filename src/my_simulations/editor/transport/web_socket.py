@@ -10,7 +10,7 @@ from aiohttp import WSMsgType, web
 from ...errors import CommandError, InputError
 from ...geometry import is_finite_number
 from .browser_client import Client
-from .error_messages import issue_document, issues_of
+from .error_messages import EditRefusedError, issue_document, issues_of
 from .hub import Hub
 from .protocol import ProtocolError
 
@@ -18,6 +18,9 @@ Handler = Callable[[Client, Dict[str, Any]], Any]
 
 _SILENCE_S = 20.0
 """Pings this often; a browser that answers none of them has gone."""
+MOST_REQUESTS = 256
+"""Requests of one client without an answer; others are refused, so that memory stays bounded."""
+
 _LAST_S = 2.0
 """How long the last requests of a client that has gone may take before it is forgotten."""
 
@@ -62,8 +65,11 @@ class Sockets:
         try:
             async for message in socket:
                 if message.type == WSMsgType.TEXT:
+                    if client.stuck:
+                        break  # it sends, and does not read
                     self._hub.stir()
-                    task = asyncio.ensure_future(self._handle(client, message.data))
+                    busy = len(tasks) >= MOST_REQUESTS
+                    task = asyncio.ensure_future(self._handle(client, message.data, busy))
                     tasks.add(task)
                     task.add_done_callback(tasks.discard)
                 elif message.type == WSMsgType.BINARY:
@@ -80,12 +86,15 @@ class Sockets:
                 self._on_leave(client)
         return socket
 
-    async def _handle(self, client: Client, text: str) -> None:
+    async def _handle(self, client: Client, text: str, busy: bool) -> None:
         number: Any = None
         try:
             message = self._hub.protocol.parse(text)
             found = message.get("id")
             number = found if is_finite_number(found) else None
+            if busy:
+                raise EditRefusedError("busy", f"{MOST_REQUESTS} requests of this page have no"
+                                       " answer yet", "wait for their answers")
             self._hub.protocol.check_texts(message, text)
             self._hub.protocol.check_message(message)
             value = await self._answer(client, message)
