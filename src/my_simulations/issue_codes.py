@@ -91,6 +91,8 @@ _TABLE: Tuple[Tuple[str, Tuple[Tuple[str, str, str, str], ...]], ...] = (
         ("name-empty", ERROR, "An entity has no name.", "Give it a name."),
         ("name-missing", WARNING, "An entity has no name attribute; a default name is used.",
          "Give it a name."),
+        ("name-characters", WARNING, "The name of a world has characters that are not shown; they"
+         " are read as blanks.", "Remove them."),
         ("name-repeated", EITHER, "Two entities of one parent have the same name.",
          "Rename one of them."),
         ("name-changed", WARNING, "A collision or visual was renamed to make names unique.",

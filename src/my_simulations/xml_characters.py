@@ -47,10 +47,23 @@ def check_file_name(name: str) -> None:
     Raises:
         CommandError: it contains such a character.
     """
-    found = _NOT_SHOWN.search(name)
+    found = hidden_in(name)
     if found:
-        raise CommandError(f"the file name contains the character U+{ord(found.group()):04X} at"
-                           f" position {found.start() + 1}, which is not shown")
+        raise CommandError(f"the file name contains the character {found}, which is not shown")
+
+
+def hidden_in(text: str) -> str:
+    """The first character of a text that is not shown, e.g. `U+202E at position 4`; "" for none.
+
+    Positions are counted from 1.
+    """
+    found = _NOT_SHOWN.search(text)
+    return f"U+{ord(found.group()):04X} at position {found.start() + 1}" if found else ""
+
+
+def without_hidden(text: str) -> str:
+    """The text with a blank for each character that is not shown."""
+    return _NOT_SHOWN.sub(" ", text)
 
 
 def check_tree(tree: Any, what: str) -> None:

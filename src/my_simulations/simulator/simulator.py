@@ -143,7 +143,7 @@ class Simulator:
                 self.models.forget_all()
                 self.wrenches.replace_all()
                 self.drives.forget_all()
-                if session.supervisor.restarts != restarts:  # the new engine received the old models
+                if session.supervisor.restarts != restarts:  # the new one has the old models
                     session.call(Batch((*self._settings_of(world), Pause(), Clear())))
                 session.world, self._world_meshes = world, meshes or {}
                 self.physics.adopt_world()

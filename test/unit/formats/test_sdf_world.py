@@ -49,6 +49,17 @@ def test_an_empty_world_has_the_defaults_of_the_format():
     assert issues == []
 
 
+@pytest.mark.parametrize("written, shown, told", [
+    ("w", "w", ""), ("Wörld 世界", "Wörld 世界", ""),
+    ("a&#10;error: b", "a error: b", "U+000A at position 2"),
+    ("a&#x202E;b", "a b", "U+202E at position 2")])
+def test_the_name_of_a_world_has_blanks_for_characters_that_are_not_shown(written, shown, told):
+    world, issues = parse_world(sdf(f'<world name="{written}"/>'), Resolver())
+    assert world.name == shown
+    assert tolerated(issues) == (["name-characters"] if told else [])
+    assert all(told in issue.message and issue.line == 1 for issue in issues)
+
+
 def test_the_shipped_empty_world_gives_a_plane_and_a_light():
     resolver = Resolver.from_environment()
     loaded = read_world(resolver.resolve("worlds/empty.world"), resolver)

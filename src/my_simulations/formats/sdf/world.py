@@ -11,6 +11,7 @@ from ...description.model import Link, Model
 from ...description.validate import link_names
 from ...description.world import Physics, World
 from ...geometry import is_finite
+from ...xml_characters import hidden_in, without_hidden
 from ..xml.binding import Found, fill, to_xml
 from ..xml.source import FaultLevel, Source
 from ..xml.values import BOOL
@@ -35,7 +36,7 @@ def read_world_element(element: Any, source: Source, seed: int = 0, profile: str
 
     `seed` and `profile` as for `reading.read_world`.
     """
-    world = World(element.get("name") or "default", file=source.file, seed=seed)
+    world = World(_shown_name(element, source), file=source.file, seed=seed)
     found = fill(world, element, WORLD, source, world.extra)
     world.plugins = [read_plugin(plugin, source) for plugin in found.get("plugin", ())]
     _read_physics(found.get("physics", ()), world, source, profile)
@@ -46,6 +47,16 @@ def read_world_element(element: Any, source: Source, seed: int = 0, profile: str
         for issue in state_issues(world):
             source.log.add(issue)
     return world
+
+
+def _shown_name(element: Any, source: Source) -> str:
+    """The name of a world, in which characters that are not shown as they are become blanks."""
+    name = element.get("name") or "default"
+    shown: str = without_hidden(name)
+    if shown != name:
+        source.tolerate("name-characters", f"the name of the world contains {hidden_in(name)},"
+                        f" which is not shown; read as {shown!r}", element)
+    return shown
 
 
 class _Entities:
