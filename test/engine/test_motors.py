@@ -4,9 +4,10 @@ from __future__ import annotations
 import math
 
 import pytest
-from conftest import Lab, arm, box, ground
+from conftest import Lab, arm, box, ground, inertial_of_box
 
-from my_simulations.description.model import JointAxis
+from my_simulations.description.model import Inertial, Joint, JointAxis, Link, Model
+from my_simulations.description.shapes import Box, Collision, Cylinder, Surface
 from my_simulations.engine.api import CommandRefusedError
 from my_simulations.engine.commands import PhysicsSettings
 from my_simulations.engine.drive_commands import (
@@ -18,7 +19,13 @@ from my_simulations.engine.drive_commands import (
     SetPlanarVelocities,
     SetServos,
 )
-from my_simulations.geometry import STILL
+from my_simulations.engine.timed_forces import (
+    FOREVER,
+    AddTimedForces,
+    ClearTimedForces,
+    TimedEffort,
+)
+from my_simulations.geometry import STILL, Pose, quat_from_rpy
 
 Z = (0.0, 0.0, 1.0)
 
@@ -43,6 +50,44 @@ def test_a_motor_spends_no_more_than_its_effort(lab: Lab):
     lab.apply(SetMotors((JointMotor(row, 100.0, 3.0),)))
     lab.seconds(1.0)
     assert lab.joint(model)[1] == pytest.approx(3.0, rel=2e-3)  # w = T t / I
+
+
+def test_a_motor_that_cannot_overcome_the_damper_turns_more_slowly(lab: Lab):
+    # It reaches T / d: a wheel that slows down to that, and one that speeds up.
+    model, row = wheel(lab, damping=50.0)
+    lab.apply(SetMotors((JointMotor(row, 2.0, 101.0),)))
+    lab.seconds(0.5)
+    assert lab.joint(model)[1] == pytest.approx(2.0, rel=1e-3)
+    lab.apply(AddTimedForces((TimedEffort(1, row, lab.step, FOREVER, effort=-51.0),)))
+    lab.seconds(0.5)
+    assert lab.joint(model)[1] == pytest.approx(1.0, rel=0.01)
+    lab.apply(ClearTimedForces((1,)))
+    lab.seconds(0.5)
+    assert lab.joint(model)[1] == pytest.approx(2.0, rel=1e-3)
+
+
+def test_light_wheels_with_strong_dampers_keep_the_rate_of_their_motors(lab: Lab):
+    # A base of 0.7 kg on wheels of 11 g, whose dampers would brake them by 2000 rad/s in a step.
+    lab.load(ground(1.0))
+    spin = JointAxis((0.0, 0.0, 1.0), damping=1.0, effort=70.0)
+    links = [Link("base", Pose((0, 0, 0.042)), inertial_of_box(0.7, 0.12, 0.08, 0.08), [Collision(
+        "c", Box((0.12, 0.08, 0.08)), surface=Surface(mu=0.1))])]
+    joints = []
+    for name, y in (("left", 0.0455), ("right", -0.0455)):
+        at = Pose((0.004, y, 0.024), quat_from_rpy(-math.pi / 2, 0, 0))
+        links.append(Link(name, at, Inertial(0.011, ixx=2e-6, iyy=2e-6, izz=4e-6), [
+            Collision("c", Cylinder(0.024, 0.01))]))
+        joints.append(Joint(name, "revolute", "base", name, axis=spin))
+    base = lab.load(Model("base", links=links, joints=joints))
+    lab.steps(100)
+    rows = [lab.joint_rows[base, name] for name in ("left", "right")]
+    for step in range(50):   # not so fast that the wheels spin
+        lab.apply(SetMotors(tuple(JointMotor(row, 8.0 * (step + 1) / 50, 70.0) for row in rows)))
+        lab.steps(10)
+    lab.steps(1000)
+    for name in ("left", "right"):
+        assert lab.joint(base, name)[1] == pytest.approx(8.0, rel=1e-3)
+    assert abs(lab.twist(base, "base").angular[2]) < 2e-3
 
 
 def test_an_axis_without_effort_has_its_friction_again(lab: Lab):

@@ -45,11 +45,15 @@ class DamperMemory:
         other: rad/s^2 or m/s^2, the accelerations by everything else.
         rates: rad/s or m/s in the last step; None for not measured.
         given: rad/s^2 or m/s^2, the accelerations by springs and dampers in the last step.
+        efforts: N m or N, of springs and dampers in the last step.
+        spent: N m or N, by the motors of the axes in the last step.
     """
 
     other: Tuple[float, ...]
     rates: Optional[Tuple[float, ...]]
     given: Tuple[float, ...]
+    efforts: Tuple[float, ...]
+    spent: Tuple[float, ...]
 
 
 @dataclass(frozen=True)

@@ -13,7 +13,7 @@ from ..run_state import DamperMemory, LoopMemory
 from ..timed_forces import TimedEffort, TimedForce, TimedWrench
 from .bodies import Axis, Body, Part, set_sleep
 from .force_dependent_slip import ForceDependentSlip
-from .implicit_axes import ImplicitAxes
+from .implicit_axes import ImplicitAxes, Motor
 from .joint_pid import MOST_EFFORT, PidController
 from .joint_servos import JointServos
 from .link_states import place
@@ -32,11 +32,14 @@ class Forces:
 
     def __init__(self, wake: Callable[[List[Body]], None],
                  loops_changed: Callable[[Set[int]], None] = lambda rows: None,
-                 release: Callable[[Body, Axis], None] = lambda body, axis: None) -> None:
+                 release: Callable[[Body, Axis], None] = lambda body, axis: None,
+                 motor_of: Callable[[int], Motor] = lambda row: None) -> None:
         """`loops_changed` gets the axis rows that PID loops drive whenever these change.
 
-        `release` gives an axis that a servo has left back to its motor, or its friction.
+        `release` gives an axis that a servo has left back to its motor, or its friction; `motor_of`
+        returns the motor of the axis of a row.
         """
+        self._motor_of = motor_of
         self._wake = wake
         self._loops_changed = loops_changed
         self._timed: Dict[int, TimedForce] = {}
@@ -211,7 +214,7 @@ class Forces:
                             | self._implicit.keys() if efforts or self._implicit else _NOBODY,
                             step)
         for implicit in self._implicit.values():
-            implicit.add_to(efforts)
+            implicit.add_to(efforts, self._motor_of)
         if efforts:
             self._give(efforts)
         for body, part in self._weightless.values():

@@ -80,7 +80,8 @@ class HelperSet:
         self.waker = WakeUp(bodies_by_uid, self._touched)
         driver = WakeUp(bodies_by_uid, self._driven)
         self.forces = Forces(driver.around, lambda rows: self.motors.yield_to(rows),
-                             lambda body, axis: self.motors.restore(body, axis))
+                             lambda body, axis: self.motors.restore(body, axis),
+                             lambda row: self.motors.driven(row))
         self._friction = FrictionBalance(self.notices.misfit)
         self._bounces = PairRestitution(self._parameters, self.notices.odd_bounce)
         self._spin = GyroscopicRigid(lambda: self.forces.wrenched_links)

@@ -11,11 +11,15 @@ which for one axis is the exact decay of a damper. Springs that are soft against
 act on the position before the step, as the rest of the integrator does, and keep their energy;
 stiff ones (s = 1) on the one after it. The torques that make it so are A^-1 ((w' - w) / dt - a).
 Efforts that are known count as known; of the rest of a, the steps before tell.
+
+A motor that keeps its rate cancels the damper of its axis. If both act, the solver has to find that
+in each step, and does not within its iterations: wheels of 10 g with dampers of 1 N m s/rad turned
+0.6 and 0 % too fast. So such a damper acts only if the motor lacks the effort to overcome it.
 """
 from __future__ import annotations
 
 import math
-from typing import Dict, List, Optional
+from typing import Callable, Dict, List, Optional, Tuple
 
 import numpy as np
 import pybullet
@@ -30,6 +34,10 @@ _FAR = 0.05        # rad or m: axes that have moved so far may have another mobi
 _EVERY = 100       # steps after which it is looked at anyway, for what other axes did
 _STIFF = 10.0      # s is this times the spring's (w dt)^2, at most 1
 _MOST_DECAYS = 50.0
+_AT_RATE = 0.02    # of the rate of a motor: an axis as near to it is kept there
+
+Motor = Optional[Tuple[float, float]]
+"""The rate of a motor, rad/s or m/s, and the most that it may spend, N m or N; None without one."""
 
 
 class ImplicitAxes:
@@ -50,6 +58,7 @@ class ImplicitAxes:
         self.has_springs = bool(self._stiffness.any())
         self._others = 1.0 - _TRUST, _TRUST / dt, _TRUST
         self._tree: Optional[MassMatrix] = None
+        self._ease = np.eye(len(self._rows))
         self._tells: List[int] = []               # which of the axes change the mobility
         self._constant = False                    # none does, nor anything else
         self._prepared_at: Optional[List[float]] = None
@@ -61,6 +70,8 @@ class ImplicitAxes:
         self._other = [0.0] * len(self._rows)
         self._rates: Optional[List[float]] = None
         self._given: List[float] = []
+        self._efforts = [0.0] * len(self._rows)
+        self._spent: Optional[List[float]] = None   # by motors, read before a save
 
     @property
     def first_row(self) -> int:
@@ -70,16 +81,22 @@ class ImplicitAxes:
     @property
     def memory(self) -> DamperMemory:
         """What was measured, for `resume`."""
+        states = pybullet.getJointStates(self._body.uid, self._indices)
         return DamperMemory(tuple(self._other), None if self._rates is None else tuple(self._rates),
-                            tuple(self._given))
+                            tuple(self._given), tuple(self._efforts),
+                            tuple(self._spent or [state[3] for state in states]))
 
     def resume(self, memory: DamperMemory) -> None:
         """Continue from what was measured."""
         self._other, self._given = list(memory.other), list(memory.given)
         self._rates = None if memory.rates is None else list(memory.rates)
+        self._efforts, self._spent = list(memory.efforts), list(memory.spent)
 
-    def add_to(self, efforts: Dict[int, float]) -> None:
-        """Add the efforts of the next step, N m or N by row, to those that act anyway."""
+    def add_to(self, efforts: Dict[int, float], motor_of: Callable[[int], Motor]) -> None:
+        """Add the efforts of the next step, N m or N by row, to those that act anyway.
+
+        `motor_of` returns the motor of the axis of a row.
+        """
         states = pybullet.getJointStates(self._body.uid, self._indices)
         positions, rates = [state[0] for state in states], [state[1] for state in states]
         if self._rates is not None:
@@ -96,8 +113,28 @@ class ImplicitAxes:
             self.disturbed()
             return
         self._rates, self._given = rates, answer[len(rates):]
-        for row, before, effort in zip(self._rows, known, answer):
+        spent = self._spent or [state[3] for state in states]
+        cancelled = [n for n, row in enumerate(self._rows)
+                     if self._cancels(n, motor_of(row), rates[n], spent[n])]
+        self._efforts, self._spent = answer[:len(rates)], None
+        if cancelled:
+            for n in cancelled:
+                self._efforts[n] = 0.0
+            self._given = (self._ease @ np.add(self._efforts, known)).tolist()
+        for row, before, effort in zip(self._rows, known, self._efforts):
             efforts[row] = before + effort
+
+    def _cancels(self, n: int, motor: Motor, rate: float, spent: float) -> bool:
+        """Whether a motor keeps its rate against the damper of an axis.
+
+        `spent` is its effort in the last step, in which the damper had `_efforts`.
+        """
+        if motor is None or self._stiffness[n]:
+            return False
+        target, most = motor
+        load = spent + self._efforts[n]
+        return (abs(rate - target) <= _AT_RATE * abs(target)
+                and abs(load + float(self._damping[n]) * target) <= most)
 
     def _prepare_again(self, positions: List[float]) -> None:
         """Look at the mobility when it may have changed: wheels that turn do not change it."""
@@ -121,7 +158,7 @@ class ImplicitAxes:
             balanced = self._tree.balanced()
             self._tells = [n for n, index in enumerate(self._indices) if index not in balanced]
             self._constant = self._tree.changes_only_by(balanced)
-        ease = mobility(self._tree, self._indices)
+        ease = self._ease = mobility(self._tree, self._indices)
         one = np.eye(count)
         decays = np.minimum(dt * np.diag(ease) * self._damping, _MOST_DECAYS)
         spread = np.where(decays > 1e-9, np.expm1(decays) / np.maximum(decays, 1e-9), 1.0)

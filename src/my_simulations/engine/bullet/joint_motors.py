@@ -1,7 +1,7 @@
 """Motors of joint axes: a rate, and the effort that may be spent on it (ODE's `vel` and `fmax`)."""
 from __future__ import annotations
 
-from typing import Callable, Dict, Iterable, List, Mapping, Set, Tuple
+from typing import Callable, Dict, Iterable, List, Mapping, Optional, Set, Tuple
 
 import pybullet
 
@@ -21,7 +21,7 @@ class JointMotors:
         self._wake = wake
         self._motors: Dict[int, JointMotor] = {}
         self._specs: Dict[int, JointAxis] = {}
-        self._rates: Dict[int, float] = {}   # those other than 0 that are driven now
+        self._driven: Dict[int, Tuple[float, float]] = {}  # rates other than 0 now, and efforts
         self._yielding: Set[int] = set()
 
     def yield_to(self, rows: Set[int]) -> None:
@@ -33,7 +33,14 @@ class JointMotors:
 
     def rate_of(self, row: int) -> float:
         """The rate to which an axis is driven, rad/s or m/s; 0 also for one that is not."""
-        return self._rates.get(row, 0.0)
+        return self._driven.get(row, (0.0, 0.0))[0]
+
+    def driven(self, row: int) -> Optional[Tuple[float, float]]:
+        """The rate to which an axis is driven, rad/s or m/s, and the most effort, N m or N.
+
+        None for one that is not driven, or to a rate of 0.
+        """
+        return self._driven.get(row)
 
     def set(self, motors: Iterable[JointMotor]) -> None:
         """Set these; others stay. Raises CommandRefusedError, and then none is set."""
@@ -67,13 +74,13 @@ class JointMotors:
         for axis in body.axes:
             self._motors.pop(axis.row, None)
             self._specs.pop(axis.row, None)
-            self._rates.pop(axis.row, None)
+            self._driven.pop(axis.row, None)
 
     def clear(self) -> None:
         """All bodies are gone."""
         self._motors.clear()
         self._specs.clear()
-        self._rates.clear()
+        self._driven.clear()
 
     def restore(self, body: Body, axis: Axis) -> None:
         """Let the motor of an axis act, or without one its friction."""
@@ -88,6 +95,6 @@ class JointMotors:
         self._note(axis.row, rate, effort)
 
     def _note(self, row: int, rate: float, effort: float) -> None:
-        self._rates.pop(row, None)
+        self._driven.pop(row, None)
         if rate and effort > 0.0:
-            self._rates[row] = rate
+            self._driven[row] = rate, effort
