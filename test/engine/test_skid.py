@@ -48,6 +48,27 @@ def test_a_skid_steered_base_turns_at_every_heading(lab: Lab, laws: Laws, headin
     laws.near("a skid-steered base: turn, rad/s", lab.twist(base).angular[2], EXPECTED, rel=0.05)
 
 
+@pytest.mark.parametrize("heading", [0, 30, 45, 90])
+@pytest.mark.parametrize("along, across", [(1.0, 0.3), (0.5, 1.0)])
+def test_a_skid_steered_base_turns_by_the_friction_along_its_axles_and_across(
+        lab: Lab, laws: Laws, heading: int, along: float, across: float):
+    # Friction is -N M (M v) / |M v|; M has `across` in the rolling direction, `along` on the axle.
+    lab.load(ground(1.0))
+    model = _base()
+    surface = Surface(mu=along, mu2=across, fdir1=(0.0, 0.0, 1.0))
+    model.links = [replace(link, collisions=[replace(one, surface=surface)
+                                             for one in link.collisions]) for link in model.links]
+    base = lab.load(model, (0, 0, RADIUS), quat_from_rpy(0, 0, math.radians(heading)))
+    lab.steps(500)
+    rates = []
+    for _ in range(300):
+        lab.steps(1)
+        rates.append(lab.twist(base).angular[2])
+    expected = across ** 2 * SPEED * ASIDE / ((across * ASIDE) ** 2 + (along * AHEAD) ** 2)
+    laws.near("skid steering with two coefficients: turn, share", np.mean(rates) / expected, 1.0,
+              rel=0.05)
+
+
 @pytest.mark.parametrize("mu", [0.3, 1.0])
 @pytest.mark.parametrize("share", [0.1, 5.0])
 @pytest.mark.parametrize("step_size", [0.001, 0.005, 0.01])

@@ -9,7 +9,7 @@ import pybullet
 from ...description.link_surface import counting_collision
 from ...description.model import Link
 from ...description.shapes import Collision, Surface
-from ...geometry import Vec3, conjugate, rotate, scale
+from ...geometry import Vec3, conjugate, norm, rotate, scale
 from ..surface_pieces import by_friction
 from .bodies import Body, Part
 from .surface_coefficients import directed
@@ -38,7 +38,8 @@ def store(body: Body, part: Part, link: Link, dt: float) -> None:
     surface = collision.surface
     settings: Dict[str, Any] = {}
     if directed(surface):
-        settings["anisotropicFriction"] = _shares(collision, part)
+        settings["anisotropicFriction"] = anisotropy(
+            (surface.mu, surface.mu2), first_direction(collision, part))
     if surface.kp < SOFT and body.moves and not body.rigid:
         settings["contactStiffness"] = max(surface.kp, 1e-9)
         settings["contactDamping"] = _damping(surface, dt)
@@ -60,12 +61,11 @@ def gives_way(link: Link) -> bool:
                for group in by_friction(link))
 
 
-def _shares(collision: Collision, part: Part) -> Vec3:
-    """Shares of the larger coefficient along the principal axes, which are PyBullet's."""
-    surface = collision.surface
+def first_direction(collision: Collision, part: Part) -> Vec3:
+    """The direction in which mu of a directed surface holds, of length 1, in PyBullet's frame."""
     inward = rotate(conjugate(part.link_from_com.orientation),
-                    rotate(collision.pose.orientation, surface.fdir1))
-    return anisotropy((surface.mu, surface.mu2), scale(inward, 1.0 / math.hypot(*inward)))
+                    rotate(collision.pose.orientation, collision.surface.fdir1))
+    return scale(inward, 1.0 / norm(inward))
 
 
 def anisotropy(mus: Tuple[float, float], first: Vec3, left: Tuple[float, float] = (1.0, 1.0),

@@ -7,10 +7,14 @@ base turned at 0.68 to 1.08 rad/s, or at 0.09 to 0.73, where Coulomb's law has 0
 
 So once a link that hangs on a joint slides on something static, Bullet's friction is taken away
 from it (a share of 0.001 along each axis remains), and Coulomb's law acts as an external force at
-each contact. A force against a slip of a few centimetres a second or less would overshoot within a
-step; there it grows in proportion to the slip. So as to come to rest, such a link gets Bullet's
-friction back every 64 steps, for as long as that slows it down, and keeps it once all such links of
-its body are held.
+each contact. Where `mu` holds along `fdir1` and `mu2` across it, M is the tensor of both in the
+plane of the floor, and friction is -N M (M v) / |M v| at the slip v: of all forces within the
+ellipse of M, the one that takes the most power away.
+
+A force against a slip of a few centimetres a second or less would overshoot within a step; there it
+grows in proportion to the slip. So as to come to rest, such a link gets Bullet's friction back
+every 64 steps, for as long as that slows it down, and keeps it once all such links of its body are
+held.
 """
 from __future__ import annotations
 
@@ -19,13 +23,15 @@ from typing import Any, Dict, List, Optional, Set, Tuple
 
 import pybullet
 
+from ...description.link_surface import counting_collision
 from ...description.model import Link
-from ...geometry import Vec3, dot, norm, scale
+from ...geometry import Quat, Vec3, dot, norm, rotate, scale
 from .bodies import Body, Part
 from .edge_loads import Loads, axle_of, carrying, shared
+from .extra_surfaces import anisotropy, first_direction
 from .link_states import Motion, motion, motions
 from .step_helper import FAR, next_multiple
-from .surface_coefficients import directed, of_link
+from .surface_coefficients import directed
 
 EVERY = 16
 """Steps between two looks at who slides."""
@@ -45,12 +51,32 @@ Key = Tuple[int, int]  # body uid, link index
 Contacts = List[Tuple[Any, ...]]  # as PyBullet tells them
 
 
+@dataclass(frozen=True)
+class _Directions:
+    """Two coefficients of a surface.
+
+    Attributes:
+        first: the direction in which `mu` holds, of length 1, in PyBullet's frame of the link.
+        mu, mu2: along it and across it.
+    """
+
+    first: Vec3
+    mu: float
+    mu2: float
+
+    @property
+    def shares(self) -> Vec3:
+        """PyBullet's anisotropicFriction."""
+        return anisotropy((self.mu, self.mu2), self.first)
+
+
 @dataclass
 class _Slide:
     """A link that slides.
 
     Attributes:
         axle: of a wheel (`edge_loads`).
+        directions: in which its coefficients differ; None for one coefficient.
         forces: of the next step, N, by where they act, world axes.
         loads: what presses there, N.
         slip: mean velocity across the floor after the last step, m/s.
@@ -64,6 +90,7 @@ class _Slide:
     mass: float
     slip: Vec3
     axle: Optional[Vec3]
+    directions: Optional[_Directions]
     forces: Dict[Vec3, Vec3] = field(default_factory=dict)
     loads: Dict[Vec3, float] = field(default_factory=dict)
     trying: bool = False
@@ -77,6 +104,7 @@ class Sliding:
 
     def __init__(self) -> None:
         self._parts: Dict[int, Dict[int, Part]] = {}
+        self._directions: Dict[Key, _Directions] = {}
         self._mass: Dict[int, float] = {}
         self._fixed: Set[int] = set()
         self._static: Dict[int, float] = {}
@@ -91,14 +119,20 @@ class Sliding:
                 self._give_back(key)
 
     def add(self, body: Body, part: Part, link: Link) -> None:
-        """Know a link of a body. Those with two coefficients of friction are left to Bullet."""
-        if not link.collisions or directed(of_link(link)):
+        """Know a link of a body. Bullet keeps what slides on a floor with two coefficients."""
+        collision = counting_collision(link)
+        if collision is None:
             return
+        surface = collision.surface
         if not body.moves:
-            self._static.update({uid: part.mu for uid in body.uids})
+            if not directed(surface):
+                self._static.update({uid: part.mu for uid in body.uids})
         elif part.mu > 0.0 and any(axis.index == part.index for axis in body.axes):
             self._parts.setdefault(body.uid, {})[part.index] = part
             self._mass[body.uid] = sum(each.mass for each in body.parts)
+            if directed(surface):
+                self._directions[body.uid, part.index] = _Directions(
+                    first_direction(collision, part), surface.mu, surface.mu2)
             if body.base is None:
                 self._fixed.add(body.uid)
 
@@ -116,10 +150,11 @@ class Sliding:
                 table.pop(uid, None)
         for part in body.parts:
             self._slides.pop((body.uid, part.index), None)
+            self._directions.pop((body.uid, part.index), None)
 
     def clear(self) -> None:
         """All bodies are gone."""
-        for table in (self._static, self._parts, self._mass, self._slides):
+        for table in (self._static, self._parts, self._mass, self._slides, self._directions):
             table.clear()
         self._fixed.clear()
 
@@ -183,7 +218,8 @@ class Sliding:
             if norm(slip) > _SLIDES:
                 part = parts[index]
                 self._slides[uid, index] = _Slide(part, self._mass[uid], slip,
-                                                  axle_of(part, part.link))
+                                                  axle_of(part, part.link),
+                                                  self._directions.get((uid, index)))
                 pybullet.changeDynamics(uid, index, anisotropicFriction=_OURS)
 
     def _touches_moving(self, contacts: Contacts) -> bool:
@@ -236,12 +272,15 @@ class Sliding:
         soft = _SOFT * dt * max(gravity, sum(loads) / slide.mass)
         slow = False
         for contact, load, velocity in zip(contacts, loads, slips):
-            mu = min(slide.part.mu, self._static[contact[2]])
-            speed = norm(velocity)
+            most = self._static[contact[2]]
+            if slide.directions is None:
+                mu = min(slide.part.mu, most)
+                speed, along = norm(velocity), velocity
+            else:
+                mu, speed, along = _weighed(velocity, slide.directions, moves[1], contact[7], most)
             slow = slow or speed < soft * mu
             if speed > 0.0:
-                slide.forces[contact[5]] = scale(
-                    velocity, -mu * load / max(speed, soft * mu))
+                slide.forces[contact[5]] = scale(along, -mu * load / max(speed, soft * mu))
         # A slip that is larger than before is the answer to a command.
         turned = dot(slip, before) < 0.0 and norm(slip) < norm(before) + _HELD
         slide.slow = slow
@@ -275,11 +314,40 @@ class Sliding:
         slide.trying, slide.held = trying, False
         if trying:
             slide.forces = {}
-        pybullet.changeDynamics(*key, anisotropicFriction=_BULLETS if trying else _OURS)
+        pybullet.changeDynamics(*key, anisotropicFriction=_bullets(slide) if trying else _OURS)
 
     def _give_back(self, key: Key) -> None:
-        del self._slides[key]
-        pybullet.changeDynamics(*key, anisotropicFriction=_BULLETS)
+        pybullet.changeDynamics(*key, anisotropicFriction=_bullets(self._slides.pop(key)))
+
+
+def _bullets(slide: _Slide) -> Vec3:
+    """What Bullet's friction of a link needs: shares of its coefficient by direction."""
+    return _BULLETS if slide.directions is None else slide.directions.shares
+
+
+def _weighed(slip: Vec3, directions: _Directions, turn: Quat, normal: Vec3,
+             most: float) -> Tuple[float, float, Vec3]:
+    """The coefficient against a slip, the speed of that, and the velocity to act against.
+
+    The last two so that friction is mu N / speed against it: both are |M (M v)| / mu, in m/s, for
+    one coefficient the slip itself. `turn`: of PyBullet's frame; `most`: the floor's coefficient.
+    """
+    first = rotate(turn, directions.first)
+    mu, mu2 = min(directions.mu, most), min(directions.mu2, most)
+
+    def coefficients_times(vector: Vec3) -> Vec3:
+        along = (mu - mu2) * dot(first, vector)
+        x, y, z = (mu2 * v + along * d for v, d in zip(vector, first))
+        away = x * normal[0] + y * normal[1] + z * normal[2]
+        return x - away * normal[0], y - away * normal[1], z - away * normal[2]
+
+    once = coefficients_times(slip)
+    twice = coefficients_times(once)
+    size, force = norm(once), norm(twice)
+    if force <= 0.0:
+        return most, 0.0, slip
+    against = force / size
+    return against, size / against, scale(twice, size / (against * force))
 
 
 def _slips(moves: Motion, contacts: Contacts, loads: List[float]) -> Tuple[List[Vec3], Vec3]:
