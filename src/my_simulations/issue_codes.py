@@ -69,6 +69,12 @@ _TABLE: Tuple[Tuple[str, Tuple[Tuple[str, str, str, str], ...]], ...] = (
         ("grade-expression", ERROR, "A condition or a partial mark of an assignment file is not "
          "understood.", "Use the signals and functions of doc/studies.md."),
     )),
+    ("Classes", (
+        ("class-key", ERROR, "A class file has an unknown key, or lacks one.",
+         "Use the keys of doc/classroom.md."),
+        ("class-value", ERROR, "A value of a class file has the wrong type or is out of range.",
+         "Write a value of the expected type."),
+    )),
     ("Elements and values", (
         ("attribute-deprecated", WARNING, "A root attribute of a spawn request is deprecated.",
          "Call the service `spawn_object`, whose request has a field for it."),

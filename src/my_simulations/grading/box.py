@@ -159,10 +159,10 @@ def _own_files(spec: Dict[str, Any]) -> List[str]:
         attributes = struct.pack("<QQQQ", _RDONLY, 0, 0, 0)
         if LIBC.syscall(_MOUNT_SETATTR, _AT_FDCWD, b"/", _AT_RECURSIVE, attributes,
                         len(attributes)) != 0:
-            return _loopback()
+            return switch_loopback_on()
         tmpfs(scratch, spec["bytes"])
     except OSError:
-        return _loopback()
+        return switch_loopback_on()
     submission, judge = (os.path.join(scratch, name) for name in ("submission", "judge"))
     os.makedirs(submission)
     os.makedirs(judge)
@@ -177,11 +177,11 @@ def _own_files(spec: Dict[str, Any]) -> List[str]:
                 tmpfs(folder, spec["bytes"])
     with contextlib.suppress(OSError):
         mount("proc", "/proc", "proc", MS_NOSUID | MS_NODEV)
-    return ["files", *_loopback()]
+    return ["files", *switch_loopback_on()]
 
 
-def _loopback() -> List[str]:
-    """Switch the loopback interface of a new network on."""
+def switch_loopback_on() -> List[str]:
+    """Switch the loopback interface of a new network on; ["loopback"] if it works."""
     try:
         with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
             request = struct.pack("16sh14x", b"lo", 0)

@@ -71,14 +71,14 @@ def main(words: List[str]) -> int:
 
 def _inside(spec: Dict[str, Any], isolated: bool, box: Any) -> int:
     if isolated:
-        _hide(spec["private"], spec["needed"], box)
-    _limit(spec)
+        hide_folders(spec["private"], spec["needed"], box)
+    limit_resources(spec)
     with contextlib.suppress(OSError):
         os.setgroups([])
     with contextlib.suppress(OSError):
         os.setgid(spec["user"])
         os.setuid(spec["user"])
-    _drop_capabilities(box.LIBC)
+    drop_capabilities(box.LIBC)
     process = subprocess.Popen(spec["command"], env=spec["environment"], cwd=spec["cwd"],
                                stdin=subprocess.DEVNULL, start_new_session=True)
     while True:
@@ -88,7 +88,8 @@ def _inside(spec: Dict[str, Any], isolated: bool, box: Any) -> int:
             return code
 
 
-def _hide(folders: List[str], needed: List[str], box: Any) -> None:
+def hide_folders(folders: List[str], needed: List[str], box: Any) -> None:
+    """Hide folders and the processes outside; `needed` stays within reach."""
     box.mount("none", "/", "", box.MS_REC | box.MS_PRIVATE)
     if _changes_user():
         _open_ways(needed, box)
@@ -141,15 +142,17 @@ def _closed_folder(path: str) -> str:
     return ""
 
 
-def _limit(spec: Dict[str, Any]) -> None:
+def limit_resources(spec: Dict[str, Any]) -> None:
+    """Set the limits of this process and those that it starts; None stands for no limit."""
     for kind, most in ((resource.RLIMIT_CORE, 0), (resource.RLIMIT_FSIZE, spec["bytes"]),
                        (resource.RLIMIT_AS, spec["memory_bytes"]),
                        (resource.RLIMIT_CPU, spec["processor_seconds"]),
                        (resource.RLIMIT_NPROC, spec["processes"])):
-        resource.setrlimit(kind, (most, most))
+        if most is not None:
+            resource.setrlimit(kind, (most, most))
 
 
-def _drop_capabilities(libc: Any) -> None:
+def drop_capabilities(libc: Any) -> None:
     """Give up all capabilities for good: a namespace's root has them, too."""
     for number in range(_LAST_CAPABILITY + 1):
         libc.prctl(_PR_CAPBSET_DROP, number, 0, 0, 0)

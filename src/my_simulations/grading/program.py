@@ -168,9 +168,13 @@ def _environment(account: Account) -> Dict[str, str]:
 
 
 def _needed(scratch: str) -> List[str]:
+    names = ("submission", "home", "tmp", "test", TESTS)
+    return [*(os.path.join(scratch, name) for name in names), *workspace_paths()]
+
+
+def workspace_paths() -> List[str]:
     """What programs of ROS read: this package, Python, and the packages of the workspace."""
-    found = [os.path.join(scratch, name) for name in ("submission", "home", "tmp", "test", TESTS)]
-    found += [own_directory(), sys.prefix, sys.base_prefix,
+    found = [own_directory(), sys.prefix, sys.base_prefix,
              os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))]
     for name in ("CMAKE_PREFIX_PATH", "ROS_PACKAGE_PATH", "PYTHONPATH", "GAZEBO_MODEL_PATH",
                  "GAZEBO_RESOURCE_PATH"):

@@ -1,0 +1,200 @@
+"""Runs the worlds of a class and the tutor's page."""
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import os
+import signal
+import socket
+import time
+from typing import Any, Callable, Dict, List, Optional
+
+from ..errors import CommandError
+from .class_plan import ClassPlan, Student
+from .class_state import TUTOR, ClassState
+from .local_world import ENDED, RUNNING, STARTING, STOPPED, LocalWorld
+from .monitor import Monitor
+from .tutor_page import TutorPage
+
+_LOOK_S = 1.0
+_STARTING_S = 90.0       # until the next world may start although this one has not
+_AGAIN_S = 5.0           # between two starts of a world that ends
+IDLE = "no browser was connected"
+
+
+class Place:
+    """A student's world with its monitor."""
+
+    def __init__(self, world: LocalWorld, monitor: Monitor) -> None:
+        self.world = world
+        self.monitor = monitor
+        self.task: "Optional[asyncio.Task[None]]" = None
+        self.waits = False       # for a browser, which starts the world
+        self.started = float("-inf")
+
+
+class ClassManager:
+    """A class that runs; everything but `start` of a world happens in one event loop.
+
+    Args:
+        plan: the class.
+        version: of the editor's protocol.
+        tell: receives lines for the terminal.
+
+    Raises:
+        CommandError: the class runs already, or a port is in use.
+    """
+
+    def __init__(self, plan: ClassPlan, version: int, tell: Callable[[str], None]) -> None:
+        self._plan, self._tell = plan, tell
+        self._state = ClassState(plan)
+        self._state.hold()
+        tokens = self._state.tokens(plan)
+        self._listening = {student.name: _listen(plan.host, student.port)
+                           for student in plan.students}
+        self._places = {
+            student.name: Place(LocalWorld(plan, student, tokens[student.name],
+                                           self._listening[student.name]), Monitor(version))
+            for student in plan.students}
+        self._page = TutorPage(plan, tokens[TUTOR], self)
+        self._ended: Optional[asyncio.Event] = None
+
+    def run(self) -> None:
+        """Run until SIGINT or SIGTERM; all worlds end then."""
+        asyncio.run(self._run())
+
+    async def _run(self) -> None:
+        loop = asyncio.get_running_loop()
+        self._ended = asyncio.Event()
+        for number in (signal.SIGINT, signal.SIGTERM):
+            loop.add_signal_handler(number, self._ended.set)
+        address = await self._page.start()
+        self._state.announce(address)
+        self._tell(f"tutor: {address}")
+        for place in self._places.values():
+            self._tell(f"{place.world.student.name}: {self.link(place.world.student)}")
+        starting = asyncio.ensure_future(self._start_all())
+        try:
+            while not self._ended.is_set():
+                self._look()
+                with contextlib.suppress(asyncio.TimeoutError):
+                    await asyncio.wait_for(self._ended.wait(), _LOOK_S)
+        finally:
+            starting.cancel()
+            for place in self._places.values():
+                self._unwait(place)
+            await asyncio.gather(*(self._stop(place, "the class ended")
+                                   for place in self._places.values()))
+            await self._page.close()
+            for one in self._listening.values():
+                one.close()
+
+    def link(self, student: Student) -> str:
+        """Address of a student's editor, with its token."""
+        token = self._places[student.name].world.token
+        return f"http://{_shown_host(self._plan.host)}:{student.port}/?token={token}"
+
+    # -- worlds ----------------------------------------------------------------------------------
+
+    async def _start_all(self) -> None:
+        """Start the worlds one after the other: each uses a whole processor until it runs."""
+        for place in self._places.values():
+            if place.world.state == STOPPED and not place.world.reason:
+                self._start(place)
+            until = time.monotonic() + _STARTING_S
+            while place.world.state == STARTING and time.monotonic() < until:
+                await asyncio.sleep(_LOOK_S / 4)
+
+    def _start(self, place: Place) -> None:
+        self._unwait(place)
+        place.started = time.monotonic()
+        place.monitor.error = ""
+        place.world.start()
+        place.task = asyncio.ensure_future(place.monitor.follow(place.world.monitor,
+                                                                place.world.token))
+
+    async def _stop(self, place: Place, reason: str) -> None:
+        await asyncio.get_running_loop().run_in_executor(None, place.world.stop, reason)
+        if place.task is not None:
+            place.task.cancel()
+            place.task = None
+
+    def _look(self) -> None:
+        idle_s = 60.0 * self._plan.idle_minutes
+        for place in self._places.values():
+            world = place.world
+            world.look()
+            if world.state == STARTING and place.monitor.is_connected:
+                world.state = RUNNING
+            if world.is_alive and idle_s and time.monotonic() > world.active + idle_s:
+                asyncio.ensure_future(self._sleep(place))
+            if world.state == ENDED or (world.state == STOPPED and world.reason == IDLE):
+                if place.task is not None:
+                    place.task.cancel()
+                    place.task = None
+                self._wait(place)
+
+    async def _sleep(self, place: Place) -> None:
+        await self._stop(place, IDLE)
+
+    def _wait(self, place: Place) -> None:
+        """Start the world again when a browser connects; the relay answers it then."""
+        if not place.waits and time.monotonic() > place.started + _AGAIN_S:
+            place.waits = True
+            asyncio.get_running_loop().add_reader(place.world.listening.fileno(), self._start,
+                                                  place)
+
+    def _unwait(self, place: Place) -> None:
+        if place.waits:
+            place.waits = False
+            asyncio.get_running_loop().remove_reader(place.world.listening.fileno())
+
+    # -- requests of the tutor's page ------------------------------------------------------------
+
+    def tiles(self) -> List[Dict[str, Any]]:
+        """What the page shows of each student."""
+        return [_tile(place, self.link(place.world.student)) for place in self._places.values()]
+
+    async def start_world(self, name: str) -> None:
+        """Start the world of a student if it does not run. Raises CommandError: no such student."""
+        place = self._place(name)
+        if not place.world.is_alive:
+            self._start(place)
+
+    async def stop_world(self, name: str) -> None:
+        """Stop the world of a student. Raises CommandError: no such student."""
+        place = self._place(name)
+        self._unwait(place)
+        await self._stop(place, "stopped by the tutor")
+
+    def _place(self, name: str) -> Place:
+        place = self._places.get(name)
+        if place is None:
+            raise CommandError(f"there is no student {name!r}")
+        return place
+
+
+def _tile(place: Place, link: str) -> Dict[str, Any]:
+    world, monitor = place.world, place.monitor
+    return {"name": world.student.name, "state": world.state, "reason": world.reason,
+            "world": monitor.world, "models": monitor.models, "factor": monitor.factor,
+            "time": monitor.time, "paused": monitor.is_paused, "error": monitor.error,
+            "people": monitor.people, "memory_mb": world.memory_mb,
+            "processor_s": world.processor_s, "link": link}
+
+
+def _listen(host: str, port: int) -> socket.socket:
+    family = socket.AF_INET6 if ":" in host else socket.AF_INET
+    try:
+        made = socket.create_server((host, port), family=family)
+    except OSError as fault:
+        raise CommandError(f"port {port} of {host} cannot be used: {os.strerror(fault.errno or 0)}"
+                           ) from None
+    made.setblocking(False)
+    return made
+
+
+def _shown_host(host: str) -> str:
+    if host in ("0.0.0.0", "::"):
+        return socket.gethostname()
+    return f"[{host}]" if ":" in host else host

@@ -1,0 +1,197 @@
+"""The world of a student as processes of this machine."""
+from __future__ import annotations
+
+import contextlib
+import json
+import os
+import signal
+import socket
+import subprocess
+import sys
+import time
+from typing import Any, Dict, List
+
+from ..child_process import child_environment, wait_or_kill
+from ..grading.box import descendants
+from ..grading.program import workspace_paths
+from . import relay, student_box
+from .class_plan import ClassPlan, Student, launch_text
+
+STARTING, RUNNING, STOPPED, ENDED = "starting", "running", "stopped", "ended"
+_COOKIE = "my_simulations_editor"   # before the port (editor/transport/access_guard.py)
+_RELAY_USER = 62999
+_END_S = 30.0
+_MEASURE_S = 3.0
+_DROPPED = ("DISPLAY", "WAYLAND_DISPLAY", "BROWSER", "MY_SIMULATIONS_PARENT",
+            "MY_SIMULATIONS_RECORD", "MAIL", "SSH_AUTH_SOCK", "DBUS_SESSION_BUS_ADDRESS")
+_KEPT_PREFIXES = ("ROS_", "PYTHON", "CMAKE_", "LD_LIBRARY", "PKG_CONFIG", "GAZEBO_", "LANG", "LC_",
+                  "PATH", "MY_SIMULATIONS_", "OMP_", "OPENBLAS_")
+
+
+class LocalWorld:
+    """Processes of one student; they end with this process.
+
+    Args:
+        plan: the class.
+        student: whose world it is.
+        token: of the editor.
+        listening: socket that browsers connect to; it stays open between two runs.
+
+    Attributes:
+        state: STARTING until the monitor reports the world, RUNNING, STOPPED, or ENDED if the
+            processes ended by themselves.
+        reason: why it stopped or ended.
+        active: monotonic wall time at which a browser was last connected, s.
+        monitor: port of this machine that leads to the editor, for the manager.
+        memory_mb: memory that belongs to the student's processes alone, MB.
+        processor_s: processor time of the living processes, s.
+    """
+
+    def __init__(self, plan: ClassPlan, student: Student, token: str,
+                 listening: socket.socket) -> None:
+        self.student = student
+        self.token = token
+        self.listening = listening
+        self.state, self.reason = STOPPED, ""
+        self.active = time.monotonic()
+        self.monitor = 0
+        self.memory_mb = self.processor_s = 0.0
+        self._measured = float("-inf")
+        self._plan = plan
+        self._process: "subprocess.Popen[bytes] | None" = None
+        self._activity = -1
+
+    def start(self) -> None:
+        """Start the processes. Raises OSError."""
+        home = make_home(self._plan, self.student)
+        monitoring = socket.create_server(("127.0.0.1", 0))
+        reading, writing = os.pipe()
+        os.set_blocking(reading, False)
+        passed = [self.listening.fileno(), monitoring.fileno(), writing]
+        with open(log_file(self._plan, self.student), "ab") as output:
+            self._process = subprocess.Popen(
+                [sys.executable, "-I", student_box.__file__], stdin=subprocess.PIPE, stdout=output,
+                stderr=subprocess.STDOUT, pass_fds=passed, start_new_session=True)
+        os.close(writing)
+        self.monitor = monitoring.getsockname()[1]
+        monitoring.close()
+        assert self._process.stdin is not None
+        with contextlib.suppress(BrokenPipeError):   # it has ended: `look` says so
+            self._process.stdin.write(json.dumps(self._specification(home, passed)).encode())
+            self._process.stdin.close()
+        self._activity = reading
+        self.state, self.reason, self.active = STARTING, "", time.monotonic()
+
+    def _specification(self, home: str, passed: List[int]) -> Dict[str, Any]:
+        limits, student = self._plan.limits, self.student
+        return {
+            "parent": os.getpid(), "home": home,
+            "class_folder": os.path.realpath(self._plan.folder),
+            "needed": workspace_paths(), "command": ["roslaunch", "-"],
+            "input": launch_text(self._plan, student.port),
+            "environment": self._environment(home), "user": student.user,
+            "processors": processors_of(student.number, limits.processors),
+            "bytes": int(limits.file_mb * 1e6), "memory_bytes": None, "processor_seconds": None,
+            "processes": limits.processes,
+            "relay": [sys.executable, "-I", relay.__file__, str(student.port),
+                      f"{_COOKIE}_{student.port}", *map(str, passed)],
+            "relay_user": _RELAY_USER, "descriptors": passed}
+
+    def _environment(self, home: str) -> Dict[str, str]:
+        kept = {name: value for name, value in child_environment().items()
+                if name.startswith(_KEPT_PREFIXES) and name not in _DROPPED}
+        return {**kept, "HOME": home, "USER": self.student.name, "LOGNAME": self.student.name,
+                "ROS_HOME": os.path.join(home, ".ros"), "ROS_MASTER_URI": "http://127.0.0.1:11311",
+                "ROS_IP": "127.0.0.1", "ROS_HOSTNAME": "127.0.0.1", "PYTHONUNBUFFERED": "1",
+                "MY_SIMULATIONS_NO_BROWSER": "1", "MY_SIMULATIONS_EDITOR_TOKEN": self.token}
+
+    @property
+    def is_alive(self) -> bool:
+        """Whether processes run."""
+        return self._process is not None and self._process.poll() is None
+
+    def look(self) -> None:
+        """Notice an end, activity of browsers, and too much memory."""
+        if self._process is None:
+            return
+        with contextlib.suppress(BlockingIOError):
+            if os.read(self._activity, 65536):
+                self.active = time.monotonic()
+        self._measure(self._process.pid)
+        if self.memory_mb > self._plan.limits.memory_mb:
+            self._end(STOPPED, f"more memory than {self._plan.limits.memory_mb:g} MB", 0.0)
+        elif not self.is_alive:
+            code = self._process.returncode
+            self._end(ENDED, f"the processes ended with status {code}", 0.0)
+
+    def stop(self, reason: str) -> None:
+        """End all processes, as Ctrl-C does; waits for them."""
+        if self._process is not None:
+            self._end(STOPPED, reason, _END_S)
+
+    def _end(self, state: str, reason: str, seconds: float) -> None:
+        process, self._process = self._process, None
+        assert process is not None
+        if seconds and process.poll() is None:
+            process.send_signal(signal.SIGTERM)
+            with contextlib.suppress(subprocess.TimeoutExpired):
+                process.wait(seconds)
+        if process.poll() is None:
+            process.kill()   # the namespaces end with it
+        wait_or_kill(process, _END_S)
+        os.close(self._activity)
+        self.state, self.reason, self.monitor = state, reason, 0
+        self.memory_mb = self.processor_s = 0.0
+        self._measured = float("-inf")
+
+    def _measure(self, process: int) -> None:
+        """Measure memory and processor time every few seconds."""
+        if time.monotonic() < self._measured + _MEASURE_S:
+            return
+        self._measured = time.monotonic()
+        found = descendants(process)
+        self.memory_mb = sum(map(_own_memory, found)) / 1e6
+        self.processor_s = sum(map(_processor_time, found))
+
+
+def processors_of(number: int, count: int) -> List[int]:
+    """The processors of a student: students share them in turn."""
+    all_of_them = sorted(os.sched_getaffinity(0))
+    return sorted({all_of_them[(number * count + index) % len(all_of_them)]
+                   for index in range(count)})
+
+
+def make_home(plan: ClassPlan, student: Student) -> str:
+    """The home folder, which only the student can enter; made if it does not exist."""
+    os.makedirs(os.path.dirname(plan.home(student)), exist_ok=True)
+    home = os.path.realpath(plan.home(student))
+    os.makedirs(home, 0o700, exist_ok=True)
+    if os.geteuid() == 0:
+        os.chown(home, student.user, student.user)
+    return home
+
+
+def log_file(plan: ClassPlan, student: Student) -> str:
+    """The file with the output of a student's programs, which only the manager can read."""
+    folder = os.path.join(plan.state, "logs")
+    os.makedirs(folder, 0o700, exist_ok=True)
+    return os.path.join(folder, f"{student.name}.txt")
+
+
+def _own_memory(pid: int) -> int:
+    """Resident bytes without those of files and shared memory."""
+    try:
+        with open(f"/proc/{pid}/statm", encoding="ascii") as statm:
+            words = statm.read().split()
+    except OSError:
+        return 0
+    return (int(words[1]) - int(words[2])) * os.sysconf("SC_PAGE_SIZE")
+
+
+def _processor_time(pid: int) -> float:
+    try:
+        with open(f"/proc/{pid}/stat", encoding="utf-8", errors="replace") as stat:
+            rest = stat.read().rpartition(")")[2].split()
+    except OSError:
+        return 0.0
+    return (int(rest[11]) + int(rest[12])) / os.sysconf("SC_CLK_TCK")
