@@ -257,3 +257,20 @@ test('a marker goes when its lifetime is over or time began anew, and stays with
     [false, false, true, false, true]);
   assert.equal(isOver({from: 10, lifetime: 0}, 1e6), false);
 });
+
+test('a robot that is selected before it has come shows what it senses', async () => {
+  const connection = new NotingConnection();
+  connection.connected = true;
+  const store = new Store(connection);
+  const topics = new Topics({store, connection, watches: new Watches(connection), later: (call) => call()});
+  store.receive({type: 'world', revision: 1, document: world()});
+  connection.answers.topics = {available: true, topics: []};
+  const asked = () => connection.requests.filter(([type]) => type === 'topics').length;
+  store.selection = ['taxi'];
+  store.emit('selection');
+  assert.equal(asked(), 0);
+  store.receive({type: 'change', revision: 2, models: {taxi: robot('taxi', ['base_link'], 30)}});
+  assert.equal(asked(), 1);
+  store.select([]);
+  await topics.refresh();
+});

@@ -45,6 +45,7 @@ export const HOTKEYS = Object.freeze([
   {keys: 'Ctrl held', title: 'Snap to 1 m or 45 degrees', group: 'Tools'},
   {keys: 'Shift held', title: 'World frame; uniform scale', group: 'Tools'},
   {keys: 'Ctrl+click', title: 'Add to or remove from selection', group: 'Tools'},
+  {keys: 'Enter', title: 'Place what is being inserted in the middle of the view', group: 'Tools', action: 'placeInMiddle'},
   {keys: 'Space', title: 'Play or pause', group: 'Time', action: 'togglePlay'},
   {keys: 'Drag', title: 'Pan (FPS control: look around)', group: 'Camera'},
   {keys: 'Shift+drag, middle drag', title: 'Orbit around the point under the cursor',
@@ -133,6 +134,7 @@ export function mountKeys(target, {store, actions}) {
     const row = hotkey(event);
     // Walking has the keys W, A, S and D.
     if (row?.keys === 'S' && store.camera.controller === 'fps') return;
+    if (row?.keys === 'Enter' && !store.placing) return;
     if (!row || event.defaultPrevented || belongsToControl(event)) return;
     event.preventDefault();
     if (!event.repeat || row.action === 'undo' || row.action === 'redo') run(actions, row.action);

@@ -4,11 +4,11 @@ import {NOTHING} from './nothing.js';
 /** @import {ActionParts} from './actions.js' */
 /** @import {Dropped} from './dropped_files.js' */
 /** @import {LightType, ShapeName} from './new_entities.js' */
-/** @import {Operation, Requests} from './protocol.js' */
+/** @import {Model, Operation, Requests} from './protocol.js' */
 /** @import {Pose7, Vec3} from './pose.js' */
 
 /** @param {ActionParts} parts */
-export function insertActions({store, ask, edit, dialog}) {
+export function insertActions({store, ask, edit, dialog, view}) {
   const inserts = {
     /** @param {ShapeName} shape */
     insertShape(shape) {
@@ -43,6 +43,18 @@ export function insertActions({store, ask, edit, dialog}) {
       else if (light) store.setPlacing({kind: 'light', document: light, uri, op});
       return outcome;
     },
+    /**
+     * Makes a robot of a template.
+     * @param {string} name  of the template
+     * @param {Record<string, unknown>} values  of its parameters
+     */
+    fromTemplate: (name, values) => ask('template', {name, values}, {quiet: true}),
+    /** Lets a robot follow the mouse. @param {{sdf: string, model: Model}} made */
+    insertMade({sdf, model}) {
+      store.setPlacing({kind: 'model', document: model, op: (pose) => ({kind: 'insert', sdf, pose})});
+    },
+    /** Puts down what is being placed in the middle of the view. */
+    placeInMiddle: () => view()?.placeInMiddle(),
     /**
      * Puts down what follows the mouse.
      * @param {Pose7} pose  in the world

@@ -221,6 +221,15 @@ export const FRAME_RECORD_BYTES = 32;
  *}} World */
 
 /** @typedef {{
+ *  name: string, title: string, kind: 'number'|'text'|'flag', default: unknown, unit: string,
+ *  minimum: number, maximum: number
+ *}} TemplateParameter */
+
+/** @typedef {{
+ *  name: string, title: string, description: string, parameters: TemplateParameter[]
+ *}} Template */
+
+/** @typedef {{
  *  uri: string, name: string, title: string, description: string, thumb: string
  *}} LibraryModel */
 
@@ -550,6 +559,10 @@ export const FRAME_RECORD_BYTES = 32;
  *      model: string, name: string, overwrite?: boolean|null, about?: BuildingAbout|null
  *    },
  *    reply: {uri: string, path: string}},
+ *  templates: {fields: {},
+ *    reply: {templates: Template[]}},
+ *  template: {fields: {name: string, values: Record<string, unknown>},
+ *    reply: {sdf: string, model: Model}},
  *  library_get: {fields: {uri: string, quiet?: boolean|null},
  *    reply: {model?: Model|null, light?: Light|null}},
  *  preview: {fields: {sdf: string, source?: string|null},

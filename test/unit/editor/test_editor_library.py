@@ -479,3 +479,22 @@ def test_a_building_is_saved_into_the_library_and_loaded_again(case):
         assert len((await browser.ask("building_load", name="Hut"))["plan"]["levels"]) == 2
 
     made.browse(build)
+
+
+def test_a_template_becomes_a_model_that_can_be_inserted(case):
+    made = case()
+
+    async def build(browser):
+        listed = (await browser.ask("templates"))["templates"]
+        assert {"differential_drive", "four_wheels", "arm"} <= {one["name"] for one in listed}
+        found = await browser.ask("template", name="differential_drive",
+                                  values={"name": "truck", "mass": 4})
+        assert found["model"]["name"] == "truck"
+        assert found["model"]["links"][0]["inertial"]["mass"] == 4.0
+        assert (await browser.edit("insert", sdf=found["sdf"]))["name"] == "truck"
+        with pytest.raises(Refused, match="Body mass must be"):
+            await browser.ask("template", name="differential_drive", values={"mass": -4})
+        with pytest.raises(Refused, match="unknown template"):
+            await browser.ask("template", name="boat", values={})
+
+    made.browse(build)

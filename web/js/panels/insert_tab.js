@@ -6,6 +6,7 @@ import {Dialog, labelled} from './dialog.js';
 import {elementsOf, fill, h, onActivate, remembered} from './dom.js';
 import {bytesText} from './text_format.js';
 import {icon} from './icons.js';
+import {TemplateCards} from './template_cards.js';
 /** @import {DownloadPush, LibraryModel, Location} from '../protocol.js' */
 
 /**
@@ -40,7 +41,8 @@ export class InsertTab {
       'aria-label': 'Find a model',
       oninput: () => this.#show(),
     });
-    this.#list = h('div', {class: 'library'});
+    this.#templates = new TemplateCards(page);
+    this.#list = h('div', {class: 'models'});
     this.#progress = h('div', {class: 'download', role: 'status', hidden: true});
     fill(
       element,
@@ -60,7 +62,7 @@ export class InsertTab {
         ),
       ),
       this.#progress,
-      this.#list,
+      h('div', {class: 'library'}, this.#templates.element, this.#list),
     );
     this.#list.addEventListener('keydown', (event) => this.#key(event));
     page.store.listen('library', (event) => this.#take(event.detail.locations));
@@ -75,6 +77,7 @@ export class InsertTab {
   }
 
   #search;
+  #templates;
   #list;
   #progress;
   /** @type {ReturnType<typeof setTimeout>|0} */
@@ -83,6 +86,7 @@ export class InsertTab {
 
   /** Asks for the library; called when the tab is first seen. */
   async load() {
+    if (!this.locations) this.#templates.load();
     try {
       this.#take((await this.page.request('library')).locations);
     } catch (fault) {

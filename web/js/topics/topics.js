@@ -92,6 +92,10 @@ export class Topics extends Emitter {
     connection.listen('open', () => this.refresh());
     connection.listen('close', () => this.#stop());
     store.listen('selection', () => this.#selected());
+    // What was just inserted may be selected before it has come.
+    store.listen('entity', ({detail: {kind, name, value}}) => {
+      if (kind === 'model' && value && name === this.#model()) this.refresh();
+    });
     store.listen('watch', ({detail: {topic, problem}}) => {
       if (topic.startsWith(PREFIX) && problem) this.#fail(topic.slice(PREFIX.length), problem);
     });
@@ -172,7 +176,7 @@ export class Topics extends Emitter {
   #model() {
     const last = this.#store.selection.at(-1);
     const model = last ? this.#store.split(last)[0] : undefined;
-    return model && !model.static ? model.name : undefined;
+    return model?.name;
   }
 
   #selected() {

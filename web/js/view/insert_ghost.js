@@ -57,6 +57,18 @@ export class Placer {
     if (pose) this.#actions.place(pose);
   }
 
+  /** Puts it down in the middle of the view, or below it where the middle shows no ground. */
+  putInMiddle() {
+    const {left, top, width, height} = this.#stage.canvas.getBoundingClientRect();
+    for (const down of [0.5, 0.7, 0.9]) {
+      const pose = this.#pose({clientX: left + width / 2, clientY: top + height * down});
+      if (pose) {
+        this.#actions.place(pose);
+        return;
+      }
+    }
+  }
+
   /** Keeps its own height and turn (Gazebo behaviour). @param {MousePoint} mousePoint */
   #pose({clientX, clientY, ctrlKey, metaKey}) {
     const {placing} = this.#store;
@@ -75,6 +87,8 @@ export class Placer {
     this.#dispose = () => {};
     const {placing} = this.#store;
     if (placing) {
+      // Enter and Escape mean what is being placed, also after a button was pressed by a key.
+      this.#stage.canvas.parentElement?.focus({preventScroll: true});
       const ghost = placing.kind === 'light' ? this.#lightGhost(placing.document)
         : this.#modelGhost(placing.document);
       ghost.visible = false;

@@ -67,6 +67,7 @@ export class View {
   #boxes;
   #overlays;
   #pointer;
+  #placer;
   #actors;
   #surroundings;
   #marks;
@@ -121,8 +122,9 @@ export class View {
     this.#cube = new OrientationCube(element, actions);
     this.#readout = readout(element);
     this.#preview = new Preview(shared);
+    this.#placer = new Placer(shared);
     this.#pointer = new Pointer({...shared, manipulator: this.#manipulator,
-      placer: new Placer(shared), faceSnap: this.#snap, forces: this.#forces,
+      placer: this.#placer, faceSnap: this.#snap, forces: this.#forces,
       selector, measure: this.#measure, pivotMark: new PivotMark(shared),
       boxSelect: new BoxSelect(element, store, (name) =>
         // The ground is nobody's choice.
@@ -224,6 +226,11 @@ export class View {
 
   /** What the measure tool says, for tests. */
   get measured() { return this.#measure.texts; }
+
+  /** Puts down what is being placed, where there is no mouse. */
+  placeInMiddle() {
+    this.#placer.putInMiddle();
+  }
 
   /** @param {import('../camera_math.js').View} view */
   flyTo(view) {

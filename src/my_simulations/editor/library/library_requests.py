@@ -17,6 +17,7 @@ from ..transport.web_socket import Route
 from .model_import import import_model
 from .model_library import Library
 from .model_saving import save_model
+from .template_requests import listed_templates, model_of_template
 
 _LOOK_S = 2.0
 
@@ -48,6 +49,7 @@ class LibraryRequests:
             "library": self._list, "library_add": self._add, "library_remove": self._remove,
             "library_get": self._get, "preview": self._preview,
             "import_model": self._import, "save_model": self._save,
+            "templates": self._templates, "template": self._template,
         }
         return {kind: Route(handler, self._pool) for kind, handler in handlers.items()}
 
@@ -109,6 +111,14 @@ class LibraryRequests:
         for issue in issues:
             self._tell(issue)
         return reply
+
+    @staticmethod
+    def _templates(_client: Client, _message: Dict[str, Any]) -> Dict[str, Any]:
+        return {"templates": listed_templates()}
+
+    def _template(self, _client: Client, message: Dict[str, Any]) -> Dict[str, Any]:
+        sdf, model = model_of_template(message["name"], message["values"], self._resolver)
+        return {"sdf": sdf, "model": shown(model, self._hub.documents)["model"]}
 
     def _preview(self, _client: Client, message: Dict[str, Any]) -> Dict[str, Any]:
         entity, _ = entity_of_text(message["sdf"], self._resolver, message.get("source"))
