@@ -88,8 +88,8 @@ def spawn(robot: Robot, plugins: bool, number: int = 0) -> None:
 @contextlib.contextmanager
 def subscriber(topics: Kinds, count: int = 1) -> Iterator["subprocess.Popen[str]"]:
     """Another process that receives all topics of the robots, and does nothing with them."""
-    names = [name if name.startswith("/") else f"/r{n}/{name}"
-             for n in range(count) for name, _, _ in topics]
+    names = dict.fromkeys(name if name.startswith("/") else f"/r{n}/{name}"
+                          for n in range(count) for name, _, _ in topics)
     process = subprocess.Popen(
         [sys.executable, os.path.join(os.path.dirname(__file__), "sink.py"), *names],
         stdout=subprocess.PIPE, text=True)
