@@ -21,8 +21,9 @@ from my_simulations.description.world import Physics, World
 from my_simulations.engine.commands import FOREVER, LoadModel, Restart
 from my_simulations.engine.process_engine import ProcessEngine
 from my_simulations.engine.timed_forces import JointPid, TimedWrench
+from my_simulations.engine.wrench_laws import VelocityForce
 from my_simulations.errors import CommandError, EngineLostError
-from my_simulations.geometry import STILL, Pose, Twist
+from my_simulations.geometry import STILL, ZERO3, Pose, Twist
 from my_simulations.simulator.history import History
 from my_simulations.simulator.inter_model_joints import InterModelJoints
 from my_simulations.simulator.operations import RemoveModel
@@ -345,6 +346,24 @@ def test_a_driven_joint_is_driven_on_after_an_edit_and_a_crash(start):
     sim.clock.advance(100)
     assert sim.joints.states("arm::hinge")[0] == (0.0, 0.0)
     assert sim.wrenches.efforts_on("arm::hinge") == ()
+
+
+def test_a_force_by_a_law_acts_until_a_reset_and_no_service_clears_it(start):
+    """The box reaches the velocity that the law wants within a few times m / gain, 10 ms."""
+    sim = start()
+    sim.models.spawn(box("load", 0.5, 4.0), Pose((0.0, 0.0, 50.0)))
+    law = VelocityForce((400.0, 400.0, 0.0), 1.0, 0.0, 0.0)
+    sim.wrenches.swap([], [("load::link", ZERO3, ZERO3, law)])
+    for happens in (lambda: None, lambda: kill(sim), lambda: sim.wrenches.clear_wrenches(
+            "load::link"), lambda: sim.models.set_link_inertial(
+                "load::link", Inertial(2.0, Pose((0.1, 0.0, 0.0)), 0.1, 0, 0, 0.1, 0, 0.1))):
+        happens()
+        sim.states.set_model_state("load", Pose((0.0, 0.0, 50.0)), STILL)
+        sim.clock.advance(200)
+        assert sim.states.model_state("load")[1].linear[0] == pytest.approx(1.0, abs=1e-3)
+    sim.resets.reset_simulation()
+    sim.clock.advance(100)
+    assert sim.states.model_state("load")[1].linear[0] == 0.0
 
 
 def test_a_world_whose_files_have_gone_is_reset_by_another_engine(start, tmp_path, monkeypatch):

@@ -6,6 +6,7 @@ from typing import Optional, Tuple, TypeVar, Union
 
 from ..geometry import Vec3
 from .commands import FOREVER, Command
+from .wrench_laws import WrenchLaw
 
 
 @dataclass(frozen=True)
@@ -38,6 +39,7 @@ class TimedWrench:
         force, torque: N and N m, world axes, at the centre of mass.
         in_link_axes: force, torque and point are in link axes and turn with the link.
         point: m, from the centre of mass to where the force is applied, same axes as the force.
+        law: computes force and torque in every step; the attributes above are not used then.
     """
 
     force_id: int
@@ -48,6 +50,7 @@ class TimedWrench:
     torque: Vec3 = (0.0, 0.0, 0.0)
     in_link_axes: bool = False
     point: Vec3 = (0.0, 0.0, 0.0)
+    law: Optional[WrenchLaw] = None
 
     def begun(self, step: int) -> "TimedWrench":
         """The same with its full duration from `step` on, if its start has passed."""

@@ -16,6 +16,7 @@ from ..description.surroundings import SphericalCoordinates
 from ..description.transmission import Transmission
 from ..engine.commands import JointWrench
 from ..engine.drive_commands import JointServo
+from ..engine.wrench_laws import WrenchLaw
 from ..errors import SimulationError
 from ..geometry import STILL, Pose, Twist, Vec3
 from ..sensing.api import CameraSpec, Pictures, RayFan, RayReturns
@@ -253,6 +254,13 @@ class Context(Protocol):
 
         N and N m, world axes, at the centre of mass. The link is one of the model, or of another
         model by its scoped name.
+        """
+
+    def push_by(self, link: str, law: WrenchLaw) -> None:
+        """As `push`, with the wrench that a law gives for the state of the link in each step.
+
+        The engine computes it, so it costs no synchronization. `law` is one of
+        `engine.wrench_laws`.
         """
 
     def move(self, pose: Pose, twist: Twist = STILL) -> None:

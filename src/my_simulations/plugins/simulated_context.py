@@ -13,8 +13,9 @@ from ..description.transmission import Transmission
 from ..engine.commands import Command, JointWrench
 from ..engine.drive_commands import PlanarVelocity, WheelSlip
 from ..engine.rates import Rate
+from ..engine.wrench_laws import WrenchLaw
 from ..errors import CommandError, Issue, Severity
-from ..geometry import IDENTITY, STILL, Pose, Twist, Vec3, compose
+from ..geometry import IDENTITY, STILL, ZERO3, Pose, Twist, Vec3, compose
 from ..sensing.api import Mount, Pictures, RayFan, RayReturns
 from ..simulator.entity import Entity
 from ..simulator.scene_sensing import SceneSensing
@@ -266,9 +267,15 @@ class SimulatedContext(GraphUser):
 
     def push(self, link: str, force: Vec3, torque: Vec3) -> None:
         """A wrench from now on."""
-        if "::" not in link or self._rows.has_link(link):
-            link = self.scoped(link)
-        self.orders.pushes[link] = (vector(force, "force"), vector(torque, "torque"))
+        self.orders.pushes[self._pushed(link)] = (vector(force, "force"),
+                                                  vector(torque, "torque"), None)
+
+    def push_by(self, link: str, law: WrenchLaw) -> None:
+        """The wrench of a law from now on."""
+        self.orders.pushes[self._pushed(link)] = (ZERO3, ZERO3, law)
+
+    def _pushed(self, link: str) -> str:
+        return link if "::" in link and not self._rows.has_link(link) else self.scoped(link)
 
     def scoped(self, link: str) -> str:
         """The name that a link of the model has in the world."""

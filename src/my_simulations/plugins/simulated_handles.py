@@ -7,6 +7,7 @@ from typing import Dict, Optional, Tuple
 from ..description.model import Inertial
 from ..description.model import Joint as JointSpec
 from ..engine.drive_commands import JointMotor, JointServo, PlanarVelocity
+from ..engine.wrench_laws import WrenchLaw
 from ..geometry import Pose, Twist, Vec3
 from .checked_arguments import finite, number
 from .observations import StepView
@@ -19,13 +20,13 @@ class Orders:
     Attributes:
         motors, servos: by joint row.
         planar: of the model.
-        pushes: force and torque by the scoped name of a link.
+        pushes: force and torque, or the law of both, by the scoped name of a link.
     """
 
     motors: Dict[int, JointMotor] = field(default_factory=dict)
     servos: Dict[int, JointServo] = field(default_factory=dict)
     planar: Optional[PlanarVelocity] = None
-    pushes: Dict[str, Tuple[Vec3, Vec3]] = field(default_factory=dict)
+    pushes: Dict[str, Tuple[Vec3, Vec3, Optional[WrenchLaw]]] = field(default_factory=dict)
 
 
 class SimulatedLink:

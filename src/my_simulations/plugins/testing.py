@@ -19,6 +19,7 @@ from ..description.transmission import Transmission
 from ..engine.commands import JointWrench
 from ..engine.rates import Rate
 from ..engine.ring import Clock
+from ..engine.wrench_laws import WrenchLaw
 from ..geometry import IDENTITY, STILL, Pose, Twist, Vec3
 from .context import PluginError
 from .parameters import Parameters
@@ -93,7 +94,7 @@ class FakeContext:
         published: messages by topic, as named with the namespace.
         transforms: (parent, child, pose), in order.
         said: what was told the user.
-        pushes: the last wrench of each link.
+        pushes: the last wrench of each link; laws are computed after each step.
         level: the last planar velocity.
         returns: what rays meet; `fans`: (fan, visuals) of the scans.
         pictures: what each view sees; `views`: the views of each moment. `late`: nothing is ready.
@@ -134,6 +135,7 @@ class FakeContext:
         self.published: Dict[str, List[Any]] = {}
         self.transforms: List[Tuple[str, str, Pose]] = []
         self.pushes: Dict[str, Tuple[Vec3, Vec3]] = {}
+        self._laws: Dict[str, WrenchLaw] = {}
         self.level: Optional[Tuple[float, float, float]] = None
         self.touching: List[Any] = []
         self.held = False
@@ -168,6 +170,7 @@ class FakeContext:
             for one in list(self._calls):
                 if one in self._calls and one.is_due(self.step, self.now_ns, clock):
                     one.call()
+            self._compute_laws()
 
     def hear(self, topic: str, **fields: Any) -> None:
         """Have a message arrive; dictionaries are messages in it."""
@@ -232,6 +235,18 @@ class FakeContext:
     def push(self, link: str, force: Vec3, torque: Vec3) -> None:
         """Noted."""
         self.pushes[link] = (force, torque)
+        self._laws.pop(link, None)
+
+    def push_by(self, link: str, law: WrenchLaw) -> None:
+        """Noted."""
+        self._laws[link] = law
+        self._compute_laws()
+
+    def _compute_laws(self) -> None:
+        for name, law in self._laws.items():
+            link = self.link(name)
+            self.pushes[name] = law.wrench(link.pose, link.twist,
+                                             link.inertial.pose.position)
 
     def move(self, pose: Pose, twist: Twist = STILL) -> None:
         """The model jumps."""

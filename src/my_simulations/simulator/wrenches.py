@@ -14,6 +14,7 @@ from ..engine.timed_forces import (
     TimedForce,
     TimedWrench,
 )
+from ..engine.wrench_laws import WrenchLaw
 from ..errors import CommandError
 from ..geometry import ZERO3, Vec3, compose, inverse, is_finite, rotate, subtract, transform
 from .entity import Entity
@@ -102,7 +103,7 @@ class Wrenches:
                      and force.stop == FOREVER)
 
     def clear_wrenches(self, link: str) -> None:
-        """Clear every wrench on a link. Raises UnknownEntityError."""
+        """Clear every wrench on a link, except those by a law. Raises UnknownEntityError."""
         with self._session.structure_lock:
             self._clear_row(TimedWrench, self._session.link_row(link))
 
@@ -133,14 +134,16 @@ class Wrenches:
                 self._forces.pop(force_id, None)
             self._session.call(ClearTimedForces(tuple(force_ids)))
 
-    def swap(self, old: Sequence[int], wrenches: Sequence[Tuple[str, Vec3, Vec3]],
+    def swap(self, old: Sequence[int],
+             wrenches: Sequence[Tuple[str, Vec3, Vec3, Optional[WrenchLaw]]],
              revision: Optional[int] = None) -> Optional[List[int]]:
         """Clear some by id, and add others until they are cleared, between the same two steps.
 
         Args:
             old: ids; unknown ones have run out.
             wrenches: scoped name of a link, force (N) and torque (N m) in world axes at the centre
-                of mass. Zero ones, and those on a missing link, are left out.
+                of mass, or the law by which the engine computes both. Zero ones, and those on a
+                missing link, are left out.
             revision: of the models when they were worked out (`Models.revision`).
 
         Returns:
@@ -153,14 +156,14 @@ class Wrenches:
                 return None
             ids: List[int] = []
             new: List[TimedForce] = []
-            for link, force, torque in wrenches:
+            for link, force, torque, law in wrenches:
                 row = session.registry.link_row_or_none(link) \
-                    if any((*force, *torque)) else None
+                    if law is not None or any((*force, *torque)) else None
                 if row is None:
                     ids.append(0)
                     continue
                 ids.append(session.new_id())
-                new.append(TimedWrench(ids[-1], row, 0, FOREVER, force, torque))
+                new.append(TimedWrench(ids[-1], row, 0, FOREVER, force, torque, law=law))
             commands: List[Command] = [ClearTimedForces(tuple(old))] if old else []
             if new:
                 commands.append(AddTimedForces(tuple(new), whole=True))
@@ -221,7 +224,8 @@ class Wrenches:
 
     def _clear_row(self, kind: type, row: int) -> None:
         found = [force.force_id for force in self._forces.values()
-                 if isinstance(force, kind) and force.row == row]
+                 if isinstance(force, kind) and force.row == row
+                 and not (isinstance(force, TimedWrench) and force.law is not None)]
         if found:
             self.remove(found)
 

@@ -4,13 +4,27 @@ PyBullet forgets external forces and joint torques after one step.
 """
 from __future__ import annotations
 
+import struct
 from typing import Callable, Dict, FrozenSet, List, Optional, Sequence, Set, Tuple
 
 import pybullet
 
-from ...geometry import Quat, Vec3, add, conjugate, cross, rotate, scale
+from ...geometry import (
+    Pose,
+    Quat,
+    Twist,
+    Vec3,
+    add,
+    conjugate,
+    cross,
+    is_finite,
+    rotate,
+    scale,
+)
+from ..ring import LINK_WIDTH
 from ..run_state import DamperMemory, LoopMemory
 from ..timed_forces import TimedEffort, TimedForce, TimedWrench
+from ..wrench_laws import WrenchLaw
 from .bodies import Axis, Body, Part, set_sleep
 from .force_dependent_slip import ForceDependentSlip
 from .implicit_axes import ImplicitAxes, Motor
@@ -21,6 +35,7 @@ from .step_helper import FAR
 
 _NOTHING = (0.0, 0.0, 0.0)
 _NOBODY: FrozenSet[int] = frozenset()
+_ROW = struct.Struct(f"={LINK_WIDTH}d")
 
 
 class Forces:
@@ -33,13 +48,16 @@ class Forces:
     def __init__(self, wake: Callable[[List[Body]], None],
                  loops_changed: Callable[[Set[int]], None] = lambda rows: None,
                  release: Callable[[Body, Axis], None] = lambda body, axis: None,
-                 motor_of: Callable[[int], Motor] = lambda row: None) -> None:
+                 motor_of: Callable[[int], Motor] = lambda row: None,
+                 read_links: Callable[[Tuple[int, ...]], bytes] = lambda rows: b"") -> None:
         """`loops_changed` gets the axis rows that PID loops drive whenever these change.
 
         `release` gives an axis that a servo has left back to its motor, or its friction; `motor_of`
-        returns the motor of the axis of a row.
+        returns the motor of the axis of a row. `read_links` returns the rows of links as they are
+        now.
         """
-        self._motor_of = motor_of
+        self._motor_of, self._read_links = motor_of, read_links
+        self._by_law: Dict[int, Tuple[Vec3, Vec3]] = {}   # of the last step, by force id
         self._wake = wake
         self._loops_changed = loops_changed
         self._timed: Dict[int, TimedForce] = {}
@@ -125,6 +143,7 @@ class Forces:
         ended = [self._loops.pop(force_id, None) for force_id in force_ids]
         for force_id in force_ids:
             self._timed.pop(force_id, None)
+            self._by_law.pop(force_id, None)
             force = self._acting.pop(force_id, None)
             if force is not None:
                 body = self._target(force)
@@ -142,8 +161,9 @@ class Forces:
     def clear(self) -> None:
         """All bodies are gone, and every timed force with them."""
         ended = bool(self._loops)
-        for table in (self._timed, self._acting, self._loops, self._resumed, self._parts,
-                      self._axes, self._weightless, self._implicit, self._resting, self._limits):
+        for table in (self._timed, self._acting, self._by_law, self._loops, self._resumed,
+                      self._parts, self._axes, self._weightless, self._implicit, self._resting,
+                      self._limits):
             table.clear()
         self.slip.clear()
         self.servos.clear()
@@ -182,7 +202,8 @@ class Forces:
         for wrench in self._acting.values():
             if isinstance(wrench, TimedWrench) and wrench.row == row:
                 body, part = self._parts[row]
-                one, other = _in_world(wrench, part, place(body.uid, part.index)[1])
+                one, other = self._by_law.get(wrench.force_id) or _in_world(
+                    wrench, part, place(body.uid, part.index)[1])
                 force, torque = add(force, one), add(torque, other)
         return force, torque
 
@@ -289,7 +310,8 @@ class Forces:
         if not body.moves:
             return
         at, turn = place(body.uid, part.index)
-        force, torque = _in_world(wrench, part, turn)
+        force, torque = _in_world(wrench, part, turn) if wrench.law is None \
+            else self._computed(wrench, wrench.law, part.link_from_com.position)
         if force != _NOTHING:
             pybullet.applyExternalForce(body.uid, part.index, force, at, pybullet.WORLD_FRAME)
         if torque != _NOTHING and body.rigid:
@@ -297,6 +319,14 @@ class Forces:
             _spin_up(body.uid, turn, part.moments, scale(torque, dt / body.turn_kept))
         elif torque != _NOTHING:
             pybullet.applyExternalTorque(body.uid, part.index, torque, pybullet.WORLD_FRAME)
+
+    def _computed(self, wrench: TimedWrench, law: WrenchLaw, com: Vec3) -> Tuple[Vec3, Vec3]:
+        """Force and torque by the state of the link; none if they are not finite."""
+        n = _ROW.unpack(self._read_links((wrench.row,)))
+        force, torque = law.wrench(Pose(n[0:3], n[3:7]), Twist(n[7:10], n[10:13]), com)
+        found = (force, torque) if is_finite(*force, *torque) else (_NOTHING, _NOTHING)
+        self._by_law[wrench.force_id] = found
+        return found
 
 
 def _in_world(wrench: TimedWrench, part: Part, turn: Quat) -> Tuple[Vec3, Vec3]:

@@ -81,7 +81,8 @@ class HelperSet:
         driver = WakeUp(bodies_by_uid, self._driven)
         self.forces = Forces(driver.around, lambda rows: self.motors.yield_to(rows),
                              lambda body, axis: self.motors.restore(body, axis),
-                             lambda row: self.motors.driven(row))
+                             lambda row: self.motors.driven(row),
+                             lambda rows: self.row_reader.read_links(rows))
         self._friction = FrictionBalance(self.notices.misfit)
         self._bounces = PairRestitution(self._parameters, self.notices.odd_bounce)
         self._spin = GyroscopicRigid(lambda: self.forces.wrenched_links)

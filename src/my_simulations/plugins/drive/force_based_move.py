@@ -3,19 +3,21 @@
 Parameters, defaults, topics and laws are those of hector_gazebo_plugins and of its copies
 (librobotnik_force_based_move.so, libridgeback_ros_force_based_move.so), which differ in their
 watchdogs: in every step a force along x and y of the base, and a torque about its vertical, in
-proportion to what its velocity lacks. Odometry is the truth, from where the robot began. Where it
-differs: Robotnik's robots brake when the watchdog has stopped them (there, they are put back to one
-place), and go on telling their odometry.
+proportion to what its velocity lacks, which the engine computes. Odometry is the truth, from where
+the robot began. Where it differs: Robotnik's robots brake when the watchdog has stopped them
+(there, they are put back to one place), and go on telling their odometry.
 """
 from __future__ import annotations
 
 import math
 from typing import Optional
 
-from ...geometry import conjugate, rotate, rpy_from_quat
+from ...engine.wrench_laws import VelocityForce
+from ...geometry import rpy_from_quat
 from ..base import Plugin
 from ..context import PluginError
 from ..parameters import namespace_or
+from ..stepwise_change import StepwiseChange
 from .odometry import Odometer, planar
 from .wheels import VelocityCommand
 
@@ -50,10 +52,11 @@ class ForceBasedMove(Plugin):
         self._broadcasts = p.flag("publishOdometryTf", True)
         self._sideways = p.flag("allowLateralMotion", True)
         seconds = p.number(*self.watchdog)
+        self._change = StepwiseChange(context, 0.0, self._follow)
         self._command = VelocityCommand(context, p.text("commandTopic", "cmd_vel"),
-                                        None if seconds == self.never else seconds)
+                                        None if seconds == self.never else seconds, self._change)
         self._begin()
-        context.every(0.0, self.push)
+        self._push()
         hertz = p.number("odometryRate", 20.0)
         if hertz > 0.0:
             context.observe(hertz, self.tell, self._odometer.topics,
@@ -62,22 +65,28 @@ class ForceBasedMove(Plugin):
     def reset(self) -> None:
         """Stand."""
         self._command.stop()
+        self._change.end()
         self._begin()
+        self._push()
+
+    def clock_set(self) -> None:
+        """Commands expire by the new clock."""
+        self._command.clock_set()
 
     def _begin(self) -> None:
         """Odometry begins where the robot is, as in the original."""
         pose = self.context.pose
         self._start = (pose.position[0], pose.position[1], rpy_from_quat(pose.orientation)[2])
 
-    def push(self) -> None:
-        """Before each step."""
+    def _follow(self, dt: float) -> bool:
         self._command.look()
-        pose, twist = self._base.pose, self._base.twist
-        vx, vy, _ = rotate(conjugate(pose.orientation), twist.linear)
-        sideways = self._command.y if self._sideways else 0.0
-        along = (self._gains[0] * (self._command.x - vx), self._gains[1] * (sideways - vy), 0.0)
-        torque = self._gains[2] * (self._command.yaw - twist.angular[2])
-        self.context.push(self._base.name, rotate(pose.orientation, along), (0.0, 0.0, torque))
+        self._push()
+        return True
+
+    def _push(self) -> None:
+        command = self._command
+        self.context.push_by(self._base.name, VelocityForce(
+            self._gains, command.x, command.y if self._sideways else 0.0, command.yaw))
 
     def tell(self) -> None:
         """Publish odometry: truth, from where the robot began."""

@@ -33,7 +33,7 @@ HANDLES = {"link": "link", "model_link": "link", "joint": "joint", "publish": "t
            "subscribe": "end", "serve": "end", "every": "end", "observe": "end", "once": "end"}
 """Methods of the context that return handles, and the kinds of these."""
 
-ORDERS = frozenset(("drive_level", "push", "transform", "info", "warn"))
+ORDERS = frozenset(("drive_level", "push", "push_by", "transform", "info", "warn"))
 """Methods of the context without a result."""
 
 HANDLE_ORDERS = {"link": frozenset(()), "joint": frozenset(("drive", "steer")),

@@ -5,6 +5,7 @@ import pickle
 from functools import partial
 from typing import Any, Callable, Dict, Sequence
 
+from ...engine.wrench_laws import WrenchLaw
 from ...geometry import Pose, Twist, Vec3
 from ..checked_arguments import finite, number, pose_of, vector
 from ..parameters import Parameters
@@ -18,6 +19,10 @@ class RemoteHandle:
     def __init__(self, connection: Connection, made: HandleMade) -> None:
         self._connection, self.number = connection, made.number
         connection.readings.states[made.number] = made.state
+
+    def push_by(self, link: str, law: WrenchLaw) -> None:
+        """The wrench of a law from now on."""
+        self._order("push_by", link, law)
 
     def _order(self, name: str, *arguments: Any) -> None:
         self._connection.order(self.number, name, *arguments)
@@ -199,6 +204,10 @@ class RemoteContext:
     def push(self, link: str, force: Vec3, torque: Vec3) -> None:
         """A wrench from now on."""
         self._order("push", link, vector(force, "force"), vector(torque, "torque"))
+
+    def push_by(self, link: str, law: WrenchLaw) -> None:
+        """The wrench of a law from now on."""
+        self._order("push_by", link, law)
 
     def _order(self, name: str, *arguments: Any) -> None:
         self._connection.order(CONTEXT, name, *arguments)

@@ -10,13 +10,14 @@ from typing import Dict, List, Optional, Tuple
 
 from ...description.model import Link as LinkSpec
 from ...description.shapes import Box, Capsule, Cone, Cylinder, Ellipsoid, Sphere
-from ...geometry import Vec3, add, cross, norm, scale, subtract, transform
+from ...engine.wrench_laws import ForceAtPoint
+from ...geometry import Vec3, add, scale
 from ..base import Plugin
 from ..context import Link
 from ..parameters import Parameters
 
 _WATER = 999.1026  # kg/m^3, at 15 degrees
-_SAME_PLACE = 1e-9  # m
+_GRAVITY_HZ = 10.0  # how often another gravity is looked for
 
 
 class Buoyancy(Plugin):
@@ -32,10 +33,8 @@ class Buoyancy(Plugin):
             found = given.get(spec.name) or self._volume(spec)
             if found is not None and found[0] > 0.0:
                 self._floats.append((context.link(spec.name), *found))
-        turning = any(norm(subtract(centre, link.inertial.pose.position)) > _SAME_PLACE
-                      for link, _, centre in self._floats)
         self.update()
-        context.every(0.0 if turning else 10.0, self.update)
+        context.every(_GRAVITY_HZ, self.update)
 
     def reset(self) -> None:
         """Forces ended with the reset."""
@@ -69,13 +68,10 @@ class Buoyancy(Plugin):
         return (total, scale(moment, 1.0 / total)) if total > 0.0 else None
 
     def update(self) -> None:
-        """Push at the centres of volume; where that is the centre of mass, it stays so."""
+        """Push at the centres of volume against the gravity of now."""
         for link, volume, centre in self._floats:
-            pose = link.pose
             force = scale(self.context.gravity, -self._density * volume)
-            arm = subtract(transform(pose, centre),
-                           transform(pose, link.inertial.pose.position))
-            self.context.push(link.name, force, cross(arm, force))
+            self.context.push_by(link.name, ForceAtPoint(force, centre))
 
 
 def volume_of(shape: object) -> Optional[float]:
