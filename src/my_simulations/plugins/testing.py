@@ -68,8 +68,8 @@ class FakeHandle:
 
 class _Call:
     def __init__(self, owner: "List[_Call]", call: Callable[[], None], rate: Optional[Rate],
-                 ns: int = 0) -> None:
-        self._owner, self._rate, self._ns = owner, rate, ns
+                 ns: int = 0, stops: bool = False) -> None:
+        self._owner, self._rate, self._ns, self.stops = owner, rate, ns, stops
         self.call = call
 
     def is_due(self, step: int, now_ns: int, clock: Clock) -> bool:
@@ -185,8 +185,13 @@ class FakeContext:
 
     def every(self, hertz: float, call: Callable[[], None]) -> Any:
         """Be called at a rate."""
-        self._calls.append(_Call(self._calls, call, Rate(hertz)))
+        self._calls.append(_Call(self._calls, call, Rate(hertz), stops=True))
         return self._calls[-1]
+
+    @property
+    def stops(self) -> int:
+        """How many calls at a rate stop the engine, see `every`."""
+        return sum(one.stops for one in self._calls)
 
     def observe(self, hertz: float, call: Callable[[], None], topics: Sequence[Any] = (), *,
                 lead: float = 0.0, resume: Optional[Callable[[], None]] = None,

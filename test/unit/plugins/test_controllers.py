@@ -114,6 +114,15 @@ def test_a_gripper_reaches_its_goal():
     assert arm.at() == pytest.approx(0.2, abs=0.01)
 
 
+def test_a_gripper_stops_the_engine_only_while_it_has_a_goal():
+    arm, send, results = gripper()
+    before = arm.context.stops
+    send(0.2)
+    assert arm.context.stops == before + 1
+    arm.context.advance(2.0)
+    assert arm.context.stops == before
+
+
 def test_a_gripper_that_holds_something_stalls():
     arm, send, results = gripper(stall_timeout=0.3)
     send(0.2, effort=5.0)

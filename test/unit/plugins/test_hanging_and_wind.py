@@ -146,6 +146,24 @@ def test_a_lift_closes_moves_opens_waits_and_closes():
     assert targets(context) == (0.0, 0.0)
 
 
+def test_a_lift_stops_the_engine_only_while_it_serves_a_call():
+    context, _ = lift()
+    assert context.stops == 0
+    context.hear("elevator", data="1")
+    assert context.stops == 1
+    for _ in range(5):   # stages
+        arrive(context)
+        context.advance(1.1)
+    assert context.stops == 0 and targets(context) == (2.0, 0.0)
+
+
+def test_a_harness_stops_the_engine_until_it_lets_go():
+    context = hanging()
+    assert context.stops == 1
+    context.hear("/box/harness/detach", data=True)
+    assert context.stops == 0
+
+
 def test_a_lift_that_waits_while_the_clock_is_set_back_goes_on():
     context, plugin = lift()
     context.advance(60.0)

@@ -7,6 +7,7 @@ from typing import Any, Optional
 from ...engine.drive_commands import PidGains
 from ..actions import ActionServer, Goal
 from ..finite_messages import is_all_finite
+from ..stepwise_change import StepwiseChange
 from ..time_out import TimeOut
 from .controller import RUNNING, Controller
 from .hardware import EFFORT, POSITION
@@ -33,6 +34,9 @@ class Gripper(Controller):
         self._still = s.number("stall_velocity_threshold", 0.001)
         self._stall = TimeOut(self.context, s.number("stall_timeout", 1.0))
         self._goal: Optional[Goal] = None
+        self._watch = StepwiseChange(
+            self.context, min(_LOOK_HZ, 1.0 / self.period) if self.period else _LOOK_HZ,
+            self._look)
         self._wanted, self._most = 0.0, self._default_effort
         self._action = ActionServer(self.context, f"{self.name}/gripper_cmd",
                                     "control_msgs/GripperCommand", self._asked, self._cancelled)
@@ -44,10 +48,10 @@ class Gripper(Controller):
     def start(self) -> None:
         """Hold."""
         self._hold()
-        self.every(min(_LOOK_HZ, 1.0 / self.period) if self.period else _LOOK_HZ, self._look)
 
     def stop(self) -> None:
         """The goal ends."""
+        self._watch.end()
         self._preempt("the controller was stopped")
 
     def _asked(self, goal: Goal) -> None:
@@ -62,6 +66,7 @@ class Gripper(Controller):
         goal.accept()
         self._goal = goal
         self._stall.begin()
+        self._watch.begin()
         self._go(float(command.position), float(command.max_effort))
 
     def _cancelled(self, goal: Goal) -> None:
@@ -86,11 +91,11 @@ class Gripper(Controller):
         else:
             self._joint.follow(wanted, gains=self._gains, by_rates=True, most_effort=self._most)
 
-    def _look(self) -> None:
-        """Whether it is there, or holds something."""
+    def _look(self, dt: float) -> bool:
+        """End the goal if the joint is there, or holds something; whether there is no goal."""
         goal = self._goal
         if goal is None or not goal.active:
-            return
+            return True
         if abs(self._wanted - self._joint.position) < self._tolerance:
             self._goal = None
             goal.succeed(self._result(False, True))
@@ -99,6 +104,7 @@ class Gripper(Controller):
         elif self._stall.is_over:
             self._goal = None
             goal.abort(self._result(True, False))
+        return self._goal is None
 
     def _result(self, stalled: bool, reached: bool) -> Any:
         result = self._action.result()

@@ -5,11 +5,12 @@ in files (`<useCustomStaticWindField>`) are not supported.
 """
 from __future__ import annotations
 
-from typing import Optional
+from typing import List, Optional
 
-from ...geometry import Vec3, add, cross, norm, rotate, scale, subtract
+from ...engine.wrench_laws import ForceAtPoint
+from ...geometry import Vec3, add, norm, scale
 from ..base import Plugin
-from ..context import PluginError, Publication
+from ..context import Ending, PluginError, Publication
 from ..frames import stamped
 from ..parameters import namespace_or
 from .body_wrench import fill_wrench
@@ -45,8 +46,21 @@ class RotorsWind(Plugin):
             context.observe(0.0, self._publish_speed, [self._speed])
         except PluginError as missing:
             context.info(f"the speed of the wind is not published: {missing}")
+        self._changes: List[Ending] = []   # when the gust begins and ends
+        self.reset()
+
+    def reset(self) -> None:
+        """Forces ended with the reset."""
+        for one in self._changes:
+            one.end()
+        self._changes = []
         if any(self._steady) or any(self._gust):
-            context.every(0.0, self.update)
+            self._push()
+            # A nanosecond more: steps may begin that much early.
+            self._changes = [self.context.once(ns + 1, self._push) for ns in self._gust_ns
+                             if ns > self.context.now_ns]
+
+    clock_set = reset
 
     def force(self) -> Vec3:
         """On the link now, N, world axes."""
@@ -54,12 +68,9 @@ class RotorsWind(Plugin):
         blows = start <= self.context.now_ns < end
         return add(self._steady, self._gust) if blows else self._steady
 
-    def update(self) -> None:
-        """Before each step."""
-        arm = rotate(self._link.pose.orientation,
-                     subtract(self._offset, self._link.inertial.pose.position))
-        force = self.force()
-        self.context.push(self._link.name, force, cross(arm, force))
+    def _push(self) -> None:
+        """Push from now on, at a point that moves with the link."""
+        self.context.push_by(self._link.name, ForceAtPoint(self.force(), self._offset))
 
     def _publish_force(self) -> None:
         message = stamped(self.context, "geometry_msgs/WrenchStamped", self._frame)

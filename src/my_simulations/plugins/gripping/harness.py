@@ -27,7 +27,7 @@ from ...geometry import (
     subtract,
 )
 from ..base import Plugin
-from ..context import PluginError
+from ..context import Ending, PluginError
 from ..finite_messages import finite_only
 from ..parameters import Parameters
 
@@ -88,8 +88,8 @@ class Harness(Plugin):
         context.subscribe(f"{above}/velocity", "std_msgs/Float32",
                           finite_only(context, f"{above}/velocity", self._hear_rate))
         context.subscribe(f"{above}/detach", "std_msgs/Bool", self._hear_detach)
+        self._timer: Optional[Ending] = None   # while it hangs
         self.reset()
-        context.every(0.0, self.update)
 
     def _read_joint(self, joint: Parameters) -> None:
         context = self.context
@@ -120,6 +120,8 @@ class Harness(Plugin):
     def reset(self) -> None:
         """Hang where the model is."""
         self._hangs = True
+        if self._timer is None:
+            self._timer = self.context.every(0.0, self.update)
         self._anchor: Pose = self._link.pose
         self._axis: Vec3 = rotate(self._anchor.orientation, self._axis_in_link)
         self._rate = self._place = 0.0
@@ -140,6 +142,9 @@ class Harness(Plugin):
     def _hear_detach(self, message: Any) -> None:
         if bool(message.data) and self._hangs:
             self._hangs = False
+            if self._timer is not None:
+                self._timer.end()
+                self._timer = None
             self.context.push(self._link.name, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
             self.context.info("the harness lets go")
 

@@ -13,6 +13,7 @@ from ...engine.drive_commands import JointServo, PidGains
 from ..base import Plugin
 from ..context import Joint, PluginError
 from ..parameters import namespace_or
+from ..stepwise_change import StepwiseChange
 from ..time_out import TimeOut
 
 _HERTZ = 100.0
@@ -35,8 +36,8 @@ class Elevator(Plugin):
         self._height = p.number("floor_height", 3.0)
         self._wait = TimeOut(context, p.number("door_wait_time", 5.0))
         context.subscribe(p.text("topic") or "elevator", "std_msgs/String", self._hear)
+        self._change = StepwiseChange(context, _HERTZ, self._update)
         self.reset()
-        context.every(_HERTZ, self.update)
 
     def _joint(self, name: str) -> Joint:
         found = self.context.parameters.text(name)
@@ -46,6 +47,7 @@ class Elevator(Plugin):
 
     def reset(self) -> None:
         """On the ground, with a closed door."""
+        self._change.end()
         self._stages: List[Stage] = []
         self._go(0)
         self._move_door(_CLOSED)
@@ -60,11 +62,13 @@ class Elevator(Plugin):
         if not self._stages:
             self._stages = [self._door_stage(_CLOSED), self._lift_stage(floor),
                             self._door_stage(_OPEN), self._waiting(), self._door_stage(_CLOSED)]
+            self._change.begin()
 
-    def update(self) -> None:
-        """Go on with what was called for."""
+    def _update(self, dt: float) -> bool:
+        """Go on with the stages of a call; whether all are over."""
         if self._stages and self._stages[0]():
             self._stages.pop(0)
+        return not self._stages
 
     def _go(self, floor: int) -> None:
         self._level = floor * self._height
