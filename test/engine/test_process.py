@@ -18,7 +18,8 @@ from my_simulations.description.model import Inertial, Joint, JointAxis, Link, M
 from my_simulations.description.saved_state import InitialState
 from my_simulations.description.shapes import Collision, Mesh, MeshData, Surface, mesh_key
 from my_simulations.description.world import Physics, World
-from my_simulations.engine.commands import FOREVER, LoadModel, Restart
+from my_simulations.engine.api import EngineDiedError
+from my_simulations.engine.commands import FOREVER, LoadModel, Ping, Restart
 from my_simulations.engine.process_engine import ProcessEngine
 from my_simulations.engine.timed_forces import JointPid, TimedWrench
 from my_simulations.engine.wrench_laws import VelocityForce
@@ -454,3 +455,17 @@ def test_a_spawn_that_is_refused_halfway_leaves_no_body_behind(start):
     sim.clock.advance(200)
     assert sim.states.model_state("next")[0].position == pytest.approx((7, 0, 0.5), abs=1e-3)
     assert not any("right" in name for name in sim.states.link_names().values())
+
+
+def test_a_death_before_somebody_listens_is_reported_to_the_listener(tmp_path, monkeypatch):
+    (tmp_path / "pybullet.py").write_text("raise SystemExit(3)\n")
+    monkeypatch.setenv("PYTHONPATH", str(tmp_path))
+    engine = ProcessEngine()
+    try:
+        with pytest.raises(EngineDiedError):   # the ping waits until the end is noticed
+            engine.submit(Ping()).result(60.0)
+        heard = []
+        engine.on_death(lambda reason, lost: bool(heard.append(reason)))
+        assert heard == ["the physics engine ended with code 3"]
+    finally:
+        engine.close()

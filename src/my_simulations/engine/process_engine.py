@@ -52,7 +52,8 @@ class ProcessEngine:
         self._closing = False
         self._verdict = ""
         self._event_listener: Callable[[Event], None] = _ignore_event
-        self._death_listener: Callable[[str, List[Command]], bool] = _ignore_death
+        self._unreported_death: Optional[Tuple[str, List[Command]]] = None
+        self._death_listener: Callable[[str, List[Command]], bool] = self._note_death
         self._child: Optional[subprocess.Popen[bytes]] = None
         self._wire: Optional[Wire] = None
         self._reader: Optional[threading.Thread] = None
@@ -84,8 +85,19 @@ class ProcessEngine:
         self._event_listener = listener
 
     def on_death(self, listener: Callable[[str, List[Command]], bool]) -> None:
-        """Set the listener of a child's death, called from its reader thread, once per child."""
-        self._death_listener = listener
+        """Set the listener of a child's death, called from its reader thread, once per child.
+
+        It is called at once if a child has already died.
+        """
+        with self._send_lock:   # held while a death is reported
+            self._death_listener = listener
+            unreported, self._unreported_death = self._unreported_death, None
+        if unreported is not None:
+            listener(*unreported)
+
+    def _note_death(self, reason: str, lost: List[Command]) -> bool:
+        self._unreported_death = reason, lost
+        return False
 
     def restart(self) -> None:
         """Start a child. Call it from a thread that lives as long as the child.
@@ -268,7 +280,3 @@ def _reason(code: int) -> str:
 
 def _ignore_event(_: Event) -> None:
     return None
-
-
-def _ignore_death(_: str, __: List[Command]) -> bool:
-    return False
