@@ -103,6 +103,14 @@ def run(world):
     return [topic.take() for topic in topics], world.links().pose.array
 
 
+def test_steps_end_with_their_last_scan_and_not_with_the_next_look(world, monkeypatch):
+    monkeypatch.setattr("my_simulations.plugins.host._LOOK_S", 600.0)
+    scan = world.topics["scan"]
+    for _ in range(20):  # a step that waits for a look exceeds the limit of the barrier
+        world.step(100)
+    assert scan.count == 20
+
+
 def test_messages_repeat_bit_for_bit_after_a_reset(world):
     first, poses = run(world)
     for _ in range(2):

@@ -304,7 +304,7 @@ class PluginHost:
 
     def _publish(self) -> None:
         touched, self._touched = self._touched, {}
-        self._outgoing.send(touched, self._guard.call, self._failing)
+        self._outgoing.send(touched, self._guard.send, self._failing)
 
     def _ring(self, running: Running) -> None:
         """Have the thread look into a plugin's inbox."""
@@ -323,8 +323,10 @@ class PluginHost:
 
     def _deliver(self, running: Running) -> None:
         inbox = running.context.inbox
-        while inbox and running.plugin is not None:
-            self._guard.call(running, inbox.popleft())
+        while inbox:
+            call = inbox.popleft()
+            if running.plugin is not None:   # else it was switched off: nothing waits for this
+                self._guard.call(running, call)
 
     def _notice_resets(self, moment: Moment) -> None:
         """Tell plugins of resets and of another clock."""

@@ -38,8 +38,16 @@ class PluginGuard:
         Raises ThreadAbandoned in a thread that must end.
         """
         self._touched(running)
+        return self._run(running, patience or self._patience, call, *arguments)
+
+    def send(self, running: Running, call: Callable[..., None], *arguments: Any) -> bool:
+        """As `call`, for a function that only sends messages, after which nothing is collected."""
+        return self._run(running, self._patience, call, *arguments)
+
+    def _run(self, running: Running, patience: Patience, call: Callable[..., None],
+             *arguments: Any) -> bool:
         try:
-            self._watch.run(running, patience or self._patience, call, *arguments)
+            self._watch.run(running, patience, call, *arguments)
             return True
         except ThreadAbandoned:
             raise
