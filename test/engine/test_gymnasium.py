@@ -4,6 +4,7 @@ from __future__ import annotations
 import math
 import os
 import re
+import runpy
 import signal
 import subprocess
 import sys
@@ -22,6 +23,8 @@ from my_simulations.python_api import RobotOptions, WorldChoice
 
 REPOSITORY = Path(__file__).resolve().parents[2]
 PUSH, STACK = "my_simulations/PushBox-v0", "my_simulations/StackBoxes-v0"
+ALL = [PUSH, STACK, "my_simulations/Navigate-v0", "my_simulations/Reach-v0",
+       "my_simulations/PickAndPlace-v0"]
 
 
 @pytest.fixture
@@ -37,11 +40,40 @@ def make():
         env.close()
 
 
-@pytest.mark.parametrize("name", [PUSH, STACK])
+@pytest.mark.parametrize("name", ALL)
 def test_gymnasiums_own_checker_finds_nothing(make, name):
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         check_env(make(name, render_mode="rgb_array").unwrapped)
+
+
+@pytest.mark.parametrize("name", ALL[3:])
+def test_a_task_of_the_arm_is_seen_by_its_camera(make, name):
+    env = make(name, camera=True)
+    check_env(env.unwrapped, skip_render_check=True)
+    seen, _ = env.reset(seed=1)
+    assert len(np.unique(seen["camera"].reshape(-1, 3), axis=0)) > 10
+    moved = env.step(np.ones(env.action_space.shape, np.float32))[0]
+    assert (moved["camera"] != seen["camera"]).any()
+
+
+@pytest.mark.parametrize("task, seeds", [("navigate", (0, 3)), ("reach", (0, 1, 2, 3, 4)),
+                                         ("pick_and_place", (0, 1, 2))])
+def test_short_rules_solve_a_task(task, seeds):
+    example = runpy.run_path(str(REPOSITORY / "examples" / "solve_tasks.py"), run_name="example")
+    found = list(example["episodes"](example["TASKS"][task], seeds))
+    assert [success for *_, success in found] == len(seeds) * [True]
+    assert min(total for *_, total, _ in found) > 1.0
+
+
+def test_a_collision_ends_a_drive_without_success(make):
+    env = make(ALL[2])
+    env.reset(seed=0)
+    over = False
+    while not over:
+        _, reward, ended, cut, info = env.step(np.array([1.0, 0.0], np.float32))
+        over = ended or cut
+    assert ended and info == {"is_success": False, "collision": True} and reward < -0.9
 
 
 def _episode(env, seed, steps=15):
@@ -116,13 +148,15 @@ def test_what_is_used_before_the_first_reset_says_so(make):
         push_box.make("human")
 
 
-def test_the_environment_of_the_manual_passes_the_checker():
+@pytest.mark.parametrize("begin", ["class Hover", "class Drive"])
+def test_an_environment_of_the_manual_passes_the_checker(begin):
     text = (REPOSITORY / "doc" / "gymnasium.md").read_text(encoding="utf-8")
-    code = re.findall(r"```python\n(.*?)```", text, re.DOTALL)[-1]
+    code, = (found for found in re.findall(r"```python\n(.*?)```", text, re.DOTALL)
+             if begin in found)
     names = {}
     exec(compile(code, "doc/gymnasium.md", "exec"), names)
     try:
-        check_env(names["env"], skip_render_check=True)
+        check_env(names["env"].unwrapped, skip_render_check=True)
     finally:
         names["env"].close()
 

@@ -4,7 +4,10 @@ from __future__ import annotations
 import gymnasium
 
 EXAMPLES = {"my_simulations/PushBox-v0": ("push_box:make", 300),
-            "my_simulations/StackBoxes-v0": ("stack_boxes:make", 400)}
+            "my_simulations/StackBoxes-v0": ("stack_boxes:make", 400),
+            "my_simulations/Navigate-v0": ("navigation:make", 600),
+            "my_simulations/Reach-v0": ("reach:make", 200),
+            "my_simulations/PickAndPlace-v0": ("pick_place:make", 400)}
 """Module and function below this package, and the most steps of an episode."""
 
 

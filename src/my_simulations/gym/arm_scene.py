@@ -1,0 +1,82 @@
+"""The six-axis arm of the tasks: where its hand is, its motors and its camera."""
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass
+from typing import Any, Sequence, Tuple
+
+import gymnasium
+import numpy as np
+
+from ..geometry import Pose
+from ..python_api import OpenWorld
+from ..resources.package_files import own_directory
+
+AXES = ("turn", "lift", "elbow", "roll", "pitch", "hand_turn")
+FINGERS = ("left_finger", "right_finger")
+TOOL = (0.0, 0.0, -0.08)   # m, in the frame of the hand: between the ends of the fingers
+FASTEST = 1.5              # rad/s, of an axis
+PIXELS = 64                # of each side of the camera's picture
+_GRIP, _OPENING = 10.0, 0.15  # N of each finger, m/s
+_CAMERA = (0.09, 0.0, 0.02, 0.0, 0.8, np.pi)  # pose in the frame of the hand
+
+
+def document() -> Tuple[str, str, Pose]:
+    """Name, file and pose of the arm, for `WorldChoice.models`."""
+    return "arm", os.path.join(own_directory(), "models", "six_axis_arm", "model.sdf"), Pose()
+
+
+@dataclass(frozen=True)
+class ArmState:
+    """The arm after a step.
+
+    Attributes:
+        positions, rates: of the six axes, rad and rad/s, shape (6,).
+        fingers: positions of both, m; 0 is open, 0.044 closed.
+        tool: position of `TOOL` in the world, m.
+    """
+
+    positions: np.ndarray
+    rates: np.ndarray
+    fingers: np.ndarray
+    tool: np.ndarray
+
+
+def read_arm(world: OpenWorld) -> ArmState:
+    """Return the state of the arm of a world."""
+    joints = world.joints()
+    first = joints.position.names.index("arm::turn")
+    axes, fingers = slice(first, first + 6), slice(first + 6, first + 8)
+    hand = world.links().pose["arm::hand"]
+    return ArmState(joints.position.array[axes], joints.rate.array[axes],
+                    joints.position.array[fingers], hand[:3] + rotated(hand[3:], TOOL))
+
+
+def drive_axes(world: OpenWorld, rates: np.ndarray) -> None:
+    """Drive the six axes at rates in rad/s, shape (6,)."""
+    world.robot("arm").drive(dict(zip(AXES, rates.tolist())))
+
+
+def drive_fingers(world: OpenWorld, close: bool) -> None:
+    """Close or open the fingers, until another call."""
+    rate = _OPENING if close else -_OPENING
+    world.robot("arm").drive({finger: rate for finger in FINGERS}, effort=_GRIP)
+
+
+def camera_space() -> gymnasium.spaces.Box:
+    """The space of the camera's pictures."""
+    return gymnasium.spaces.Box(0, 255, (PIXELS, PIXELS, 3), np.uint8)
+
+
+def camera_picture(world: OpenWorld) -> np.ndarray:
+    """What the camera beside the gripper sees now: red, green and blue."""
+    rgb = world.render(_CAMERA, frame="arm::hand", width=PIXELS, height=PIXELS, hfov=1.2).rgb
+    assert rgb is not None, "rgb is the default output"
+    return rgb
+
+
+def rotated(quaternion: Any, vector: Sequence[float]) -> np.ndarray:
+    """Return a vector turned by a quaternion x, y, z, w."""
+    axis, w = np.asarray(quaternion[:3], float), float(quaternion[3])
+    once = 2.0 * np.cross(axis, vector)
+    return np.asarray(vector, float) + w * once + np.cross(axis, once)
