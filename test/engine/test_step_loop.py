@@ -3,12 +3,13 @@ from __future__ import annotations
 
 from types import SimpleNamespace
 
-from my_simulations.engine.bullet.step_helper import FAR, StepLoop
+from my_simulations.engine.bullet.body_events import BodyEvent
+from my_simulations.engine.bullet.step_helper import FAR, StepHelper, StepLoop
 
 MOVING = SimpleNamespace(uid=1, moves=True)
 
 
-class Helper:
+class Helper(StepHelper):
     """Acts in the steps it is told, and does something in them."""
 
     def __init__(self, name, calls, steps, act=lambda step: None):
@@ -55,7 +56,7 @@ def test_whoever_is_due_since_a_body_was_touched_acts_in_the_same_step():
         if step == 1:
             first.steps.add(1)
             last.steps.add(1)
-            loop.touched(None)
+            loop.handle_event(BodyEvent.ACTIVATED, None)
 
     loop, go = run([first, Helper("b", calls, range(9), touch), last], calls, 0, 3)
     go()
@@ -94,3 +95,17 @@ def test_bullet_makes_no_steps_where_nothing_can_move():
     loop.forget(MOVING)
     loop.run(0, 5, 0.001, (0.0, 0.0, -9.8))
     assert calls == ["a2<", ".", "a2>"]
+
+
+def test_a_helper_is_called_only_for_what_it_defines():
+    class After(StepHelper):
+        def due(self, step):
+            return step
+
+        def after(self, step, dt, gravity):
+            calls.append(f"after{step}")
+
+    calls = []
+    _, go = run([StepHelper(), After()], calls, 0, 2)
+    go()
+    assert calls == [".", "after0", ".", "after1"]

@@ -33,7 +33,8 @@ import pybullet
 from ...geometry import Pose, Vec3
 from ..run_state import PARTING_NOT_BEGUN, RestPlace
 from .bodies import Body
-from .step_helper import FAR, next_multiple
+from .body_events import COMMANDED, BodyEvent
+from .step_helper import FAR, StepHelper, next_multiple
 from .world_parameters import USUAL_ACCURACY, Accuracy, WorldParameters
 
 JointStates = Sequence[Any]  # as PyBullet tells them
@@ -79,20 +80,22 @@ class _Tree:
     held: Optional[RestPlace] = None
 
 
-class ContactSettling:
+class ContactSettling(StepHelper):
     """Chooses how exactly Bullet solves, and holds robots that stand.
 
     Args:
         parameters: of the world.
         loaded: tells the bodies that timed forces act on in this step.
         driven: tells the rate to which the axis of a row is driven; 0 for none.
-        on_held: hears which body is held from now on (True), or is not any more.
+        notify: is called when a body is fixed at rest, or released.
     """
 
+    events = COMMANDED
+
     def __init__(self, parameters: WorldParameters, loaded: Callable[[], Set[int]],
-                 driven: Callable[[int], float], on_held: Callable[[Body, bool], None]) -> None:
+                 driven: Callable[[int], float], notify: Callable[[BodyEvent, Body], None]) -> None:
         self._parameters = parameters
-        self._loaded, self._driven, self._on_held = loaded, driven, on_held
+        self._loaded, self._driven, self._notify = loaded, driven, notify
         self._trees: Dict[int, _Tree] = {}
         self._moving: Set[int] = set()
         self._rigid: Dict[int, Body] = {}     # awake, or reached by a command since the last look
@@ -137,7 +140,7 @@ class ContactSettling:
         self._leaning = False
         self._new, self._until = False, None
 
-    def touched(self, body: Body) -> None:
+    def handle_event(self, event: BodyEvent, body: Body) -> None:
         """A command reached a body: it may move from now on, or may not sleep any more."""
         if body.rigid and body.moves:
             self._rigid[body.uid] = body
@@ -146,7 +149,7 @@ class ContactSettling:
             held, tree.held = tree.held, None
             tree.looks, tree.clear = 0, 0
             if held is not None:
-                self._on_held(body, False)
+                self._notify(BodyEvent.RELEASED, body)
 
     @property
     def parting_end(self) -> Optional[int]:
@@ -172,7 +175,7 @@ class ContactSettling:
         tree = self._trees[body.uid]
         tree.looks = _STANDS + 1
         _hold(tree, place)
-        self._on_held(body, True)
+        self._notify(BodyEvent.FIXED_AT_REST, body)
 
     def due(self, step: int) -> int:
         """At once when something was put in, else the next look."""
@@ -181,9 +184,6 @@ class ContactSettling:
         if self._trees or self._until is not None:
             return next_multiple(step, EVERY)
         return next_multiple(step, _RIGID_EVERY) if self._rigid else FAR
-
-    def after(self, step: int, dt: float, gravity: Vec3) -> None:
-        """Do nothing after a step."""
 
     def before(self, step: int, dt: float, gravity: Vec3) -> None:
         """See now and then whether something stands."""
@@ -211,7 +211,7 @@ class ContactSettling:
             held = tree.held is not None
             standing = self._stands(tree, states) or standing
             if held != (tree.held is not None):
-                self._on_held(tree.body, not held)
+                self._notify(BodyEvent.RELEASED if held else BodyEvent.FIXED_AT_REST, tree.body)
         self._parameters.request_accuracy(
             _FOR_STANDING_ROBOTS if standing else
             _FOR_LEANING_BODIES if self._leaning else USUAL_ACCURACY)

@@ -15,9 +15,10 @@ import pybullet
 from ...geometry import Pose, Vec3, norm, scale, subtract
 from ..run_state import RestPlace
 from .bodies import Axis, Body, put_axis
+from .body_events import BodyEvent
 from .contact_settling import place_of
 from .link_states import motion
-from .step_helper import FAR
+from .step_helper import FAR, StepHelper
 
 RANGE = 1e4
 """m."""
@@ -41,7 +42,7 @@ class _Start(NamedTuple):
     limit: float
 
 
-class DivergenceStop:
+class DivergenceStop(StepHelper):
     """Checks the first link of each moving body every 0.2 s of sim time.
 
     Args:
@@ -49,6 +50,8 @@ class DivergenceStop:
         loaded: returns PyBullet's numbers of the bodies on which forces act.
         moved: is called with a body that was just stopped.
     """
+
+    events = frozenset({BodyEvent.STATE_SET})
 
     def __init__(self, report: Callable[[Body, str], None], loaded: Callable[[], Set[int]],
                  moved: Callable[[Body], None]) -> None:
@@ -69,7 +72,7 @@ class DivergenceStop:
             self._bodies[body.uid] = body
             self._new[body.uid] = body
 
-    def put(self, body: Body) -> None:
+    def handle_event(self, event: BodyEvent, body: Body) -> None:
         """Measure from the pose and velocity that a command has set; release a stopped body."""
         if body.uid in self._bodies:
             self._stops.pop(body.uid, None)

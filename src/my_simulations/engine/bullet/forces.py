@@ -26,24 +26,28 @@ from ..run_state import DamperMemory, LoopMemory
 from ..timed_forces import TimedEffort, TimedForce, TimedWrench
 from ..wrench_laws import WrenchLaw
 from .bodies import Axis, Body, Part, set_sleep
+from .body_events import BodyEvent
 from .force_dependent_slip import ForceDependentSlip
 from .implicit_axes import ImplicitAxes, Motor
 from .joint_pid import MOST_EFFORT, PidController
 from .joint_servos import JointServos
 from .link_states import place
-from .step_helper import FAR
+from .step_helper import FAR, StepHelper
 
 _NOTHING = (0.0, 0.0, 0.0)
 _NOBODY: FrozenSet[int] = frozenset()
 _ROW = struct.Struct(f"={LINK_WIDTH}d")
 
 
-class Forces:
+class Forces(StepHelper):
     """All that must be done before the next step.
 
     Attributes:
         slip: links whose surfaces slip.
     """
+
+    events = frozenset((BodyEvent.STATE_SET, BodyEvent.STATE_REPAIRED, BodyEvent.FIXED_AT_REST,
+                        BodyEvent.RELEASED))
 
     def __init__(self, wake: Callable[[List[Body]], None],
                  loops_changed: Callable[[Set[int]], None] = lambda rows: None,
@@ -95,24 +99,26 @@ class Forces:
         if axes is not None:
             self._implicit[body.uid] = axes
 
-    def rest(self, body: Body, held: bool) -> None:
-        """A body is held at rest from now on, or not any more: dampers have nothing to damp.
+    def handle_event(self, event: BodyEvent, body: Body) -> None:
+        """Reset loops after joints were set; omit dampers of a body that is fixed at rest."""
+        if event is BodyEvent.FIXED_AT_REST:
+            # A servo may move it at any time.
+            if not self.servos.drives(body):
+                self._exchange_dampers(body, self._implicit, self._resting)
+        elif event is BodyEvent.RELEASED:
+            self._exchange_dampers(body, self._resting, self._implicit)
+        else:
+            if body.uid in self._implicit:
+                self._implicit[body.uid].disturbed()
+            self.servos.disturbed(body)
 
-        Unless a servo may move it at any time.
-        """
-        if held and self.servos.drives(body):
-            return
-        now, then = (self._implicit, self._resting) if held else (self._resting, self._implicit)
+    @staticmethod
+    def _exchange_dampers(body: Body, now: Dict[int, ImplicitAxes],
+                          then: Dict[int, ImplicitAxes]) -> None:
         axes = now.get(body.uid)
         if axes is not None and not axes.has_springs:
             axes.disturbed()
             then[body.uid] = now.pop(body.uid)
-
-    def disturbed(self, body: Body) -> None:
-        """A body was put somewhere, or its joints were set."""
-        if body.uid in self._implicit:
-            self._implicit[body.uid].disturbed()
-        self.servos.disturbed(body)
 
     def forget(self, body: Body) -> None:
         """Drop a body and every timed force on it."""
@@ -216,9 +222,6 @@ class Forces:
         """Each step while something acts anew in it."""
         return step if (self._timed or self._weightless or self._implicit
                         or not self.slip.idle or not self.servos.idle) else FAR
-
-    def after(self, step: int, dt: float, gravity: Vec3) -> None:
-        """Do nothing after a step."""
 
     def before(self, step: int, dt: float, gravity: Vec3) -> None:
         """Everything that acts in the step that begins at count `step`."""

@@ -19,14 +19,16 @@ import pybullet
 from ...geometry import Quat, Vec3, conjugate, norm, normalised, rotate, scale
 from .approach import flies
 from .bodies import Body
+from .body_events import COMMANDED, BodyEvent
 from .gyroscopic_articulated import GyroscopicArticulated
-from .step_helper import FAR, next_multiple
+from .step_helper import FAR, StepHelper, next_multiple
 
 _EVERY = 16        # steps between two looks for fast bodies
 _FAST = 1.0        # rad/s
 _ROUND = 0.02      # relative difference of moments that is none
 _SPAN = 8.1e-3     # s of free flight after which an attitude is corrected
 _ANGLE = 0.05      # rad of a step of Runge-Kutta
+_STATE_EVENTS = frozenset((BodyEvent.STATE_SET, BodyEvent.STATE_REPAIRED))
 
 
 class _Flight(NamedTuple):
@@ -37,8 +39,10 @@ class _Flight(NamedTuple):
     angular: Vec3
 
 
-class GyroscopicRigid:
+class GyroscopicRigid(StepHelper):
     """Corrects free, fast bodies after each step: asymmetric rigid ones, and articulated ones."""
+
+    events = COMMANDED | _STATE_EVENTS
 
     def __init__(self, loaded: Callable[[], Set[int]]) -> None:
         """`loaded` tells the rows of links that a load acts on in this step."""
@@ -80,14 +84,11 @@ class GyroscopicRigid:
         self._flights.clear()
         self._trees.clear()
 
-    def moved(self, body: Body) -> None:
-        """A body was put somewhere, or given another velocity."""
+    def handle_event(self, event: BodyEvent, body: Body) -> None:
+        """Drop what was measured of a body before a command."""
         self._flights.pop(body.uid, None)
-        self._trees.moved(body)
-
-    def touched(self, body: Body) -> None:
-        """A command, or a force that begins, reached a body."""
-        self._flights.pop(body.uid, None)
+        if event in _STATE_EVENTS:
+            self._trees.moved(body)
 
     def due(self, step: int) -> int:
         """Each step while what tumbles is damped or has joints, else begin and end of 8 ms."""

@@ -1,7 +1,8 @@
 """What acts around the steps of Bullet and what remembers bodies, made and wired to one another."""
 from __future__ import annotations
 
-from typing import Dict, Tuple
+from functools import partial
+from typing import Callable, Dict, List, Tuple
 
 import pybullet
 
@@ -9,6 +10,7 @@ from ...description.model import Model
 from ..commands import PhysicsSettings
 from . import bodies, extra_surfaces, joint_axes
 from .bodies import Body, Part
+from .body_events import BodyEvent
 from .constraint_book import ConstraintBook
 from .contact_settling import ContactSettling
 from .divergence_stop import DivergenceStop
@@ -77,9 +79,13 @@ class HelperSet:
         self._seams = SeamContacts(self._rolling, self._parameters)
         self._level = LevelSeams(lambda: self._residual.fast, self._parameters)
         self.sliding = Sliding()
-        self.waker = WakeUp(bodies_by_uid, self._touched)
-        driver = WakeUp(bodies_by_uid, self._driven)
-        self.forces = Forces(driver.around, lambda rows: self.motors.yield_to(rows),
+        self.waker = WakeUp(bodies_by_uid, self._on_activated)
+
+        def waker_for(event: BodyEvent) -> Callable[[List[Body]], None]:
+            return WakeUp(bodies_by_uid, partial(self._notify, event)).around
+
+        self.forces = Forces(waker_for(BodyEvent.FORCE_APPLIED),
+                             lambda rows: self.motors.yield_to(rows),
                              lambda body, axis: self.motors.restore(body, axis),
                              lambda row: self.motors.driven(row),
                              lambda rows: self.row_reader.read_links(rows))
@@ -93,17 +99,18 @@ class HelperSet:
         self.settling = ContactSettling(
             self._parameters, lambda: self.forces.loaded_bodies,
             lambda row: self.motors.rate_of(row) or self.forces.servos.rate_of(row),
-            self._on_held)
+            self._notify)
         self._landing = LandingContacts(self._rolling.landed, self._parameters)
         self.restored_sleep = RestoredSleep(self.settling.hold)
         self._stop = SurfaceStop()
         self.divergence = DivergenceStop(self.notices.stopped, lambda: self.forces.loaded_bodies,
-                                          self.readout.touch)
+                                          self.readout.mark_changed)
         self.row_reader = RowReader(self.readout, rows, axes)
         self.mover = StateSetter(rows, axes, self.readout, self.row_reader, self.waker,
-                                 self.forces, self._spin, (self.holds.moved, self.divergence.put))
-        self.motors = JointMotors(axes, driver.around)
-        self.planar = PlanarMotion(models, self.mover.present_model_pose, driver.around)
+                                 self._notify)
+        self.motors = JointMotors(axes, waker_for(BodyEvent.MOTOR_TARGET_CHANGED))
+        self.planar = PlanarMotion(models, self.mover.present_model_pose,
+                                   waker_for(BodyEvent.PLANAR_VELOCITY_CHANGED))
         self.wrenches = JointWrenches(models, self.forces, self.sliding)
         # What acts around the steps, in the order in which it does.
         helpers = (self._friction, self._bounces, self.settling, self._decay, self.forces,
@@ -113,10 +120,8 @@ class HelperSet:
         self.loop = StepLoop(helpers, pybullet.stepSimulation, self._parameters.apply)
         # Everything that remembers bodies one by one.
         self._keepers = (*helpers, self.ties, self.motors, self.wrenches, self.readout, self.loop)
-        # Helpers notified when a command moves a body, or a force or motor command acts on it.
-        self._hearers = tuple(part.touched for part in (
-            self.loop, self._friction, self.settling, self._spin, self._residual, self._rolling,
-            self._stop, self._landing, self._seams, self.restored_sleep))
+        self._handlers = {event: tuple(keeper.handle_event for keeper in self._keepers
+                                       if event in keeper.events) for event in BodyEvent}
 
     def configure(self, settings: PhysicsSettings) -> None:
         """Use these settings from the next step on, and have Bullet use them."""
@@ -176,25 +181,14 @@ class HelperSet:
         self.book.clear()
         self._parameters.clear()
 
-    def _touched(self, body: Body) -> None:
-        """A command reached a body: it may be elsewhere."""
+    def _notify(self, event: BodyEvent, body: Body) -> None:
+        """Pass an event to those that handle it, in the order of the helpers."""
+        for handle in self._handlers[event]:
+            handle(event, body)
+
+    def _on_activated(self, body: Body) -> None:
         self.notices.forget(body.model_id)
-        self.readout.touch(body)
-        self.sliding.touched(body)  # not if driven: a wheel that slides goes on sliding
-        self._tell(body)
-
-    def _driven(self, body: Body) -> None:
-        """A force or a motor acts on a body from the next step on: it is where it was."""
-        self.readout.woken(body)
-        self._tell(body)
-
-    def _tell(self, body: Body) -> None:
-        for hear in self._hearers:
-            hear(body)
-
-    def _on_held(self, body: Body, held: bool) -> None:
-        self.forces.rest(body, held)
-        self.loop.touched(body)
+        self._notify(BodyEvent.ACTIVATED, body)
 
     def _on_diverged(self, body: Body) -> None:
         self.loop.changed()

@@ -15,6 +15,7 @@ from ..api import CommandRefusedError, RemovedError
 from ..body_plan import BASE, TIE_TYPES
 from ..commands import ConnectModels
 from .bodies import Body, Part, set_sleep
+from .body_events import BodyObserver
 from .constraint_book import ConstraintBook, Number
 from .joint_constraints import End, tie
 
@@ -36,7 +37,7 @@ class _Tie:
         return {body.uid for body in self.bodies}
 
 
-class InterModelJoints:
+class InterModelJoints(BodyObserver):
     """The joints that go with either of the models they connect."""
 
     def __init__(self, book: ConstraintBook) -> None:

@@ -9,10 +9,11 @@ from ...description.model import JointAxis, Model
 from ..api import CommandRefusedError
 from ..drive_commands import JointMotor
 from .bodies import Axis, Body
+from .body_events import BodyObserver
 from .joint_axes import specs_of
 
 
-class JointMotors:
+class JointMotors(BodyObserver):
     """Keeps PyBullet's velocity motors as told; on axes without one they are the friction."""
 
     def __init__(self, axes: Mapping[int, Tuple[Body, Axis]],

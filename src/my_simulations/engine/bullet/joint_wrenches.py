@@ -39,6 +39,7 @@ from ..body_plan import NO_LINK, TreeLink
 from ..commands import JointWrench, ReadJointWrenches
 from .acting_forces import Acting, constraint_forces, note, note_constraints, note_contacts
 from .bodies import Body, Part
+from .body_events import BodyObserver
 from .forces import Forces
 from .link_motion import Chain, Motion, State, accelerations, inertial_wrench, look, states
 from .sliding import Sliding
@@ -102,7 +103,7 @@ class _Seen:
 _WorkedOut = Tuple[Dict[int, State], Dict[int, Motion], Acting]
 
 
-class JointWrenches:
+class JointWrenches(BodyObserver):
     """Measures the joints that somebody reads."""
 
     def __init__(self, models: Mapping[int, Entry], forces: Forces, sliding: Sliding) -> None:

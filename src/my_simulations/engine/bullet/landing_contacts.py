@@ -40,8 +40,9 @@ from ...geometry import (
 from . import collision_groups
 from .approach import approach, extent, flies, speed_of
 from .bodies import Body, Part
+from .body_events import COMMANDED, BodyEvent
 from .landing_points import MOST_TILT, Filters, LandingPoints, Touch, extents_across
-from .step_helper import FAR, looks_until_turn, turn_of
+from .step_helper import FAR, StepHelper, looks_until_turn, turn_of
 from .world_parameters import Accuracy, WorldParameters
 
 EVERY = 16
@@ -84,13 +85,15 @@ class _Flight:
     tried: Set[int] = field(default_factory=set)
 
 
-class LandingContacts:
+class LandingContacts(StepHelper):
     """Finds the contact points of what lands before Bullet solves its impact.
 
     Args:
         landed: is told which body lands, and the normal of what it lands on.
         parameters: of the world.
     """
+
+    events = COMMANDED
 
     def __init__(self, landed: Callable[[int, Vec3], None],
                  parameters: WorldParameters) -> None:
@@ -142,7 +145,7 @@ class LandingContacts:
         self._order = None
         self._next = FAR
 
-    def touched(self, body: Body) -> None:
+    def handle_event(self, event: BodyEvent, body: Body) -> None:
         """A command reached a body: it may fly from now on."""
         self._asleep.pop(body.uid, None)
         if body.uid in self._bodies and self._watched():
@@ -191,9 +194,6 @@ class LandingContacts:
                     now.setdefault(touch.uid, touch)
             self._points.find(list(now.values()))
             touches = [touch for touch in touches if touch.uid not in now]
-
-    def after(self, step: int, dt: float, gravity: Vec3) -> None:
-        """Do nothing after a step."""
 
     def _ask(self, uids: List[int]) -> None:
         """Find out which bodies may fly; what rests is asked less often."""

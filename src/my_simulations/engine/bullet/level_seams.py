@@ -26,7 +26,7 @@ from ..body_plan import BASE
 from . import collision_groups
 from .bodies import Body, Part
 from .rolling_contacts import axis_of
-from .step_helper import FAR, next_multiple
+from .step_helper import FAR, StepHelper, next_multiple
 from .world_parameters import WorldParameters
 
 EVERY = 8
@@ -41,7 +41,7 @@ _NEAR = 0.06       # m beyond the way until the next look: Bullet knows a pair 5
 _Velocity = Tuple[Vec3, Vec3]
 
 
-class LevelSeams:
+class LevelSeams(StepHelper):
     """Keeps what slides on level floors on them, and takes back what their sides do to it.
 
     Args:

@@ -20,7 +20,8 @@ import pybullet
 
 from ...geometry import Vec3
 from .bodies import Body
-from .step_helper import FAR
+from .body_events import COMMANDED, BodyEvent
+from .step_helper import FAR, StepHelper
 
 Node = Tuple[int, int]  # body uid, link index
 Pair = FrozenSet[Node]
@@ -40,12 +41,14 @@ _NOTHING: FrozenSet[Pair] = frozenset()
 _NO_VELOCITY = ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
 
 
-class FrictionBalance:
+class FrictionBalance(StepHelper):
     """Keeps the stored friction of surfaces with unusual coefficients right for their contacts.
 
     Args:
         misfit: told, once, of a body and the share by which its friction is off.
     """
+
+    events = COMMANDED
 
     def __init__(self, misfit: Callable[[int, float], None]) -> None:
         self._misfit = misfit
@@ -99,7 +102,7 @@ class FrictionBalance:
         self._told = False
         self._ring = 0
 
-    def touched(self, body: Body) -> None:
+    def handle_event(self, event: BodyEvent, body: Body) -> None:
         """A body was put somewhere or woken: it is asked soon."""
         for part in body.colliders:
             if (body.uid, part.index) in self._free:
@@ -132,9 +135,6 @@ class FrictionBalance:
             look = next((each for each in range(look, look + _SLOTS)
                          if self._slots[each % _SLOTS]), FAR)
         return look * EVERY
-
-    def after(self, step: int, dt: float, gravity: Vec3) -> None:
-        """Do nothing after a step."""
 
     def _ask_due(self, look: int) -> bool:
         """Ask the surfaces whose turn it is what they touch. Returns whether that has changed."""

@@ -25,7 +25,7 @@ import pybullet
 from ...geometry import Vec3
 from . import surface_coefficients
 from .bodies import Body
-from .step_helper import FAR
+from .step_helper import FAR, StepHelper
 from .world_parameters import WorldParameters
 
 Node = Tuple[int, int]  # body uid, link index
@@ -43,7 +43,7 @@ class _Kind(NamedTuple):
     never: bool
 
 
-class PairRestitution:
+class PairRestitution(StepHelper):
     """Keeps the stored restitutions right for the surfaces of the world.
 
     Args:
@@ -107,9 +107,6 @@ class PairRestitution:
             if abs(value - self._stored[node]) > 1e-9:
                 self._stored[node] = value
                 pybullet.changeDynamics(*node, restitution=value)
-
-    def after(self, step: int, dt: float, gravity: Vec3) -> None:
-        """Do nothing after a step."""
 
     def _solved(self) -> Dict[_Kind, float]:
         """What to store for each kind; 0 for those that are missing."""

@@ -7,13 +7,16 @@ import pybullet
 
 from ...geometry import Pose, Vec3
 from .bodies import Body
-from .step_helper import FAR
+from .body_events import BodyEvent
+from .step_helper import FAR, StepHelper
 
 _STILL = (0.0, 0.0, 0.0)
 
 
-class PinnedBodies:
+class PinnedBodies(StepHelper):
     """Puts held bodies back, at rest, after every step."""
+
+    events = frozenset({BodyEvent.STATE_SET})
 
     def __init__(self, wake: Callable[[List[Body]], None]) -> None:
         self._wake = wake
@@ -27,13 +30,16 @@ class PinnedBodies:
                         if body.moves and (body.rigid or body.base is not None)}
         self._poses.clear()
         for body in self._bodies.values():
-            self.moved(body)
+            self._store_pose(body)
         self._wake([body for uid, body in before.items() if uid not in self._bodies])
 
-    def moved(self, body: Body) -> None:
-        """A body was put somewhere: it is held there from now on."""
+    def handle_event(self, event: BodyEvent, body: Body) -> None:
+        """Keep a body at the pose that a command has set."""
         if body.uid in self._bodies:
-            self._poses[body.uid] = Pose(*pybullet.getBasePositionAndOrientation(body.uid))
+            self._store_pose(body)
+
+    def _store_pose(self, body: Body) -> None:
+        self._poses[body.uid] = Pose(*pybullet.getBasePositionAndOrientation(body.uid))
 
     def forget(self, body: Body) -> None:
         """A body is gone."""
@@ -48,9 +54,6 @@ class PinnedBodies:
     def due(self, step: int) -> int:
         """Each step, when something is held."""
         return step if self._poses else FAR
-
-    def before(self, step: int, dt: float, gravity: Vec3) -> None:
-        """Do nothing before a step."""
 
     def after(self, step: int, dt: float, gravity: Vec3) -> None:
         """Undo what the last step did to them."""

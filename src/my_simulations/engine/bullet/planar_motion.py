@@ -10,10 +10,10 @@ from ...geometry import Pose, Vec3, cross, rpy_from_quat, subtract
 from ..drive_commands import PlanarVelocity
 from .bodies import Body, set_sleep
 from .state_restore import Entry
-from .step_helper import FAR
+from .step_helper import FAR, StepHelper
 
 
-class PlanarMotion:
+class PlanarMotion(StepHelper):
     """Gives bodies their velocity before every step."""
 
     def __init__(self, models: Mapping[int, Entry], model_pose: Callable[[Entry], Pose],
@@ -52,9 +52,6 @@ class PlanarMotion:
     def due(self, step: int) -> int:
         """Each step, when a model is told how to move."""
         return step if self._velocities else FAR
-
-    def after(self, step: int, dt: float, gravity: Vec3) -> None:
-        """Do nothing after a step."""
 
     def before(self, step: int, dt: float, gravity: Vec3) -> None:
         """Act before the next step."""

@@ -26,7 +26,8 @@ from ...geometry import Vec3, add, conjugate, cross, dot, norm, rotate, scale
 from ..body_plan import BASE
 from . import collision_groups
 from .bodies import Body
-from .step_helper import FAR, looks_until_turn, turn_of
+from .body_events import COMMANDED, BodyEvent
+from .step_helper import FAR, StepHelper, looks_until_turn, turn_of
 from .surface_coefficients import directed, of_link
 
 Contact = Tuple[Any, ...]  # as PyBullet tells it
@@ -54,12 +55,14 @@ _NONE = (0.0, 0.0, 0.0)
 _FLIES, _PILED, _SLIDES, _MENDED = range(4)
 
 
-class ResidualFriction:
+class ResidualFriction(StepHelper):
     """Mends the velocities of sliding rigid bodies after each step.
 
     Args:
         rolls: returns whether a rigid body is a cylinder that rolls on its side.
     """
+
+    events = COMMANDED
 
     def __init__(self, rolls: Callable[[int], bool]) -> None:
         self._rolls = rolls
@@ -118,7 +121,7 @@ class ResidualFriction:
             group.clear()
         self._rounds = None
 
-    def touched(self, body: Body) -> None:
+    def handle_event(self, event: BodyEvent, body: Body) -> None:
         """A body was put somewhere or given another velocity: it is looked at soon."""
         if body.uid in self._watched:
             self._fast[body.uid] = None
@@ -127,9 +130,6 @@ class ResidualFriction:
             if body.uid in self._asleep:
                 self._asleep.discard(body.uid)
                 self._rounds = None
-
-    def before(self, step: int, dt: float, gravity: Vec3) -> None:
-        """Do nothing before a step."""
 
     def due(self, step: int) -> int:
         """Each step while bodies are mended, else the next look, which comes after a step."""

@@ -16,8 +16,9 @@ from ...geometry import Vec3, norm, subtract
 from ..body_plan import BASE
 from ..run_state import RestPlace
 from .bodies import Body
+from .body_events import COMMANDED, BodyEvent
 from .contact_settling import place_of
-from .step_helper import FAR
+from .step_helper import FAR, StepHelper
 
 _AWAKE_STEPS = 16      # contact forces of six boxes on each other are right within 5 % after these
 _MOST_SHIFT = 1e-4     # m, rad in these steps: a body that went farther was pushed
@@ -29,12 +30,14 @@ class _Rest(NamedTuple):
     place: RestPlace
 
 
-class RestoredSleep:
+class RestoredSleep(StepHelper):
     """Finds out which bodies sleep, and puts bodies to rest.
 
     Args:
         hold: holds an articulated body at a place.
     """
+
+    events = COMMANDED
 
     def __init__(self, hold: Callable[[Body, RestPlace], None]) -> None:
         self._hold = hold
@@ -65,7 +68,7 @@ class RestoredSleep:
         """Steps are about to be made."""
         self._commanded.clear()
 
-    def touched(self, body: Body) -> None:
+    def handle_event(self, event: BodyEvent, body: Body) -> None:
         """A command has reached a body: it stays awake."""
         self._rests.pop(body.uid, None)
         self._commanded.add(body.uid)
@@ -100,9 +103,6 @@ class RestoredSleep:
                     _put_to_sleep(body.uid, place)
                 else:
                     self._hold(body, place)
-
-    def after(self, step: int, dt: float, gravity: Vec3) -> None:
-        """Do nothing after a step."""
 
 
 def _is_near(one: RestPlace, other: RestPlace) -> bool:

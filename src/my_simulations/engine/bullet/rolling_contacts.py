@@ -41,9 +41,10 @@ from ...geometry import (
 from ..body_plan import BASE
 from . import collision_groups
 from .bodies import Body, Part
+from .body_events import COMMANDED, BodyEvent
 from .extra_surfaces import SOFT
 from .link_states import place
-from .step_helper import FAR, next_multiple
+from .step_helper import FAR, StepHelper, next_multiple
 
 EVERY = 8
 """Steps between two looks at who lies."""
@@ -93,7 +94,7 @@ class _Roller:
     share: float = 0.0   # of an overlap, parted in each step; 0: as PyBullet has it
 
 
-class RollingContacts:
+class RollingContacts(StepHelper):
     """Drops the contact points of lying cylinders before each step.
 
     Args:
@@ -104,6 +105,8 @@ class RollingContacts:
     Attributes:
         on_seams: what rolls on triangles just now, and its axis in the frame of its principal axes.
     """
+
+    events = COMMANDED
 
     def __init__(self, dropping: Callable[[AbstractSet[Key], int], None],
                  loaded: Callable[[], AbstractSet[int]],
@@ -147,7 +150,7 @@ class RollingContacts:
         self._moving.clear()
         self._seams.clear()
 
-    def touched(self, body: Body) -> None:
+    def handle_event(self, event: BodyEvent, body: Body) -> None:
         """A rigid body was put somewhere or given another velocity: it may roll at once."""
         self._standing.pop(body.uid, None)
         roller = self._rollers.get((body.uid, BASE)) if body.rigid else None
@@ -207,9 +210,6 @@ class RollingContacts:
         if self._rolling or self._standing:
             return step
         return next_multiple(step, EVERY) if self._rollers else FAR
-
-    def after(self, step: int, dt: float, gravity: Vec3) -> None:
-        """Do nothing after a step."""
 
     def _rolls(self, roller: _Roller, dt: float, gravity: Vec3, loaded: bool) -> bool:
         """Whether a link lies on its side and does not stand; finds out whether it does."""

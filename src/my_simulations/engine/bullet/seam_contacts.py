@@ -21,9 +21,10 @@ import pybullet
 
 from ...geometry import Vec3, add, cross, dot, norm, rotate, scale, subtract
 from .bodies import Body
+from .body_events import COMMANDED, BodyEvent
 from .link_states import place
 from .rolling_contacts import EVERY, Key, RollingContacts
-from .step_helper import FAR, next_multiple
+from .step_helper import FAR, StepHelper, next_multiple
 from .world_parameters import WorldParameters
 
 _APART = 5e-4  # of a body's size: points that are nearer are one; usually more
@@ -42,8 +43,10 @@ class _Push(NamedTuple):
     torque: Vec3
 
 
-class SeamContacts:
+class SeamContacts(StepHelper):
     """Takes back what the edges of triangles do to what rolls over them."""
+
+    events = COMMANDED
 
     def __init__(self, rolling: RollingContacts, parameters: WorldParameters) -> None:
         self._rolling, self._parameters = rolling, parameters
@@ -52,17 +55,17 @@ class SeamContacts:
 
     def forget(self, body: Body) -> None:
         """A body is gone."""
-        self.touched(body)
+        for key in [key for key in self._pushes if key[0] == body.uid]:
+            del self._pushes[key]
 
     def clear(self) -> None:
         """All bodies are gone."""
         self._at.clear()
         self._pushes.clear()
 
-    def touched(self, body: Body) -> None:
-        """A body was put somewhere or given another velocity."""
-        for key in [key for key in self._pushes if key[0] == body.uid]:
-            del self._pushes[key]
+    def handle_event(self, event: BodyEvent, body: Body) -> None:
+        """Drop the forces on a body that a command reached."""
+        self.forget(body)
 
     def due(self, step: int) -> int:
         """Each step while something rolls on triangles, else the next look for such."""

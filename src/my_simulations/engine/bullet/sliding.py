@@ -27,10 +27,11 @@ from ...description.link_surface import counting_collision
 from ...description.model import Link
 from ...geometry import Quat, Vec3, dot, norm, rotate, scale
 from .bodies import Body, Part
+from .body_events import BodyEvent
 from .edge_loads import Loads, axle_of, carrying, shared
 from .extra_surfaces import anisotropy, first_direction
 from .link_states import Motion, motion, motions
-from .step_helper import FAR, next_multiple
+from .step_helper import FAR, StepHelper, next_multiple
 from .surface_coefficients import directed
 
 EVERY = 16
@@ -99,8 +100,11 @@ class _Slide:
     apart: int = 0
 
 
-class Sliding:
+class Sliding(StepHelper):
     """Applies Coulomb's law to links that hang on joints and slide on static bodies."""
+
+    # Not after a new force or motor target: a wheel that slides goes on sliding.
+    events = frozenset({BodyEvent.ACTIVATED})
 
     def __init__(self) -> None:
         self._parts: Dict[int, Dict[int, Part]] = {}
@@ -158,8 +162,8 @@ class Sliding:
             table.clear()
         self._fixed.clear()
 
-    def touched(self, body: Body) -> None:
-        """A body was put somewhere or given another velocity."""
+    def handle_event(self, event: BodyEvent, body: Body) -> None:
+        """Give the links of a body back to Bullet."""
         for key in [key for key in self._slides if key[0] == body.uid]:
             self._give_back(key)
 

@@ -17,6 +17,7 @@ from ...geometry import IDENTITY, Pose, inverse
 from ..body_plan import BASE
 from ..ring import JOINT_WIDTH, JOINTS, LINK_WIDTH, LINKS
 from .bodies import FASTEST_RATE, Body
+from .body_events import ACTUATED, COMMANDED, BodyEvent, BodyObserver
 from .closing_joints import ClosingJoint
 from .link_states import motion, motions
 
@@ -33,13 +34,15 @@ _ROUND_ROBIN = 8   # resting bodies looked at per read-out whatever the neighbou
 _WORLD_SIZE = 1e9
 
 
-class StateReadout:
+class StateReadout(BodyObserver):
     """The link and joint tables, kept up to date.
 
     Attributes:
         links: float64 array (LINKS, 13), rows as in the ring.
         joints: float64 array (JOINTS, 2).
     """
+
+    events = COMMANDED | {BodyEvent.STATE_SET}
 
     def __init__(self, diverged: Callable[[Body], None],
                  raced: Callable[[Body], None]) -> None:
@@ -91,7 +94,7 @@ class StateReadout:
                 self._offsets[part.row] = inverse(part.link_from_com)
             else:
                 self._offsets.pop(part.row, None)
-        self.touch(body)
+        self.mark_changed(body)
 
     def forget(self, body: Body) -> None:
         """A body is gone; its rows stay as they are."""
@@ -106,12 +109,19 @@ class StateReadout:
                       self._offsets, self._closing):
             table.clear()
 
-    def touch(self, body: Body) -> None:
+    def handle_event(self, event: BodyEvent, body: Body) -> None:
+        """Read a body until it rests again."""
+        if event in ACTUATED:
+            self._mark_awake(body)
+        else:
+            self.mark_changed(body)
+
+    def mark_changed(self, body: Body) -> None:
         """The body was put elsewhere or given another velocity: read it until it rests again."""
         self._touched[body.uid] = body
-        self.woken(body)
+        self._mark_awake(body)
 
-    def woken(self, body: Body) -> None:
+    def _mark_awake(self, body: Body) -> None:
         """The body may move from the next step on; as it is now, it was read already."""
         body.still = 0
         self._resting.pop(body.uid, None)

@@ -2,7 +2,7 @@
 from __future__ import annotations
 
 import struct
-from typing import Callable, Dict, Iterable, Optional, Sequence, Tuple
+from typing import Callable, Dict, Optional, Sequence, Tuple
 
 import pybullet
 
@@ -26,8 +26,7 @@ from ..commands import Frame, LinkState, SetJoints, SetLinkState, SetModelState
 from ..ring import LINK_WIDTH
 from . import anchored_bodies, bodies
 from .bodies import Axis, Body, Part
-from .forces import Forces
-from .gyroscopic_rigid import GyroscopicRigid
+from .body_events import BodyEvent
 from .row_reader import RowReader
 from .state_readout import StateReadout
 from .state_restore import Entry, set_ball
@@ -40,20 +39,18 @@ class StateSetter:
     """Sets poses, velocities and joint positions of what is in the world."""
 
     def __init__(self, rows: Dict[int, Tuple[Body, Part]], axes: Dict[int, Tuple[Body, Axis]],
-                 readout: StateReadout, row_reader: RowReader, waker: WakeUp, forces: Forces,
-                 spin: GyroscopicRigid, put: Iterable[Callable[[Body], None]]) -> None:
-        """`rows` and `axes` are looked into, never changed: who has a row of the tables.
+                 readout: StateReadout, row_reader: RowReader, waker: WakeUp,
+                 notify: Callable[[BodyEvent, Body], None]) -> None:
+        """`rows` and `axes` are read, never changed: the bodies with rows in the tables.
 
-        Each of `put` is called with a body that was given a pose or velocity.
+        `notify` is called after the state of a body was set.
         """
         self._row_reader = row_reader
         self._rows = rows
         self._axes = axes
         self._readout = readout
         self._waker = waker
-        self._forces = forces
-        self._spin = spin
-        self._put = tuple(put)
+        self._notify = notify
 
     def link_state(self, row: int) -> LinkState:
         """Of the link at a row, as last read."""
@@ -114,11 +111,7 @@ class StateSetter:
             body, axis = self._axes[row]
             self._waker.around([body])
             bodies.put_axis(body, axis, position, rate)
-            self._forces.disturbed(body)
-            for put in self._put:
-                put(body)
-            self._spin.moved(body)
-            self._readout.touch(body)
+            self._notify(BodyEvent.STATE_SET, body)
 
     def put_back(self, body: Body) -> None:
         """Put a body whose state is no number back where it last was one, at rest."""
@@ -131,8 +124,7 @@ class StateSetter:
         for ball in body.balls:
             base = Pose(*pybullet.getBasePositionAndOrientation(body.uid))
             set_ball(body, ball, base, lambda row: LinkState(self.link_state(row).pose))
-        self._forces.disturbed(body)
-        self._spin.moved(body)
+        self._notify(BodyEvent.STATE_REPAIRED, body)
 
     def _in_world(self, pose: Pose, twist: Optional[Twist],
                   frame: Optional[Frame]) -> Tuple[Pose, Optional[Twist]]:
@@ -178,13 +170,9 @@ class StateSetter:
             for ball in body.balls:
                 turn = pybullet.getJointStateMultiDof(body.uid, ball.index)[0]
                 pybullet.resetJointStateMultiDof(body.uid, ball.index, turn, (0.0, 0.0, 0.0))
-        self._forces.disturbed(body)
         if body.moves and not is_anchored:
             bodies.launch(body, target, _carried(lead, target, at, twist))
-        for put in self._put:
-            put(body)
-        self._spin.moved(body)
-        self._readout.touch(body)
+        self._notify(BodyEvent.STATE_SET, body)
 
 
 def _link_state(values: Sequence[float]) -> LinkState:

@@ -3,10 +3,11 @@ from __future__ import annotations
 
 from collections import deque
 from itertools import repeat, starmap
-from typing import Callable, List, Protocol, Sequence, Set, TypeVar
+from typing import Callable, List, Optional, Sequence, Set, TypeVar
 
 from ...geometry import Vec3
 from .bodies import Body
+from .body_events import COMMANDED, BodyEvent, BodyObserver
 
 FAR = 1 << 30
 """More steps than are ever made in one go."""
@@ -15,17 +16,7 @@ Item = TypeVar("Item")
 _Call = Callable[[int, float, Vec3], None]
 
 
-class BodyKeeper(Protocol):
-    """Remembers bodies one by one."""
-
-    def forget(self, body: Body) -> None:
-        """A body is gone."""
-
-    def clear(self) -> None:
-        """All bodies are gone."""
-
-
-class StepHelper(BodyKeeper, Protocol):
+class StepHelper(BodyObserver):
     """Acts around steps.
 
     Everything it does follows from step counts, commands and the state of the world, never from how
@@ -43,20 +34,26 @@ class StepHelper(BodyKeeper, Protocol):
 
         `FAR` for none. It stays right until the helper has acted or a command reached a body.
         """
+        return FAR
 
 
-class StepLoop:
+class StepLoop(BodyObserver):
     """Makes steps and calls helpers around those where they are due, in their order."""
+
+    events = COMMANDED | {BodyEvent.FIXED_AT_REST, BodyEvent.RELEASED}
 
     def __init__(self, helpers: Sequence[StepHelper], one: Callable[[], object],
                  prepare: Callable[[], None] = lambda: None) -> None:
         """`one` makes a step; `prepare` is called before it, once all helpers have acted."""
         self._helpers = helpers
         self._prepare = prepare
-        self._befores = [helper.before for helper in helpers]
-        self._afters = [helper.after for helper in helpers]
+        self._befores: List[Optional[_Call]] = [
+            None if type(helper).before is StepHelper.before else helper.before
+            for helper in helpers]
+        self._afters: List[Optional[_Call]] = [
+            None if type(helper).after is StepHelper.after else helper.after for helper in helpers]
         self._one = one
-        self._touched = False
+        self._notified = False
         self._dues: List[int] = []
         self._next = (0, 0)   # the step that follows the last one, and the first of `_dues`
         self._moving: Set[int] = set()
@@ -77,12 +74,12 @@ class StepLoop:
         self.changed()
         self._moving.clear()
 
-    def touched(self, body: Body) -> None:
-        """A command, or a force that begins, reached a body: others may be due."""
-        self._touched = True
+    def handle_event(self, event: BodyEvent, body: Body) -> None:
+        """Ask all helpers again when they are due."""
+        self._notified = True
 
     def changed(self) -> None:
-        """Something was changed: ask all helpers anew."""
+        """Ask all helpers again when they are due."""
         self._dues = []
 
     def run(self, first: int, count: int, dt: float, gravity: Vec3) -> None:
@@ -91,7 +88,7 @@ class StepLoop:
         step, end = first, first + count
         dues, (follows, due) = self._dues, self._next
         # A world that steps in real time asks for one step at a time: what was known still holds.
-        if not dues or self._touched or follows != first:
+        if not dues or self._notified or follows != first:
             dues = [helper.due(step) for helper in helpers]
             due = min(dues)
         while step < end:
@@ -105,11 +102,17 @@ class StepLoop:
                 continue
             acting = [n for n, at in enumerate(dues) if at <= step]
             others = min([end, *(at for at in dues if at > step)])
-            # Mostly the same ones act in each step: nobody else is asked until something changes.
+            befores = [n for n in acting if self._befores[n] is not None]
+            afters = [n for n in acting if self._afters[n] is not None]
+            # Mostly the same helpers act in each step: no other is asked until something changes.
             while step < others:
-                self._make_step(acting, step, dt, gravity)
+                self._notified = False
+                self._call(self._befores, befores, step, dt, gravity)
+                self._prepare()
+                one()
+                self._call(self._afters, afters, step, dt, gravity)
                 step += 1
-                if self._touched:
+                if self._notified:
                     dues = [helper.due(step) for helper in helpers]
                     break
                 changed = False
@@ -119,31 +122,27 @@ class StepLoop:
                 if changed:
                     break
             due = min(dues)
-        self._touched = False
+        self._notified = False
         self._dues, self._next = dues, (end, due)
 
-    def _make_step(self, acting: List[int], step: int, dt: float, gravity: Vec3) -> None:
-        self._touched = False
-        self._call(self._befores, acting, step, dt, gravity)
-        self._prepare()
-        self._one()
-        self._call(self._afters, acting, step, dt, gravity)
-
-    def _call(self, calls: Sequence[_Call], acting: List[int], step: int, dt: float, gravity: Vec3,
-              ) -> None:
-        """Call those who act and, once a body was touched, whoever else is due, in their order."""
+    def _call(self, calls: Sequence[Optional[_Call]], acting: List[int], step: int, dt: float,
+              gravity: Vec3) -> None:
+        """Call the acting helpers and, after an event, all others that are due, in their order."""
         begin = 0
-        if not self._touched:
+        if not self._notified:
             for n in acting:
-                calls[n](step, dt, gravity)
-                if self._touched:
+                call = calls[n]
+                assert call is not None
+                call(step, dt, gravity)
+                if self._notified:
                     begin = n + 1
                     break
             else:
                 return
         for n in range(begin, len(calls)):
-            if n in acting or self._helpers[n].due(step) <= step:
-                calls[n](step, dt, gravity)
+            call = calls[n]
+            if call is not None and (n in acting or self._helpers[n].due(step) <= step):
+                call(step, dt, gravity)
 
 
 def next_multiple(step: int, every: int) -> int:

@@ -24,7 +24,8 @@ from ...description.shapes import Plane
 from ...geometry import Vec3, add, cross, dot, norm, scale, subtract
 from .approach import extent
 from .bodies import Body
-from .step_helper import FAR
+from .body_events import COMMANDED, BodyEvent
+from .step_helper import FAR, StepHelper
 from .surface_coefficients import of_link, restitution
 from .world_parameters import LEAST_BOUNCE
 
@@ -66,8 +67,10 @@ class _Motion(NamedTuple):
 _STILL = _Motion((0.0, 0.0, 0.0), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
 
 
-class SurfaceStop:
+class SurfaceStop(StepHelper):
     """Takes back a part of the last step of what lands on something."""
+
+    events = COMMANDED
 
     def __init__(self) -> None:
         self._bodies: Dict[int, Body] = {}
@@ -113,7 +116,7 @@ class SurfaceStop:
             group.clear()
         self._looks.clear()
 
-    def touched(self, body: Body) -> None:
+    def handle_event(self, event: BodyEvent, body: Body) -> None:
         """A command reached a body: it may be fast from now on."""
         if body.uid in self._bodies:
             self._plan(body.uid, 0)
@@ -135,9 +138,6 @@ class SurfaceStop:
         self._seen.clear()
         for uid in sorted(now):
             self._plan(uid, step + self._look(self._bodies[uid], dt, gravity))
-
-    def after(self, step: int, dt: float, gravity: Vec3) -> None:
-        """Do nothing after a step."""
 
     def _plan(self, uid: int, step: int) -> None:
         if self._next.get(uid) != step:

@@ -15,12 +15,12 @@ from ...geometry import Vec3, conjugate, rotate, scale
 from ..body_plan import BASE
 from .bodies import Body, Part
 from .link_states import motion
-from .step_helper import FAR
+from .step_helper import FAR, StepHelper
 
 _LEAST_LEFT = 1e-9   # of a velocity after 1 s; the share of a step is exact to 1e-7 of dt, in s
 
 
-class VelocityDecay:
+class VelocityDecay(StepHelper):
     """Slows links down in every step, before anything else acts on them."""
 
     def __init__(self) -> None:
@@ -49,9 +49,6 @@ class VelocityDecay:
     def due(self, step: int) -> int:
         """Each step, when a link is slowed down."""
         return step if self._links else FAR
-
-    def after(self, step: int, dt: float, gravity: Vec3) -> None:
-        """Do nothing after a step."""
 
     def before(self, step: int, dt: float, gravity: Vec3) -> None:
         """Act in the next step, of `dt` s."""

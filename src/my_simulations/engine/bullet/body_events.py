@@ -1,0 +1,54 @@
+"""Events of bodies: what commands and helpers did to a body between two moments of a run."""
+from __future__ import annotations
+
+from enum import Enum
+from typing import ClassVar, FrozenSet
+
+from .bodies import Body
+
+
+class BodyEvent(Enum):
+    """What happened to one body."""
+
+    ACTIVATED = "activated"
+    """A command changed the body or one near it: it is awake, its pose and velocity may differ."""
+    STATE_SET = "state set"
+    """A command set its pose, its velocity or its joints."""
+    STATE_REPAIRED = "state repaired"
+    """Its state was not finite: it is back in its last finite pose, at rest."""
+    FORCE_APPLIED = "force applied"
+    """A force, or the effort of a servo, acts on it from the next step on."""
+    MOTOR_TARGET_CHANGED = "motor target changed"
+    """A joint motor has another target from the next step on."""
+    PLANAR_VELOCITY_CHANGED = "planar velocity changed"
+    """It moves with another planar velocity from the next step on."""
+    FIXED_AT_REST = "fixed at rest"
+    """An articulated body that stood still is put back to its pose from now on."""
+    RELEASED = "released"
+    """It is no longer fixed at rest."""
+
+
+ACTUATED = frozenset((BodyEvent.FORCE_APPLIED, BodyEvent.MOTOR_TARGET_CHANGED,
+                      BodyEvent.PLANAR_VELOCITY_CHANGED))
+"""The body has the same pose and velocity as before, and may move from the next step on."""
+
+COMMANDED = ACTUATED | {BodyEvent.ACTIVATED}
+
+
+class BodyObserver:
+    """Stores data of single bodies.
+
+    Attributes:
+        events: the events for which `handle_event` is called.
+    """
+
+    events: ClassVar[FrozenSet[BodyEvent]] = frozenset()
+
+    def handle_event(self, event: BodyEvent, body: Body) -> None:
+        """Update what is stored about a body after one of `events`."""
+
+    def forget(self, body: Body) -> None:
+        """Drop what is stored about a removed body."""
+
+    def clear(self) -> None:
+        """Drop what is stored about all bodies."""
