@@ -10,6 +10,7 @@ from test_settling import _on, _robot, _slope
 
 from my_simulations.description.model import Joint, JointAxis, Model
 from my_simulations.description.shapes import Box
+from my_simulations.engine.bullet.body_events import BodyEvent
 from my_simulations.engine.commands import Command, RemoveModel, SetModelState
 from my_simulations.engine.drive_commands import (
     JointMotor,
@@ -87,7 +88,8 @@ def test_a_robot_that_was_held_moves_as_far_as_one_that_was_not(lab: Lab):
     held, free = lab.load(_robot(), (0, 0, 0)), lab.load(_robot(), (0, 2, 0))
     for _ in range(20):
         lab.seconds(0.2)
-        lab.backend._helpers.settling.touched(lab.backend._rows[lab.rows[free, "body"]][0])
+        lab.backend._helpers.settling.handle_event(
+            BodyEvent.ACTIVATED, lab.backend._rows[lab.rows[free, "body"]][0])
     starts = [lab.pose(robot, "body").position for robot in (held, free)]
     for robot in (held, free):
         lab.apply(AddTimedForces(tuple(TimedEffort(
@@ -111,7 +113,8 @@ def test_a_robot_that_was_held_drives_along_a_spline_as_one_that_was_not(lab: La
                               for robot in (held, free) for row in _wheels(lab, robot))))
     for _ in range(19):
         lab.seconds(0.2)
-        lab.backend._helpers.settling.touched(lab.backend._rows[lab.rows[free, "body"]][0])
+        lab.backend._helpers.settling.handle_event(
+            BodyEvent.ACTIVATED, lab.backend._rows[lab.rows[free, "body"]][0])
     assert _holds(lab)
     lab.seconds(3.2)
     one, other = (lab.pose(robot, "body").position[0] for robot in (held, free))

@@ -89,7 +89,7 @@ def test_a_ball_joint_that_is_no_number_is_put_back_once(weightless):
     body = next(one for one in lab.backend._bodies.values() if one.model_id == model)
     pybullet.resetJointStateMultiDof(body.uid, body.balls[0].index, targetValue=(nan,) * 4,
                                      targetVelocity=(nan,) * 3)
-    lab.backend._readout.touch(body)
+    lab.backend._readout.mark_changed(body)
     lab.steps(1)
     assert [event.kind for event in lab.backend.events()] == ["diverged"]
     lab.steps(100)
@@ -106,7 +106,7 @@ def test_an_axis_that_is_no_number_is_put_back_where_it_was(weightless):
     lab.steps(1)
     body = next(one for one in lab.backend._bodies.values() if one.model_id == model)
     pybullet.resetJointState(body.uid, body.axes[0].index, math.nan, math.nan)
-    lab.backend._readout.touch(body)
+    lab.backend._readout.mark_changed(body)
     lab.steps(1)
     assert [event.kind for event in lab.backend.events()] == ["diverged"]
     lab.steps(10)
