@@ -385,7 +385,7 @@ _TABLE: Tuple[Tuple[str, Tuple[Tuple[str, str, str, str], ...]], ...] = (
         ("unusable", ERROR, "The input cannot be used.", "See the message."),
         ("editor-defect", ERROR, "A part of the editor stopped because of an internal error.",
          "Restart the simulator and report the message."),
-        ("shared-edit", NOTE, "Somebody else at this world edits what you hold or did.",
+        ("shared-edit", NOTE, "Another user of the editor changes what you selected or changed.",
          "Agree with them; everything can be undone."),
         ("editor-view", ERROR, "The editor could not read the state of the world.",
          "See the message."),
