@@ -295,3 +295,75 @@ def test_a_submission_cannot_forge_the_results_of_a_rostest(tmp_path):
     said = json.loads((students / "forger" / "results.json").read_text())["tests"][0]["output"]
     assert points(rows["forger"], "test") == [0], said
     assert said.startswith("0 of 1 tests passed"), said
+
+
+def graded(folder, assignment, *words):
+    """Grade the submissions in a folder by a shipped assignment; returns rows by student."""
+    done = subprocess.run([*GRADE, assignment, *sorted(str(path) for path in folder.iterdir()),
+                           "--out", str(folder.parent / "marks"), *words], text=True,
+                          timeout=SECONDS, capture_output=True)
+    assert done.returncode == 0, done.stderr
+    with open(folder.parent / "marks" / "marks.csv", newline="") as stream:
+        return {row["student"]: row for row in csv.DictReader(stream)}
+
+
+WALL = ("the program commands the robot", "the robot comes near the wall",
+        "the robot touches no wall", "the robot stops before the wall")
+
+
+def test_an_instructor_grades_five_submissions_by_a_shipped_assignment(tmp_path):
+    submissions = tmp_path / "submissions"
+    right = (REPOSITORY / "scripts" / "stop_before_wall.py").read_text()
+    for name, program in (("right", right), ("typo", right.replace("while", "whil")),
+                          ("loop", "while True: pass\n"), ("idle", "print('nothing')\n"),
+                          ("crash", DRIVER)):
+        (submissions / name).mkdir(parents=True)
+        (submissions / name / "go.py").write_text(program)
+    rows = graded(submissions, "stop_before_wall", "--jobs", "2")
+    assert points(rows["right"], *WALL) == [2, 4, 2, 2]
+    for name in ("typo", "loop", "idle"):
+        commanded, near, _, stopped = points(rows[name], *WALL)
+        assert commanded == 0 and near < 0.5 and stopped == 0, name
+    assert points(rows["crash"], *WALL)[::2] == [2, 0]
+    pages = {name: (tmp_path / "marks" / "students" / name / "index.html").read_text()
+             for name in rows}
+    assert "SyntaxError" in (tmp_path / "marks" / "students" / "typo" / "output.txt").read_text()
+    assert all("replay.html" in page for page in pages.values())
+    assert "touches" in pages["crash"]
+
+
+def test_the_program_of_the_course_drives_the_square_of_the_assignment(tmp_path):
+    (tmp_path / "submissions" / "right").mkdir(parents=True)
+    (tmp_path / "submissions" / "right" / "go.py").write_text(
+        (REPOSITORY / "scripts" / "drive_square.py").read_text())
+    row = graded(tmp_path / "submissions", "drive_square")["right"]
+    assert float(row["points"]) == 10.0, row
+
+
+OBJECT = """<robot name="my_object"><link name="base"><inertial><mass value="1"/>
+<inertia ixx="0.01" iyy="0.01" izz="0.01" ixy="0" ixz="0" iyz="0"/></inertial>
+<collision><geometry><box size="0.2 0.2 0.2"/></geometry></collision>
+<visual><geometry><box size="0.2 0.2 0.2"/></geometry></visual></link></robot>"""
+SPAWN = """#!/bin/sh
+roslaunch my_simulations upload_param.launch package:=my_package world_name:=empty_world
+rosrun my_simulations spawn_object.py --package my_package my_object
+"""
+
+
+def test_a_package_with_an_object_fulfils_the_assignment_of_objects(tmp_path):
+    for name, place in (("right", "[1.0, 0.0, 0.1]"), ("beside", "[1.5, 0.0, 0.1]")):
+        package = tmp_path / "submissions" / name
+        for inside, text in (
+                ("package.xml", PACKAGE.format("my_package")), ("spawn.sh", SPAWN),
+                ("objects/my_object.urdf", OBJECT),
+                ("config/empty_world/object_locations.yaml",
+                 f"my_object: {{model: my_object, model_type: urdf, position: {place},"
+                 " orientation: [0, 0, 0]}\n")):
+            (package / inside).parent.mkdir(parents=True, exist_ok=True)
+            (package / inside).write_text(text)
+        (package / "spawn.sh").chmod(0o755)
+    rows = graded(tmp_path / "submissions", "object_tutorial", "--jobs", "2")
+    assert float(rows["right"]["points"]) == 10.0, rows
+    place = float(rows["beside"]["the object is at its place"])
+    assert 1.0 < place < 2.0
+    assert float(rows["beside"]["points"]) == pytest.approx(7.0 + place, abs=0.02)

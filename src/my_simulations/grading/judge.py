@@ -22,7 +22,7 @@ from ..resources.resolver import Resolver
 from .assignment import Assignment, Launch, Rostest, Timed
 from .assignment_file import read_assignment
 from .file_checks import MISSING, WorldFile, check_files, read_world_file
-from .launch_checks import LaunchChecks
+from .launch_checks import LaunchChecks, package_folders
 from .mark import CheckResult, GradingError, result
 from .program import OUTPUT, Program, submission_account
 from .program_graph import RosGraph, graph_environment
@@ -143,8 +143,11 @@ class Judge:
     def _program(self, file: str, uri: str) -> Program:
         path = os.path.join(self._folder, file)
         command = [sys.executable, path] if file.endswith(".py") else [path]
+        packages = os.pathsep.join([*package_folders(self._folder),
+                                    os.environ.get("ROS_PACKAGE_PATH", "")])
         return Program(command, os.path.dirname(path), self._scratch, self._assignment.limits,
-                       submission_account(self._scratch, self._slot), graph_environment(uri))
+                       submission_account(self._scratch, self._slot),
+                       {**graph_environment(uri), "ROS_PACKAGE_PATH": packages})
 
     def _refuse_timed(self, reason: str, file: str = "", line: int = 0) -> None:
         found: List[CheckResult] = [result(check, 0.0, f"the world does not run: {reason}", file,
