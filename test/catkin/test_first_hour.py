@@ -14,18 +14,12 @@ from typing import List
 
 import pytest
 from free_ports import free_port
+from generated_messages import DEVEL, copy_messages
 
 REPOSITORY = Path(__file__).resolve().parents[2]
 PAGE = REPOSITORY / "doc" / "first_hour.md"
-DEVEL = Path(os.environ["CMAKE_PREFIX_PATH"].split(":")[0])
-"""The workspace under test. Its set-up has just generated the code of the messages, from the same
-definitions and by the same commands as the page's; to do that again in each way takes a minute."""
 OWN = DEVEL.parent / ".my_simulations"
 """Where it has what it fetched; fetching is not what the page is about."""
-MESSAGES = ("control_msgs", "controller_manager_msgs", "gazebo_msgs", "my_simulations_msgs")
-PARTS = ("lib/python3/dist-packages/{}", "include/{}", "share/{}/msg", "share/common-lisp/ros/{}")
-"""Folders of a devel space with what is generated from a package's messages."""
-COMPILED = shutil.ignore_patterns("__pycache__")
 OLDER = ["find", ".", "-path", "*/compat/*", "-type", "f", "-exec",
          "touch", "-d", "2020-01-01", "{}", "+"]
 """make generates again what is older than its definition: definitions of a clone are old."""
@@ -130,15 +124,6 @@ def repository(tmp_path_factory):
     return folder
 
 
-def copy_messages(devel):
-    """Give a new workspace the code that was generated from the messages' definitions."""
-    for package in MESSAGES:
-        for part in PARTS:
-            generated = DEVEL / part.format(package)
-            if generated.is_dir():
-                shutil.copytree(generated, devel / part.format(package), ignore=COMPILED)
-
-
 @pytest.fixture
 def terminals(tmp_path, repository):
     home = tmp_path / "home"
@@ -146,7 +131,7 @@ def terminals(tmp_path, repository):
     own.mkdir(parents=True)
     for name in ("venv", "node_modules", ".page"):
         (own / name).symlink_to(OWN / name)
-    copy_messages(home / "simulation_ws" / "devel")
+    copy_messages(lambda _package: home / "simulation_ws" / "devel")
     clone = home / "my_simulations_clone"
     subprocess.run(["git", "clone", "-q", str(repository), str(clone)], check=True)
     subprocess.run(OLDER, cwd=clone, check=True)

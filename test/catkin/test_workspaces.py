@@ -13,9 +13,10 @@ from pathlib import Path
 
 import pytest
 from free_ports import free_port
+from generated_messages import DEVEL, copy_messages
 
 REPOSITORY = Path(__file__).resolve().parents[2]
-OWN = Path(os.environ["CMAKE_PREFIX_PATH"].split(":")[0]).parent / ".my_simulations"
+OWN = DEVEL.parent / ".my_simulations"
 """Where the workspace under test has what it fetched."""
 READY = "the world editor is at http"
 SECONDS = 900.0
@@ -101,6 +102,8 @@ class Workspace:
     (["catkin_make_isolated"], "devel_isolated")], ids=["catkin_tools", "isolated"])
 def test_workspace_is_built_by_its_own_command_and_simulates(tmp_path, first, devel):
     workspace = Workspace(tmp_path, *first)
+    of_packages = tmp_path / "ws" / ("devel/.private" if devel == "devel" else devel)
+    copy_messages(lambda package: of_packages / package)
     text = workspace.set_up()
     assert f"source {tmp_path}/ws/{devel}/setup.bash" in text
     assert (tmp_path / "ws" / "devel").exists() is (devel == "devel")
@@ -139,6 +142,7 @@ def ros_one(folder: Path, workspace: Workspace) -> Path:
 def test_ros_one_is_used_and_nothing_of_debians_ros_is_asked_for(tmp_path):
     workspace = Workspace(tmp_path)
     prefix = ros_one(tmp_path, workspace)
+    copy_messages(lambda _package: tmp_path / "ws" / "devel")
     workspace.environment.update(MY_SIMULATIONS_ROS_PREFIX=str(prefix), PREFIX=str(prefix))
     # dpkg has the packages of ROS One, and none of Debian's with ROS.
     workspace.program("dpkg-query", r"""shift 2
