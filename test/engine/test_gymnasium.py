@@ -9,6 +9,7 @@ import signal
 import subprocess
 import sys
 import warnings
+from dataclasses import replace
 from pathlib import Path
 
 import gymnasium
@@ -17,9 +18,12 @@ import pytest
 from gymnasium.utils.env_checker import check_env
 
 import my_simulations.gym
+from my_simulations.description.model import Link, Model
+from my_simulations.description.shapes import Box, Visual
 from my_simulations.errors import CommandError
+from my_simulations.geometry import Pose
 from my_simulations.gym import Judgement, View, WorldEnv, push_box, stack_boxes
-from my_simulations.python_api import RobotOptions, WorldChoice
+from my_simulations.python_api import OpenWorld, Randomisation, RobotOptions, WorldChoice
 
 REPOSITORY = Path(__file__).resolve().parents[2]
 PUSH, STACK = "my_simulations/PushBox-v0", "my_simulations/StackBoxes-v0"
@@ -299,3 +303,47 @@ def test_a_task_drives_a_robot_by_its_laser_and_repeats():
     with pytest.raises(CommandError, match="there is no topic /scan"):
         silent.reset(seed=1)
     silent.close()
+
+
+RANDOM = Randomisation(friction=(0.5, 1.5), mass=(0.5, 2.0), gravity=(0.9, 1.1), light=(0.3, 0.9),
+                       colour=0.3, sensor_noise=(2.0, 8.0))
+
+
+def _drawn(world):
+    box, robot = world.description("box"), world.description("robo")
+    laser, = (sensor for link in robot.links for sensor in link.sensors if sensor.ray)
+    link = box.links[0]
+    return (link.collisions[0].surface.mu, link.inertial.mass, link.inertial.ixx,
+            world.simulator.physics.gravity[2], link.visuals[0].material.diffuse,
+            laser.ray.noise.stddev, world.simulator.lights.all()[0].diffuse)
+
+
+def test_each_episode_draws_other_values_and_a_seed_draws_them_again():
+    env = WorldEnv(push_box.PushBox(), randomisation=RANDOM)
+    try:
+        first = _episode(env, 4)
+        drawn = _drawn(env.world)
+        mu, mass, ixx, gravity, colour, noise, light = drawn
+        assert 0.15 <= mu <= 0.45 and 0.25 <= mass <= 1.0 and ixx == pytest.approx(
+            0.0033 * mass / 0.5)
+        assert -10.78 <= gravity <= -8.82 and 0.01 <= noise <= 0.04 and colour[3] == 1.0
+        env.reset()
+        assert all(one != other for one, other in zip(_drawn(env.world), drawn))
+        assert (_episode(env, 4) == first).all() and _drawn(env.world) == drawn
+    finally:
+        env.close()
+
+
+def test_less_light_darkens_the_picture_and_textures_are_for_the_named_models():
+    choice = WorldChoice(models=(("box", push_box._BOX, Pose()),))
+    random = np.random.default_rng(1)
+    textured = Randomisation(textures=("file:///one.png",), models=("box",)).apply(choice, random)
+    model = Model("box", links=[Link("link", visuals=[Visual("v", Box())])])
+    assert textured.alter_model(model).links[0].visuals[0].material.texture == "file:///one.png"
+    assert textured.alter_model(replace(model, name="other")) == replace(model, name="other")
+    means = []
+    for factor in (0.2, 0.8):
+        dim = Randomisation(light=(factor, factor)).apply(choice, random)
+        with OpenWorld(dim, robots=RobotOptions(plugins=False)) as world:
+            means.append(world.render([1, -1, 1], look_at=[0, 0, 0]).rgb.mean())
+    assert means[1] > means[0] + 10.0

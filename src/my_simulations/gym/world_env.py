@@ -8,7 +8,7 @@ import gymnasium
 import numpy as np
 
 from ..errors import EngineLostError
-from ..python_api import OpenWorld, RobotOptions, WorldChoice
+from ..python_api import OpenWorld, Randomisation, RobotOptions, WorldChoice
 
 
 @dataclass(frozen=True)
@@ -77,17 +77,19 @@ class WorldEnv(gymnasium.Env[Any, Any]):
         task: what it is about.
         render_mode: "rgb_array", or None.
         robots: which plugins of the world's robots run.
+        randomisation: what is drawn anew for each episode, from the seed of `reset`.
     """
 
     metadata: Dict[str, Any] = {"render_modes": ["rgb_array"], "render_fps": 10}
 
     def __init__(self, task: Task, render_mode: Optional[str] = None,
-                 robots: RobotOptions = RobotOptions()) -> None:  # noqa: B008
+                 robots: RobotOptions = RobotOptions(),  # noqa: B008
+                 randomisation: Optional[Randomisation] = None) -> None:
         if render_mode not in (None, "rgb_array"):
             raise ValueError(f"render_mode is 'rgb_array' or None, not '{render_mode}'")
         self.task = task
         self.render_mode = render_mode
-        self._robots = robots
+        self._robots, self._randomisation = robots, randomisation
         self.action_space = task.action_space
         self.observation_space = task.observation_space
         self.metadata = {**self.metadata, "render_fps": round(1.0 / task.period)}
@@ -105,8 +107,13 @@ class WorldEnv(gymnasium.Env[Any, Any]):
               ) -> Tuple[Any, Dict[str, Any]]:
         """Begin an episode; see gymnasium.Env.reset. `options` goes to the task."""
         super().reset(seed=seed)
+        choice = self.task.choice
+        if self._randomisation is not None:
+            choice = self._randomisation.apply(choice, self.np_random)
         if self._world is None:
-            self._world = OpenWorld(self.task.choice, robots=self._robots)
+            self._world = OpenWorld(choice, robots=self._robots)
+        elif self._randomisation is not None:
+            self._world.open(choice)
         else:
             self._world.reset()
         self.task.begin(self._world, self.np_random, options or {})
