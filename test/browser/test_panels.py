@@ -341,6 +341,7 @@ def test_a_force_from_the_dialog_pushes_the_box(editor):
     dialog.get_by_role("textbox", name="Steps").fill("100")
     dialog.get_by_role("textbox", name="Steps").press("Tab")
     dialog.get_by_role("button", name="Apply Force").click()
+    editor.until("document.activeElement.textContent === 'Apply Force'", "the focus on its button")
     dialog.get_by_role("button", name="Cancel").click()
     editor.get("editor.request('step', {steps: 150})")
     x, y = wait_for(lambda: editor.model("unit_box")["pose"][0] > 0.05 and

@@ -5,6 +5,11 @@ from pytest import approx
 from support import wait_for
 
 
+def bottom_of(element):
+    box = element.bounding_box()
+    return box["y"] + box["height"]
+
+
 def form_of(editor, title):
     editor.page.get_by_role("tab", name="Insert").click()
     editor.page.get_by_role("button", name=f"Template: {title}", exact=True).click()
@@ -37,6 +42,11 @@ def test_a_car_with_a_camera_is_built_driven_and_shows_its_picture(editor):
     editor.page.keyboard.up("ArrowUp")
     picture = editor.page.get_by_role("region", name="/camera/image_raw")
     picture.get_by_text("160 x 120").wait_for()
+    editor.page.keyboard.press("Control+p")
+    plots = editor.page.locator("#dock")
+    plots.wait_for()
+    wait_for(lambda: bottom_of(picture) <= plots.bounding_box()["y"], "the picture above the plots")
+    editor.page.keyboard.press("Control+p")
 
 
 def test_a_template_is_inserted_by_the_keyboard_alone(editor):

@@ -1,5 +1,5 @@
 /** The palette of the model editor: what can be added, and what the model has. */
-import {Dialog, faultText, labelled} from '../panels/dialog.js';
+import {Dialog, faultText, labelled, movable} from '../panels/dialog.js';
 import {fill, h} from '../panels/dom.js';
 import {icon} from '../panels/icons.js';
 import {jointDialog} from './joint_dialog.js';
@@ -29,9 +29,10 @@ export class Palette {
     this.#type = h('select', {'aria-label': 'Joint type', onchange: () => { editor.connect.type = this.#type.value; }},
       ...JOINT_TYPES.map((type) => h('option', {value: type, text: capital(type)})));
     this.#connect = button('Connect', () => editor.connect.toggle(), {title: 'Click the parent link, then the child link'});
+    const header = h('header', {title: 'Drag to move'}, h('h2', {text: 'Model Editor'}), h('button', {type: 'button', class: 'plain',
+      'aria-label': 'Exit model editor', title: 'Exit (Ctrl+M)', onclick: () => editor.close()}, icon('close')));
     this.#element = h('section', {class: 'model-palette', 'aria-label': 'Model editor'},
-      h('header', {}, h('h2', {text: 'Model Editor'}), h('button', {type: 'button', class: 'plain',
-        'aria-label': 'Exit model editor', title: 'Exit (Ctrl+M)', onclick: () => editor.close()}, icon('close'))),
+      header,
       h('label', {class: 'model-name'}, 'Name', this.#name),
       h('div', {class: 'flags'}, this.#flag('static', 'Static'), this.#flag('allow_auto_disable', 'Auto disable')),
       h('h3', {text: 'Add link'}),
@@ -46,6 +47,7 @@ export class Palette {
         button('Inertia…', () => this.#inertia(this.model?.name), {'aria-label': 'Inertia of all links'})),
       h('div', {class: 'tools'}, button('Save', () => editor.save(), {class: 'primary', title: 'Save (Ctrl+S)'}),
         button('Save As…', () => editor.save(true))));
+    movable(this.#element, header);
     // The view's mouse and keys are not for the palette.
     for (const event of ['pointerdown', 'wheel', 'dblclick']) {
       this.#element.addEventListener(event, (one) => one.stopPropagation());

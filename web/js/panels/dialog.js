@@ -173,6 +173,7 @@ export class Dialog {
       this.close(button.value);
       return;
     }
+    const focused = document.activeElement;
     this.#setAtWork(true);
     const told = setTimeout(() => this.say(AT_WORK), GLANCE);
     try {
@@ -184,6 +185,9 @@ export class Dialog {
     } finally {
       clearTimeout(told);
       this.#setAtWork(false);
+      // A button that was disabled for the work has lost the focus.
+      const lost = document.activeElement === document.body;
+      if (lost && this.element.isConnected && focused instanceof HTMLElement) focused.focus();
     }
   }
 
@@ -229,18 +233,22 @@ export function labelled(label, input, more) {
   return h('label', {class: 'dialog-field'}, h('span', {text: label}), input, more);
 }
 
-/** @param {HTMLElement} element @param {HTMLElement} handle */
-function movable(element, handle) {
+/**
+ * Lets the mouse move an element by a part of it.
+ * @param {HTMLElement} element @param {HTMLElement} handle
+ */
+export function movable(element, handle) {
   handle.addEventListener('pointerdown', (event) => {
     if (event.button !== 0 || closestTo(event, 'button')) return;
     const box = element.getBoundingClientRect();
+    const parent = element.offsetParent?.getBoundingClientRect() ?? {left: 0, top: 0};
     const offset = [event.clientX - box.left, event.clientY - box.top];
     handle.setPointerCapture(event.pointerId);
     /** @param {PointerEvent} moved */
     const move = (moved) => {
       const left = Math.min(Math.max(moved.clientX - offset[0], 0), window.innerWidth - 80);
       const top = Math.min(Math.max(moved.clientY - offset[1], 0), window.innerHeight - 40);
-      Object.assign(element.style, {left: `${left}px`, top: `${top}px`, margin: '0'});
+      Object.assign(element.style, {left: `${left - parent.left}px`, top: `${top - parent.top}px`, margin: '0'});
     };
     const end = () => {
       handle.removeEventListener('pointermove', move);

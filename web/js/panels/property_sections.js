@@ -164,7 +164,7 @@ function linkSections(world, row) {
   for (const collision of link.collisions) {
     const exact = `${target}::collision:${collision.name}`;
     sections.push(
-      section(`Collision ${collision.name}`, exact, collision, [
+      section(partTitle('Collision', collision.name), exact, collision, [
         ...table.COLLISION,
         ...geometryFields(collision.geometry),
       ]),
@@ -176,7 +176,7 @@ function linkSections(world, row) {
   for (const visual of link.visuals) {
     const exact = `${target}::visual:${visual.name}`;
     sections.push(
-      section(`Visual ${visual.name}`, exact, visual, [
+      section(partTitle('Visual', visual.name), exact, visual, [
         ...table.VISUAL,
         ...geometryFields(visual.geometry),
       ]),
@@ -192,3 +192,6 @@ function linkSections(world, row) {
   }
   return sections;
 }
+
+/** The kind with the name, which is often the same word. @param {string} kind @param {string} name */
+const partTitle = (kind, name) => (name.toLowerCase() === kind.toLowerCase() ? kind : `${kind} ${name}`);

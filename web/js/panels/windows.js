@@ -55,7 +55,7 @@ export class Windows {
     this.tabs = tabs;
     this.joints = new JointsPanel(byId('joints'), page);
     this.topics = new TopicsPanel(byId('topics'), page);
-    new TopicWindows(byId('centre'), page);
+    new TopicWindows(byId('view'), page);
     splitter(byId('right-splitter'), {
       key: 'right-width',
       initial: 300,

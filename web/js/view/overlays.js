@@ -21,6 +21,9 @@ const PER_MODEL = ['collisions', 'joints', 'com', 'inertia', 'frames', 'skeleton
 /** Density of lead: a ball of the link's mass is then small enough to see round. */
 const LEAD = 11340;
 const FRAME_SIZE = 0.25;
+const JOINT_SIZE = 0.45;
+/** The longest arrow of a joint, as a part of the diagonal of its model's box. */
+const JOINT_PART = 0.4;
 const SOCKET_SIZE = 0.02;
 
 const collisionMaterial = new MeshPhongMaterial({color: 0xff8c1a, opacity: 0.4, transparent: true,
@@ -91,15 +94,16 @@ function inertiaMark({inertial}) {
   return group;
 }
 
-/** @param {Joint} joint */
-function jointMark(joint) {
+/** @param {Joint} joint @param {number} most  length of its arrow, m */
+function jointMark(joint, most) {
   const group = new Group();
   place(group, joint.pose);
-  group.add(triad(FRAME_SIZE));
+  const length = Math.min(JOINT_SIZE, most);
+  group.add(triad(FRAME_SIZE / JOINT_SIZE * length));
   for (const axis of [joint.axis, joint.axis2]) {
     if (!axis) continue;
     const mark = arrow(axis.xyz, axisMaterial);
-    mark.scale.setScalar(0.45);
+    mark.scale.setScalar(length);
     group.add(mark);
   }
   return group;
@@ -246,7 +250,8 @@ export class Overlays {
     else if (flag === 'skeleton') add(skeletonMark(model, link));
     else if (flag === 'collisions') this.#addCollisions(group, link);
     else if (flag === 'joints') {
-      for (const joint of model.joints) if (joint.child === link.name) add(jointMark(joint));
+      const most = JOINT_PART * (this.#models.bounds(model.name)?.getSize(new Vector3()).length() ?? Infinity);
+      for (const joint of model.joints) if (joint.child === link.name) add(jointMark(joint, most));
     } else if (!model.static) {
       const name = `${model.name}::${link.name}`;
       if (flag === 'com') {
