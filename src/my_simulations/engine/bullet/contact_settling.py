@@ -30,10 +30,11 @@ from typing import Any, Callable, Dict, List, Optional, Sequence, Set
 
 import pybullet
 
-from ...geometry import Pose, Vec3
+from ...geometry import Vec3
 from ..run_state import PARTING_NOT_BEGUN, RestPlace
 from .bodies import Body
 from .body_events import COMMANDED, BodyEvent
+from .rest_place import put_at_rest, read_place
 from .step_helper import FAR, StepHelper, next_multiple
 from .world_parameters import USUAL_ACCURACY, Accuracy, WorldParameters
 
@@ -50,7 +51,6 @@ _PUSHED = 2e-3        # m/s and rad/s, of the base: one that is held has less be
 _PUSHED_JOINT = 0.05  # rad/s or m/s
 _ON_ITS_WAY = 0.1     # share of the rate that is wanted of an axis
 _LEANS = 0.02         # friction by normal force
-_NONE = (0.0, 0.0, 0.0)
 _SMALL = 0.06         # m, radius: such a body creeps on the level too
 _FOR_LEANING_BODIES = Accuracy(residual=1e-11)
 _FOR_STANDING_ROBOTS = Accuracy(4, 1e-15)
@@ -174,7 +174,8 @@ class ContactSettling(StepHelper):
         """Hold an articulated body at a place, like one that has stood still for long."""
         tree = self._trees[body.uid]
         tree.looks = _STANDS + 1
-        _hold(tree, place)
+        tree.held = place
+        put_at_rest(body, place)
         self._notify(BodyEvent.FIXED_AT_REST, body)
 
     def due(self, step: int) -> int:
@@ -243,14 +244,16 @@ class ContactSettling(StepHelper):
                      or any(contact[2] in self._moving for contact in contacts))
         if held is not None:
             if alone and speed < _PUSHED and fastest < _PUSHED_JOINT:
-                _hold(tree, held)
+                tree.held = held
+                put_at_rest(body, held)
                 return False
             tree.looks = 0
         elif (alone and speed < _STILL and fastest < _STILL_JOINT
               and not self._is_driven(body, states)):
             tree.looks += 1
             if tree.looks > _STANDS:
-                _hold(tree, place_of(body, states))
+                tree.held = read_place(body, states)
+                put_at_rest(body, tree.held)
                 return False
         else:
             tree.looks = 0
@@ -280,24 +283,6 @@ def _put_back(body: Body, states: JointStates) -> None:
         past = position - min(max(position, axis.lower), axis.upper)
         if abs(past) > _PAST_STOP:
             pybullet.resetJointState(body.uid, axis.index, position - _PUT_BACK * past, rate)
-
-
-def place_of(body: Body, states: Optional[JointStates] = None) -> RestPlace:
-    """Where an articulated body is; `states` are those of its axes, if they are known already."""
-    if states is None:
-        states = pybullet.getJointStates(body.uid, [axis.index for axis in body.axes]) or ()
-    return RestPlace(Pose(*pybullet.getBasePositionAndOrientation(body.uid))
-                     if body.base is not None else None, tuple(state[0] for state in states))
-
-
-def _hold(tree: _Tree, held: RestPlace) -> None:
-    """Put an articulated body, and its joints, back where they are held, at rest."""
-    tree.held = held
-    if held.base is not None:
-        pybullet.resetBasePositionAndOrientation(tree.body.uid, *held.base)
-        pybullet.resetBaseVelocity(tree.body.uid, _NONE, _NONE)
-    for index, position in zip(tree.indices, held.positions):
-        pybullet.resetJointState(tree.body.uid, index, position, 0.0)
 
 
 def _creeps(body: Body) -> bool:

@@ -14,10 +14,10 @@ import pybullet
 
 from ...geometry import Pose, Vec3, norm, scale, subtract
 from ..run_state import RestPlace
-from .bodies import Axis, Body, put_axis
+from .bodies import Axis, Body
 from .body_events import BodyEvent
-from .contact_settling import place_of
 from .link_states import motion
+from .rest_place import put_at_rest, read_place
 from .step_helper import FAR, StepHelper
 
 RANGE = 1e4
@@ -26,7 +26,6 @@ SPEED = 343.0
 """m/s: the speed of sound in air at 20 degrees Celsius."""
 
 _PERIOD_S = 0.2        # of sim time between two checks of all bodies
-_STILL = (0.0, 0.0, 0.0)
 _LEAST_GYRATION = 1e-3  # m, of a radius of gyration: smaller ones are mistakes of units
 _MASS_RATIO = 1000.0    # of neighbouring links
 _FALL = 0.02            # relative difference from a free fall that still counts as one
@@ -86,7 +85,7 @@ class DivergenceStop(StepHelper):
     def stop(self, bodies: Iterable[Body]) -> None:
         """Keep bodies in place, at rest."""
         for body in bodies:
-            self._stops[body.uid] = place_of(body)
+            self._stops[body.uid] = read_place(body)
 
     def forget(self, body: Body) -> None:
         """Forget a removed body."""
@@ -118,7 +117,7 @@ class DivergenceStop(StepHelper):
     def after(self, step: int, dt: float, gravity: Vec3) -> None:
         """Put stopped bodies back, at rest."""
         for uid, place in self._stops.items():
-            _put(self._bodies[uid], place)
+            put_at_rest(self._bodies[uid], place)
 
     def _check(self, body: Body, step: int, dt: float, gravity: Vec3) -> None:
         start = self._starts.get(body.uid)
@@ -133,8 +132,8 @@ class DivergenceStop(StepHelper):
         else:
             return
         cause = self._cause(body, start, now.linear, (step - start.step) * dt, gravity)
-        place = self._stops[body.uid] = place_of(body)
-        _put(body, place)
+        place = self._stops[body.uid] = read_place(body)
+        put_at_rest(body, place)
         self._moved(body)
         self._report(body, f"{what} and was stopped; likely cause: {cause}")
 
@@ -153,17 +152,6 @@ class DivergenceStop(StepHelper):
         if body.uid in self._loaded():
             return "a force that acts on it is too strong, as of a plugin with too high a gain"
         return "it overlapped another body, or what touches it is driven too fast"
-
-
-def _put(body: Body, place: RestPlace) -> None:
-    for axis, position in zip(body.axes, place.positions):
-        put_axis(body, axis, position)
-    for ball in body.balls:
-        turn = pybullet.getJointStateMultiDof(body.uid, ball.index)[0]
-        pybullet.resetJointStateMultiDof(body.uid, ball.index, turn, _STILL)
-    if place.base is not None:
-        pybullet.resetBasePositionAndOrientation(body.uid, *place.base)
-        pybullet.resetBaseVelocity(body.uid, _STILL, _STILL)
 
 
 def _odd_inertia(body: Body) -> str:

@@ -17,7 +17,7 @@ from ..body_plan import BASE
 from ..run_state import RestPlace
 from .bodies import Body
 from .body_events import COMMANDED, BodyEvent
-from .contact_settling import place_of
+from .rest_place import put_at_rest, read_place
 from .step_helper import FAR, StepHelper
 
 _AWAKE_STEPS = 16      # contact forces of six boxes on each other are right within 5 % after these
@@ -61,7 +61,7 @@ class RestoredSleep(StepHelper):
         if (body.sleeps and body.uid not in self._commanded
                 and pybullet.getBaseVelocity(body.uid) == (_AT_REST, _AT_REST)
                 and pybullet.getContactPoints(bodyA=body.uid)):
-            return place_of(body)
+            return read_place(body)
         return None
 
     def stepped(self) -> None:
@@ -97,10 +97,12 @@ class RestoredSleep(StepHelper):
         elif step >= self._sleep_step:
             rests, self._rests = self._rests, {}
             for body, place in rests.values():
-                if not _is_near(place, place_of(body)):
+                if not _is_near(place, read_place(body)):
                     continue
                 if body.rigid:
-                    _put_to_sleep(body.uid, place)
+                    put_at_rest(body, place)
+                    pybullet.changeDynamics(body.uid, BASE,
+                                            activationState=pybullet.ACTIVATION_STATE_SLEEP)
                 else:
                     self._hold(body, place)
 
@@ -110,10 +112,3 @@ def _is_near(one: RestPlace, other: RestPlace) -> bool:
              if one.base is not None and other.base is not None else 0.0)
     turned = max([abs(a - b) for a, b in zip(one.positions, other.positions)], default=0.0)
     return max(moved, turned) <= _MOST_SHIFT
-
-
-def _put_to_sleep(uid: int, place: RestPlace) -> None:
-    assert place.base is not None
-    pybullet.resetBasePositionAndOrientation(uid, place.base.position, place.base.orientation)
-    pybullet.resetBaseVelocity(uid, _AT_REST, _AT_REST)
-    pybullet.changeDynamics(uid, BASE, activationState=pybullet.ACTIVATION_STATE_SLEEP)
