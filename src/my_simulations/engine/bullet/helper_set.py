@@ -75,7 +75,8 @@ class HelperSet:
         self._residual = ResidualFriction(lambda uid: self._rolling.rolls(uid))
         self._rolling = RollingContacts(lambda links, step: self._landing.see_rolling(links, step),
                                         lambda: self.forces.loaded_bodies,
-                                        lambda uid, step: self._landing.flies(uid, step))
+                                        lambda uid, step: self._landing.flies(uid, step),
+                                        self._parameters.find_pairs)
         self._seams = SeamContacts(self._rolling, self._parameters)
         self._level = LevelSeams(lambda: self._residual.fast, self._parameters)
         self.sliding = Sliding()

@@ -101,6 +101,8 @@ class RollingContacts(StepHelper):
         dropping: is told, before that, of which links points are dropped, and in which step.
         loaded: tells the bodies that timed forces act on in this step.
         flies: returns whether a body is known to touch nothing in a step.
+        find_pairs: finds the pairs that are new, before a step that is set up for what rolls on
+            triangles: the others would keep points as close together as those of such a pair.
 
     Attributes:
         on_seams: what rolls on triangles just now, and its axis in the frame of its principal axes.
@@ -110,7 +112,9 @@ class RollingContacts(StepHelper):
 
     def __init__(self, dropping: Callable[[AbstractSet[Key], int], None],
                  loaded: Callable[[], AbstractSet[int]],
-                 flies: Callable[[int, int], bool]) -> None:
+                 flies: Callable[[int, int], bool],
+                 find_pairs: Callable[[], None]) -> None:
+        self._find_pairs = find_pairs
         self._dropping, self._loaded, self._flies = dropping, loaded, flies
         self.on_seams: Dict[Key, Vec3] = {}
         self._rollers: Dict[Key, _Roller] = {}
@@ -201,6 +205,8 @@ class RollingContacts(StepHelper):
             if (linear != _NONE or angular != _NONE) and _slow(linear, angular):
                 pybullet.resetBaseVelocity(uid, _NONE, _NONE)
         self._dropping(self._rolling.keys(), step)
+        if self.on_seams and not self._moving.issubset({uid for uid, _ in self.on_seams}):
+            self._find_pairs()
         for (uid, index), meets in self._rolling.items():
             if not self._flies(uid, step):
                 pybullet.setCollisionFilterGroupMask(uid, index, meets.group, meets.mask)

@@ -8,7 +8,8 @@ decides, so that no request depends on the order of the helpers:
 - Spacing of contact points (Bullet's contactBreakingThreshold, of a body's size): Bullet stores it
   in the contact points of a pair when the pair is new. So a request holds for one step, and counts
   for the pairs that are new in it. The widest one is set: it is for pairs that stay, and that are
-  new in one step only. Narrow ones are for pairs that are new in each step: they miss one step.
+  new in one step only. Narrow ones are for pairs that are new in each step: they miss one step;
+  all others that are new are found before it (`find_pairs`).
 
 `apply` sets what has changed, in one call before a step.
 """
@@ -99,6 +100,11 @@ class WorldParameters:
         if self._set["contactBreakingThreshold"] != USUAL_SPACING:
             self._set["contactBreakingThreshold"] = USUAL_SPACING
             pybullet.setPhysicsEngineParameter(contactBreakingThreshold=USUAL_SPACING)
+
+    def find_pairs(self) -> None:
+        """Find the pairs of bodies that are new, so that they have the usual spacing."""
+        self.restore_spacing()
+        pybullet.performCollisionDetection()
 
     def split_impulses(self, wanted: bool) -> None:
         """Part overlaps without giving velocity from the next step on, or (False) with it."""
