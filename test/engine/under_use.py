@@ -147,8 +147,9 @@ class UsedLab(Lab):
         if self.use.wind and self._blown:
             force = GUST * math.cos(2 * math.pi * GUST_HZ * time)
             super().apply(AddTimedForces(tuple(
-                TimedWrench(-number, row, self._done, self._done + 1, (0.6 * force, 0.8 * force, 0.0))
-                for number, row in self._blown.items())))
+                TimedWrench(-self._done * len(self._blown) - n - 1, row, self._done, self._done + 1,
+                            (0.6 * force, 0.8 * force, 0.0))
+                for n, row in enumerate(self._blown.values()))))
         if self._company is not None:
             self._company.act(time)
 

@@ -41,7 +41,7 @@ from ...geometry import (
 from ..body_plan import BASE
 from . import collision_groups
 from .bodies import Body, Part
-from .body_events import COMMANDED, BodyEvent
+from .body_events import ACTUATED, COMMANDED, BodyEvent
 from .extra_surfaces import SOFT
 from .link_states import place
 from .step_helper import FAR, StepHelper, next_multiple
@@ -155,7 +155,12 @@ class RollingContacts(StepHelper):
         self._seams.clear()
 
     def handle_event(self, event: BodyEvent, body: Body) -> None:
-        """A rigid body was put somewhere or given another velocity: it may roll at once."""
+        """A rigid body was put somewhere or given another velocity: it may roll at once.
+
+        A force or a motor moves what lies still only: what stands on its end keeps its points.
+        """
+        if event in ACTUATED and body.uid not in self._standing:
+            return
         self._standing.pop(body.uid, None)
         roller = self._rollers.get((body.uid, BASE)) if body.rigid else None
         if roller is not None:
@@ -205,11 +210,17 @@ class RollingContacts(StepHelper):
             if (linear != _NONE or angular != _NONE) and _slow(linear, angular):
                 pybullet.resetBaseVelocity(uid, _NONE, _NONE)
         self._dropping(self._rolling.keys(), step)
-        if self.on_seams and not self._moving.issubset({uid for uid, _ in self.on_seams}):
-            self._find_pairs()
-        for (uid, index), meets in self._rolling.items():
-            if not self._flies(uid, step):
-                pybullet.setCollisionFilterGroupMask(uid, index, meets.group, meets.mask)
+        self._drop(self._rolling.keys() - self.on_seams.keys(), step)
+        if self.on_seams:
+            if not self._moving.issubset({uid for uid, _ in self.on_seams}):
+                self._find_pairs()
+            self._drop(self.on_seams.keys(), step)
+
+    def _drop(self, keys: AbstractSet[Key], step: int) -> None:
+        """Drop the contact points of links, those of one set in the order of `_rolling`."""
+        for key, meets in self._rolling.items():
+            if key in keys and not self._flies(key[0], step):
+                pybullet.setCollisionFilterGroupMask(*key, meets.group, meets.mask)
 
     def due(self, step: int) -> int:
         """Each step while something rolls, or stands, else the next look."""
