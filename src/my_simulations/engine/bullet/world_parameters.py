@@ -4,7 +4,8 @@ Helpers request values for their bodies. Where several requests meet, the rule o
 decides, so that no request depends on the order of the helpers:
 
 - Iterations and residual: the request that is solved most exactly. More iterations and a smaller
-  residual harm no other body.
+  residual harm no other body. A step that is longer than usual may take as many more iterations:
+  it gives bodies as much more speed, all of which contacts have to take from them.
 - Spacing of contact points (Bullet's contactBreakingThreshold, of a body's size): Bullet stores it
   in the contact points of a pair when the pair is new. So a request holds for one step, and counts
   for the pairs that are new in it. The widest one is set: it is for pairs that stay, and that are
@@ -22,6 +23,7 @@ import pybullet
 from ..commands import PhysicsSettings
 from . import collision_groups
 
+USUAL_STEP = 1e-3         # s
 USUAL_SPACING = 0.02      # of a body's size
 USUAL_RESIDUAL = 1e-7     # m^2/s^2
 LEAST_BOUNCE = 0.2        # m/s: Bullet's own; slower bodies come to rest
@@ -120,8 +122,9 @@ class WorldParameters:
             return
         accuracies = (self._accuracy, self._step_accuracy)
         wanted = {
-            "numSolverIterations": self._settings.iterations * max(
-                each.iterations for each in accuracies),
+            "numSolverIterations": round(
+                self._settings.iterations * max(1.0, self._settings.step_size / USUAL_STEP)
+                * max(each.iterations for each in accuracies)),
             "solverResidualThreshold": min(each.residual for each in accuracies),
             "contactBreakingThreshold": self._spacing or USUAL_SPACING,
             "useSplitImpulse": int(self._splits),
