@@ -84,7 +84,8 @@ def test_pairs_have_the_smaller_friction_all_in_one_world(lab: Lab, laws: Laws, 
     lab.seconds(1.5)
     for (body, mu, where), start in zip(sliding, starts):
         laws.near(f"friction of {kind} bodies {where}: way to a stop, m",
-                  lab.pose(body).position[0] - start, 4 / (2 * mu * G), rel=0.03)
+                  lab.pose(body).position[0] - start,
+                  4 / (2 * mu * G) - lab.settings.step_size, rel=0.03)   # half a step less
     for plate in plates:
         assert abs(lab.pose(plate).position[0]) < 0.01
 

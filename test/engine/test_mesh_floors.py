@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from conftest import Lab, ball, box, inertial_of_box, link_of
 from laws import Laws
+from test_sliding import terrain
 
 from my_simulations.description.model import Inertial, Link, Model
 from my_simulations.description.shapes import (
@@ -106,6 +107,20 @@ def test_things_rest_on_a_flat_mesh_at_its_height(lab: Lab, laws: Laws, angle: f
         lab.seconds(2)
         laws.near("at rest on a flat static mesh: height, m", lab.pose(thing).position[2], height,
                   abs=1e-4)
+
+
+@pytest.mark.parametrize("step_size", [0.001, 0.01])
+def test_a_can_is_put_down_while_a_wheel_rolls_on_triangles(lab: Lab, laws: Laws,
+                                                            step_size: float):
+    """Its contact points were kept as close as those of the wheel: it sank into the floor."""
+    lab.configure(step_size=step_size)
+    static(lab, floor(), orientation=quat_from_rpy(0.0, 0.0, 0.3))
+    terrain(lab)
+    lab.seconds(1)
+    can = lab.load(moving(Cylinder(0.1, 0.1)), (2.0, 0.0, 0.051))
+    lab.seconds(1.0)
+    laws.near("a can put down while a wheel rolls on triangles: height, m",
+              lab.pose(can).position[2], 0.05, abs=6e-4)
 
 
 def test_a_floor_of_which_some_triangles_look_down_has_no_steps(lab: Lab, laws: Laws):

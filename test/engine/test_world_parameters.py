@@ -78,3 +78,10 @@ def test_the_most_exact_request_counts_and_that_of_a_step_ends_with_it(parameter
     parameters.apply()
     assert calls == [{"numSolverIterations": 500, "solverResidualThreshold": 1e-11},
                      {"numSolverIterations": 200}]
+
+
+@pytest.mark.parametrize("step_size, iterations", [(5e-4, 50), (1e-3, 50), (5e-3, 250)])
+def test_longer_steps_take_more_iterations(parameters, calls, step_size, iterations):
+    parameters.configure(PhysicsSettings(iterations=50, step_size=step_size))
+    values = {name: value for call in calls for name, value in call.items()}
+    assert values["numSolverIterations"] == iterations

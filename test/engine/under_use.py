@@ -1,15 +1,16 @@
 """A world in use: any law of `test/engine` can run in it instead of in an empty one.
 
-Users' worlds differ from those of laws: controllers renew their commands, a wind renews its forces, other bodies roll,
-slide, fall, bounce and sleep, steps are longer, and saved worlds have objects a millimetre inside the ground.
-`UsedLab` does all of that around a law that is written for `Lab` and steps of 1 ms.
+Worlds of users differ from those of laws: controllers renew their commands, a wind renews its
+forces, other bodies roll, slide, fall, bounce and sleep, steps are longer, and saved worlds have
+objects a millimetre inside the ground. `UsedLab` does all of that around a law that is written for
+`Lab` and steps of 1 ms.
 """
 from __future__ import annotations
 
 import math
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
-from typing import Dict, Iterator, List, Optional, Tuple
+from typing import Dict, Iterator, Optional
 
 from company import Company
 from conftest import Lab
@@ -48,7 +49,8 @@ class Use:
     def __str__(self) -> str:
         named = [f"{1e3 * self.step_size:g}ms"]
         named += [f"{self.command_hz:g}Hz"] if self.command_hz else []
-        return "-".join(named + [name for name in ("wind", "company", "sunk") if getattr(self, name)])
+        named += [name for name in ("wind", "company", "sunk") if getattr(self, name)]
+        return "-".join(named)
 
 
 USES = (Use(0.001, 100.0), Use(0.002, 50.0), Use(0.005, 20.0), Use(0.01, 100.0))
@@ -177,5 +179,3 @@ def used(use: Use, sunk: bool = False, longest: Optional[float] = None) -> Itera
     finally:
         lab.backend.close()
 
-
-__all__ = ["USES", "List", "Tuple", "Use", "UsedLab", "UsedLaws", "used"]
