@@ -49,7 +49,7 @@ class Noise:
         if spec.bias_mean == 0.0 and spec.bias_stddev == 0.0:
             return 0.0
         draws = generator(*self._name, 0, _BIAS)
-        bias = draws.normal(spec.bias_mean, spec.bias_stddev)
+        bias = draws.normal(spec.bias_mean, max(0.0, spec.bias_stddev))
         return float(-bias if draws.random() < 0.5 else bias)
 
     def reset(self) -> None:

@@ -56,6 +56,11 @@ def test_a_bias_is_drawn_once_and_has_either_sign():
     assert noise.apply(0.0, 0, 0.1) == noise.apply(0.0, 1, 0.1) == noise.bias
 
 
+def test_a_negative_deviation_is_none():
+    spec = NoiseSpec("gaussian", stddev=-1.0, bias_mean=0.5, bias_stddev=-1.0)
+    assert abs(Noise(spec, 1, "imu").bias) == 0.5
+
+
 def test_a_wandering_bias_has_its_deviation_and_its_correlation_time():
     spec = NoiseSpec("gaussian", dynamic_bias_stddev=0.1, dynamic_bias_correlation_time=2.0)
     noise = Noise(spec, 1, "s")
