@@ -58,6 +58,14 @@ def test_xacro_by_path_works_where_python3_is_another_one(tmp_path):
     assert "<link name=" in done.stdout
 
 
+def test_rosrun_offers_a_python_that_opens_worlds():
+    program = ("import my_simulations as m\n"
+               "with m.open_world('empty_world.world') as world: print(world.names)")
+    done = _run("rosrun", "my_simulations", "python", "-c", program)
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.strip() == "['ground_plane']"
+
+
 def test_rosrun_finds_xacro():
     done = _run("rosrun", "xacro", "xacro", str(ROBOT))
     assert done.returncode == 0, done.stderr
