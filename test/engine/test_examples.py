@@ -2,9 +2,11 @@
 from __future__ import annotations
 
 import csv
+import json
 import runpy
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from my_simulations.studies.command import main as study
@@ -51,3 +53,17 @@ def test_a_robot_stops_before_a_wall():
     rows = list(example("drive_robot.py")["approach"](0.5))
     assert rows[0][1] > 2.0 > rows[-1][1] == pytest.approx(0.5, abs=0.03)
     assert rows[-1][2] == pytest.approx(3.0 - 0.1 - 0.08 - 0.5, abs=0.05)  # laser: 8 cm
+
+
+def test_the_notebook_drives_a_robot_and_plots_what_it_sees(monkeypatch):
+    monkeypatch.setenv("MPLBACKEND", "Agg")
+    names = {}
+    for cell in json.loads((EXAMPLES / "robot_in_a_house.ipynb").read_text())["cells"]:
+        if cell["cell_type"] == "code":
+            exec("".join(cell["source"]), names)
+    figures = names["plt"].get_fignums()
+    names["plt"].close("all")
+    assert len(figures) == 3
+    assert names["way"][-1][0] > 0.8
+    assert np.nanmax(names["ranges"]) > 3.0
+    assert names["picture"].rgb.std() > 20.0
