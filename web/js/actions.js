@@ -148,7 +148,7 @@ export function createActions({store, connection}) {
     resetPoses: () => edit({kind: 'reset', what: 'poses'}),
     resetWorld: () => edit({kind: 'reset', what: 'world'}),
     resetTime: () => edit({kind: 'reset', what: 'time'}),
-    /** Copies models and lights (default: what is selected). @returns {Promise<Outcome>} */
+    /** Copies models and lights (default: the selection). @returns {Promise<Outcome>} */
     async copy(names = store.selection) {
       const items = names.flatMap((name) => {
         const copied = copyOf(store.entity(name));
@@ -162,7 +162,7 @@ export function createActions({store, connection}) {
       if (outcome.ok) store.setClipboard({text: outcome.value.text, items});
       return outcome;
     },
-    /** Lets what was copied follow the mouse. */
+    /** Attaches the copied models and lights to the mouse pointer for placing. */
     paste() {
       const {text = '', items = []} = store.clipboard ?? {};
       const last = items.at(-1);

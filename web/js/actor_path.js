@@ -3,8 +3,8 @@
  * waypoint on, in world axes; a spline of the trajectory's `tension` joins their positions, another
  * one their orientations (`turn_spline.js`). One without waypoints lasts as long as the animation
  * that it names. All this is as in Gazebo; but an actor is at its `<pose>` in trajectories without
- * waypoints, in Gazebo at the world's origin, and the distance along a path begins anew with each
- * cycle, in Gazebo not in a loop of one trajectory. `delay_start` is waited for before each cycle
+ * waypoints, in Gazebo at the world's origin. The distance along a path restarts at 0 with each
+ * cycle; in Gazebo it does not in a loop of one trajectory. Each cycle begins after `delay_start`
  * (SDF spec 1.7, script/delay_start).
  */
 import {length, orientation, position, subtract} from './pose.js';
@@ -30,7 +30,8 @@ function inOrder(waypoints) {
 }
 
 /**
- * Slopes of a cardinal spline, which do not heed how long segments take (ignition::math::Spline).
+ * Returns the slopes of a cardinal spline. They do not depend on the duration of the segments
+ * (ignition::math::Spline).
  * @param {number[][]} points
  * @param {number} tension  0: Catmull-Rom; 1: straight, with a halt at each point
  */

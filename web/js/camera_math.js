@@ -183,7 +183,7 @@ export function framing(view, {min, max}, fov, aspect) {
 }
 
 /**
- * Length of the axes at the origin, m: they shall not hide what stands there.
+ * Returns the length of the axes at the origin, m. They must not hide models at the origin.
  * @param {number} distance  of the eye, m
  */
 export const originScale = (distance) => Math.min(Math.max(distance * 0.12, 0.02), 1);

@@ -18,7 +18,7 @@ export class Emitter extends EventTarget {
   }
 
   /**
-   * Tells the listeners of an event.
+   * Notifies the listeners of an event.
    * @template {keyof Details & string} T
    * @param {T} type
    * @param {Details[T]} [detail]

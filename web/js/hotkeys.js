@@ -8,7 +8,7 @@
  * @property {string} title
  * @property {string} group
  * @property {keyof Actions} [action]  the function of actions.js that it calls; a row without one
- *   tells of a key that is held, or of the mouse
+ *   describes a key that is held, or the mouse
  */
 
 /** Ctrl+N and Ctrl+T belong to the browser: New is Alt+N here, Topics Alt+T. @type {readonly Hotkey[]} */

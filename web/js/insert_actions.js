@@ -49,14 +49,14 @@ export function insertActions({store, ask, edit, dialog, view}) {
      * @param {Record<string, unknown>} values  of its parameters
      */
     fromTemplate: (name, values) => ask('template', {name, values}, {quiet: true}),
-    /** Lets a robot follow the mouse. @param {{sdf: string, model: Model}} made */
+    /** Attaches a robot to the mouse pointer for placing. @param {{sdf: string, model: Model}} made */
     insertMade({sdf, model}) {
       store.setPlacing({kind: 'model', document: model, op: (pose) => ({kind: 'insert', sdf, pose})});
     },
-    /** Puts down what is being placed in the middle of the view. */
+    /** Places the pending entity in the middle of the view. */
     placeInMiddle: () => view()?.placeInMiddle(),
     /**
-     * Puts down what follows the mouse.
+     * Inserts the entity that follows the mouse.
      * @param {Pose7} pose  in the world
      * @returns {Promise<import('./actions.js').Outcome>}
      */

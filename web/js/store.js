@@ -98,7 +98,7 @@ function initialOverlays() {
   };
 }
 
-/** The world, and what this page's user looks at; tells of every change. */
+/** The world and the state of this page's user interface. Emits an event for every change. */
 export class Store extends WorldStore {
   /** Names in the order they were chosen: models, lights, "model::link". @type {string[]} */
   selection = [];

@@ -1,8 +1,8 @@
 /**
- * Turning from waypoint to waypoint. A spline of Shoemake's (1985) joins orientations, which does
- * not heed how long segments take (ignition::math::RotationSpline): turns swing by some degrees
- * about straight parts of a path, and widely where the yaw passes from pi to -pi, whose quaternions
- * are far from each other. Cameras keep the same rules (turn_spline.py).
+ * Interpolates orientations between waypoints by Shoemake's spline (1985). It does not depend on the
+ * duration of segments (ignition::math::RotationSpline). So turns swing by some degrees about
+ * straight parts of a path, and widely if the yaw passes from pi to -pi, because these quaternions
+ * are far from each other. Cameras use the same rules (turn_spline.py).
  */
 import {conjugate, multiply, slerp} from './pose.js';
 /** @import {Quat} from './pose.js' */

@@ -11,7 +11,7 @@ import {splitScoped} from './scoped_names.js';
 /** @import {EntityChange, EntityRef, StoreEvents} from './store.js' */
 
 /**
- * The world as the simulator last told it; tells of every change.
+ * The world as last received from the simulator. Emits an event for every change.
  * @extends {Emitter<StoreEvents>}
  */
 export class WorldStore extends Emitter {
@@ -19,7 +19,7 @@ export class WorldStore extends Emitter {
   document = null;
   revision = 0;
   /**
-   * World pose of each link's frame by link id, as the simulator last told.
+   * World pose of each link's frame by link id, as last received from the simulator.
    * @type {Map<number, Float64Array>}
    */
   poses = new Map();
@@ -63,7 +63,7 @@ export class WorldStore extends Emitter {
     connection.listen('frame', (event) => this.receiveFrame(event.detail));
   }
 
-  // ---- what comes from the simulator
+  // ---- messages from the simulator
 
   /** Takes a pushed message. @param {Push|{type: 'issue', issue: Issue}} message */
   receive(message) {
@@ -262,7 +262,8 @@ export class WorldStore extends Emitter {
   }
 
   /**
-   * The other who did a step of the history, '' for this page's user and for nobody.
+   * Returns the name of the other user who did a step of the history; '' for this page's user and
+   * for an unknown user.
    * @param {'undo'|'redo'} which
    * @param {number} [at]
    */
@@ -271,7 +272,7 @@ export class WorldStore extends Emitter {
     return by === this.people.find(({number}) => number === this.me)?.name ? '' : by;
   }
 
-  /** Tells the others what is selected, or a name. @param {Notices['presence']} fields */
+  /** Sends the selection or the user's name to the other users. @param {Notices['presence']} fields */
   tellPresence(fields) {
     this.#connection?.send('presence', fields);
   }

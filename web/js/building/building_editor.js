@@ -80,7 +80,7 @@ export async function mount(element, {store, request, actions}) {
   const unlisten = session.listen('change', drawSoon);
   session.endTool();
 
-  /** The model that was opened, where the world holds one: it gives way on leaving. */
+  /** The world's model of the opened building, or null. `place` replaces it if its plan has changed. */
   /** @type {OpenedModel|null} */
   let opened = null;
   /** @param {() => Promise<boolean>} load */
@@ -155,7 +155,7 @@ export async function mount(element, {store, request, actions}) {
     });
   }
 
-  /** Puts what was saved into the world; what is there unchanged stays. */
+  /** Inserts the saved plan into the world, unless the world already holds this plan. */
   async function place() {
     const plan = session.history.saved;
     if (isEmpty(plan) || (opened && opened.plan === plan && store.model(opened.name))) return true;

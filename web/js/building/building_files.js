@@ -103,7 +103,7 @@ export class Files {
     // Another building was opened meanwhile.
     if (session.history !== history) return;
     if (plan !== present) {
-      // Saving leaves the sheet usable: what was drawn meanwhile stays, unsaved.
+      // Users can draw during saving: these edits stay in the plan and are unsaved.
       const untouched = history.plan === present;
       session.commit(untouched ? plan : {...history.plan, name: renamed}, 'rename building');
     }

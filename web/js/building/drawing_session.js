@@ -66,7 +66,7 @@ export class Session extends Emitter {
     this.changed();
   }
 
-  /** Back to selecting; set by whoever makes the tools. */
+  /** Selects the select tool again. The building editor sets this function. */
   endTool = () => {};
 
   /** Shows a plan that is not done yet; null shows the real one again. @param {Plan|null} plan */

@@ -115,8 +115,8 @@ function typedOf(values, before) {
 }
 
 /**
- * The plan after an inspector was applied. The plan may have been edited since the fields were
- * filled: what was typed goes on top of what the item is now.
+ * Returns the plan after an inspector was applied. The plan may have been edited since the fields
+ * were filled, so only the typed values replace the item's present values.
  * @param {Plan} plan
  * @param {number} at
  * @param {Ref} ref

@@ -166,7 +166,7 @@ export function update(plan, at, {kind, id}, changes) {
 }
 
 /**
- * Adds an item; what is not given has its default.
+ * Adds an item. Missing fields get their defaults.
  * @param {Plan} plan
  * @param {number} at
  * @param {Kind} kind

@@ -85,10 +85,10 @@ export class Canvas {
   #under = null;
   /** The floor plan that is loaded. @type {FloorImage|null} */
   #picture = null;
-  /** What stands in the world. @type {Footprint[]} */
+  /** Outlines of the models in the world. @type {Footprint[]} */
   #around = [];
 
-  /** Shows what stands in the world, faintly. @param {Footprint[]} footprints */
+  /** Draws the outlines and names of the world's models faintly. @param {Footprint[]} footprints */
   showAround(footprints) {
     this.#around = footprints;
     this.#drawAround();
@@ -164,7 +164,7 @@ export class Canvas {
     this.place();
   }
 
-  /** Puts the sheet where the view says, and tells what hangs on the zoom. */
+  /** Applies the view's offset and zoom to the sheet and updates all that depends on the zoom. */
   place() {
     const {zoom, x, y} = this.view;
     set(this.world, {transform: `translate(${x} ${y}) scale(${zoom})`});
@@ -319,7 +319,7 @@ export class Canvas {
     if (now === this.#labelled) return;
     this.#labelled = now;
     const size = 12 / this.view.zoom;
-    // What is being drawn says its length where the eye is; the others give way.
+    // The length of the item that is being drawn keeps its place; other labels move aside.
     const first = words.filter(([, , name]) => name === 'live');
     const placed = spread([...first, ...words.filter(([, , name]) => name !== 'live')]
       .map(([point, text, name]) => {

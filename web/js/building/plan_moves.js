@@ -1,4 +1,4 @@
-/** Moving what stands in a plan: walls stretch what is linked with them, openings keep their place. */
+/** Moves the items of a plan. Linked walls are stretched, openings keep their place. */
 import {minus, plus, polar, same, tidy, tidyPoint} from './plane_geometry.js';
 import {itemOf, refit, update, wallLength, wallYaw, withLevel} from './plan.js';
 /** @import {Level, Opening, Plan, Wall} from '../protocol.js' */
@@ -69,7 +69,7 @@ export function moveEnd(plan, at, id, end, point, {alone = false} = {}) {
 }
 
 /**
- * Moves walls as they are; what is linked with them is stretched.
+ * Moves walls without changing their shape. Walls that share an end with them are stretched.
  * @param {Plan} plan
  * @param {number} at
  * @param {number[]} ids
@@ -104,7 +104,7 @@ export function setOuterLength(plan, at, id, length) {
 }
 
 /**
- * Moves items; walls stretch what is linked, openings in walls slide along them.
+ * Moves items. Walls that are linked with a moved wall are stretched; openings slide along walls.
  * @param {Plan} plan
  * @param {number} at
  * @param {Ref[]} refs

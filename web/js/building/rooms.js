@@ -9,8 +9,8 @@ import {crossing, distance, inPolygon, minus, nearest, plus, same, side, signedA
  */
 
 /**
- * The rooms, the outer loops of what stands together, clockwise and with every corner on them, and
- * all corners.
+ * The rooms, the outer loop of each group of connected walls, and all corners. Outer loops are
+ * clockwise and contain every corner on them.
  * @typedef {{rooms: Room[], outer: Point[][], corners: Corner[]}} Faces
  */
 
@@ -21,12 +21,12 @@ const known = new WeakMap();
  * @typedef {Object} Room
  * @property {import('./plane_geometry.js').Point[]} outline  middle lines of its walls, counter-clockwise
  * @property {import('./plane_geometry.js').Point[]} inside   the faces of its walls
- * @property {import('./plane_geometry.js').Point[][]} holes  what stands free in it
+ * @property {import('./plane_geometry.js').Point[][]} holes  outer loops of free-standing walls in it
  * @property {number} area  m2 between the faces of the walls
  */
 
 /**
- * The rooms of a list of walls; the same list gives the same answer without work.
+ * Returns the rooms of a list of walls. Results are cached by list.
  * @param {Wall[]} walls
  * @returns {Room[]}
  */
@@ -143,7 +143,7 @@ function graphOf(walls) {
 }
 
 /**
- * Gives points numbers, and those that are one the same; found by cells of 1 cm.
+ * Returns a function that numbers points. Equal points get one number; a grid of 1 cm finds them.
  * @param {Corner[]} corners
  */
 function numbering(corners) {
@@ -153,7 +153,7 @@ function numbering(corners) {
   const cellOf = (column, row) => column * 4194304 + row;
   return (/** @type {Point} */ point) => {
     const [x, y] = [point[0] * 100, point[1] * 100];
-    // What lies within a tenth of a millimetre of the next cell may be known there.
+    // The next cell may hold the same point if the distance to it is below 0.2 mm.
     for (let column = Math.floor(x - 0.02); column <= Math.floor(x + 0.02); column++) {
       for (let row = Math.floor(y - 0.02); row <= Math.floor(y + 0.02); row++) {
         for (const at of cells.get(cellOf(column, row)) ?? []) {
@@ -169,7 +169,7 @@ function numbering(corners) {
 }
 
 /**
- * The points that two walls have in common.
+ * Returns the points that two walls have in common.
  * @param {Wall} a
  * @param {Wall} b
  */
@@ -186,7 +186,7 @@ function meetings(a, b) {
   return point && on(a, point) && on(b, point) ? [point] : [];
 }
 
-/** Takes away what ends blind: it encloses nothing. @param {Corner[]} corners */
+/** Removes dead ends, because they enclose nothing. @param {Corner[]} corners */
 function prune(corners) {
   const ends = corners.map((_, at) => at).filter((at) => corners[at].edges.size === 1);
   for (let at = ends.pop(); at !== undefined; at = ends.pop()) {

@@ -6,7 +6,7 @@ import {isEmpty, withoutImages} from './plan.js';
 
 const KEY = 'building-draft';
 const PAUSE = 500;
-/** How many plans are kept; the oldest gives way. */
+/** How many plans are kept; a new plan replaces the oldest. */
 const MOST = 10;
 
 /**

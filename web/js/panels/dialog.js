@@ -5,8 +5,9 @@ import {RequestError} from '../connection.js';
 import {closestTo, elementsOf, h} from './dom.js';
 import {icon} from './icons.js';
 
-/** What is said when a button's work takes longer than a glance, ms, or somebody wants to leave it. */
+/** Text that appears if a button's work exceeds `GLANCE`, or if the user tries to close the window. */
 const AT_WORK = 'Working ...';
+/** Milliseconds after which the text appears. */
 const GLANCE = 400;
 
 let numbers = 0;

@@ -180,7 +180,7 @@ export function sharedSections(models, poseOf) {
 }
 
 /**
- * Position and angles of several: what is typed is taken over by all, the rest stays each one's.
+ * Returns the pose field of several models. All models get a typed number; each keeps its others.
  * @param {Model[]} models
  * @param {number[][]} poses  six numbers each
  * @param {unknown[]} shown   those that all have, rounded

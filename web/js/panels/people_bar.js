@@ -7,7 +7,7 @@ import {fill, h, remembered} from './dom.js';
 const COLORS = ['#4f9cf0', '#4bc07a', '#e06c9f', '#b58cf0', '#d9a13a', '#3fc1c9', '#f07860'];
 const SELECTED = 3;
 
-/** What tells somebody's marks from another's. @param {Person} person */
+/** Returns the color of a user's marks. @param {Person} person */
 export const colorOf = ({number}) => COLORS[number % COLORS.length];
 
 /** Who this page is to the simulator: the same after it was loaded again. */
@@ -27,7 +27,7 @@ export function identity() {
   return {...(person ? {person} : {}), ...(name ? {name} : {})};
 }
 
-/** What somebody is at, in words. @param {Person} person */
+/** Describes the current activity of a user. @param {Person} person */
 export function doing({held, selected}) {
   if (held.length) return `is moving ${held.join(', ')}`;
   if (!selected.length) return 'has nothing selected';
@@ -36,7 +36,7 @@ export function doing({held, selected}) {
 }
 
 /**
- * Hidden while nobody else is here.
+ * Shows the other users of this world. The bar is hidden while there are none.
  * @param {HTMLElement} element
  * @param {Page} page
  */
@@ -65,7 +65,7 @@ export function mountPeople(element, {store}) {
   show();
   let company = 0;
   store.listen('people', () => {
-    // Who comes is told what is selected here; before, nobody had to know.
+    // New users receive this page's selection; without other users it is not sent.
     if (store.others.length > company) store.tellPresence({selected: store.selection});
     company = store.others.length;
   });

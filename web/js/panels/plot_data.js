@@ -1,5 +1,5 @@
 /**
- * Curves of numbers over sim time: what is kept, how the axes are divided, what is exported. Pure.
+ * Curves of numbers over sim time: kept samples, divisions of the axes, export. Pure functions.
  */
 /** @import {World} from '../protocol.js' */
 
@@ -22,7 +22,7 @@ export class Series {
   }
 
   /**
-   * Adds a sample. Time that runs back (a reset) begins the curve anew; a sample of the same time
+   * Adds a sample. If time runs back (a reset), the curve is cleared first. A sample of the same time
    * replaces the last.
    * @param {number} time
    * @param {number} value
@@ -59,8 +59,8 @@ export class Series {
 }
 
 /**
- * Takes what is told of one curve. Time that runs back (a reset) begins all curves anew, also those
- * of what has gone: the axis is that of the present time.
+ * Adds a pushed value to its curve. If time runs back (a reset), all curves are cleared, also those
+ * of deleted entities, because all curves share one time axis.
  * @param {Series[]} all
  * @param {Series} series
  * @param {{time: number, value?: number|null, problem?: string|null}} push

@@ -56,7 +56,7 @@ export class Properties {
 
   /** Gives the focus to the field that had it. @type {(() => void)|null} */
   #refocus = null;
-  /** What waits for the next poses. @type {(() => void)[]} */
+  /** Callbacks that the next poses resolve. @type {(() => void)[]} */
   #frames = [];
   /** @type {ReturnType<typeof setTimeout>|0} */
   #later = 0;
@@ -322,8 +322,9 @@ export class Properties {
 }
 
 /**
- * Gives entries the fields of what was found now: `ops` of a field are of the document it was made
- * from. What is not among them, as after another selection, keeps its field.
+ * Replaces the fields of entries by those of the present document, because the `ops` of a field refer
+ * to the document that it was made from. Entries without a new field, as after another selection,
+ * keep theirs.
  * @param {Entry[]} entries
  * @param {Found|null} found
  */

@@ -1,6 +1,6 @@
 /**
- * The input of a property: shows the value of the document, lets it be edited, commits on Enter or
- * when the focus leaves. What is being typed is never overwritten by news from the server.
+ * The input of a property: shows the document's value for editing, commits on Enter or when the
+ * focus leaves. Updates from the server never overwrite text that the user is typing.
  *
  * @typedef {Object} Input
  * @property {HTMLElement} element
@@ -65,7 +65,7 @@ export function numberFault(field, value) {
 }
 
 /**
- * A field of one line. What is typed counts on Enter or when the focus leaves; Escape drops it.
+ * Creates a field of one line. Enter and loss of focus commit the text; Escape discards it.
  *
  * @param {InputField} field
  * @param {Record<string, unknown>} attributes

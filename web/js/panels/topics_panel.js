@@ -1,6 +1,6 @@
 /**
- * The Topics panel: all ROS topics with their types; one that is ticked is shown in the view or in
- * a window of its own, with its rate and bandwidth. Topics that nobody looks at are not heard.
+ * The Topics panel lists all ROS topics with their types. A ticked topic is shown in the view or in
+ * a separate window, with its rate and bandwidth. Only topics that are shown are subscribed to.
  */
 import {fill, h} from './dom.js';
 import {bandwidthText, rateText} from './text_format.js';

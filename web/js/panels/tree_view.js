@@ -22,7 +22,7 @@ export class Tree {
    * @param {(row: Row, open: boolean) => void} handlers.toggle
    * @param {(row: Row) => void} [handlers.activate] double click or Enter
    * @param {(row: Row, x: number, y: number) => void} [handlers.menu]
-   * @param {(row: Row) => Child} [handlers.decorate] what stands at the end of a row
+   * @param {(row: Row) => Child} [handlers.decorate] content for the end of a row
    */
   constructor(element, handlers) {
     this.element = element;
@@ -49,7 +49,7 @@ export class Tree {
       this.#byMouse = false;
       draw();
     });
-    // Not by click: browsers give none when what was pressed has been drawn anew meanwhile.
+    // Not by click: browsers send no click if the pressed row was redrawn before the release.
     element.addEventListener('pointerdown', (event) => {
       this.#byMouse = true;
       this.#pressed = event.button === 0 ? this.#rowAt(event) : null;

@@ -71,7 +71,7 @@ export class WorldTab {
   #open = new Set(['models', 'lights', ...remembered.get('open-rows', [])]);
   /** The row whose properties are shown. @type {Row|null} */
   #row = null;
-  /** A selected name whose row has not come yet: what was just inserted. @type {string|null} */
+  /** Name of a new, selected entity whose row does not exist yet. @type {string|null} */
   #awaited = null;
 
   #update() {
@@ -142,7 +142,7 @@ export class WorldTab {
       this.tree.show(rows, this.#selectedRows());
       this.tree.reveal(found.id);
     } else if (!last && this.#row?.select) this.#row = null;
-    // At once: what is typed next is meant for what is selected now.
+    // At once: the next typed text belongs to the new selection.
     this.#update();
     this.properties.refresh();
   }

@@ -20,7 +20,7 @@ const WORLD = ['', 'world'];
  * @param {string} [known.model]  the one that the topic belongs to
  * @param {Mount|null} [known.mount]  of the sensor whose data it is
  * @param {Transforms} [known.transforms]
- * @returns {FramePlace|null} null for a frame that nobody knows
+ * @returns {FramePlace|null} null for an unknown frame
  */
 export function placeOf(frame, {models, model = '', mount = null, transforms = new Map()}) {
   const own = models.find(({name}) => name === model);

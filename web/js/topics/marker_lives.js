@@ -6,7 +6,7 @@ const BEHIND = 1;
 /** From when on something is shown, sim time, and how long, s; 0: for ever. @typedef {{from: number, lifetime: number}} Life */
 
 /**
- * Whether a lifetime is over, or sim time began anew.
+ * Returns whether a lifetime is over, or sim time was reset.
  * @param {Life} life
  * @param {number} now  sim time, s
  */

@@ -128,8 +128,8 @@ export class Topics extends Emitter {
   }
 
   /**
-   * Keeps the list new while somebody reads it.
-   * @returns {() => void} says that it is no longer read
+   * Keeps the list up to date while it has readers.
+   * @returns {() => void} removes this reader
    */
   read() {
     this.#readers += 1;
@@ -137,7 +137,7 @@ export class Topics extends Emitter {
     return () => { this.#readers -= 1; };
   }
 
-  /** Asks for the list, and again and again while it is of use. */
+  /** Requests the list now and then every `PERIOD` while it is needed. */
   async refresh() {
     clearTimeout(this.#timer);
     if (this.#asking || !this.#connection.connected || !this.#wanted()) return;
@@ -156,7 +156,7 @@ export class Topics extends Emitter {
   }
 
   /**
-   * Where the frame of a message is; null where nobody knows it.
+   * Returns the place of a message's frame; null for an unknown frame.
    * @param {string} topic
    * @param {string} frame
    * @returns {FramePlace|null}
@@ -203,7 +203,7 @@ export class Topics extends Emitter {
     if ([...this.#watched.keys()].join() !== before) this.emit('shown');
   }
 
-  /** Some frame is nobody's link: tf may know it. */
+  /** Subscribes to tf for frames that are not links. */
   #watchFrames() {
     if (this.#frames || !this.#watched.size) return;
     this.#frames = true;

@@ -1,6 +1,6 @@
 /**
- * Actors: figures that walk by sim time alone. They are seen, never touched: nothing picks them,
- * and no pose frame tells of them.
+ * Actors: figures whose motion depends on sim time alone. They are visible only: they cannot be
+ * picked, and pose frames do not contain them.
  */
 import {
   AnimationClip, AnimationMixer, Bone, Group, QuaternionKeyframeTrack, VectorKeyframeTrack,
@@ -137,8 +137,9 @@ class Gaits {
   }
 
   /**
-   * When in a movement, s, the root has gone that far along x, m; it begins anew at the end (Gazebo
-   * behaviour). Null where the movement does not bring it on.
+   * Returns the time in an animation, s, at which the root has moved that far along x, m. The
+   * animation restarts at its end (Gazebo behaviour). Null if the animation does not move the root
+   * forward.
    * @param {AnimationClip} clip
    * @param {number} distance
    */

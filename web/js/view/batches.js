@@ -179,7 +179,7 @@ export class Batches {
     if (item.geometry.userData.single) item.geometry.dispose();
   }
 
-  /** Tells that an item's matrix has changed. @param {Item} item */
+  /** Applies an item's changed matrix. @param {Item} item */
   moved(item) {
     this.#batches.get(item.key)?.move(item);
   }

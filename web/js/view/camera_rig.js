@@ -367,7 +367,7 @@ export class CameraRig {
   }
 
   /**
-   * A look at a box: from the flattest of some directions that hides the least of what moves.
+   * Returns a view of a box: the flattest of some directions that hides the fewest moving things.
    * @param {{min: Vec3, max: Vec3}} box
    */
   #firstLook(box) {

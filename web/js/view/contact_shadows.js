@@ -8,7 +8,7 @@ import {
 } from 'three';
 /** @import {Object3D, Texture, WebGLRenderer} from 'three' */
 
-/** The layer of what stands on the ground. */
+/** The layer of the objects that cast contact shadows on the ground. */
 export const CASTERS = 1;
 const PIXELS = 256;
 const STRENGTH = 0.62;
@@ -77,7 +77,7 @@ export class ContactShadows {
     this.#camera.layers.set(CASTERS);
     const sheet = new Mesh(new PlaneGeometry(1, 1), this.#blur);
     sheet.frustumCulled = false;
-    // The camera that draws it sees what stands on the ground and nothing else.
+    // The camera that draws the sheet renders this layer only.
     sheet.layers.set(CASTERS);
     this.#sheet.add(sheet);
   }
@@ -97,7 +97,7 @@ export class ContactShadows {
     this.#reach = Math.min(Math.max(reach * 0.6, 1.5), 40);
   }
 
-  /** Computes the spots anew. @param {WebGLRenderer} renderer @param {Scene} scene */
+  /** Renders the contact shadows. @param {WebGLRenderer} renderer @param {Scene} scene */
   render(renderer, scene) {
     if (this.#ground === null) return;
     const reach = this.#reach;

@@ -17,8 +17,8 @@ import {Gradient, WorldSky, leavesBackground} from './sky.js';
 /** @import {Store} from '../store.js' */
 
 /**
- * Gazebo's fog in three's; of a negative density is what falls with the distance alone, see
- * `gazeboFog`. Gazebo does not know constant and quadratic, words of the SDF specification.
+ * Converts Gazebo's fog to three's. A negative density marks fog whose exponent is linear in the
+ * distance, see `gazeboFog`. The SDF types constant and quadratic are not supported by Gazebo.
  * @param {import('../protocol.js').Fog|null|undefined} fog
  */
 function fogOf(fog) {

@@ -66,7 +66,7 @@ export class FaceSnap {
     this.#mark(this.#hovered, null);
   }
 
-  /** The first click chooses what moves, the second where to. @param {MousePoint} event */
+  /** The first click chooses the model to move, the second its target. @param {MousePoint} event */
   async click(event) {
     const hit = this.#under(event);
     if (!hit) return;

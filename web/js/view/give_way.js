@@ -10,7 +10,7 @@ const SLOW = 45;
  * rests for 0.1 s on what it is about to press.
  */
 const WAIT = {press: 200, move: 160};
-/** Milliseconds that the last picture stays at most: what moves must not seem to stand. */
+/** Longest time between pictures, ms: moving models must not appear to stop. */
 const STALEST = 400;
 
 export class GiveWay {

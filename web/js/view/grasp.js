@@ -16,9 +16,9 @@ import {conjugate, length, multiply, orientation, rotate, subtract} from '../pos
  * @property {Vec3} point           grasped, world
  * @property {Ray} ray              when the drag began
  * @property {Vec3} size            for scaling: extent along the own axes
- * @property {Record<string, Pose7>} others  what moves along, poses at the start
- * @property {string} how           axis and frame in force; a change begins the drag anew
- * @property {boolean} sent         the simulator was told of it
+ * @property {Record<string, Pose7>} others  start poses of the models that move along
+ * @property {string} how           axis and frame in force; a change restarts the drag
+ * @property {boolean} sent         the simulator was notified
  */
 
 /** What a drag has led to: new poses by name, or factors of the size.

@@ -38,7 +38,7 @@ void main() {
   float away = length(at - focus.xy) / reach;
   if (away > 1.0) discard;
   float strength = max(0.24 * lines(at, pixel, 0.024), 0.36 * lines(at / 5.0, pixel / 5.0, 0.008));
-  // From near, tenths of a metre tell how large things are.
+  // From near, lines at each tenth of a metre show the scale.
   float near = 1.0 - smoothstep(0.02, 0.06, 10.0 * max(pixel.x, pixel.y));
   strength = max(strength, 0.13 * near * lines(10.0 * at, 10.0 * pixel, 0.1));
   vec4 color = vec4(0.07, 0.09, 0.12, strength);

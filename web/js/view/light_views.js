@@ -1,4 +1,4 @@
-/** The world's lights, what stands for them in the picture, and the light that is everywhere. */
+/** The world's lights, their icons in the view, and the ambient light. */
 import {
   BufferAttribute, BufferGeometry, Color, DirectionalLight, Group, HemisphereLight, LineBasicMaterial,
   LineSegments, Mesh, MeshBasicMaterial, PointLight, Quaternion, SphereGeometry, SpotLight, Vector3,
@@ -13,11 +13,11 @@ import {lightColorOf, place} from './three_convert.js';
 
 /** @typedef {DirectionalLight|PointLight|SpotLight} Lamp */
 /**
- * A light of the world with what stands for it.
+ * A light of the world with its lamp and its icon in the view.
  * @typedef {{light: Light, lamp: Lamp, icon: Group}} LightEntry
  */
 
-/** three's lamps are physical: what falls on a white wall is divided by pi there. */
+/** three's lamps are physical: three divides the light on a white wall by pi. */
 const STRENGTH = Math.PI;
 /** Daylight is bluish from above, warm from the ground; what a world sets is left as it is. */
 const FROM_ABOVE = new Color(1.04, 1.09, 1.16);

@@ -203,7 +203,7 @@ export class Manipulator {
     return true;
   }
 
-  /** Somebody has deleted what the hand is on: the drag is over, the simulator says who it was. */
+  /** Ends the drag if the grasped entity was deleted. The simulator reports who deleted it. */
   #dropGone() {
     const grasp = this.#grasp;
     if (!grasp || this.#store.entity(grasp.name)) return;

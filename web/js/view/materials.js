@@ -38,7 +38,7 @@ export class Materials {
   /** Colour in which endless grounds end, as the screen shows it. */
   #distance = {value: new Vector3(0.7, 0.7, 0.7)};
 
-  /** @param {LoadingManager} manager  tells when pictures have arrived */
+  /** @param {LoadingManager} manager  reports that pictures have arrived */
   constructor(manager) {
     this.#manager = manager;
   }
@@ -130,7 +130,7 @@ export class Materials {
   #plain(material, {opacity = 1, wireframe = false}, {doubleSided = false, pushed = false}) {
     const diffuse = material?.diffuse ?? material?.ambient ??
       (material?.texture ? [1, 1, 1, 1] : GREY);
-    // The simulator has put the colour's alpha into the transparency; what is not from there has not.
+    // The simulator includes alpha in the transparency; other materials have alpha only.
     const seen = (1 - (material?.transparency ?? 1 - (diffuse[3] ?? 1))) * opacity;
     const common = {
       color: colorOf(diffuse).multiplyScalar(pushed ? GROUND : 1),

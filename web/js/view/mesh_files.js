@@ -263,7 +263,7 @@ function figureOf(root) {
 }
 
 export class Meshes {
-  /** Tells of pictures that arrive after their mesh. */
+  /** Reports pictures that arrive after their mesh. */
   manager = new LoadingManager();
   #busy = false;
   /** How many are there, of how many. */

@@ -86,7 +86,7 @@ export class Models {
     for (const model of this.#store.document?.models ?? []) this.#replace(model.name, model);
   }
 
-  /** Builds a model anew, after its appearance was changed. @param {string} name */
+  /** Rebuilds a model after a change of its appearance. @param {string} name */
   rebuild(name) {
     const model = this.#store.model(name);
     if (model) this.#replace(name, model);

@@ -30,7 +30,7 @@ export class PeopleMarks {
     }
   }
 
-  /** What is marked, by whom. */
+  /** Names of the marked entities, one per mark. */
   get shown() { return this.#marks.map(({name}) => name); }
 
   #rebuild() {
@@ -59,7 +59,7 @@ export class PeopleMarks {
     this.#stage.scene.add(box, text);
   }
 
-  /** Goes along with what moves. @param {Set<number>|null} ids */
+  /** Moves the marks of models with moved links; null: all marks. @param {Set<number>|null} ids */
   follow(ids) {
     for (const {name, box, text} of this.#marks) {
       const links = this.#store.entity(name)?.model?.links;

@@ -19,7 +19,7 @@ export function readout(parent) {
 }
 
 /**
- * Tells of a number that grows, once it has taken so long that somebody waits, and of its end.
+ * Returns a function that reports progress after a delay of `SLOW_FILES`, and then the end.
  * @param {(done: number, of: number) => void} tell
  */
 export function counted(tell) {

@@ -127,7 +127,7 @@ export class View {
       placer: this.#placer, faceSnap: this.#snap, forces: this.#forces,
       selector, measure: this.#measure, pivotMark: new PivotMark(shared),
       boxSelect: new BoxSelect(element, store, (name) =>
-        // The ground is nobody's choice.
+        // The box never selects the ground.
         (this.footprint(name) ? this.pixelOf(name) : null))});
     this.#connect();
     this.#hands = new AbortController();
@@ -227,7 +227,7 @@ export class View {
   /** What the measure tool says, for tests. */
   get measured() { return this.#measure.texts; }
 
-  /** Puts down what is being placed, where there is no mouse. */
+  /** Places the pending entity in the middle of the view, for use without a mouse. */
   placeInMiddle() {
     this.#placer.putInMiddle();
   }

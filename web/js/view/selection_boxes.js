@@ -23,7 +23,7 @@ export class SelectionBoxes {
     for (const event of /** @type {const} */ (['selection', 'document'])) {
       store.listen(event, () => this.update());
     }
-    // Models tell of their ways by poses (`follow`), lights by their documents alone.
+    // `follow` applies the poses of moving models; lights change by their documents only.
     store.listen('entity', ({detail}) => {
       if (detail.kind === 'light' && store.selection.length) this.update();
     });

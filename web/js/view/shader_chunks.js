@@ -33,8 +33,8 @@ const SMOOTH_FOG = 'smoothstep( fogNear, fogFar, vFogDepth )';
 const LINEAR_FOG = '1.0 - clamp( ( fogFar - vFogDepth ) / max( fogFar - fogNear, 1e-6 ), 0.0, 1.0 )';
 
 /**
- * Gazebo's fog, as cameras have it: three's Fog grows evenly, and a FogExp2 of negative density is `exp`, which three
- * lacks: without the square.
+ * Changes three's fog to Gazebo's, as cameras have it. Fog becomes linear. A FogExp2 of negative
+ * density becomes `exp`, which three lacks: its exponent is not squared.
  */
 export function gazeboFog() {
   replace('fog_fragment', SQUARED_FOG, EITHER_FOG);

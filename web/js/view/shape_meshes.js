@@ -93,7 +93,7 @@ function polyline({loops, height}) {
   const shape = new Shape(ring(loops[0]));
   shape.holes = loops.slice(1).map((loop) => new Path(ring(loop)));
   const geometry = new ExtrudeGeometry(shape, {depth: height, bevelEnabled: false});
-  // Nobody shares it: who takes it away frees it.
+  // This geometry is not shared: its owner disposes it.
   geometry.userData.single = true;
   return [{geometry, matrix: new Matrix4()}];
 }

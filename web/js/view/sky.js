@@ -1,4 +1,4 @@
-/** What lies behind everything: the world's sky, or a plain gradient where the world names none. */
+/** The background: the world's sky, or a plain gradient if the world defines none. */
 import {
   Color, DoubleSide, LatheGeometry, Mesh, ShaderMaterial, SphereGeometry, Vector2, Vector3,
 } from 'three';
@@ -17,13 +17,13 @@ const same = (color, other) =>
   other.every((part, index) => Math.abs((color?.[index] ?? part) - part) < 1e-3);
 
 /**
- * Whether a world leaves its background to whoever shows it.
+ * Returns whether a world sets no background.
  * @param {Pick<SceneSettings, 'background'|'sky'|'fog'>} settings
  */
 export const leavesBackground = ({background, sky, fog}) =>
   !sky && (!fog || fog.type === 'none') && same(background, DEFAULTS.background);
 
-/** Whether a world leaves its ambient light so. @param {Pick<SceneSettings, 'ambient'>} settings */
+/** Returns whether a world sets no ambient light. @param {Pick<SceneSettings, 'ambient'>} settings */
 export const leavesAmbient = ({ambient}) => same(ambient, DEFAULTS.ambient);
 
 const VERTEX = `

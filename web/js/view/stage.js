@@ -141,7 +141,7 @@ export class Stage {
   get height() { return this.#size[1]; }
   get aspect() { return this.width / this.height; }
 
-  /** Asks for a picture at the browser's next turn. */
+  /** Requests a picture in the browser's next animation frame. */
   invalidate() {
     if (this.#wanted || this.#lost) return;
     this.#wanted = requestAnimationFrame((time) => this.#frame(time));
@@ -168,7 +168,7 @@ export class Stage {
     this.#way.hand(hand, performance.now());
   }
 
-  /** Something has changed that nobody can see yet: the picture at rest will show it. */
+  /** Marks a change that is too small to draw now: the picture at rest shows it. */
   owe() {
     this.#shadowsWanted = true;
   }
@@ -242,7 +242,7 @@ export class Stage {
     this.#restTimer = setTimeout(() => this.#rest(), REST);
   }
 
-  /** Whether the last picture is still being made; once it is not, how long that took is noted. */
+  /** Returns whether the last picture is still being drawn. Records its duration when it is done. */
   #isDrawing() {
     if (!this.#fence) return false;
     const gl = /** @type {WebGL2RenderingContext} */ (this.renderer.getContext());
@@ -255,7 +255,7 @@ export class Stage {
     gl.deleteSync(this.#fence);
     this.#fence = null;
     this.#way.pictured(took, performance.now());
-    // Nobody may have looked for long: then it says nothing that it is done by now.
+    // Without an earlier check, a late end does not mean that the picture was slow.
     if (this.#waited || took < SLOW) this.#adapt(took);
     this.#waited = false;
     return false;
@@ -282,7 +282,7 @@ export class Stage {
     this.#drawInFull();
   }
 
-  /** What moves next begins as coarse as the last movement ended. */
+  /** Draws at the best quality and keeps the present quality for the next movement. */
   #drawInFull() {
     this.#next ??= this.#quality;
     this.#setQuality(this.#best);

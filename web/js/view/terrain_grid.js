@@ -10,7 +10,7 @@
  * neighbours along x, a, c along y. Source: formats/mesh/terrain.py.
  * @param {Corners} corners
  * @returns {{columns: number, rows: number, heights: Float32Array, at: number[], step: number[]}|null}
- *   heights row by row from the least x and y, `at`; null for triangles that are none
+ *   heights row by row from the least x and y, `at`; null for triangles that form no grid
  */
 export function gridOf(corners) {
   const cells = corners.length / 18;

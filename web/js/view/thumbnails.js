@@ -65,7 +65,7 @@ export class Gallery {
   constructor(stage, connection) {
     this.#stage = stage;
     this.#connection = connection;
-    // Pictures of models that nobody has asked for say nothing of what they lack.
+    // Thumbnails do not report missing files, because no user has asked for these models.
     const unseen = new Meshes(() => {});
     const materials = new Materials(unseen.manager);
     materials.setDistance(BACKGROUND);

@@ -11,7 +11,7 @@ const TINTS = {
   capsule: [0.66, 0.56, 0.83, 1], cone: [0.85, 0.47, 0.50, 1], ellipsoid: [0.35, 0.70, 0.72, 1],
 };
 
-/** Nobody has chosen its colour. @param {Material|null|undefined} material */
+/** Returns whether a material has no chosen colour. @param {Material|null|undefined} material */
 function plain(material) {
   if (!material) return true;
   const {diffuse, texture, emissive} = material;

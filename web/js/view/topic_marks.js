@@ -21,12 +21,12 @@ import {
 /** Points of a trail, and how far apart they are at least, m. */
 const TRAIL = 4000;
 const STEP = 0.01;
-/** A pose that is farther from the last one is not driven to: the odometry began anew. */
+/** Distance between two poses, m, above which the odometry was reset. */
 const JUMP = 1;
 const FRAME_SIZE = 0.15;
 
 /**
- * A shape where a frame is; of frames that nobody knows yet the place is null.
+ * A shape at a frame; the place of a frame that is still unknown is null.
  * @typedef {{group: Group, frame: string|null, place: FramePlace|null, life: Life|null}} Part
  */
 

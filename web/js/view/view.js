@@ -1,4 +1,4 @@
-/** Puts the 3D view into the page, or what stands in for it where there is no WebGL. */
+/** Puts the 3D view into the page, or a notice if WebGL is not available. */
 import {View} from './scene_view.js';
 import {NoWebGL} from './stage.js';
 /** @import {Actions} from '../actions.js' */
@@ -43,7 +43,7 @@ const NO_WEBGL = `WebGL is not available in this browser, and the 3D view needs 
   acceleration in the browser's settings, update the graphics driver, or allow software rendering
   (Chromium: --enable-unsafe-swiftshader).`;
 
-/** What stands in for the view where there is no WebGL. @param {HTMLElement} element */
+/** Shows a notice in place of the view if WebGL is not available. @param {HTMLElement} element */
 function withoutWebGL(element) {
   const text = document.createElement('p');
   text.className = 'no-webgl';
