@@ -47,7 +47,7 @@ class ProcessorTimes:
     def pytest_runtest_protocol(self, item: pytest.Item) -> Iterator[None]:
         yield
         now = processor_seconds()
-        # What was killed with its parent counts no more: the last test would get less than nothing.
+        # Processes killed with their parent are not counted, so the difference can be negative.
         self.seconds[item.nodeid] = max(0.0, now - self._before)
         self._before = now
 

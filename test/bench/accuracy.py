@@ -3,12 +3,12 @@
 
 usage: accuracy.py [PAIRS [SCENE …]]     PAIRS: 5 by default; SCENE: words in its name
 
-Each scene runs in a process of its own, ours and bare in turns, steps of 1 ms. Bare is PyBullet
-with its default settings, and with rigid bodies (maximal coordinates) where there are no joints, as
-ours; in both the ground has mu 1, so that a pair has the mu of the piece. Times are medians of the
-pairs, with their spread; the accuracy is that of every run, as runs repeat bit for bit: how far
-what should stand moved, how deep what fell lies in other things, how much energy arms that swing
-freely lost or gained.
+Each scene runs in a separate process, alternately ours and bare, with steps of 1 ms. Bare is
+PyBullet with its default settings. Without joints both use rigid bodies (maximal coordinates). In
+both the ground has mu 1, so that a pair has the mu of the piece. Times are medians of the pairs,
+with their spread. Runs repeat bit for bit, so the accuracy is that of every run: how far standing
+pieces moved, how deep fallen pieces penetrate others, how much energy freely swinging arms lost or
+gained.
 """
 from __future__ import annotations
 

@@ -5,8 +5,8 @@ usage: bench.py [ROW …]   rows: start meshes prompt rest services full asleep 
                           files (default: all)
 
 Figures are compared within one run: "bare" is PyBullet's stepSimulation alone with the same bodies
-and default settings, measured in turns with ours; a ratio is the median of the pairs', with the
-least and the largest. Nothing here fails on a slow machine.
+and default settings, measured alternately with ours. A ratio is the median of the pairs' ratios,
+with the least and the largest. Nothing here fails on a slow machine.
 """
 from __future__ import annotations
 

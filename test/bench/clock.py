@@ -34,5 +34,5 @@ class Clock:
         return (self.sim - sim) / (time.perf_counter() - since)
 
     def close(self) -> None:
-        """Hear no more."""
+        """Unsubscribe from the clock."""
         self._subscriber.unregister()

@@ -1,7 +1,7 @@
-"""Real-time factors of the node at full speed beside bare PyBullet, in turns.
+"""Measures real-time factors of the node at full speed and of bare PyBullet alternately.
 
-Both hold their world ready; one stands while the other is measured. So a pair is a second or two
-apart, and what else the machine does at that time meets both.
+Both keep their world loaded; one is paused while the other is measured. So the two measurements of
+a pair are a second or two apart, and other load of the machine affects both.
 """
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Measures scenes with this engine and with bare PyBullet in turns, each in its own process."""
+"""Measures scenes alternately with this engine and bare PyBullet, each in a separate process."""
 from __future__ import annotations
 
 import statistics

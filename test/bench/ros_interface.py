@@ -262,7 +262,7 @@ def states() -> List[Row]:
         heard[0] += 1
 
     clock = Clock()
-    # Bytes, not objects: what is measured is the server, not rospy's reading.
+    # AnyMsg keeps the bytes, so that the figure excludes rospy's deserialization.
     subscriber = rospy.Subscriber("/gazebo/model_states", rospy.AnyMsg, hear, tcp_nodelay=True)
     with Server(scenes.world("boxes", 99, True, 1000.0)):
         rospy.wait_for_service("/gazebo/set_model_state", 30)

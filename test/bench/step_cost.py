@@ -109,7 +109,7 @@ def _turn(scene: str, n: int) -> Tuple[float, float, float, float]:
 
 
 def _shape(scene: str, n: int) -> str:
-    """`box`, or what lies in the box of a piece's size: `cylinder` or `sphere`."""
+    """Return the shape that fills the box of a piece's size: `box`, `cylinder` or `sphere`."""
     if "balls" in scene:
         return "sphere"
     return "cylinder" if "cylinders" in scene or scene == PILE and n % 2 else "box"
@@ -199,7 +199,7 @@ def child(kind: str, scene: str) -> None:
         began = time.process_time()
         steps(count // PARTS)
         parts.append((time.process_time() - began) / (count // PARTS) * 1e6)
-    # What falls or tumbles changes on the way: all of it counts.
+    # The cost of falling or tumbling pieces changes during the run: all parts count.
     print(min(parts) if before else sum(parts) / PARTS)
 
 

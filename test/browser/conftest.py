@@ -15,7 +15,7 @@ def browser():
 
 @pytest.fixture(scope="session")
 def node(tmp_path_factory):
-    """One node for all tests that make its world anew."""
+    """One node for all tests that start with a new world."""
     running = Node(tmp_path_factory.mktemp("node"), "worlds/empty.world")
     yield running
     running.close()

@@ -154,7 +154,7 @@ CURSOR = """(() => {
 
 
 def film(editor, path):
-    """Three shapes are put down, one is lifted, physics runs."""
+    """Film three shapes that are placed, one that is lifted, and running physics."""
     without_hints(editor)
     page, strip = editor.page, Film(editor)
     strip.take(700)

@@ -35,14 +35,14 @@ SWIFTSHADER_FLAGS = ("--use-angle=swiftshader", "--enable-unsafe-swiftshader",
                      "--disable-gpu-compositing")
 """What Chromium itself has for machines without a GPU."""
 UNUSED_FEATURES = ("WebUIOmniboxPopup", "WebUIOmniboxAimPopup")
-"""Pages of Chromium's own for its address bar, which nobody sees; each window would load them, in a
-quarter of the time that it takes to open the editor."""
+"""Hidden pages of Chromium's address bar. Each window would load them, which takes a quarter of the
+time that the editor needs to open."""
 PLAYWRIGHTS_OWN = ("AvoidUnnecessaryBeforeUnloadCheckSync", "DestroyProfileOnBrowserClose",
                    "HttpsUpgrades", "HttpsFirstBalancedModeAutoEnable", "LensOverlay",
                    "MediaRouter", "PaintHolding", "ThirdPartyStoragePartitioning",
                    "AvoidCorsURLLoaderRestartOnRedirect", "OptimizationHints",
                    "NetworkTimeServiceQuerying", "AimEnabled", "PreconnectToSearch")
-"""What Playwright switches off itself: of two such switches Chromium heeds the last."""
+"""Features that Playwright disables: Chromium applies only the last of several such switches."""
 WIDTH, HEIGHT = 1366, 768
 """A small laptop's screen."""
 
@@ -209,7 +209,7 @@ class Editor:
         self.until("editor.view.fps === 0", "rest of the view")
 
     def settled_picture(self, clip):
-        """A part of the page at rest: what is drawn is shown a moment later."""
+        """Return a picture of a part of the page at rest. The screen shows a drawn frame later."""
         pictures = [b""]
 
         def stays():
@@ -265,7 +265,7 @@ class Editor:
             (set(self.names()) - before) |
             (set(self.get("editor.store.document.lights.map((light) => light.name)")) - lights)),
             None), f"the new {tool}")
-        # The world tells of it first, then the history; the page selects it when it is answered.
+        # The new entity arrives first, then the history; the page selects it after the reply.
         self.until(f"editor.store.history.undo[0]?.toLowerCase() === 'insert {name}'",
                    f"{name} in the history")
         self.until(f"editor.store.selection.join() === '{name}'", f"the selection of {name}")

@@ -94,7 +94,7 @@ ENDS = {"killed": kill_renderers, "reloaded": lambda editor: editor.page.reload(
 
 
 def told(editor, word):
-    """The numbers that the page told with a word, in order."""
+    """Return the numbers of the page's console messages that begin with a word, in order."""
     return [int(text.split()[1].rstrip(":")) for text in editor.said if text.startswith(word + " ")]
 
 
@@ -111,16 +111,16 @@ def test_pages_that_end_amid_their_edits_lose_nothing_that_was_accepted(node, br
         editor.page.evaluate(f"(edits) => void {WORK}(edits)", edits)
         until = time.monotonic() + chance.uniform(0.0, LONGEST_S)
         while time.monotonic() < until:
-            editor.page.wait_for_timeout(20)  # lets the page tell what it was told
+            editor.page.wait_for_timeout(20)  # receives the page's console messages
         end = sorted(ENDS)[seed % len(ENDS)]
         ENDS[end](editor)
         where = f"seed {seed}, {end}"
-        editor.context.browser.new_browser_cdp_session().detach()  # what was told before is here
+        editor.context.browser.new_browser_cdp_session().detach()  # receives all earlier messages
         accepted = told(editor, "accepted")
         assert accepted == list(range(len(accepted))), where
         assert told(editor, "refused") == [], (where, editor.said)
-        # Of the last request nobody knows whether it was carried out, and what a page says before
-        # it is killed may be lost.
+        # The last request may or may not have been carried out, and the last console messages of a
+        # killed page can be lost.
         possible = worlds[len(accepted):len(accepted) + UNTOLD]
         wait_for(lambda possible=possible: truth(node) in [world for world, _ in possible],
                  f"{where}: one of {possible}")
@@ -137,7 +137,7 @@ def test_pages_that_end_amid_their_edits_lose_nothing_that_was_accepted(node, br
         editor = following
         edits_done += len(accepted)
     editor.close()
-    assert edits_done > SEEDS  # they were amid their edits
+    assert edits_done > SEEDS  # pages ended during their edits
 
 
 @pytest.mark.parametrize("end", sorted(ENDS))

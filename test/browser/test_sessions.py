@@ -62,7 +62,7 @@ def test_two_people_at_one_world_see_whose_hand_is_where(launch, browser):
     first.page.mouse.up()
     first.until("editor.store.history.undo.length === 3", "two moves")
 
-    # What somebody drags is deleted: the hand is empty, without an error.
+    # Another user deletes the dragged entity: the drag ends without an error.
     x, y = first.get("editor.view.pixelOf('unit_box')")
     first.page.mouse.move(x, y)
     first.page.mouse.down()

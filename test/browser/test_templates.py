@@ -1,4 +1,4 @@
-"""A robot of a template: built in a form, put down, driven by the arrow keys, and its picture."""
+"""A robot of a template: built in a form, placed, driven by the arrow keys, and its picture."""
 from __future__ import annotations
 
 from pytest import approx

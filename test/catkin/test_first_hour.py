@@ -46,7 +46,7 @@ def ways():
 
 
 def blocks(text):
-    """The blocks of a section in order; what is shown belongs to the block before it."""
+    """Return the blocks of a section in order. Shown output belongs to the block before it."""
     found: List[Block] = []
     for language, word, body in BLOCK.findall(text):
         if language == "bash":
@@ -65,7 +65,7 @@ class Terminals:
             "HOME": str(home), "PATH": "/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin",
             "LANG": "C.UTF-8", "MY_SIMULATIONS_NO_BROWSER": "1",
             "ROS_MASTER_URI": f"http://127.0.0.1:{free_port()}", "ROS_IP": "127.0.0.1",
-            # What tells the tests' own processes from others.
+            # Marks the processes that belong to the tests.
             **{key: value for key, value in os.environ.items()
                if key.startswith("MY_SIMULATIONS_TEST")},
         }

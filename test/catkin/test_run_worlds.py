@@ -1,4 +1,4 @@
-"""The table of test/corpus/run_worlds.py: what moves, what falls, what cannot be loaded."""
+"""The table of test/corpus/run_worlds.py: moving models, falling models, files that do not load."""
 from __future__ import annotations
 
 import subprocess

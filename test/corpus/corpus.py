@@ -55,7 +55,7 @@ FAULTY = {
     "name-repeated": "urdfdom: links and joints have names of their own",
     "root-many": "urdfdom: two root links",
     "root-missing": "urdfdom: no root link",
-    "link-missing": "Gazebo: no link with a mass; nothing comes of the robot",
+    "link-missing": "Gazebo: no link with a mass; the robot is not created",
     "xml-truncated": "TinyXML, expat: the document ends too early",
     "xml-empty": "TinyXML: the document is empty",
     "xml-no-root": "TinyXML: no element",
@@ -80,7 +80,7 @@ def files_below(folder: str, extensions: Sequence[str] = EXTENSIONS) -> Iterator
 
 
 def environment(folders: Sequence[str]) -> Dict[str, str]:
-    """Gazebo's and ROS's search paths, from what lies in the folders."""
+    """Return Gazebo's and ROS's search paths for the models, media and packages in the folders."""
     models: Dict[str, None] = {}
     media: Dict[str, None] = {}
     packages: Dict[str, None] = {}

@@ -23,7 +23,7 @@ from my_simulations.geometry import Pose, Twist, quat_from_rpy
 
 Triple = Tuple[float, float, float]
 FAR = (1500.0, 1500.0, 50.0)   # m, the middle of the top of the company's floor
-AGAIN = 0.5                    # s, after which what moves starts again
+AGAIN = 0.5                    # s, after which moving pieces start again
 DRIVE_HZ = 50.0                # of the commands of the company's robot
 LYING = quat_from_rpy(math.pi / 2, 0, 0)
 

@@ -16,7 +16,7 @@ Triple = Tuple[float, float, float]
 
 @dataclass(frozen=True)
 class Piece:
-    """A box, or a wedge of eight corners, whose edges lie along the axes when it is put down.
+    """A box, or a wedge of eight corners, whose edges lie along the axes in its initial pose.
 
     Attributes:
         size: of the box, m; of a wedge its bounding box, from which its inertia is taken.

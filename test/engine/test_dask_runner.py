@@ -1,4 +1,4 @@
-"""What a run on a Dask cluster tells when its scheduler is lost, whichever call notices it."""
+"""A run on a Dask cluster reports a lost scheduler, whichever call fails first."""
 from __future__ import annotations
 
 import asyncio

@@ -58,7 +58,7 @@ def _hanging(kind: str, turn=(0.3, -0.4, 0.5), anchor: Pose = Pose(), reverse: b
 def test_a_mass_that_hangs_on_a_fixed_joint(lab: Lab, laws) -> None:
     for turn in ((0, 0, 0), (0.3, -0.4, 0.5), (3, 1, -2)):
         number = lab.load(_hanging("fixed", turn, Pose((0.1, 0.2, 0.3), quat_from_rpy(1, 2, 3))))
-        assert _read(lab, number, "hinge") == [None]  # nobody had asked
+        assert _read(lab, number, "hinge") == [None]  # not requested before
         lab.steps(3)
         wrench = _one(lab, number)
         up = rotate(conjugate(quat_from_rpy(*turn)), (0, 0, 2 * G))

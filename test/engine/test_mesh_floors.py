@@ -1,4 +1,4 @@
-"""Static meshes: what slides over, rests on and hits their flat faces, and what is curved."""
+"""Static meshes: bodies that slide over, rest on and hit their flat faces; curved faces."""
 from __future__ import annotations
 
 import math

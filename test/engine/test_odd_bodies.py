@@ -141,8 +141,8 @@ def test_an_effort_on_a_branching_robot_meets_the_mass_of_its_own_link():
     rest = sum(link.inertial.mass for link in model.links) - mass
     sim.wrenches.apply_effort(leaf.name, 1.0, start_ns=0, duration_ns=-1)
     sim.clock.advance(1)
-    # The leaf goes up by F / m; the rest, were it one body, down by F / M, and it gives way at
-    # its other joints: the rate is at least the one of two rigid bodies.
+    # The leaf accelerates up by F / m. The rest, if it were one body, would accelerate down by
+    # F / M; its other joints can move, so the rate is at least that of two rigid bodies.
     rate = sim.joints.states(leaf.name)[0][1]
     assert rate >= 1e-3 * (1.0 / mass + 1.0 / rest) * (1 - 1e-9)
     velocity = sim.states.link_state(leaf.child)[1].linear[2]

@@ -84,7 +84,7 @@ def test_a_killed_engine_comes_back_with_poses_twists_joints_time_and_loads(star
     assert joints[1] > 1.0
     assert (sim.clock.sim_ns, sim.clock.step) == clock
     assert sim.issues and "SIGKILL" in sim.issues[0].message
-    # The pending 100 steps of the load still act, and no more than they.
+    # The load acts for its 100 pending steps only.
     speed = sim.states.model_state("box")[1].linear[2]
     sim.clock.advance(100)
     assert sim.states.model_state("box")[1].linear[2] - speed == pytest.approx(0.1 * (30 - 9.8),

@@ -1,4 +1,4 @@
-"""A world that begins anew without being loaded again."""
+"""A world that restarts without being loaded again."""
 from __future__ import annotations
 
 import os

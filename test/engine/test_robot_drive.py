@@ -110,7 +110,7 @@ def test_the_same_run_gives_the_same_messages():
 def test_wheels_that_follow_a_velocity_with_default_gains_drive_a_metre():
     """As the editor's Joints panel drives them: 5 rad/s on wheels of 0.05 m, for 4 s.
 
-    The drive plugin, whose motors would hold the wheels, gives way; then it holds them again.
+    The plugin's motors, which hold the wheels, are off meanwhile and hold them again at the end.
     """
     drive = Drive()
     try:

@@ -1,4 +1,4 @@
-"""What stands stays: starting overlaps, parked robots, things on slopes and shelves."""
+"""Resting bodies stay at rest: initial overlaps, parked robots, bodies on slopes and shelves."""
 from __future__ import annotations
 
 import math

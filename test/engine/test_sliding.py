@@ -114,7 +114,7 @@ def test_boxes_and_other_shapes_meet_a_tilted_plane_on_one_side_only(lab: Lab):
 
 
 def test_what_is_spawned_after_a_model_of_two_bodies_left_collides(lab: Lab):
-    # Bullet gives the numbers of removed bodies again, and remembers who ignored whom.
+    # Bullet reuses the numbers of removed bodies and keeps their disabled collision pairs.
     lab.configure(gravity=(0.0, 0.0, 0.0))
     inertial = inertial_of_box(1, 1, 1, 1)
     pair = lab.load(Model("pair", links=[

@@ -1,4 +1,4 @@
-"""What stands, stands: stacks, unlike masses, cards, meshes."""
+"""Structures that must stand: stacks, unlike masses, cards, meshes."""
 from __future__ import annotations
 
 import math

@@ -134,7 +134,7 @@ test('a page whose token is refused says so until it is connected again', async 
   await told;
   assert.equal(connection.refused, true);
   const gone = once(connection, 'refused');
-  answer = false; // nobody listens there any more
+  answer = false; // no server listens there any longer
   timers.pop()();
   Socket.made[1].drop();
   await gone;

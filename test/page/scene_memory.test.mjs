@@ -14,7 +14,7 @@ const {Lights} = await import('../../web/js/view/light_views.js');
 const {empty, segments, triad} = await import('../../web/js/view/markers.js');
 const {Overlays} = await import('../../web/js/view/overlays.js');
 
-/** A store, and a stage whose scene tells which geometries it has. */
+/** Returns a store, a stage with a scene, and functions that send a world and its changes. */
 function begun() {
   const store = new Store();
   const scene = new Scene();

@@ -120,7 +120,7 @@ const settled = () => new Promise((resolve) => setTimeout(resolve));
 test('what a selected robot senses is heard, and no longer when it is not selected', async () => {
   const {store, topics, asked} = page();
   await topics.refresh();
-  assert.deepEqual(topics.list, []);  // nobody looks: nothing was asked
+  assert.deepEqual(topics.list, []);  // without readers the list is not requested
   store.select(['a']);
   await settled();
   assert.deepEqual(sensedBy(LIST, 'a'), ['/scan', '/odom']);

@@ -25,7 +25,7 @@ CELL = 3.0
 
 
 def floating(*models: Model) -> Simulator:
-    """A started, paused world without gravity: what nobody moves, stays."""
+    """Return a started, paused world without gravity, in which models keep their poses."""
     world = World(models=list(models), gravity=(0.0, 0.0, 0.0))
     simulator = Simulator(world, engine_factory=ProcessEngine, paused=True,
                           log=lambda issue: None)

@@ -106,7 +106,7 @@ def _duration(chance: Random) -> Any:
 
 
 class Services:
-    """All services of a world without physics, which is begun anew before each round."""
+    """All services of a world without physics, which restarts before each round."""
 
     def __init__(self, _folder: Path) -> None:
         rospy.rostime.set_rostime_initialized(True)  # for log lines, which have a time

@@ -28,7 +28,7 @@ LARGEST = 6000
 """Characters of an input that others are made of: small ones are read fast."""
 
 SETTLED = 0.25
-"""Share of a run after which memory may not grow, and no more inputs are kept than by then."""
+"""Share of a run after which neither memory nor the number of kept inputs may grow."""
 
 _VARIES = re.compile(r"'[^']*'|\"[^\"]*\"|-?\d[\d.e+-]*|nan|inf")
 MOST_FAULTS = 20
@@ -48,8 +48,8 @@ class Target:
         name: of the proof.
         seeds: the inputs that others are made of.
         change: another input made of one.
-        encode: what is fed of an input.
-        feed: reads it; tells what was new about it: features, such as codes of issues. Raises for
+        encode: makes the argument of `feed` from an input.
+        feed: reads an encoded input and returns its features, such as codes of issues. Raises for
             a fault.
         renew: called before each round.
         suffix: of the file that keeps an input.
@@ -155,7 +155,7 @@ def _keep_small(made: Tuple[Any, int], into: List[Tuple[Any, int]], most: int,
                 chance: Random) -> None:
     """As `_put`, for an input and its size; one that is replaced was as large, or larger.
 
-    What is kept grows else with its inputs, and looks like memory that a reader does not give back.
+    Otherwise kept inputs would grow during a run, and look like memory that a reader leaks.
     """
     if len(into) < most:
         into.append(made)

@@ -58,7 +58,7 @@ def strange_text(text: str, others: List[str], chance: Random) -> str:
 
 
 class XmlKnowledge:
-    """What stands where, learnt from documents and from the tables of readers."""
+    """Children, texts and attributes of elements, from documents and the tables of readers."""
 
     def __init__(self) -> None:
         self.children: Dict[str, List[Element]] = {}

@@ -13,7 +13,7 @@ def scaled(short: int, long: int) -> int:
 
 
 ALLOWED = "MY_SIMULATIONS_PROOF_SECONDS"
-"""Environment variable: processor time after which a proof takes no more inputs, in seconds."""
+"""Environment variable: processor time after which a proof stops reading inputs, in seconds."""
 
 
 def allowance() -> Callable[[], float]:

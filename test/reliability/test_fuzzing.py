@@ -73,7 +73,7 @@ def fuzz(strategy: Any, body: Callable[[Any], None]) -> Dict[str, Any]:
     used, start = allowance(), spent()
     first = time.time_ns()
     while count < INPUTS and used() < 1.0:
-        # Short runs are alike; long ones are begun anew now and then, with another seed.
+        # Short runs repeat the same inputs; long ones restart now and then with another seed.
         left = INPUTS if INPUTS <= AT_ONCE else min(AT_ONCE, INPUTS - count)
         search = settings(max_examples=left, deadline=None, database=None,
                           derandomize=INPUTS <= AT_ONCE, suppress_health_check=list(HealthCheck))(

@@ -123,7 +123,7 @@ def test_an_engine_without_memory_is_replaced_and_loses_nothing(record, monkeypa
                     there.append(name)
                 if simulator.engine_pid != pid:
                     break
-            if simulator.engine_pid == pid:  # it managed with what it had: let it go on
+            if simulator.engine_pid == pid:  # the engine survived the limit
                 resource.prlimit(pid, resource.RLIMIT_AS, (used, used))
                 os.kill(pid, signal.SIGKILL)
                 until(lambda gone=pid: simulator.engine_pid not in (gone, 0), "another engine")

@@ -39,7 +39,7 @@ class Abandoned(unittest.TestCase):
             launched.names()
             node = master_api.running_node(launched.uri, "/gazebo")[1]
             master = rosgraph.Master("/abandoned", launched.uri)
-            # Services are offered before the node tells of its engine.
+            # The node offers its services before it publishes the engine's process id.
             wait_for(lambda: master.hasParam(ENGINE), "the engine's process id")
             engine = master.getParam(ENGINE)
             core = master_api.call(launched.uri, "getPid", "/abandoned")

@@ -18,7 +18,7 @@ from my_simulations.ros.registration import class_of
 
 NAN, INF, ABSURD = float("nan"), float("inf"), 1e300
 SECONDS = 1.0
-"""Processor time that an answer may cost the node; wall time would tell of other programs."""
+"""Processor time that an answer may cost the node; wall time would include other programs."""
 
 ARM = ('<robot name="arm"><link name="world"/>'
        '<link name="fore"><inertial><mass value="1"/>'
@@ -241,7 +241,7 @@ class BadInput(unittest.TestCase):
         return sum(map(int, used)) / os.sysconf("SC_CLK_TCK")
 
     def world(self):
-        """All that the services tell of the world, rounded to what a resting box may tremble."""
+        """Return the world as the services report it, rounded to the jitter of a resting box."""
         gazebo = self.gazebo
         physics = gazebo.get_physics_properties()
         states = [round(number, 3) + 0.0 for name in ("box", "arm")

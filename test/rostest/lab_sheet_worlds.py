@@ -29,7 +29,7 @@ class Worlds(unittest.TestCase):
                 status = server.ended()
         self.assertEqual(status, 0, server.text)
         self.assertNotIn("error", server.text.lower())
-        # Of plugins that nobody brings the log says so, once a library.
+        # The log warns of missing plugins once per library; these warnings are expected.
         warned = [line for line in server.text.splitlines()
                   if "[WARN]" in line and "there is no plugin for" not in line]
         self.assertEqual(warned, [])

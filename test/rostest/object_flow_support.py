@@ -19,7 +19,7 @@ def tool(name, *words, **environment):
 
 
 def wait_for_list():
-    """Until the launch file's own list is loaded: after that nobody but the test changes it."""
+    """Wait until the launch file's list is loaded; from then on only the test changes it."""
     support.wait_for(lambda: rospy.get_param("/my_simulations/object_list", None), "the list")
 
 

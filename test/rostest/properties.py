@@ -1,4 +1,4 @@
-"""Properties of lights, links, joints and physics: what is set is read back, and acts."""
+"""Properties of lights, links, joints and physics: set values are read back and take effect."""
 import math
 import unittest
 

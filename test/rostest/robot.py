@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The lab robot drives by cmd_vel; odometry, tf and joint states tell of it."""
+"""The lab robot drives by cmd_vel; odometry, tf and joint states report its motion."""
 import math
 import os
 import signal

@@ -18,7 +18,7 @@ CTRL_C = "\x03"
 
 
 class Typist:
-    """A program in a terminal of its own, and somebody who types into it."""
+    """A program in a separate terminal, with a method that types into it."""
 
     def __init__(self, *command):
         self._terminal, program_end = pty.openpty()
@@ -67,7 +67,7 @@ class Teleop(unittest.TestCase):
                  and abs(self.speeds()[1] - turn) < 0.05, f"{forward} m/s and {turn} rad/s")
 
     def press(self, key, forward, turn):
-        """The first keys can come before anybody listens: press again until it drives."""
+        """Press a key until the robot drives: the first keys can precede the subscription."""
         def pressed():
             self.typist.type(key)
             with contextlib.suppress(AssertionError):

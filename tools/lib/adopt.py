@@ -1,7 +1,7 @@
 """Run a command and wait for all programs that it leaves behind: their processor time counts then.
 
-A browser's processes are not children of the test that started it: when it ends, they would go to
-init, and what they used would be in nobody's sum.
+A browser's processes are not children of the test that started it. When the test ends, init would
+adopt them, and no sum would include their processor time.
 """
 
 import ctypes

@@ -48,7 +48,7 @@ THESE PACKAGES DO NOT MATCH THE HASHES|What was fetched is not what is pinned: s
 Unsupported engine|The Node.js here is too old: remove it from PATH, and the one of the system is used.
 No matching distribution found|The package index has no such version for this Python and processor.
 Could not find a package configuration file|A package of the workspace needs one that is not installed: apt-cache search finds it by its name.
-Permission denied|A file belongs to someone else: ls -l shows whom, and set-up as root leaves such files behind.
+Permission denied|A file belongs to someone else: ls -l shows its owner. Set-up as root leaves such files behind.
 '
 
 # cause_in LOG: the advice for the first known cause that the log holds, or nothing.

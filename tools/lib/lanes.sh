@@ -44,7 +44,7 @@ in_lane() {
   local IN_LANE=1 PASSED=0 FAILED=0 FAULTS=() REMARK='' SPAN=0
   MARK="$MARK$1."
   eval "${QUEUE[$1]}"
-  times >"$OUTCOMES/$1.times"   # of this shell: it starts anew in every pipe and substitution
+  times >"$OUTCOMES/$1.times"   # of this shell: every pipe and substitution starts at 0
   printf '%s\0' "$PASSED" "$FAILED" "$SPAN" "$REMARK" "$STEP_TEXT" \
     "$(processor_ms <"$OUTCOMES/$1.times")" "${FAULTS[@]}" >"$OUTCOMES/$1.done"
 }
@@ -54,7 +54,7 @@ processor_ms() {
   awk -F '[ms ]+' '{ total += ($1 + $3) * 60 + $2 + $4 } END { printf "%d", total * 1000 }'
 }
 
-# report_lane NUMBER: tell of a check that has ended, and count it.
+# report_lane NUMBER: print the result of a check that has ended, and count it.
 report_lane() {
   local told=(0 1 0 FAILED "${QUEUE[$1]}" 0 "${QUEUE[$1]}: ended without a result") seconds
   [ ! -e "$OUTCOMES/$1.done" ] || mapfile -d '' -t told <"$OUTCOMES/$1.done"

@@ -144,7 +144,7 @@ system_packages() {
 }
 
 # lacks_npm: whether npm must be installed. A Node.js from elsewhere is as good, and Debian's npm brings
-# 300 packages; what is there or comes from an archive needs none.
+# 300 packages. A page that is installed or part of an archive needs no npm.
 lacks_npm() {
   ! command -v npm >/dev/null || return 1
   [ "$WITH_TEST_TOOLS" = 0 ] || return 0
@@ -214,7 +214,7 @@ optional_reason() {
   printf '%s' "${reason:+ ($reason)}"
 }
 
-# hint_at_python: tell how to run scripts that begin with "#!/usr/bin/env python", if there are such
+# hint_at_python: explain how to run scripts that begin with "#!/usr/bin/env python", if there are such
 # scripts and no such program.
 hint_at_python() {
   local file line count=0
@@ -251,7 +251,7 @@ prepare_python() {
   [ "$(cat "$stamped" 2>/dev/null || true)" != "$stamp" ] || return 0
   [ "$PYTHON_REMARK" = installed ] || say "installing, a minute or two"
   PYTHON_REMARK=installed
-  # An interrupted or foreign environment is cheaper to make anew than to mend.
+  # Replace an interrupted or foreign environment: repair takes longer.
   if ! "$VENV/bin/python3" -m pip --version >/dev/null 2>&1 ||
      [ "$("$VENV/bin/python3" --version)" != "$("$PYTHON" --version)" ]; then
     rm -rf -- "$VENV"
@@ -355,8 +355,8 @@ one_at_a_time() {
   flock -n 9 || { printf '(waiting for another set-up of this workspace) '; flock 9; }
 }
 
-# release: let another set-up of this workspace go on.
+# release: release the lock, so that another set-up of this workspace can start.
 release() {
-  rm -rf -- "$OWN/bundle"  # what was unpacked of an archive is installed
+  rm -rf -- "$OWN/bundle"  # the unpacked files are installed by now
   exec 9>&-
 }

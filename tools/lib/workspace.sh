@@ -94,8 +94,8 @@ spoken_of() {
     --include='*.launch' --include='*.py' --exclude-dir='.*' -e "${1%_msgs}_" --
 }
 
-# link_companions: link each package of compat/ that rospack does not find elsewhere; messages of
-# few robots only where somebody speaks of them.
+# link_companions: link each package of compat/ that rospack does not find elsewhere. Messages of
+# some robots are linked only if a package of the workspace names them.
 link_companions() {
   local name target place real
   COMPANIONS=

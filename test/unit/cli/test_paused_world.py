@@ -11,7 +11,7 @@ from my_simulations.cli.object_client import SimulatorClient
 
 
 class Client(SimulatorClient):
-    """Talks to nobody; a signal comes while the world is made to go on."""
+    """A client without a server; a signal arrives while the world is being unpaused."""
 
     def __init__(self, late=None):
         self.replaces = True

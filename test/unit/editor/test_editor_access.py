@@ -179,7 +179,7 @@ def test_hundreds_of_half_open_connections_do_not_use_up_the_descriptors(guarded
 
     async def run():
         opened = [await asyncio.open_connection("127.0.0.1", port) for _ in range(300)]
-        # What nobody has ended yet is as many as may wait.
+        # The server closes all but the newest MOST_SILENT connections.
         ended = [reader for reader, _ in opened[:-connection_limits.MOST_SILENT]]
         for reader in ended:
             try:

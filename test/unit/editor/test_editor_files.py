@@ -361,7 +361,7 @@ def test_unsaved_edits_of_a_server_that_was_killed_are_offered_and_restored(case
         other = await Browser.open(browser.session, second.url)
         await other.until(lambda: other.last("history"))
         assert other.last("autosave") is None
-        assert len(entries(second)) == 1  # the edits are unsaved still, and kept anew
+        assert len(entries(second)) == 1  # the edits are still unsaved and kept again
 
     second.browse(restore)
 

@@ -1,4 +1,4 @@
-"""What the editor's server gives away by HTTP, and to whom."""
+"""Files that the editor's server sends by HTTP, and the clients that may read them."""
 from __future__ import annotations
 
 import asyncio

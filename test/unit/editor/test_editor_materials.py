@@ -15,7 +15,7 @@ from my_simulations.editor.scene.served_files import ServedFiles
 from my_simulations.resources.resolver import Resolver
 
 LONGEST_S = 2.0
-"""Processor time of one script, in seconds: what is no hang."""
+"""Longest processor time of one script, in seconds; more is a hang."""
 
 SCRIPT = """
 // a comment { with braces }

@@ -81,7 +81,7 @@ def test_a_world_that_stands_still_is_looked_at_less_often_until_something_happe
 
     async def watch(browser):
         await quiet()
-        made.sim.models.spawn(box("b"))          # by somebody else
+        made.sim.models.spawn(box("b"))          # by another client
         await browser.until(lambda: browser.model("b"))
         assert not hub._quiet()
         await quiet()

@@ -17,7 +17,7 @@ from my_simulations.simulator.simulator import Simulator
 
 @pytest.fixture
 def flight():
-    """A box that flies with 1 m/s along x from the origin, at sim time 0; nobody wants twists."""
+    """A box that flies with 1 m/s along x from the origin, at sim time 0; twists are unused."""
     simulator = Simulator(World(models=[box("a")], gravity=(0.0, 0.0, 0.0)), paused=True,
                           engine_factory=lambda: InlineEngine(KinematicBackend),
                           log=lambda issue: None)

@@ -192,7 +192,7 @@ def test_a_full_disk_is_one_error_and_the_world_goes_on(running):
     wait_for(lambda: world.sim.clock.sim_ns > now)
     world.recorder.stop()
     assert world.issues == [issue]
-    log = LogReader(world.path)  # what was written before is good
+    log = LogReader(world.path)  # the records before the fault are valid
     assert log.begin == 0.0
     log.close()
 

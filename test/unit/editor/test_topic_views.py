@@ -171,7 +171,7 @@ def test_odometry_paths_and_maps():
     odometry.pose.pose.position.x = 2.0
     odometry.twist.twist.linear.x = 0.5
     fields, _ = view(odometry)
-    # A message that nobody filled in has a quaternion of zeros.
+    # A default message has a quaternion of zeros.
     assert fields["pose"] == [2.0, 0, 0, 0, 0, 0, 1.0] and fields["linear"] == [0.5, 0, 0]
     path = Path(poses=[PoseStamped() for _ in range(5000)])
     assert 1000 <= len(view(path)[0]["poses"]) <= 2000

@@ -266,7 +266,7 @@ def test_states_nobody_waits_for_go_on_after_many_that_were_asked_for(slow):
     words[DEMAND_NS] = 1
     first = slow.ring.latest
     ask(slow, Run())
-    until(lambda: slow.ring.latest > first + 100)   # 0.4 s that nobody has to make up for
+    until(lambda: slow.ring.latest > first + 100)   # 0.4 s that need not be caught up
     words[DEMAND_NS] = 0
     last = slow.ring.latest + 1
     until(lambda: slow.ring.latest > last + 3)

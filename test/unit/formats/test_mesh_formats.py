@@ -1,4 +1,4 @@
-"""Mesh files as exporters write them: what is not shape, and what the libraries pass over."""
+"""Mesh files as exporters write them: entries without shape, and data that libraries ignore."""
 import json
 import os
 import re

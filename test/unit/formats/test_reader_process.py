@@ -86,7 +86,7 @@ def test_plain_files_are_read_without_another_process(kept, tmp_path):
 
 
 def test_another_process_reads_the_same(kept, tmp_path, monkeypatch):
-    monkeypatch.setattr(reader_process, "_KEPT_S", 600.0)  # what is expected may take 20 s
+    monkeypatch.setattr(reader_process, "_KEPT_S", 600.0)  # the expected result may take 20 s
     mesh = doubling(tmp_path / "many.dae", 14)
     data = load_mesh(mesh)
     pid = kept.pid

@@ -341,7 +341,7 @@ def test_zeros_beside_products_of_inertia_give_one_about_each_axis():
 def test_plugins_are_kept_as_written():
     xml = '<plugin name="p" filename="libp.so"><a b="1">2</a></plugin>'
     model, issues = model_of('<link name="l"/>' + xml)
-    assert issues == []  # whoever runs plugins says which ones do nothing
+    assert issues == []  # the plugin loader reports unsupported plugins
     assert [(p.name, p.filename, p.xml) for p in model.plugins] == [("p", "libp.so", xml)]
 
 

@@ -184,7 +184,7 @@ def test_the_emergency_stop_holds_positions_until_it_is_over():
     assert arm.at() == pytest.approx(halted, abs=1e-6)
     arm.hear("stop", data=False)
     arm.context.advance(1.0)
-    assert arm.at() == pytest.approx(halted, abs=1e-6)   # started anew, where the joint is
+    assert arm.at() == pytest.approx(halted, abs=1e-6)   # restarted at the joint's position
     arm.hear("forward/command", data=1.0)
     arm.context.advance(1.0)
     assert arm.at() == pytest.approx(1.0, abs=1e-6)

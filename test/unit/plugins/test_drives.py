@@ -403,7 +403,7 @@ def test_a_wheel_slips_by_its_compliances_and_the_radius_of_its_collision():
     '<wheel link_name="twin"><wheel_normal_force>77</wheel_normal_force></wheel>',
     "<wheel><wheel_normal_force>77</wheel_normal_force></wheel>"])
 def test_a_wheel_that_cannot_slip_leaves_the_others_slipping(bad):
-    """Gazebo tells of it and goes on; a wheel must have one collision and one joint."""
+    """Gazebo logs an error and continues; a wheel must have one collision and one joint."""
     good = '<wheel link_name="rear"><wheel_normal_force>77</wheel_normal_force></wheel>'
     for both in (bad + good, good + bad):
         assert slipping(both) == {"rear": ("axle", 0.3, 77.0, 0.0, 0.0)}

@@ -205,7 +205,7 @@ def test_a_gripper_without_an_arm_is_the_users_fault():
     "<arm><arm_name>b</arm_name><palm_link>palm</palm_link><gripper_link>none</gripper_link></arm>",
     "<arm><arm_name>b</arm_name></arm>"])
 def test_an_arm_or_a_finger_that_is_not_there_leaves_the_others_holding(bad):
-    """The original tells of it and goes on."""
+    """The original logs an error and continues."""
     finger = ARM.replace("</arm>", "<gripper_link>gone</gripper_link></arm>")
     context = FakeContext(finger.replace("<arm>", bad + "<arm>", 1),
                           links=("palm", "left", "right"))

@@ -32,7 +32,7 @@ class Sensing:
 
 
 class Case:
-    """Its renderer has started, unless it is cold; `again` counts what is to be asked anew."""
+    """Requests to a renderer that has started, unless `cold`; `again` counts repeated requests."""
 
     def __init__(self, cold=False):
         self.sensing, self.inbox, self.said, self.seen = Sensing(), deque(), [], []

@@ -1,4 +1,4 @@
-"""Efforts and contacts are read from the engine once a step, whoever asks."""
+"""Efforts and contacts are read from the engine once a step for all readers."""
 from __future__ import annotations
 
 from types import SimpleNamespace

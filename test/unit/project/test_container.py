@@ -85,5 +85,5 @@ def test_students_of_a_course_have_ports_and_tokens_of_their_own():
     assert len(set(ports)) == len(ports) == len(services)
     assert all(port.endswith(":11346") for port in ports)
     assert len(set(tokens)) == len(tokens)
-    # No token is in the file: whoever starts the course must set them.
+    # The file contains no token: teachers must set them before they start the course.
     assert all(re.fullmatch(r"\$\{\w+:\?[^}]+\}", token) for token in tokens)

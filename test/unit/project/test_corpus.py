@@ -71,7 +71,7 @@ def worker(request):
 
 @pytest.mark.parametrize("worker", [1.0], indirect=True)
 def test_a_file_that_stops_the_reader_is_a_hang(worker, tmp_path):
-    os.mkfifo(tmp_path / "pipe.sdf")  # nobody ever writes into it
+    os.mkfifo(tmp_path / "pipe.sdf")  # has no writer
     assert worker.read(str(tmp_path / "pipe.sdf")) == {"end": "hang"}
 
 

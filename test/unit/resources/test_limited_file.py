@@ -1,4 +1,4 @@
-"""Files of a limited size: small ones whole, the begin of large ones, no more room than that."""
+"""Limited reading of files: small files whole, the beginning of large ones, bounded memory."""
 import os
 import threading
 import tracemalloc

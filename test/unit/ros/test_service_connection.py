@@ -1,4 +1,4 @@
-"""Service calls without rospy: what is sent, what comes back, and what fails."""
+"""Service calls without rospy: requests, responses and faults."""
 from __future__ import annotations
 
 import socket

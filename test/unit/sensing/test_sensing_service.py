@@ -26,7 +26,7 @@ class Wire:
 
 
 class Ring:
-    """Shared states that nobody asks for: rays are then cast in a thread, too."""
+    """A shared state ring without requests. With a ring, a thread also casts rays."""
 
 
 @pytest.mark.parametrize("ring", [None, Ring()], ids=["no ring", "ring"])

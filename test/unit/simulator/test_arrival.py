@@ -63,7 +63,7 @@ def test_others_count_where_they_are_now(sim):
 def test_legs_count_as_they_are_folded(sim):
     """With straight legs the robot would stand half a metre in the ground.
 
-    The engine of these tests knows no joints, so the leg is put where its joint would.
+    The engine of these tests has no joints, so the test places the leg at the joint's position.
     """
     leg = Link("leg", Pose((0, 0, -1.0)), Inertial(1.0, ixx=0.1, iyy=0.1, izz=0.1),
                [Collision("c", Box((0.1, 0.1, 0.2)))])

@@ -24,7 +24,7 @@ def files(keep):
 
 
 def silent(issue):
-    """Nobody listens."""
+    """Ignore an issue."""
 
 
 def test_a_kept_world_is_read_once_and_given_as_copies(tmp_path):

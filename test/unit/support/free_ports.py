@@ -13,7 +13,7 @@ _held: List[socket.socket] = []
 
 
 def free_port() -> int:
-    """A port of 127.0.0.1 where nobody listens, and that no other test gets while this one runs."""
+    """Return a free port of 127.0.0.1 that no other test gets while this one runs."""
     while True:
         port = random.choice(CANDIDATES)
         claim = socket.socket(socket.AF_UNIX)

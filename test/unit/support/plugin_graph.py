@@ -6,7 +6,7 @@ from my_simulations.plugins.testing import Message
 
 
 class Graph:
-    """Keeps what is published; a test sends what is heard. Nobody listens to `ignored` topics.
+    """Records published messages; a test sends messages. `ignored` topics have no subscriber.
 
     `parameters`: dictionaries in dictionaries, by namespace.
     """
