@@ -8,16 +8,16 @@ from .frames import stamped
 
 PENDING, ACTIVE, PREEMPTED, SUCCEEDED, ABORTED, REJECTED, PREEMPTING, RECALLING, RECALLED = range(9)
 _STATUS_HZ = 5.0
-# How long the status of a goal is told after its end, and a cancel waits for its goal: sim time.
+# Sim time for which the status of an ended goal is published, and a cancel is kept for its goal.
 _KEEP_NS = 5_000_000_000
 _QUEUE = 50
 
 
 class Goal:
-    """A goal on its way.
+    """A goal of an action server, with its status.
 
     Attributes:
-        message: what is asked for, e.g. control_msgs/FollowJointTrajectoryGoal.
+        message: the client's request, e.g. control_msgs/FollowJointTrajectoryGoal.
         status: one of actionlib_msgs/GoalStatus.
     """
 
@@ -28,32 +28,32 @@ class Goal:
 
     @property
     def active(self) -> bool:
-        """Whether it has neither ended nor is waiting."""
+        """Whether the goal was accepted and has not ended."""
         return self.status in (ACTIVE, PREEMPTING)
 
     def accept(self, text: str = "") -> None:
-        """Begin."""
+        """Accept the goal."""
         self.status = PREEMPTING if self.status == RECALLING else ACTIVE
         self._server.told(self, text)
 
     def reject(self, result: Any, text: str = "") -> None:
-        """Refuse it."""
+        """Reject the goal."""
         self._end(REJECTED, result, text)
 
     def succeed(self, result: Any, text: str = "") -> None:
-        """Reached."""
+        """End the goal as succeeded."""
         self._end(SUCCEEDED, result, text)
 
     def abort(self, result: Any, text: str = "") -> None:
-        """Given up."""
+        """End the goal as aborted."""
         self._end(ABORTED, result, text)
 
     def cancel(self, result: Any, text: str = "") -> None:
-        """Ended because of another goal, or because its client asked for it."""
+        """End the goal because another one replaces it, or because its client cancelled it."""
         self._end(PREEMPTED if self.status in (ACTIVE, PREEMPTING) else RECALLED, result, text)
 
     def feedback(self, feedback: Any) -> None:
-        """Tell the client how it goes."""
+        """Publish the progress of the goal."""
         self._server.send_feedback(self, feedback)
 
     def _end(self, status: int, result: Any, text: str) -> None:
@@ -62,14 +62,14 @@ class Goal:
 
 
 class ActionServer:
-    """One action.
+    """An action server of a plugin.
 
     Args:
         context: of the plugin.
         name: the namespace of its topics.
         kind: e.g. `control_msgs/FollowJointTrajectory`.
-        asked: gets each new goal, and must accept or reject it.
-        cancelled: gets each goal whose client does not want it any more, while it is active.
+        asked: called with each new goal, which it must accept or reject.
+        cancelled: called with each active goal that its client cancels.
     """
 
     def __init__(self, context: Context, name: str, kind: str, asked: Callable[[Goal], None],
@@ -77,7 +77,7 @@ class ActionServer:
         self._context, self._kind = context, kind
         self._asked, self._cancelled = asked, cancelled
         self._goals: List[Goal] = []
-        self._early: List[Tuple[Any, int]] = []   # cancels without a goal, and when they came
+        self._early: List[Tuple[Any, int]] = []   # cancels of unknown goals, and sim times
         self._status = context.publish(f"{name}/status", "actionlib_msgs/GoalStatusArray", _QUEUE,
                                        latch=True)
         self._results = context.publish(f"{name}/result", f"{kind}ActionResult", _QUEUE)
@@ -91,11 +91,11 @@ class ActionServer:
         self._tell()
 
     def result(self) -> Any:
-        """An empty result."""
+        """Return an empty result message."""
         return self._context.message(f"{self._kind}Result")
 
     def close(self) -> None:
-        """Take it off the graph."""
+        """Remove the action from the ROS graph."""
         self._timer.end()
         for handle in self._handles:
             handle.close()
@@ -103,18 +103,18 @@ class ActionServer:
     # -- for goals ---------------------------------------------------------------------------------
 
     def told(self, goal: Goal, text: str) -> None:
-        """The status of a goal has changed."""
+        """Publish the status after the status of a goal changed."""
         goal.text = text
         self._tell()
 
     def ended(self, goal: Goal, result: Any, text: str) -> None:
-        """A goal has come to its end."""
+        """Publish the result and the status of a goal that ended."""
         goal.text, goal.ended_ns = text, self._context.now_ns
         self._send_result(goal, result)
         self._tell()
 
     def send_feedback(self, goal: Goal, feedback: Any) -> None:
-        """Publish."""
+        """Publish feedback of a goal, if the topic has a subscriber."""
         if self._feedback.wanted:
             message = self._context.message(f"{self._kind}ActionFeedback")
             message.header.stamp = self._context.stamp()
@@ -169,7 +169,7 @@ class ActionServer:
 
 
 def _meant(wanted: Any, goal: Goal) -> bool:
-    """Whether a cancel message means a goal: by id, by time, or all of them."""
+    """Return whether a cancel message applies to a goal: by id, by time, or to all goals."""
     stamp = wanted.stamp.to_nsec()
     if wanted.id:
         return bool(wanted.id == goal.goal_id.id)

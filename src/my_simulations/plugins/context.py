@@ -87,10 +87,10 @@ class Joint(Protocol):
 
 
 class Ending(Protocol):
-    """Something that goes on until it is ended."""
+    """A repeated call that continues until it is ended."""
 
     def end(self) -> None:
-        """End it; nothing happens when it has ended already."""
+        """End the calls; a second call of this method has no effect."""
 
 
 class Publication(Protocol):
@@ -98,16 +98,16 @@ class Publication(Protocol):
 
     @property
     def wanted(self) -> bool:
-        """Whether anybody listens."""
+        """Whether the topic has a subscriber."""
 
     def publish(self, message: Any) -> None:
-        """Publish a message once the world goes on; it must not be changed any more."""
+        """Publish a message after the engine has resumed; do not change it after this call."""
 
     def publish_later(self, make: Callable[[], Any]) -> None:
         """Publish what `make` returns; another thread calls it, in order.
 
         For messages that take more than a millisecond to make: neither the world nor other plugins
-        wait for them. `make` must use nothing but what was handed to it.
+        wait for them. `make` must use only data that it has captured.
         """
 
     def close(self) -> None:
@@ -160,7 +160,7 @@ class Context(Protocol):
         """Be called at a rate in Hz of sim time, the first time one period from now.
 
         0 or less is every step. The calls are exact to the step and never drift. `end` of
-        what is returned ends them.
+        the returned object ends them.
         """
 
     def observe(self, hertz: float, call: Callable[[], None],
@@ -267,12 +267,12 @@ class Context(Protocol):
         """Put the model somewhere at once; all its links move as one body."""
 
     def hold(self, held: bool) -> None:
-        """Keep the model at rest where it is put, whatever acts on it; or no more."""
+        """Keep the model at rest at its pose, whatever forces act on it, or release it again."""
 
     def scoped(self, link: str) -> str:
-        """The name that a link of the model has in the world, as contacts and `attach` know it.
+        """Return the name of a link in the world, as used by contacts and `attach`.
 
-        What is below the model's name is the link's name in `description`. Raises PluginError.
+        The part after the model's name is the link's name in `description`. Raises PluginError.
         """
 
     def joint_spec(self, name: str) -> JointSpec:
@@ -365,16 +365,16 @@ class Context(Protocol):
         """A time as messages have it; default now."""
 
     def publish(self, name: str, kind: str, queue: int = 1, latch: bool = False) -> Publication:
-        """Offer a topic; one without a name is offered to nobody.
+        """Advertise a topic; a topic with an empty name is not on the ROS graph.
 
-        Raises PluginError where the type's package is not installed.
+        Raises PluginError if the type's package is not installed.
         """
 
     def subscribe(self, name: str, kind: str, call: Callable[[Any], None],
                   queue: int = 1) -> Handle:
-        """Hear a topic. Of more messages than `queue` between two steps the oldest are lost.
+        """Subscribe to a topic. Between two steps `queue` messages are kept; the oldest are lost.
 
-        Raises PluginError where the type's package is not installed.
+        Raises PluginError if the type's package is not installed.
         """
 
     def serve(self, name: str, kind: str, call: Callable[[Any, Any], None]) -> Handle:
@@ -387,12 +387,12 @@ class Context(Protocol):
         """A parameter of the namespace, or of the next one above that has it (`tf_prefix`)."""
 
     def transform(self, parent: str, child: str, pose: Pose) -> None:
-        """Broadcast to tf where `child` is in `parent`, as of now."""
+        """Broadcast the present pose of `child` in `parent` to tf."""
 
     # -- log -------------------------------------------------------------------------------------
 
     def info(self, text: str) -> None:
-        """Tell the user something; file and line of the plugin are added."""
+        """Report information to the user, with file and line of the plugin."""
 
     def warn(self, text: str) -> None:
         """Warn the user."""

@@ -1,4 +1,4 @@
-"""Commands that are not finite end a robot: no motor can follow them, no body survives them."""
+"""Ignore command messages with NaN or infinity, which no motor can follow."""
 from __future__ import annotations
 
 from typing import Any, Callable, Protocol
@@ -7,16 +7,16 @@ from ..description.model import INFINITE
 
 
 class Warns(Protocol):
-    """Who tells the user."""
+    """Reports warnings to the user."""
 
     def warn(self, text: str) -> None:
-        """Tell."""
+        """Report a warning."""
 
 
 def finite_only(context: Warns, topic: str, call: Callable[[Any], None]) -> Callable[[Any], None]:
-    """What hears a topic in place of `call`: messages with NaN or infinity are passed over.
+    """Return a subscriber that ignores messages with NaN or infinity, and else calls `call`.
 
-    The user is told of the first one.
+    The first ignored message is reported to the user.
     """
     told = False
 
@@ -33,7 +33,7 @@ def finite_only(context: Warns, topic: str, call: Callable[[Any], None]) -> Call
 
 
 def is_all_finite(value: Any) -> bool:
-    """Whether no number of a message, or of those in it, is NaN or infinite (1e16 as in SDF)."""
+    """Return whether all numbers of a message are finite; above 1e16 is infinite, as in SDF."""
     if isinstance(value, float):
         return abs(value) <= INFINITE
     if isinstance(value, (list, tuple)):

@@ -13,12 +13,12 @@ TransformOf = Tuple[str, str, Pose]
 
 @dataclass(frozen=True)
 class TopicUse:
-    """A topic that a plugin offers or hears.
+    """A topic that a plugin publishes or subscribes to.
 
     Attributes:
-        name: as the plugin has it, before remapping.
+        name: the name that the plugin uses, before remapping.
         kind: type, such as `sensor_msgs/LaserScan`.
-        heard: the plugin hears it; else it offers it.
+        heard: the plugin subscribes to it; else it publishes it.
         model: the plugin's model.
         link: the link that carries the plugin's sensor; "" for a plugin of the model.
         sensor: the sensor's type; "" likewise.
@@ -47,7 +47,7 @@ class Topic(Protocol):
 
     @property
     def wanted(self) -> bool:
-        """Whether anybody listens."""
+        """Whether the topic has a subscriber."""
 
     def send(self, message: Any) -> None:
         """Publish."""
@@ -57,10 +57,10 @@ class Topic(Protocol):
 
 
 class Closing(Protocol):
-    """Something that can be taken off the graph."""
+    """A subscription or service that can be removed from the graph."""
 
     def close(self) -> None:
-        """Take it off."""
+        """Remove it from the graph."""
 
 
 class Graph(Protocol):
@@ -80,10 +80,10 @@ class Graph(Protocol):
         """
 
     def subscribe(self, name: str, kind: str, call: Callable[[Any], None], queue: int) -> Closing:
-        """Hear a topic; `call` comes from another thread. Raises MissingTypeError."""
+        """Subscribe to a topic; `call` runs in another thread. Raises MissingTypeError."""
 
     def serve(self, name: str, kind: str, call: Callable[[Any, Any], None]) -> Closing:
-        """Offer a service; `call` (request, response) comes from another thread.
+        """Offer a service; `call` (request, response) runs in another thread.
 
         Raises MissingTypeError, and ServiceTakenError.
         """

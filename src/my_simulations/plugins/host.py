@@ -307,12 +307,12 @@ class PluginHost:
         self._outgoing.send(touched, self._guard.send, self._failing)
 
     def _ring(self, running: Running) -> None:
-        """Have the thread look into a plugin's inbox."""
+        """Wake the plugins' thread to process the inbox of a plugin."""
         self._rung.append(running)
         self.wake()
 
     def _failing(self, running: Running) -> Callable[[Exception], None]:
-        """What tells the plugins' thread of a fault in another one."""
+        """Return a function that passes an exception of another thread to the plugins' thread."""
         def fail(fault: Exception) -> None:
             def again() -> None:
                 raise fault

@@ -40,7 +40,7 @@ class Reads(NamedTuple):
 
 
 def queries_of(reads: Reads, rows: ModelRows) -> Tuple[Command, ...]:
-    """The commands that read what links and joints do not tell. Raises PluginError."""
+    """Return the commands that read contacts, efforts and wrenches. Raises PluginError."""
     queries: List[Command] = []
     if reads.contacts:
         queries.append(ReadContacts())
@@ -58,7 +58,7 @@ class Observation:
 
     Attributes:
         owner: the plugin's context.
-        ended: never again.
+        ended: it is not called any longer.
 
     Args:
         number: identifies it in records.
@@ -67,8 +67,8 @@ class Observation:
         resume: called at the first step after a time without subscribers, instead of `call`.
         topics: those that it publishes; without any it is always due.
         transforms: it broadcasts to tf.
-        remembers: it is always due.
-        reads: what is recorded.
+        remembers: it is due without subscribers too, because it keeps a state.
+        reads: the data that is recorded besides links and joints.
     """
 
     def __init__(self, owner: Any, number: int, rate: Rate, call: Callable[[], None],
@@ -86,7 +86,7 @@ class Observation:
         self._axes: Dict[int, int] = {}
 
     def end(self) -> None:
-        """Never again."""
+        """End the calls."""
         self.ended = True
         self.owner.observations.changed = True
 

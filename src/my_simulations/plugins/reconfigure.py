@@ -40,12 +40,12 @@ class Reconfigure:
             context.serve(f"{below}set_parameters", "dynamic_reconfigure/Reconfigure", self._set)]
 
     def tell(self, values: Mapping[str, Value]) -> None:
-        """Values were changed in another way."""
+        """Publish values that were changed other than by the service."""
         self._values = {name: values[name] for name in self._values}
         self._updates.publish(self._messages.config(self._values))
 
     def close(self) -> None:
-        """Offer it no more."""
+        """Remove the topics and the service from the graph."""
         for handle in self._handles:
             handle.close()
 

@@ -29,9 +29,9 @@ class Option:
 
     Attributes:
         name: of the parameter.
-        default: in the description; the present value is told beside it.
-        low, high: what is asked for is brought into this range.
-        meaning: for people, with the unit.
+        default: the value in the description; the present value is published separately.
+        low, high: requested values are clamped to this range.
+        meaning: the description for the user, with the unit.
     """
 
     name: str

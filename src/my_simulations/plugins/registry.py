@@ -149,11 +149,11 @@ class PluginRegistry:
         self._exported: Optional[Dict[str, str]] = None
 
     def is_provided(self, filename: str) -> bool:
-        """Whether the simulator does by itself what the library does."""
+        """Whether the simulator itself has the functions of the library."""
         return library_name(filename) in PROVIDED
 
     def knows(self, filename: str) -> bool:
-        """Whether somebody does what the library does; nothing is imported."""
+        """Whether the simulator or a plugin replaces the library; nothing is imported."""
         name = library_name(filename)
         return (name in PROVIDED or name in self._extra or name in BUILT_IN
                 or name in self._of_packages())

@@ -1,4 +1,4 @@
-"""Plugins at work, and which of them the models of the world have."""
+"""Running plugins, by the models of the world that have them."""
 from __future__ import annotations
 
 from collections import deque
@@ -21,7 +21,7 @@ WORLD_SCOPE = ""
 
 @dataclass
 class Running:
-    """A plugin at work.
+    """A running plugin.
 
     Attributes:
         plugin: None for one that is unknown or was switched off.
@@ -40,12 +40,12 @@ class ModelPlugins:
     """Follows those models of a simulator that have plugins.
 
     Attributes:
-        revision: of the models that were looked at last.
-        leaving: plugins whose models have gone; whoever ends them takes them out.
+        revision: the revision of the models at the last `look`.
+        leaving: plugins to be ended; the host removes each one that it ends.
 
     Args:
         simulator: the world.
-        rebind: is told of a plugin whose model has other rows, or was edited.
+        rebind: called with each plugin whose model has other rows or was edited.
     """
 
     def __init__(self, simulator: Simulator, rebind: Callable[[Running, Entity], None]) -> None:
@@ -56,7 +56,7 @@ class ModelPlugins:
         self.revision = -1
 
     def all(self) -> Iterator[Running]:
-        """All plugins of models that are there; from any thread."""
+        """Iterate over the plugins of all present models; from any thread."""
         for _, running in list(self._models.values()):
             yield from list(running)
 
@@ -66,7 +66,7 @@ class ModelPlugins:
         return list(running)
 
     def look(self) -> None:
-        """Note which plugins are to be loaded and ended; tell of other rows those that stay."""
+        """Find the plugins to load and to end; call `rebind` for those that continue."""
         if self._simulator.models.revision == self.revision:
             return
         self.revision, entities = self._simulator.models.with_plugins()
@@ -74,14 +74,14 @@ class ModelPlugins:
                        **{entity.model.name: entity for entity in entities}})
 
     def next_to_load(self) -> Optional[Tuple[Entity, List[Running], Found]]:
-        """The model of the next one to load, the list it belongs into, and which it is."""
+        """Return the model of the next plugin to load, the list of its plugins, and the plugin."""
         if not self._to_load:
             return None
         name, found = self._to_load.popleft()
         return (*self._models[name], found)
 
     def end_all(self) -> None:
-        """All models go."""
+        """End the plugins of all models."""
         for name in list(self._models):
             self._end(name)
 
@@ -124,7 +124,7 @@ class ModelPlugins:
         return [one for one in all_running if all(one is not other for other in again)]
 
     def _world_entity(self) -> Entity:
-        """What stands for the world as owner of its plugins."""
+        """Return the entity that represents the world as owner of its plugins."""
         plugins = world_plugins(self._simulator.world)
         before = self._models.get(WORLD_SCOPE)
         if before is not None and before[0].model.plugins == plugins:

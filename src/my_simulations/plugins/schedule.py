@@ -10,13 +10,13 @@ from ..simulator.wrenches import first_step
 
 
 class ScheduledCall:
-    """Something that is called at a rate, or once.
+    """A function that is called at a rate, or once.
 
     Attributes:
-        owner: whom the schedule was told that it belongs to.
-        call: what is called.
-        ended: never again.
-        single: over after the first call.
+        owner: the object that requested the call.
+        call: the function.
+        ended: it is not called any longer.
+        single: it is called once.
     """
 
     def __init__(self, owner: Any, rate: Optional[Rate], call: Callable[[], None],
@@ -33,16 +33,16 @@ class ScheduledCall:
         return max(moment.step + 1, first_step(moment.clock, self._ns))
 
     def end(self) -> None:
-        """Never again."""
+        """End the calls."""
         self.ended = True
 
 
 class Schedule:
-    """All calls to come, the next first; of those at one step the one that was made first.
+    """Future calls, ordered by step, then by the order in which they were requested.
 
     Attributes:
-        moment: where the world stands; None before the first look at it.
-        sim_ns: sim time then.
+        moment: the present step and sim time; None before the first `set_moment`.
+        sim_ns: sim time at `moment`, ns.
     """
 
     def __init__(self) -> None:
@@ -52,7 +52,7 @@ class Schedule:
         self._made = 0
 
     def set_moment(self, moment: Moment) -> None:
-        """The world stands there now."""
+        """Set the present step and sim time."""
         self.moment, self.sim_ns = moment, moment.sim_ns
 
     def every(self, owner: Any, hertz: float, call: Callable[[], None]) -> ScheduledCall:
@@ -87,13 +87,13 @@ class Schedule:
 
     @property
     def next_step(self) -> Optional[int]:
-        """The step at which somebody must be called next."""
+        """The step of the next call; None without one."""
         while self._heap and self._heap[0][2].ended:
             heapq.heappop(self._heap)
         return self._heap[0][0] if self._heap else None
 
     def make_anew(self, was_set_back: bool) -> None:
-        """Count from `moment` on; if sim time was set back, what was to be done once is over."""
+        """Schedule all calls again from `moment`; drop single calls if sim time was set back."""
         before, self._heap = self._heap, []
         for _, number, scheduled in before:
             if scheduled.single and was_set_back:

@@ -28,7 +28,7 @@ class _Shot(NamedTuple):
     call: Callable[[List[Pictures], int], None]
     ns: int
     stream: str
-    first: bool   # nobody gets to see it
+    first: bool   # the stream's first pictures, which are discarded
 
     @property
     def done(self) -> bool:
@@ -36,16 +36,16 @@ class _Shot(NamedTuple):
 
 
 class SensingRequests:
-    """Keeps order between a plugin's requests and their answers.
+    """Hands the answers of a plugin's requests over in the order of the requests.
 
-    Pictures come in streams, one for each camera that a plugin looks through by itself.
+    Pictures belong to streams, one for each camera that a plugin uses independently.
 
     Args:
         scene: casts rays and takes pictures.
-        inbox: of the plugin; functions that hand answers over are put there.
-        wake: have somebody look into the inbox.
-        warn: tells the user.
-        answered: called when a scan or pictures are there, or have failed.
+        inbox: of the plugin; gets the functions that hand answers over.
+        wake: causes the inbox to be processed.
+        warn: reports a warning to the user.
+        answered: called when a scan or pictures are complete or have failed.
     """
 
     def __init__(self, scene: SceneSensing, inbox: Deque[Callable[[], None]],
@@ -56,20 +56,20 @@ class SensingRequests:
         self._scan: Optional[_Scan] = None
         self._shots: Dict[str, _Shot] = {}
         self._unsent: Dict[str, Deque[None]] = {}
-        self._warm: Set[str] = set()   # streams that something was drawn for
+        self._warm: Set[str] = set()   # streams whose first pictures were rendered
         self._stream = ""
         self._fault = ""
         self._left_out = 0
         self._told = -_AGAIN_S
 
     def forget(self) -> None:
-        """What is on its way belongs to a time that has been set back."""
+        """Discard pending scans and pictures after sim time was set back."""
         self._scan = None
         self._shots.clear()
 
     @property
     def is_busy(self) -> bool:
-        """Whether a scan or pictures are on their way."""
+        """Whether a scan or pictures are pending."""
         return self._scan is not None or bool(self._shots)
 
     @property
@@ -79,14 +79,14 @@ class SensingRequests:
 
     @property
     def unsent(self) -> "Deque[None]":
-        """A mark for each message that is being made of the stream that is handed over now."""
+        """One entry for each message that is being made of the stream that is handed over now."""
         return self._unsent.setdefault(self._stream, deque())
 
     # -- rays ------------------------------------------------------------------------------------
 
     def scan(self, mount: Mount, fan: RayFan, visuals: bool,
              call: Callable[[RayReturns, int], None], ns: int, rows: bytes) -> None:
-        """Cast rays, after the answer to those before has been handed over.
+        """Cast rays, after the result of the previous scan was handed over.
 
         `rows`: of all links, as of `ns`.
         """
@@ -117,24 +117,24 @@ class SensingRequests:
     def photograph(self, views: Sequence[Tuple[Mount, View]],
                    call: Callable[[List[Pictures], int], None], ns: int, rows: bytes, wait: bool,
                    again: Callable[[], object], stream: str = "", queue: bool = False) -> bool:
-        """Ask for pictures, unless those before of the same stream are late.
+        """Request pictures, unless the previous ones of the same stream are late.
 
-        A world that goes on does not wait while the renderer starts, reads textures and compiles
-        shaders. So the first pictures of a stream are drawn for that alone, and taken anew when
-        they are there: what is published first is as fresh as what follows.
+        The world does not wait while the renderer starts, reads textures and compiles shaders. So
+        the first pictures of a stream are discarded, and requested again when they are complete:
+        the first published picture is as recent as later ones.
 
         Args:
-            views: where each camera is, and what it is to give.
-            call: gets the pictures, and `ns`.
+            views: the pose and the outputs of each camera.
+            call: called with the pictures and `ns`.
             ns: sim time, now.
             rows: of all links, as of `ns`.
-            wait: for those before, however late they are.
-            again: has this asked anew, as of then.
+            wait: wait for the previous pictures, even if they are late.
+            again: requests the pictures again, at the sim time of its call.
             stream: its name.
-            queue: ask although messages of the last pictures are still being made.
+            queue: request even while messages of the previous pictures are being made.
 
         Returns:
-            Whether pictures were asked for.
+            Whether pictures were requested.
         """
         before, unsent = self._shots.get(stream), self._unsent.setdefault(stream, deque())
         if before is not None and (wait or before.done):
@@ -159,7 +159,7 @@ class SensingRequests:
         return True
 
     def _end_shot(self, shot: _Shot, timeout: float = 0.0) -> bool:
-        """Hand pictures over; whether they have come, by this call."""
+        """Hand pictures over; return whether this call did so."""
         if shot is not self._shots.get(shot.stream) or not (timeout or shot.done):
             return False
         del self._shots[shot.stream]
@@ -193,7 +193,7 @@ class SensingRequests:
 
 
 def _ignore(pictures: List[Pictures], ns: int) -> None:
-    """Nobody sees the first ones."""
+    """Discard the first pictures of a stream."""
 
 
 def _wait_for(unsent: "Deque[None]") -> None:

@@ -105,7 +105,7 @@ class SimulatedContext(GraphUser):
         self.observations.changed = True
 
     def close(self) -> None:
-        """Take everything off the graph, and call the plugin no more."""
+        """Remove the plugin from the ROS graph, and end its calls."""
         self.graph.close()
         self._schedule.end_all(self)
         self.observations.end_all(self)
@@ -369,7 +369,7 @@ class SimulatedContext(GraphUser):
         def again() -> None:
             self.photograph(views, call, stream, queue)
 
-        # Anew at a step: a message says which one its picture shows.
+        # Request again at a step: the message's stamp is the sim time of the picture.
         return self.sensing.photograph(mounted, call, self.now_ns, self._view.world_rows(),
                                        self.by_hand, lambda: self.once(0, again), stream, queue)
 
@@ -399,7 +399,7 @@ class SimulatedContext(GraphUser):
     # -- log -------------------------------------------------------------------------------------
 
     def info(self, text: str) -> None:
-        """Tell the user something."""
+        """Report information to the user."""
         self._say(Severity.NOTE, text)
 
     def warn(self, text: str) -> None:

@@ -11,18 +11,18 @@ from .context import PluginError, RequestError
 from .graph import Closing, Graph, MissingTypeError, ServiceTakenError, Topic, TransformOf
 from .message_maker import Later
 
-_LOOK_S = 0.2   # between two looks whether a plugin that is asked still lives
+_LOOK_S = 0.2   # interval of checks whether the plugin of a service call still exists
 
 
 class Offer:
-    """A topic of a plugin; what is published leaves once the world goes on."""
+    """A topic of a plugin; its messages are sent after the engine has resumed."""
 
     def __init__(self, owner: "PluginGraph", topic: Topic) -> None:
         self._owner, self._topic = owner, topic
 
     @property
     def wanted(self) -> bool:
-        """Whether anybody listens."""
+        """Whether the topic has a subscriber."""
         return self._topic.wanted
 
     def publish(self, message: Any) -> None:
@@ -30,11 +30,11 @@ class Offer:
         self._owner.outbox.append((self._topic, message))
 
     def publish_later(self, make: Callable[[], Any]) -> None:
-        """Publish what another thread makes."""
+        """Publish a message that another thread makes."""
         self._owner.outbox.append((self._topic, Later(make, self._owner.unsent())))
 
     def close(self) -> None:
-        """Take it off the graph, after what was published."""
+        """Send the waiting messages, then remove the topic from the ROS graph."""
         waiting = [one for one in self._owner.outbox if one[0] is self._topic]
         self._owner.outbox = [one for one in self._owner.outbox if one[0] is not self._topic]
         for _, message in waiting:
@@ -43,15 +43,15 @@ class Offer:
 
 
 class _Nowhere:
-    """What is offered under an empty name, as Gazebo's plugins allow: it is not on the graph."""
+    """A topic with an empty name, as Gazebo's plugins allow: it is not on the ROS graph."""
 
     wanted = False
 
     def send(self, message: Any) -> None:
-        """Nobody hears it."""
+        """Discard the message."""
 
     def close(self) -> None:
-        """Nothing was opened."""
+        """Do nothing."""
 
 
 class OpenEnd:

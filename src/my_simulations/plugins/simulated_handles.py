@@ -83,12 +83,12 @@ class SimulatedJoint:
         self._orders.motors[self.row] = self.motor
 
     def steer(self, servo: JointServo) -> None:
-        """Hand over to a servo."""
+        """Drive the axis by a servo of the engine."""
         self.servo = replace(servo, row=self.row)
         self._orders.servos[self.row] = self.servo
 
     def moved_to(self, row: int) -> None:
-        """The axis has another row: what was ordered is ordered again."""
+        """Set the row of the axis, and send the motor or servo command for it again."""
         self.row = row
         if self.motor is not None:
             self.drive(self.motor.rate, self.motor.effort)

@@ -56,11 +56,11 @@ class _Topic:
         self._messages.append(make())
 
     def close(self) -> None:
-        """Nothing: what was published can still be looked at."""
+        """Do nothing: a test can still read the published messages."""
 
 
 class FakeHandle:
-    """Something that a test can see closed."""
+    """A handle that calls a function of the test when it is closed."""
 
     def __init__(self, close: Callable[[], Any] = lambda: None) -> None:
         self.close = close
@@ -89,20 +89,20 @@ class FakeContext:
     """A `Context` for tests.
 
     Attributes:
-        links, joints: by name; a link that is asked for comes into being.
+        links, joints: by name; a requested link is created.
         pose, twist: of the model.
         published: messages by topic, as named with the namespace.
         transforms: (parent, child, pose), in order.
-        said: what was told the user.
+        said: the messages to the user.
         pushes: the last wrench of each link; laws are computed after each step.
         level: the last planar velocity.
-        returns: what rays meet; `fans`: (fan, visuals) of the scans.
-        pictures: what each view sees; `views`: the views of each moment. `late`: nothing is ready.
+        returns: the returns of rays; `fans`: (fan, visuals) of the scans.
+        pictures: the result of each view; `views`: the views of each call. `late`: none is ready.
         by_hand: the world is stepped manually.
-        unwanted: topics that nobody listens to.
-        model_sensors, labels: what `sensors` and `link_names` give.
+        unwanted: topics without subscribers.
+        model_sensors, labels: the results of `sensors` and `link_names`.
         touching: the contacts.
-        wrenches: what joints transmit.
+        wrenches: the wrenches that joints transmit.
         held: whether the model is held.
         slips: (joint, radius, normal force, lateral, longitudinal) of wheels.
         followers: (leader, multiplier, offset) of joints that mimic others.

@@ -1,20 +1,20 @@
-"""Sim time that may pass until something counts no more."""
+"""A time-out in sim time."""
 from __future__ import annotations
 
 from .context import Context
 
-_NEVER_S = 1e9  # so long that nobody waits for it, and a number of nanoseconds still
+_NEVER_S = 1e9  # longer than any simulation, and finite in nanoseconds
 
 
 class TimeOut:
-    """Counts from its last `begin`, to the nanosecond; a clock that is set back begins anew.
+    """A time-out, exact to the nanosecond. It starts at `begin`, and again if time is set back.
 
     Attributes:
-        ns: the time that must have passed and more.
+        ns: the duration; it is over when more than this time has passed.
 
     Args:
-        context: tells the sim time.
-        seconds: that must have passed and more; negative is over at once.
+        context: provides the sim time.
+        seconds: the duration; a negative one is over at once.
     """
 
     def __init__(self, context: Context, seconds: float) -> None:
@@ -24,16 +24,16 @@ class TimeOut:
         self.begin()
 
     def begin(self) -> None:
-        """Count from now."""
+        """Start the time-out now."""
         self._since_ns = self._context.now_ns
 
     @property
     def end_ns(self) -> int:
-        """The last sim time at which it is not over, ns."""
+        """The last sim time at which the time-out is not over, ns."""
         self._since_ns = min(self._since_ns, self._context.now_ns)
         return self._since_ns + self.ns
 
     @property
     def is_over(self) -> bool:
-        """Whether more than that time has passed."""
+        """Whether more than the duration has passed."""
         return self._context.now_ns > self.end_ns

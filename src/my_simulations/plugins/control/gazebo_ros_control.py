@@ -58,26 +58,29 @@ class GazeboRosControl(Plugin):
         return transmissions
 
     def reset(self) -> None:
-        """Joints are where they began: they are held, and controllers start anew, there."""
+        """Restart controllers at the initial joint positions, and hold the joints there."""
         self._hardware.halt(self._stopped)
         self._manager.restart()
         self._hold.begin()
 
     def clock_set(self) -> None:
-        """What was planned by the clock counts no more."""
+        """Restart controllers, because their plans refer to the previous sim time."""
         self._manager.restart()
         self._hold.begin()
 
     def close(self) -> None:
-        """The robot goes, and with it its controllers."""
+        """End all controllers; the robot is deleted."""
         self._manager.close()
 
     def _hear_stop(self, message: Any) -> None:
-        """Stopped, controllers go on but drive nothing; then they start anew, as in Gazebo."""
+        """Apply a message of `<eStopTopic>`: true begins the emergency stop, false ends it."""
         self.set_stopped(bool(message.data))
 
     def set_stopped(self, stopped: bool) -> None:
-        """Begin or end an emergency stop."""
+        """Begin or end an emergency stop.
+
+        During the stop controllers run without effect; at its end they restart, as in Gazebo.
+        """
         if stopped == self._stopped:
             return
         self._stopped = stopped

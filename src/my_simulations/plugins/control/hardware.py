@@ -1,4 +1,4 @@
-"""The joints of a robot as ros_control sees them: a name, an interface, limits, gains.
+"""The joints of a robot as in ros_control: a name, an interface, limits, gains.
 
 Source: gazebo_ros_control's DefaultRobotHWSim. Loops run in the engine, in every step.
 """
@@ -58,12 +58,12 @@ class HardwareJoint:
         return self._joint.velocity
 
     def command(self, value: float) -> None:
-        """An effort, rate or position, as the interface has it."""
+        """Command an effort, rate or position, whichever the interface has."""
         if not self.halted:
             self._steer(replace(self._servo, target=value))
 
     def commanded(self, step: int, step_size: float) -> Optional[float]:
-        """What the interface is commanded at a step; None if a loop of the engine commands it."""
+        """Return the command of the interface at a step; None if an engine loop computes it."""
         ordered = self._ordered
         if ordered.gains is not None:
             return None
@@ -75,7 +75,7 @@ class HardwareJoint:
                gains: Optional[PidGains] = None, target_rate: float = 0.0, of_rate: bool = False,
                by_rates: bool = False, feedforward: float = 0.0,
                most_effort: float = math.inf) -> None:
-        """Have a loop about a target command the interface (`engine.drive_commands.JointServo`)."""
+        """Command the interface by a loop with a target (`engine.drive_commands.JointServo`)."""
         if self.halted:
             return
         self._steer(replace(
@@ -84,8 +84,8 @@ class HardwareJoint:
             most_effort=min(most_effort, self._servo.most_effort)))
 
     def hold(self) -> None:
-        """Hold it where it is, or is put, until it is commanded or let rest."""
-        limits = self.limits   # of which the joint may be outside when it is spawned
+        """Hold the joint at its position until `command`, `follow` or `rest` is called."""
+        limits = self.limits   # the joint can be spawned outside of them
         self._steer(JointServo(0, "position", holds=True, lower=limits.lower, upper=limits.upper))
         self.is_held = True
 
@@ -99,18 +99,18 @@ class HardwareJoint:
         return self._servo.drive_gains
 
     def retune(self, gains: PidGains) -> None:
-        """Have the controller's loop go on with other gains."""
+        """Change the gains of the controller's loop."""
         if self._ordered.gains is not None:
             self._steer(replace(self._ordered, gains=gains))
 
     def retune_drive(self, gains: PidGains) -> None:
-        """Have the loop between the interface and the joint go on with other gains."""
+        """Change the gains of the loop between the interface and the joint."""
         self._servo = replace(self._servo, drive_gains=gains)
         if not self.is_held:
             self._steer(replace(self._ordered, drive_gains=gains))
 
     def rest(self) -> None:
-        """What nobody controls: positions are held, rates and efforts are 0."""
+        """Hold the position, or command rate or effort 0, while no controller uses the joint."""
         if not self.halted:
             self._steer(replace(self._servo, holds=self.interface == POSITION))
 
@@ -199,7 +199,7 @@ class Hardware:
         return self._context.efforts(list(names))
 
     def rest(self, but: Sequence[str] = ()) -> None:
-        """Nobody controls any joint, besides those named."""
+        """Call `rest` of all joints besides those named."""
         for name, joint in self._active.items():
             if name not in but:
                 joint.rest()
@@ -209,12 +209,12 @@ class Hardware:
         self._active[name] = self.joint(interface, name)
 
     def hold(self) -> None:
-        """Hold all joints where they are, or are put, until they are commanded or let rest."""
+        """Hold all joints at their positions until they are commanded or `rest` is called."""
         for joint in self._active.values():
             joint.hold()
 
     def end_holds(self, but: Sequence[str]) -> List[str]:
-        """Let those rest that are still held, besides those named; returns which may move now."""
+        """End the holds, besides those of joints named; return joints that can move freely now."""
         held = [name for name, joint in self._active.items() if joint.is_held and name not in but]
         for name in held:
             self._active[name].rest()
@@ -223,7 +223,7 @@ class Hardware:
     def halt(self, halted: bool) -> None:
         """Emergency stop: hold positions where they are now, rates and efforts at 0, until it ends.
 
-        Controllers go on, but what they command is lost (DefaultRobotHWSim::writeSim).
+        Controllers continue, but their commands are ignored (DefaultRobotHWSim::writeSim).
         """
         for joint in self._all.values():
             joint.halted = False
@@ -232,7 +232,7 @@ class Hardware:
             joint.halted = halted
 
     def release(self, name: str) -> None:
-        """Nobody controls a joint any more."""
+        """Call `rest` of a joint that no controller uses any longer."""
         if name in self._active:
             self._active[name].rest()
 

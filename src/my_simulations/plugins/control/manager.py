@@ -153,7 +153,7 @@ class ControllerManager:
             self._start(one)
 
     def restart(self) -> None:
-        """Start all running controllers anew, where joints are now."""
+        """Restart all running controllers at the present joint positions."""
         running = [one for one in self._loaded.values() if one.state == RUNNING]
         for one in running:
             one.switch_off()

@@ -21,14 +21,14 @@ from ..stepwise_change import StepwiseChange
 from .odometry import Odometer, planar
 from .wheels import VelocityCommand
 
-_STRAIGHT = 1e-4  # rad/s: a robot that turns no faster knows where it heads (hector_gazebo)
+_STRAIGHT = 1e-4  # rad/s: at most this, a robot counts as moving straight (hector_gazebo)
 
 
 class ForceBasedMove(Plugin):
     """Pushes the link `<robotBaseFrame>`, or the model's first one."""
 
     watchdog = ("commandTimeoutDuration", 0.0)
-    """Its element and default: s until a command counts no more."""
+    """Name and default of the element: seconds after which a command no longer applies."""
 
     never: Optional[float] = 0.0
     """The time that means never; None where any time ends, one of 0 after a single step."""

@@ -47,7 +47,7 @@ class Kobuki(Plugin):
         self._radius = _needed_number(p, "wheel_diameter") / 2.0
         self._torque = _needed_number(p, "torque")
         self._imu_link, self._imu = self._sensor(_needed(p, "imu_name"))
-        # Gazebo's ImuSensor tells turns from where it was loaded.
+        # Gazebo's ImuSensor reports orientations relative to the one at loading.
         self._reference = compose(context.link(self._imu_link).pose, self._imu.pose).orientation
         self._odometer = Odometer(context, "odom", "odom", "base_footprint", _COVARIANCE)
         self._broadcasts = p.flag("publish_tf", False)
@@ -88,7 +88,7 @@ class Kobuki(Plugin):
         self._drive()
 
     def clock_set(self) -> None:
-        """Accelerations are of what comes."""
+        """Compute accelerations from the present time and velocity on."""
         self._command.clock_set()
         self._last_ns, self._before = self.context.now_ns, self._imu_velocity()
         self._events.clock_set()

@@ -9,13 +9,13 @@ from .odometry import WheelCounter, in_base
 
 
 class OdometryDrive(Plugin):
-    """Counts the way of its wheels, and tells it or the truth."""
+    """Integrates wheel odometry, and publishes it or the true motion."""
 
     _counter: WheelCounter
-    _encoder: bool   # tell what the wheels have turned, else where the robot is
+    _encoder: bool   # publish wheel odometry, else the true pose
 
     def clock_set(self) -> None:
-        """Time begins anew; where the robot is does not."""
+        """Measure time from now; keep the odometry pose."""
         self._last_ns = self.context.now_ns
         self._counter.forget_way()
 
@@ -25,8 +25,9 @@ class OdometryDrive(Plugin):
         return (self._last_ns - before) * 1e-9
 
     def motion(self) -> Tuple[Pose, Tuple[float, float, float]]:
-        """Pose and (forward, sideways, yaw) velocity to tell: of encoders, over the time since the
-        last call.
+        """Return the pose and the (forward, sideways, yaw) velocity to publish.
+
+        The velocity of encoders is the mean since the last call.
         """
         if self._encoder:
             velocity = self._counter.count(self.elapsed())

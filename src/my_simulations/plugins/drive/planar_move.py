@@ -38,14 +38,14 @@ class PlanarMove(Plugin):
         self.move()
 
     def reset(self) -> None:
-        """Stand."""
+        """Stop the model."""
         self._command.stop()
         self._change.end()
         self.clock_set()
         self.move()
 
     def clock_set(self) -> None:
-        """Velocities are of what comes."""
+        """Compute velocities from the present time and pose on."""
         self._command.clock_set()
         self._last = (self.context.now_ns, self.context.pose)
 
@@ -54,7 +54,7 @@ class PlanarMove(Plugin):
         return True
 
     def move(self) -> None:
-        """Pass the command on; the engine keeps it up in every step."""
+        """Pass the command to the engine, which applies it in every step."""
         self._command.look()
         self.context.drive_level(self._command.x, self._command.y, self._command.yaw)
 

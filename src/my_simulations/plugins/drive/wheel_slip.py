@@ -32,13 +32,13 @@ class _Wheel(NamedTuple):
 
 
 class WheelSlip(Plugin):
-    """Tells the physics engine once; it works the slip out in every step."""
+    """Passes the parameters to the physics engine, which computes the slip in every step."""
 
     lateral = longitudinal = -1.0
-    """Compliances of all wheels instead of their own; negative for none."""
+    """Compliances of all wheels; if negative, each wheel uses its own."""
 
     def load(self) -> None:
-        """Read parameters; a wheel that cannot slip is told, and left out, as in Gazebo."""
+        """Read parameters; report and skip a wheel that cannot slip, as in Gazebo."""
         elements = self.context.parameters.children("wheel")
         if not elements:
             raise PluginError("it has no <wheel>")
@@ -53,7 +53,7 @@ class WheelSlip(Plugin):
         self.set_wheels()
 
     def set_wheels(self) -> None:
-        """Tell the physics engine."""
+        """Pass the compliances to the physics engine."""
         for wheel in self._wheels:
             lateral, longitudinal = (shared if shared >= 0.0 else own for shared, own in zip(
                 (self.lateral, self.longitudinal), wheel.compliances))
@@ -61,7 +61,7 @@ class WheelSlip(Plugin):
                               longitudinal)
 
     def reset(self) -> None:
-        """The engine has begun anew without them."""
+        """Set the wheels again; the engine forgets them at a reset."""
         self.set_wheels()
 
     def _read(self, p: Parameters) -> _Wheel:

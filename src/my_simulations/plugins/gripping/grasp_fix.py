@@ -108,12 +108,12 @@ class GraspFix(Plugin):
         return Arm(name, palm, fingers)
 
     def reset(self) -> None:
-        """Nothing is held."""
+        """Clear the contacts and the held objects of all arms."""
         for arm in self._arms:
             arm.pressed, arm.counts, arm.held, arm.marks = {}, {}, "", []
 
     def update(self) -> None:
-        """Look at the contacts of the last step, and at those that were sampled before."""
+        """Evaluate the contacts of the last step and those sampled since the last update."""
         self._sample()
         self._sample_on(any(arm.pressed for arm in self._arms))
         models = self.context.models()
@@ -127,7 +127,7 @@ class GraspFix(Plugin):
                 self._let_go(arm)
 
     def _sample_on(self, touches: bool) -> None:
-        """Sample contacts until the next look, or no more."""
+        """Start or stop the sampling of contacts between updates."""
         if touches and self._rare and self._samples is None:
             self._samples = self.context.every(_SAMPLE_HZ, self._sample)
         elif not touches and self._samples is not None:

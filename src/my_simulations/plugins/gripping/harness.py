@@ -130,7 +130,7 @@ class Harness(Plugin):
         self._rate_pid.reset()
 
     def clock_set(self) -> None:
-        """Time between updates begins anew."""
+        """Measure the time between updates from now."""
         self._last_ns = self.context.now_ns
 
     def _hear_rate(self, message: Any) -> None:

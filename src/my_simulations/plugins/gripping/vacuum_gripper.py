@@ -1,8 +1,8 @@
-"""libgazebo_ros_vacuum_gripper.so: a link that holds what comes close to it, while it is on.
+"""libgazebo_ros_vacuum_gripper.so: a link that holds links near it while it is on.
 
 Parameters, defaults, topic and services are those of gazebo_plugins: links of other models whose
-origin comes within 5 cm of the link's origin are held. Here they stay where they were met, on a
-fixed joint; there they are drawn to the link's origin.
+origin comes within 5 cm of the link's origin are held. Here a fixed joint keeps their
+relative pose; in gazebo_plugins a force pulls them to the link's origin.
 """
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _HERTZ = 100.0
 
 
 class VacuumGripper(Plugin):
-    """The link `<bodyName>`; `on` and `off` are services, the topic tells whether it holds."""
+    """The link `<bodyName>`, with services `on` and `off`; the topic reports whether it holds."""
 
     def load(self) -> None:
         """Read parameters."""

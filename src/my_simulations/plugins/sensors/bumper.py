@@ -1,8 +1,8 @@
 """libgazebo_ros_bumper.so: gazebo_msgs/ContactsState of a contact sensor.
 
 Parameters, defaults, topic and header are those of gazebo_plugins. Positions, normals and forces
-are in world axes (there forces are in those of the link); torques about the link's origin. Links
-are named by a collision, as there: by the sensor's own one, else by the first that they have.
+are in world axes (in gazebo_plugins forces are in link axes); torques are about the link's
+origin. As in gazebo_plugins a collision names each link: the sensor's, else the link's first.
 """
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from ..parameters import namespace_or
 
 
 class Bumper(Plugin):
-    """Publishes while somebody listens; without a contact `states` is empty."""
+    """Publishes while there are subscribers; without a contact `states` is empty."""
 
     def load(self) -> None:
         """Read parameters."""
@@ -34,7 +34,7 @@ class Bumper(Plugin):
         context.observe(context.sensor.update_rate, self.update, [self._topic], contacts=True)
 
     def update(self) -> None:
-        """Look at the contacts of the last step."""
+        """Publish the contacts of the last step."""
         context = self.context
         mine = f"{context.model}::{context.sensor_link}"
         touching: Dict[str, List[Tuple[Any, float]]] = {}

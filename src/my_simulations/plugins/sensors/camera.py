@@ -38,14 +38,14 @@ class Camera(Plugin):
                    self._stream.publications)
 
     def update(self) -> None:
-        """Take a picture, if somebody wants one."""
+        """Take a picture, if a picture topic has a subscriber."""
         if self._stream.wanted:
             self.take()
         elif self._stream.info_wanted:
             self._stream.publish(None, self.context.now_ns)
 
     def take(self) -> bool:
-        """Ask for a picture; False where the one before is late."""
+        """Request a picture; return False if the previous one is late."""
         return self.context.photograph([self._stream.view()], self._seen)
 
     def _seen(self, pictures: List[Any], ns: int) -> None:
@@ -55,8 +55,8 @@ class Camera(Plugin):
 class Trigger:
     """One picture, as soon as one can be drawn, for each message on a camera's trigger topic.
 
-    `<update_rate>` does not delay it (gazebo_plugins); it says how often is looked after a picture
-    that was lost.
+    `<update_rate>` does not delay it (gazebo_plugins). At this rate a picture that was lost is
+    requested again.
 
     Args:
         context: of the plugin.
@@ -76,12 +76,12 @@ class Trigger:
         self._soon()
 
     def reset(self) -> None:
-        """Nobody has asked for a picture of the new time."""
+        """Discard triggers that came before the reset."""
         self._triggers = 0
         self._drawing = False
 
     def update(self) -> None:
-        """Take a picture, if one is due; have the renderer ready once somebody listens."""
+        """Take a picture if one is due; prepare the renderer when the first subscriber comes."""
         if not (self._warm or self._triggers) and self._stream.wanted:
             self._warm = self._drawn(self._warmed)
         elif self._triggers:
@@ -97,7 +97,7 @@ class Trigger:
             self._soon()
 
     def _drawn(self, call: Callable[[List[Any], int], None]) -> bool:
-        self._drawing = True   # the answer may come before the request returns
+        self._drawing = True   # the pictures can come before the request returns
         taken = self._context.photograph([self._stream.view()], call, self._turns, queue=True)
         self._drawing = self._drawing and taken
         return taken
@@ -112,17 +112,17 @@ class Trigger:
 
 
 class _Triggered(Plugin):
-    """What cameras that wait for triggers have in common."""
+    """Base class of cameras with triggers."""
 
     _triggers: List[Trigger]
 
     def reset(self) -> None:
-        """Nobody has asked for pictures of the new time."""
+        """Discard triggers that came before the reset."""
         for trigger in self._triggers:
             trigger.reset()
 
     def update(self) -> None:
-        """Look after triggers."""
+        """Update all triggers."""
         for trigger in self._triggers:
             trigger.update()
 

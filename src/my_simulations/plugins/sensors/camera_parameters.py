@@ -1,9 +1,9 @@
-"""What camera plugins say in their elements, and the sensor_msgs/CameraInfo that comes of it.
+"""Parameters of camera plugins, and the sensor_msgs/CameraInfo that they define.
 
 Parameters and defaults are those of gazebo_plugins' GazeboRosCameraUtils, with two differences:
-the principal point is the middle of the picture, (width - 1) / 2, where pixels are counted from
-their centres as ROS does (there it is one pixel off); and the lens of the sensor's own
-`<distortion>` is told of, unless the plugin tells of another.
+the principal point is the middle of the picture, (width - 1) / 2, with pixel centres at integers
+as in ROS (in gazebo_plugins it is one pixel off); and if the plugin has no distortion, CameraInfo
+contains the sensor's `<distortion>`.
 """
 from __future__ import annotations
 
@@ -64,7 +64,7 @@ def rate_of(context: Context) -> float:
                        default=USUAL_RATE)
 
 
-_LOOK_HZ = 10.0   # how often a slow camera looks whether somebody listens
+_LOOK_HZ = 10.0   # how often a slow camera checks for subscribers
 _RATE = Option("imager_rate", 2.0, 1.0, 50.0, "pictures a second of sim time (Hz)")
 
 
@@ -73,9 +73,9 @@ class ImagerRate:
 
     Args:
         context: of the plugin.
-        names: of the cameras; "" is one that nobody can change (gazebo_plugins).
+        names: of the cameras; "" is a camera without dynamic_reconfigure (gazebo_plugins).
         call: takes a picture.
-        wanted: whether somebody listens.
+        wanted: returns whether the camera has subscribers.
         topics: all topics of the camera, `CameraInfo` too.
     """
 
@@ -92,7 +92,7 @@ class ImagerRate:
                         for name in names if name]
 
     def _look(self) -> None:
-        """Who begins to listen gets a picture at once, as in Gazebo, and not a period later."""
+        """Take a picture at once when a first subscriber comes, as in Gazebo."""
         before, self._listened = self._listened, self._wanted()
         if self._listened and not before and not self._context.by_hand:
             self._call()
@@ -106,10 +106,10 @@ class ImagerRate:
 
 
 def spec_of(context: Context, block: CameraBlock, crop: bool = False) -> CameraSpec:
-    """What is to be drawn for a `<camera>`; numbers that no camera has are replaced, and told.
+    """Return the camera to render for a `<camera>`; invalid numbers are replaced and reported.
 
-    SDF 1.7 has angles from 0.1 rad on, and Gazebo's renderer no near clip plane at 0; a picture
-    without fisheye lens ends below pi.
+    In SDF 1.7 angles are at least 0.1 rad, and Gazebo's renderer allows no near clip plane at 0.
+    Without a fisheye lens the field of view is below pi.
     """
     lens = (block.k1, block.k2, block.k3, block.p1, block.p2)
     hfov, near, far = block.horizontal_fov, block.near, block.far
@@ -170,7 +170,7 @@ class Calibration:
         return message
 
     def replace(self, request: Any, response: Any) -> None:
-        """Answer `set_camera_info`: what is told from now on; what is drawn stays."""
+        """Answer `set_camera_info`: change the published CameraInfo, but not the rendering."""
         given = request.camera_info
         response.success = (given.width, given.height) in ((self.width, self.height), (0, 0))
         if response.success:

@@ -47,7 +47,7 @@ class DepthStream:
 
     @property
     def wanted(self) -> bool:
-        """Whether anybody wants depth."""
+        """Whether the depth image or the point cloud has a subscriber."""
         return self._image.wanted or self.cloud_wanted
 
     @property
@@ -57,11 +57,11 @@ class DepthStream:
 
     @property
     def cloud_wanted(self) -> bool:
-        """Whether anybody wants points."""
+        """Whether the point cloud has a subscriber."""
         return self._points is not None and self._points.wanted
 
     def publish(self, depth: Optional[Any], rgb: Optional[Any], ns: int) -> None:
-        """Publish what is wanted."""
+        """Publish on all topics that have a subscriber."""
         context = self._context
         head = header(context, ns, self._frame)
         if self._info.wanted:

@@ -52,7 +52,7 @@ class _OfSensor(Plugin):
         return made
 
     def reset(self) -> None:
-        """Noise begins anew."""
+        """Reset the noise."""
         for noise in self._noises:
             noise.reset(self.context.now_ns)
 

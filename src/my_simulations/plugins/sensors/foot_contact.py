@@ -1,7 +1,7 @@
 """libunitreeFootContactPlugin.so: the force on a foot, as geometry_msgs/WrenchStamped.
 
-The topic is that of unitree_ros, `/visual/SENSOR/the_force`. As there it is the mean over the
-contacts of the link, in the link's axes.
+The topic is that of unitree_ros, `/visual/SENSOR/the_force`. As in unitree_ros the force is the
+mean over the contacts of the link, in the link's axes.
 """
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from ..frames import stamped
 
 
 class FootContact(Plugin):
-    """Publishes while somebody listens, at the sensor's rate."""
+    """Publishes at the sensor's rate while there are subscribers."""
 
     def load(self) -> None:
         """Find the link."""
@@ -25,7 +25,7 @@ class FootContact(Plugin):
         context.observe(context.sensor.update_rate, self.update, [self._topic], contacts=True)
 
     def update(self) -> None:
-        """Look at the contacts of the last step."""
+        """Publish the mean contact force of the last step."""
         context, total, count = self.context, (0.0, 0.0, 0.0), 0
         mine = f"{context.model}::{context.sensor_link}"
         for one, other, contact in context.contacts():

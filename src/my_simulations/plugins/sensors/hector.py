@@ -1,7 +1,7 @@
 """hector_gazebo_plugins' receivers: gps, magnetic field, height by pressure, sonar.
 
-Parameters, defaults, topics, axes and formulas are theirs: north, west and up where the reference
-heading is 0. What is left out: dynamic_reconfigure, and services of hector's own types.
+Parameters, defaults, topics, axes and formulas are those of hector: north, west and up if the
+reference heading is 0. dynamic_reconfigure and services of hector's own types are not supported.
 """
 from __future__ import annotations
 
@@ -38,20 +38,20 @@ class _OfLink(Plugin):
         self._frame = (p.text("frameId") or frame or self._link.name).lstrip("/")
 
     def _with_errors(self, prefix: str = "", width: int = 3) -> SensorErrors:
-        """Errors of a quantity, which begin anew with the world."""
+        """Return the errors of a quantity; `reset` resets them."""
         made = SensorErrors(self.context, prefix, width)
         self._all_errors.append(made)
         return made
 
     def reset(self) -> None:
-        """Errors begin anew."""
+        """Reset the errors."""
         for errors in self._all_errors:
             errors.reset(self.context.now_ns)
 
     clock_set = reset
 
     def _place(self) -> Optional[SphericalCoordinates]:
-        """Of the world, where it is to be used; one that does not say is at 0, 0, as in Gazebo."""
+        """Return the world's coordinates, if they are used; the default is 0, 0 as in Gazebo."""
         if not self.context.parameters.flag("useWorldSphericalCoordinates", False):
             return None
         return self.context.place_on_earth or SphericalCoordinates()
@@ -83,12 +83,12 @@ class Gps(_OfLink):
         self._fix = context.publish(fix, "sensor_msgs/NavSatFix", 10)
         self._velocity = context.publish(p.text("velocityTopicName") or "fix_velocity",
                                          "geometry_msgs/Vector3Stamped", 10)
-        # An error of the velocity becomes one of the place, sample by sample.
+        # The error of the position contains the integral of that of the velocity.
         context.observe(rate_of(p, 4.0), self.update, [self._fix, self._velocity],
                         remembers=self._velocity_errors.drifts)
 
     def reset(self) -> None:
-        """Errors begin anew."""
+        """Reset the errors."""
         super().reset()
         self._last_ns = self.context.now_ns
 
@@ -99,11 +99,11 @@ class Gps(_OfLink):
         return c * x + s * y, -s * x + c * y
 
     def update(self) -> None:
-        """Measure, and publish what is wanted."""
+        """Measure, and publish on the topics that have a subscriber."""
         ns = self.context.now_ns
         vx, vy, vz = self._velocity_errors.apply(self._link.twist.linear, ns)
         x, y, z = self._place_errors.apply(self._link.pose.position, ns)
-        # An error of the velocity becomes one of the place, as of the next sample.
+        # From the next sample on, the position error contains this velocity error's integral.
         elapsed, self._last_ns = max(0.0, (ns - self._last_ns) * 1e-9), ns
         self._place_errors.shift([elapsed * drift for drift in self._velocity_errors.current])
         head = header(self.context, ns, self._frame)
@@ -233,7 +233,7 @@ class Sonar(RayPlugin):
         self.follow(rate_of(p, _SONAR_HERTZ))
 
     def reset(self) -> None:
-        """Errors begin anew."""
+        """Reset the errors."""
         self._errors.reset(self.context.now_ns)
 
     clock_set = reset

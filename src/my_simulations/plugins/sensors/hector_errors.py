@@ -45,7 +45,7 @@ class SensorErrors:
         self.reset(context.now_ns)
 
     def reset(self, ns: int, drift: Optional[Sequence[float]] = None) -> None:
-        """Begin anew, with a drift that is drawn, or given."""
+        """Restart the errors at `ns` with the given drift; without one it is random."""
         self._last_ns = ns
         begin = list(drift) if drift is not None else [
             size * draw for size, draw in zip(self.drift, self._draw(ns, _FIRST_DRIFT))]

@@ -1,7 +1,7 @@
 """libhector_gazebo_ros_imu.so: sensor_msgs/Imu of a link, with biases that drift.
 
-Parameters, defaults and topics are those of hector_gazebo_plugins; `<rpyOffset>` turns the sensor
-on its link. What is left out: dynamic_reconfigure, and services of hector's own types.
+Parameters, defaults and topics are those of hector_gazebo_plugins; `<rpyOffset>` rotates the
+sensor on its link. dynamic_reconfigure and services of hector's own types are not supported.
 """
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ class HectorImu(Imu):
                         resume=self.begin_motion)
 
     def reset(self) -> None:
-        """Errors and accelerations begin anew."""
+        """Reset the errors, and compute accelerations from the present velocity on."""
         for errors in (self._accel, self._rate, self._yaw):
             errors.reset(self.context.now_ns)
         self.begin_motion()
@@ -49,7 +49,7 @@ class HectorImu(Imu):
     clock_set = reset
 
     def update(self) -> None:
-        """Measure, and publish what is wanted."""
+        """Measure, and publish on the topics that have a subscriber."""
         context, ns = self.context, self.context.now_ns
         sample = self.measured()
         accel = self._accel.apply(sample.linear_acceleration, ns)

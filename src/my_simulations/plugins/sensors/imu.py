@@ -38,12 +38,12 @@ class Imu(Plugin):
         self.begin_motion()
 
     def begin_motion(self) -> None:
-        """Accelerations are over the time from now on."""
+        """Measure accelerations from the present time and velocity on."""
         self._last_ns = self.context.now_ns
         self._before = self._velocity()
 
     def reset(self) -> None:
-        """Accelerations are over the time from now on."""
+        """Measure accelerations from the present time and velocity on."""
         self.begin_motion()
 
     clock_set = reset
@@ -140,7 +140,7 @@ class SensorImu(Imu):
             context.observe(hertz, self.begin_motion, [self._topic], lead=period)
 
     def reset(self) -> None:
-        """Biases begin anew, too."""
+        """Reset the biases as well."""
         for noise in self._axes:
             noise.reset(self.context.now_ns)
         super().reset()

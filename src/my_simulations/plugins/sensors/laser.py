@@ -13,7 +13,7 @@ from .rays import RayPlugin, SampledNoise
 
 
 class Laser(RayPlugin):
-    """Publishes scans while somebody listens."""
+    """Publishes scans while there are subscribers."""
 
     def load(self) -> None:
         """Read parameters."""
@@ -28,7 +28,7 @@ class Laser(RayPlugin):
         self.follow(context.sensor.update_rate)
 
     def reset(self) -> None:
-        """Noise begins anew."""
+        """Reset the noise."""
         self._noise.reset(self.context.now_ns)
 
     clock_set = reset

@@ -19,7 +19,7 @@ _FURTHEST = float("inf")
 
 
 class Points(RayPlugin):
-    """A fan of rays at the sensor's rate, while somebody listens."""
+    """Casts a fan of rays at the sensor's rate while there are subscribers."""
 
     usual_topic = "/world"
     message_type = ""
@@ -42,7 +42,7 @@ class Points(RayPlugin):
         return prefixed(self.context, frame)
 
     def reset(self) -> None:
-        """Noise begins anew."""
+        """Reset the noise."""
         self._range_noise.reset(self.context.now_ns)
 
     clock_set = reset

@@ -71,12 +71,12 @@ class PictureStream:
 
     @property
     def wanted(self) -> bool:
-        """Whether anybody wants a picture."""
+        """Whether a picture topic has a subscriber."""
         return self._image.wanted or self._compressed.wanted
 
     @property
     def info_wanted(self) -> bool:
-        """Whether anybody wants to know of the lens."""
+        """Whether CameraInfo has a subscriber."""
         return self._info.wanted
 
     @property
@@ -85,7 +85,7 @@ class PictureStream:
         return [self._image, self._compressed, self._info]
 
     def view(self, *outputs: str) -> View:
-        """What is to be drawn; default colours."""
+        """Return the view to render; colours are the default output."""
         return View(self._link, self._pose, self.spec, outputs or (RGB,))
 
     def publish(self, rgb: Optional[Any], ns: int) -> None:

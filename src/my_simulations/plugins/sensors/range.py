@@ -15,7 +15,7 @@ _ULTRASOUND, _INFRARED = 0, 1  # of sensor_msgs/Range
 
 
 class Range(RayPlugin):
-    """Publishes while somebody listens; where nothing is met, the maximum range."""
+    """Publishes while there are subscribers; without a hit, the maximum range."""
 
     def load(self) -> None:
         """Read parameters."""

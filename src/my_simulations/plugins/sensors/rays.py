@@ -29,7 +29,7 @@ def fan_of(ray: Ray, visuals: bool = False) -> RayFan:
 
 
 def ray_of(context: Context) -> Tuple[Ray, bool]:
-    """The block of the plugin's sensor, and whether its rays see visuals. Raises PluginError."""
+    """Return the sensor's `<ray>`, and whether its rays hit visuals. Raises PluginError."""
     sensor = context.sensor
     if sensor is None or sensor.ray is None:
         raise PluginError("it belongs into a <sensor> of type ray or gpu_ray with a <ray>")
@@ -37,12 +37,12 @@ def ray_of(context: Context) -> Tuple[Ray, bool]:
 
 
 class RayPlugin(Plugin):
-    """What plugins in a `<ray>` sensor share: they look while somebody listens."""
+    """Base class of plugins in a `<ray>` sensor: they cast rays while there are subscribers."""
 
     _topic: Publication
 
     def take_ray(self) -> None:
-        """Find the block of the sensor. Raises PluginError."""
+        """Read the `<ray>` of the sensor. Raises PluginError."""
         self._ray, self._visuals = ray_of(self.context)
         self._fan = fan_of(self._ray, self._visuals)
 
@@ -55,7 +55,7 @@ class RayPlugin(Plugin):
         self.context.scan(self._fan, self._visuals, self._publish)
 
     def _publish(self, returns: RayReturns, ns: int) -> None:
-        """Publish what the rays met at a sim time."""
+        """Publish the returns of the rays at a sim time."""
         raise NotImplementedError
 
 
@@ -71,12 +71,12 @@ class SampledNoise:
     def apply(self, values: Any, ns: int) -> Any:
         """Values of the sample taken at a sim time, with their noise.
 
-        The time counts the samples: one that nobody asked for shifts no other's noise.
+        The noise depends on the sim time only: skipped samples do not change that of others.
         """
         elapsed, self._last_ns = (ns - self._last_ns) * 1e-9, ns
         return self._noise.apply(values, ns, max(0.0, elapsed))
 
     def reset(self, ns: int) -> None:
-        """The world begins anew."""
+        """Restart the noise at a sim time."""
         self._noise.reset()
         self._last_ns = ns

@@ -1,9 +1,9 @@
 """librealsense_gazebo_plugin.so: colour, depth, two infrared pictures and points of a RealSense.
 
-A plugin of the model: it looks through the model's sensors whose names end with `color`, `depth`,
-`ired1` and `ired2`, after `<prefix>`. Parameters are those of realsense_gazebo_plugin; its topics
-lie below the plugin's name, and `<robotNamespace>` is not heeded. A sensor that the model lacks is
-told and left out (there the simulation ends).
+A plugin of the model: it uses the model's sensors whose names end with `color`, `depth`, `ired1`
+and `ired2`, after `<prefix>`. Parameters are those of realsense_gazebo_plugin; its topics
+are below the plugin's name, and `<robotNamespace>` is ignored. A sensor that the model lacks is
+reported and left out (in realsense_gazebo_plugin the simulation ends).
 """
 from __future__ import annotations
 

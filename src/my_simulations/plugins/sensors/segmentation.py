@@ -37,7 +37,7 @@ class SegmentationCamera(Plugin):
         context.observe(rate_of(context), self.update, [self._image, self._info], world=True)
 
     def update(self) -> None:
-        """Take a picture, if somebody wants one."""
+        """Take a picture, if the image topic has a subscriber."""
         if self._image.wanted:
             names = self.context.link_names()
             self.context.photograph([self._view],

@@ -18,7 +18,7 @@ from ..parameters import namespace_or
 
 
 class F3d(Plugin):
-    """Publishes after each step while somebody listens."""
+    """Publishes after each step while there are subscribers."""
 
     def load(self) -> None:
         """Read parameters."""
@@ -34,7 +34,7 @@ class F3d(Plugin):
         context.observe(0.0, self.update, [self._topic], resume=self._resume)
 
     def reset(self) -> None:
-        """Changes are of what comes."""
+        """Forget the momenta of the last step."""
         self._before: Optional[Tuple[int, Vec3, Vec3]] = None
 
     clock_set = reset
@@ -44,7 +44,7 @@ class F3d(Plugin):
         self.update()
 
     def update(self) -> None:
-        """Compare the momenta with those before."""
+        """Publish the change of the momenta per second since the last step."""
         linear, angular = self._momenta()
         before, now = self._before, self.context.now_ns
         self._before = (now, linear, angular)

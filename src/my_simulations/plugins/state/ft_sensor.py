@@ -20,7 +20,7 @@ from ..sensors.rays import SampledNoise
 
 
 class FtSensor(Plugin):
-    """Publishes while somebody listens."""
+    """Publishes while there are subscribers."""
 
     def load(self) -> None:
         """Read parameters."""
@@ -63,7 +63,7 @@ class FtSensor(Plugin):
         return joint.child
 
     def reset(self) -> None:
-        """Noise begins anew."""
+        """Reset the noise."""
         for noise in self._noise:
             noise.reset(self.context.now_ns)
 

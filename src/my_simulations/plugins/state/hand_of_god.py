@@ -1,7 +1,7 @@
-"""libgazebo_ros_hand_of_god.so: a link that follows a tf frame like on a critically damped spring.
+"""libgazebo_ros_hand_of_god.so: a critically damped spring pulls a link to a tf frame.
 
 Parameters, defaults, frames and law are those of gazebo_plugins: the link goes to the frame
-`FRAME_desired` in `world`, and `FRAME_actual` tells where it is. Gravity does not pull at it.
+`FRAME_desired` in `world`, and `FRAME_actual` is its pose. Gravity does not act on it.
 """
 from __future__ import annotations
 

@@ -18,7 +18,7 @@ _WORLD = ("", "world", "/world", "map", "/map")
 
 
 class P3d(Plugin):
-    """Publishes nav_msgs/Odometry of a link, while somebody listens."""
+    """Publishes nav_msgs/Odometry of a link while there are subscribers."""
 
     def load(self) -> None:
         """Read parameters."""

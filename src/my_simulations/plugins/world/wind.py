@@ -68,14 +68,14 @@ class Wind(Plugin):
         self.clock_set()
 
     def clock_set(self) -> None:
-        """The wind blows on, as in Gazebo; lags are of the time that comes."""
+        """Keep the wind, as in Gazebo; measure the lag from now."""
         self._last_ns = self.context.now_ns
 
     def _hear(self, message: Any) -> None:
         self._given = (float(message.x), float(message.y), float(message.z))
 
     def update(self) -> None:
-        """Push what stands in the wind."""
+        """Apply the force of the wind to all links in it."""
         context, wind = self.context, self.velocity()
         present = context.models()
         seen: Dict[str, Vec3] = {}
