@@ -1,1 +1,1 @@
-"""What robots do by themselves: plugins behind Gazebo's library names."""
+"""Plugins of models, sensors and worlds, found by the names of Gazebo's libraries."""

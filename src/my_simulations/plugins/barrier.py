@@ -1,4 +1,4 @@
-"""A thread waits until all that is due at the present step is published."""
+"""Lets a thread wait until all messages due at the present step are published."""
 from __future__ import annotations
 
 import threading

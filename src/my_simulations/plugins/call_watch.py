@@ -1,15 +1,15 @@
-"""Notices a plugin that does not come back from a call, and gets the thread out of it.
+"""Detects a plugin that does not return from a call, and interrupts its thread.
 
-A call is overdue when its thread has computed for too long, or has neither computed nor come back
-for longer still (it waits for something that never comes). Time in which the thread gets no
-processor does not count.
+A call is overdue when its thread has used too much processor time, or has waited even longer
+without using any (for example for a lock). Time in which the thread gets no processor does not
+count.
 
-First an exception is raised in the thread: that ends a loop in Python, and the thread goes on with
-its next work. Never while it is inside the simulator, whose locks and tables would be left half
-done. A thread that does not react (it is in a library, or waits in the kernel) is abandoned: the
-host starts another one. An abandoned thread holds no lock of the simulator: plugins are called
-without any, and calls from a plugin into the simulator end by themselves, because the supervisor
-ends an engine that hangs.
+First an exception is raised in the thread: it ends a loop in Python, and the thread continues with
+its next call. It is not raised while the thread runs code of the simulator, whose locks and tables
+it would leave inconsistent. A thread that does not react (in a library or in the kernel) is
+abandoned: the host starts another one. An abandoned thread holds no lock of the simulator: plugins
+are called without any, and calls from a plugin into the simulator end by themselves, because the
+supervisor ends an engine that hangs.
 """
 from __future__ import annotations
 
@@ -20,8 +20,8 @@ import threading
 import time
 from typing import Any, Callable, NamedTuple, Optional, Tuple
 
-_LOOK_S = 0.25          # between two looks
-_GRACE_S = 1.0          # for the exception to arrive
+_LOOK_S = 0.25          # between two checks
+_GRACE_S = 1.0          # until the exception takes effect
 _OWN_PARTS = ("my_simulations.simulator", "my_simulations.engine",
               "my_simulations.plugins.isolated")
 
@@ -46,12 +46,12 @@ class Patience(NamedTuple):
     waiting: float = 30.0
 
     def longer(self) -> "Patience":
-        """For a call that may compute twice as long."""
+        """Return the limits of a call that may compute twice as long."""
         return Patience(2.0 * self.computing, self.waiting)
 
 
 PATIENCE = Patience()
-"""With the plugins of users."""
+"""Limits for the plugins of users."""
 
 
 class _Call:
@@ -107,7 +107,7 @@ class CallWatch:
         self._watcher: Optional[threading.Thread] = None
 
     def stop(self) -> None:
-        """End; nothing is watched any more."""
+        """Stop watching calls."""
         self._stop.set()
 
     def run(self, subject: Any, patience: Patience, call: Callable[..., Any],
@@ -139,14 +139,14 @@ class CallWatch:
 
     def _finish(self, mine: _Call) -> None:
         """End the watch of a call that has returned. Raises ThreadAbandoned."""
-        if not mine.looked:  # a look comes long before an interruption: most calls need no lock
+        if not mine.looked:  # a check comes long before an interruption: most calls need no lock
             self._call = None
             return
         with self._lock:
             if self._call is mine:
                 self._call = None
             if mine.interrupted:
-                _forget_interruptions()  # it has come back by itself in this moment
+                _forget_interruptions()  # it has just returned by itself
         if mine.abandoned:
             raise ThreadAbandoned(mine.why)
 
@@ -172,7 +172,7 @@ class CallWatch:
             return
         module, where = _innermost(call.thread)
         if module.startswith(_OWN_PARTS):
-            return  # it comes back from there by itself
+            return  # it returns from there by itself
         call.why, call.where = why, where
         call.interrupted = time.monotonic()
         _raise_in(call.thread, CallOverdue)
@@ -199,7 +199,7 @@ def _raise_in(thread: int, kind: type) -> None:
 
 
 class _ForgottenError(BaseException):
-    """Raised to be caught at once."""
+    """Raised and caught at once, see `_forget_interruptions`."""
 
 
 def _forget_interruptions() -> None:

@@ -1,4 +1,4 @@
-"""What a plugin sees of the world. Neither rospy nor PyBullet are behind these names by themselves.
+"""The interface between a plugin and the world. It does not depend on rospy or PyBullet.
 
 Poses and twists are in the world frame; twists are at the link's (or model's) origin, in world
 axes. Lengths in m, angles in rad, times in s of sim time. All calls of a plugin come from one
@@ -28,12 +28,12 @@ class PluginError(SimulationError):
 
 
 class RequestError(PluginError):
-    """A request of a service that makes no sense; its caller is told, and the plugin goes on."""
+    """An invalid service request; its caller gets the message, and the plugin continues."""
 
 
 @dataclass(frozen=True)
 class View:
-    """What a camera at `pose` in the frame of a link is to give: `outputs` of `sensing.api`."""
+    """A camera at `pose` in the frame of a link, and its `outputs` of `sensing.api`."""
 
     link: str
     pose: Pose
@@ -42,7 +42,7 @@ class View:
 
 
 class Link(Protocol):
-    """A link; `inertial` is what its description says."""
+    """A link; `inertial` is that of its description."""
 
     name: str
     inertial: Inertial
@@ -73,17 +73,17 @@ class Joint(Protocol):
 
     @property
     def puts(self) -> float:
-        """How often the joint was put somewhere; -1 outside of an observation."""
+        """The number of times the position was set directly; -1 outside of an observation."""
 
     def drive(self, rate: float, effort: float) -> None:
-        """Turn the motor: to `rate` with `effort` at most; 0 effort turns it off."""
+        """Drive the motor at `rate` with at most `effort`; an effort of 0 turns it off."""
 
     @property
     def spec(self) -> JointSpec:
-        """Its description."""
+        """The description of the joint."""
 
     def steer(self, servo: JointServo) -> None:
-        """Hand over to a servo of the engine, from the next step on; its `row` is filled in."""
+        """Drive the axis by a servo of the engine from the next step on; `row` is filled in."""
 
 
 class Ending(Protocol):
@@ -111,14 +111,14 @@ class Publication(Protocol):
         """
 
     def close(self) -> None:
-        """Take the topic off the graph."""
+        """Remove the topic from the ROS graph."""
 
 
 class Handle(Protocol):
-    """Something that was begun, and goes on until it is closed, or the plugin ends."""
+    """A subscription or service, which exists until it is closed or the plugin ends."""
 
     def close(self) -> None:
-        """End it."""
+        """End the subscription or service."""
 
 
 class Context(Protocol):
@@ -146,7 +146,7 @@ class Context(Protocol):
 
     @property
     def step_size(self) -> float:
-        """Of the simulation, s."""
+        """Step size of the simulation, s."""
 
     @property
     def by_hand(self) -> bool:
@@ -154,13 +154,13 @@ class Context(Protocol):
 
     @property
     def step(self) -> int:
-        """The step count: how many steps were made before this moment."""
+        """The number of steps before this one."""
 
     def every(self, hertz: float, call: Callable[[], None]) -> "Ending":
         """Be called at a rate in Hz of sim time, the first time one period from now.
 
-        0 or less is every step. The calls are exact to the step and never drift. `end` of
-        the returned object ends them.
+        A rate of 0 or less means every step. The calls are exact to the step, without drift. `end`
+        of the returned object ends them.
         """
 
     def observe(self, hertz: float, call: Callable[[], None],
@@ -213,19 +213,19 @@ class Context(Protocol):
 
     @property
     def seed(self) -> int:
-        """Of what is drawn at random."""
+        """Seed of random numbers."""
 
     @property
     def magnetic_field(self) -> Vec3:
-        """Of the world, T, world axes."""
+        """Magnetic field of the world, T, world axes."""
 
     @property
     def wind(self) -> Vec3:
-        """Of the world, m/s, world axes; as it is set now."""
+        """Present wind of the world, m/s, world axes."""
 
     @property
     def place_on_earth(self) -> Optional[SphericalCoordinates]:
-        """Where the world's origin is; None where the world does not say."""
+        """Spherical coordinates of the world's origin; None if the world has none."""
 
     def link(self, name: str) -> Link:
         """A link of the model; "" for the canonical one.
@@ -264,7 +264,7 @@ class Context(Protocol):
         """
 
     def move(self, pose: Pose, twist: Twist = STILL) -> None:
-        """Put the model somewhere at once; all its links move as one body."""
+        """Set the model's pose and twist at once; all its links move as one body."""
 
     def hold(self, held: bool) -> None:
         """Keep the model at rest at its pose, whatever forces act on it, or release it again."""
@@ -276,7 +276,7 @@ class Context(Protocol):
         """
 
     def joint_spec(self, name: str) -> JointSpec:
-        """The description of a joint, of a fixed one too. Raises PluginError."""
+        """Return the description of a joint, which can be fixed. Raises PluginError."""
 
     def slip(self, link: str, joint: str, radius: float, normal_force: float, lateral: float,
              longitudinal: float) -> None:
@@ -286,12 +286,12 @@ class Context(Protocol):
         """
 
     def mimic(self, follower: str, leader: str, multiplier: float, offset: float) -> None:
-        """Have a joint follow another one from now on: q = multiplier q_leader + offset."""
+        """Make a joint follow another one from now on: q = multiplier q_leader + offset."""
 
     # -- other models ----------------------------------------------------------------------------
 
     def model_link(self, scoped: str) -> Link:
-        """A link of any model by its scoped name; for this moment. Raises PluginError."""
+        """Return a link of any model by its scoped name, for this call only. Raises PluginError."""
 
     def models(self) -> "Dict[str, Model]":
         """The flattened descriptions of all models by name, the plugin's own among them."""
@@ -303,13 +303,13 @@ class Context(Protocol):
         """
 
     def detach(self, name: str) -> bool:
-        """Let go of what `attach` has joined; returns whether it held."""
+        """Remove the joint of `attach`; return whether it existed."""
 
     def efforts(self, joints: Sequence[str]) -> List[float]:
-        """What motors and servos spent on joints in the last step, N m or N; asks the engine."""
+        """Return the efforts of motors and servos in the last step, N m or N, from the engine."""
 
     def set_joint_positions(self, positions: "dict[str, float]") -> None:
-        """Move joints (rad or m) at once, at rest."""
+        """Set joint positions (rad or m) at once, with velocity 0."""
 
     def joint_wrench(self, name: str) -> Optional[JointWrench]:
         """What a joint of the model, a fixed one too, transmitted in the last step.
@@ -345,7 +345,7 @@ class Context(Protocol):
         """
 
     def sensors(self) -> List[Tuple[str, Sensor]]:
-        """The sensors of the model's links: (name of the link, sensor)."""
+        """Return the sensors of the model's links: (name of the link, sensor)."""
 
     def link_names(self) -> "dict[int, str]":
         """Scoped names of all links of the world, by the numbers that `Pictures.labels` has."""
@@ -359,10 +359,10 @@ class Context(Protocol):
         """
 
     def message(self, kind: str) -> Any:
-        """A new message of a type such as `nav_msgs/Odometry`."""
+        """Return a new message of a type such as `nav_msgs/Odometry`."""
 
     def stamp(self, ns: Optional[int] = None) -> Any:
-        """A time as messages have it; default now."""
+        """Return a time as a message field; the default is now."""
 
     def publish(self, name: str, kind: str, queue: int = 1, latch: bool = False) -> Publication:
         """Advertise a topic; a topic with an empty name is not on the ROS graph.
@@ -378,13 +378,13 @@ class Context(Protocol):
         """
 
     def serve(self, name: str, kind: str, call: Callable[[Any, Any], None]) -> Handle:
-        """Offer a service; `call` gets the request and a response to fill."""
+        """Advertise a service; `call` gets the request and a response to fill."""
 
     def parameter(self, name: str, default: Any) -> Any:
-        """A parameter of the namespace, a dictionary where it has parts."""
+        """Return a parameter of the namespace; a nested one is a dictionary."""
 
     def search_parameter(self, name: str, default: Any) -> Any:
-        """A parameter of the namespace, or of the next one above that has it (`tf_prefix`)."""
+        """Return a parameter of the namespace or of the nearest parent that has it."""
 
     def transform(self, parent: str, child: str, pose: Pose) -> None:
         """Broadcast the present pose of `child` in `parent` to tf."""
@@ -395,4 +395,4 @@ class Context(Protocol):
         """Report information to the user, with file and line of the plugin."""
 
     def warn(self, text: str) -> None:
-        """Warn the user."""
+        """Report a warning to the user, with file and line of the plugin."""

@@ -1,4 +1,4 @@
-"""What plugins need of ROS: the interface that the front end of ROS satisfies."""
+"""The interface to ROS that plugins use; the ROS front end implements it."""
 from __future__ import annotations
 
 from dataclasses import dataclass
@@ -43,17 +43,17 @@ class ServiceTakenError(SimulationError):
 
 
 class Topic(Protocol):
-    """A topic that is offered."""
+    """A topic that is published."""
 
     @property
     def wanted(self) -> bool:
         """Whether the topic has a subscriber."""
 
     def send(self, message: Any) -> None:
-        """Publish."""
+        """Publish a message."""
 
     def close(self) -> None:
-        """Take it off the graph."""
+        """Remove the topic from the ROS graph."""
 
 
 class Closing(Protocol):
@@ -67,14 +67,14 @@ class Graph(Protocol):
     """Names are relative to the node's namespace unless they begin with a slash."""
 
     def message(self, kind: str) -> Any:
-        """A new message. Raises MissingTypeError."""
+        """Return a new message. Raises MissingTypeError."""
 
     def stamp(self, ns: int) -> Any:
-        """A time as messages have it."""
+        """Return a time as a message field."""
 
     def publish(self, name: str, kind: str, queue: int, latch: bool,
                 changed: Callable[[], None]) -> Topic:
-        """Offer a topic; `changed` is called, in any thread, when subscribers come or go.
+        """Advertise a topic; `changed` is called, in any thread, when subscribers come or go.
 
         Raises MissingTypeError.
         """
@@ -83,23 +83,23 @@ class Graph(Protocol):
         """Subscribe to a topic; `call` runs in another thread. Raises MissingTypeError."""
 
     def serve(self, name: str, kind: str, call: Callable[[Any, Any], None]) -> Closing:
-        """Offer a service; `call` (request, response) runs in another thread.
+        """Advertise a service; `call` (request, response) runs in another thread.
 
         Raises MissingTypeError, and ServiceTakenError.
         """
 
     def parameter(self, namespace: str, name: str, default: Any) -> Any:
-        """A parameter of a namespace."""
+        """Return a parameter of a namespace."""
 
     def search_parameter(self, namespace: str, name: str, default: Any) -> Any:
-        """A parameter of a namespace or of the next one above that has it."""
+        """Return a parameter of a namespace or of the nearest parent that has it."""
 
     def offer_transforms(self, changed: Callable[[], None]) -> None:
-        """Offer tf; `changed` as for `publish`. Does nothing if it is offered already."""
+        """Advertise tf; `changed` as for `publish`. A second call has no effect."""
 
     @property
     def transforms_wanted(self) -> bool:
         """Whether tf has a subscriber."""
 
     def send_transforms(self, transforms: List[TransformOf], ns: int) -> None:
-        """Broadcast to tf, as of a sim time."""
+        """Broadcast transforms to tf, stamped with a sim time."""

@@ -129,15 +129,15 @@ class PluginHost:
                 lambda: self._revision >= wanted or self._stop.is_set(), _SETTLE_S)
 
     def faults(self, model: str) -> List[Issue]:
-        """Why plugins of a model do not work; from any thread."""
+        """Return the faults of the plugins of a model; from any thread."""
         return [one.fault for one in self._models.of(model) if one.fault is not None]
 
     def wake(self) -> None:
-        """Have the thread look at what has changed."""
+        """Wake the plugins' thread, which then checks for changes."""
         self._sync.notify()
 
     def _look_at_subscribers(self) -> None:
-        """Have the thread find out which topics are wanted; from any thread."""
+        """Make the plugins' thread check the topics for subscribers; from any thread."""
         self._observations.changed = True
         self.wake()
 
@@ -149,24 +149,24 @@ class PluginHost:
             self._thread.join(_END_S)
 
     def topic_uses(self) -> List[TopicUse]:
-        """The topics of all plugins; from any thread."""
+        """Return the topics of all plugins; from any thread."""
         return [use for running in self._models.all() for use in running.context.topic_uses()]
 
     @property
     def unheard(self) -> bool:
-        """Whether something has come whose effect is not ordered yet."""
+        """Whether a received message or request is not applied yet."""
         return self._delivering or self._observations.changed or any(
             running.context.inbox for running in self._models.all())
 
     def _deliver_all(self) -> None:
-        """Wait until all that has come is handed over, and its effect is ordered."""
+        """Wait until all received messages and requests are handed over and applied."""
         if self._by_hand != self._simulator.clock.by_hand:
             self._look_at_subscribers()
         with self._settled:
             self._settled.wait_for(lambda: not self.unheard or self._stop.is_set(), _SETTLE_S)
 
     def _is_quiet(self) -> bool:
-        """Whether all scans, pictures and messages are published that are due by now."""
+        """Return whether all scans, pictures and messages that are due are published."""
         return self._settings is not None and not (
             self.unheard or self._rung or self._touched or self._due
             or self._sync.records.first() is not None
@@ -213,7 +213,7 @@ class PluginHost:
             self._settled.notify_all()
 
     def _go_on_without(self, running: Running, why: str) -> None:
-        """Leave a thread behind that does not come back from a plugin; comes from the watch."""
+        """Abandon a thread that does not return from a plugin; called by the watch."""
         running.plugin = None
         self._overdue.append((running, why))
         self._thread = self._new_thread()
@@ -224,7 +224,7 @@ class PluginHost:
             self._observations.changed = True   # graphs need not report subscribers
 
     def _turn(self) -> None:
-        """Look at the world once, and do what is due."""
+        """Read the state of the world once, and make the calls that are due."""
         while self._overdue:
             running, why = self._overdue.popleft()
             self._guard.switch_off(running, f"{why}; its thread was left behind")
@@ -280,7 +280,7 @@ class PluginHost:
                 self._guard.call(running, scheduled.call)
 
     def _give_orders(self) -> None:
-        """What plugins have ordered, in one command, for the models that there are now."""
+        """Send the commands of plugins for the present models to the engine, in one command."""
         while not self._stop.is_set() and not send_orders(
                 self._simulator, list(self._touched), self._models.revision):
             self._follow_models()
@@ -329,7 +329,7 @@ class PluginHost:
                 self._guard.call(running, call)
 
     def _notice_resets(self, moment: Moment) -> None:
-        """Tell plugins of resets and of another clock."""
+        """Notify plugins of resets and of sim time that was set back."""
         before = self._moment
         resets = self._simulator.resets
         calls: List[str] = []
@@ -388,7 +388,7 @@ class PluginHost:
         self._guard.call(running, running.plugin.load, patience=patience)
 
     def _made(self, running: Running, where: str) -> Plugin:
-        """A plugin; one of a user in a process of its own, if this host isolates them."""
+        """Create a plugin; one of a user runs in its own process if this host isolates them."""
         if self._processes is None or is_built_in(where):
             return plugin_class(where)(running.context)
         process = self._processes.start()
@@ -422,6 +422,6 @@ class PluginHost:
             self._touched.pop(context, None)
 
     def _touch(self, running: Running) -> None:
-        """Have the orders and messages of a plugin collected."""
+        """Mark a plugin so that its commands and messages are collected."""
         if running.context in self._running:
             self._touched[running.context] = running

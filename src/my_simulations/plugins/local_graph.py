@@ -43,7 +43,7 @@ class _Topic:
 
     @property
     def is_heard_by_plugins(self) -> bool:
-        """Whether a plugin hears it."""
+        """Whether a plugin subscribes to the topic."""
         return any(one.plugin for one in self.listening)
 
 
@@ -63,7 +63,7 @@ class LocalTopic:
         return self._graph.is_heard(self.name)
 
     def send(self, message: Any) -> None:
-        """Give the message to all listeners. Raises MessageFieldError for an invalid one."""
+        """Pass the message to all listeners. Raises MessageFieldError for an invalid one."""
         self._count += 1
         header = getattr(message, "header", None)
         if header is not None and hasattr(header, "seq"):
@@ -73,7 +73,7 @@ class LocalTopic:
         self._graph.deliver(self.name, self.kind, message)
 
     def close(self) -> None:
-        """Take it off the graph."""
+        """Remove the topic from the graph."""
         self._graph.end_publisher(self)
 
 
@@ -107,12 +107,12 @@ class LocalGraph:
     # -- for plugins: graph.Graph ------------------------------------------------------------------
 
     def message(self, kind: str) -> Any:
-        """A new message. Raises MissingTypeError."""
+        """Return a new message. Raises MissingTypeError."""
         self._require(kind)
         return self.to_plugin.blank(kind)
 
     def stamp(self, ns: int) -> Time:
-        """A time as messages have it."""
+        """Return a time as a message field."""
         return Time.of_ns(ns)
 
     def publish(self, name: str, kind: str, queue: int, latch: bool,
@@ -127,7 +127,7 @@ class LocalGraph:
         return made
 
     def subscribe(self, name: str, kind: str, call: Listener, queue: int) -> _Closing:
-        """Hear a topic. Raises MissingTypeError."""
+        """Subscribe to a topic. Raises MissingTypeError."""
         self._require(kind)
         with self._lock:
             topic = self._topic(resolve_name(name))
@@ -135,7 +135,7 @@ class LocalGraph:
         return _Closing(self._listen(name, call, plugin=True))
 
     def serve(self, name: str, kind: str, call: Callable[[Any, Any], None]) -> _Closing:
-        """Offer a service. Raises MissingTypeError, and ServiceTakenError."""
+        """Advertise a service. Raises MissingTypeError and ServiceTakenError."""
         try:
             self._types.service(kind)
         except UnknownTypeError as unknown:
@@ -151,15 +151,15 @@ class LocalGraph:
         return _Closing(close)
 
     def parameter(self, namespace: str, name: str, default: Any) -> Any:
-        """A parameter of a namespace."""
+        """Return a parameter of a namespace."""
         return self.parameters.get(resolve_name(name, resolve_name(namespace)), default)
 
     def search_parameter(self, namespace: str, name: str, default: Any) -> Any:
-        """A parameter of a namespace or of the next one above that has it."""
+        """Return a parameter of a namespace or of the nearest parent that has it."""
         return self.parameters.search(resolve_name(namespace), name, default)
 
     def offer_transforms(self, changed: Callable[[], None]) -> None:
-        """Offer /tf."""
+        """Advertise /tf."""
         if self._tf is None:
             self._tf = self.publish(_TF, _TF_KIND, 1, False, changed)
 
@@ -177,7 +177,7 @@ class LocalGraph:
     # -- for others --------------------------------------------------------------------------------
 
     def topics(self) -> Dict[str, str]:
-        """The types of the topics that plugins offer or hear, by name."""
+        """Return the types of the topics that plugins publish or subscribe to, by name."""
         with self._lock:
             return {name: topic.kind for name, topic in sorted(self._topics.items())
                     if topic.publishers or topic.is_heard_by_plugins}
@@ -195,7 +195,7 @@ class LocalGraph:
         return self._listen(name, call, plugin=False)
 
     def end_transforms(self) -> None:
-        """Take /tf off the graph, until a plugin offers it again."""
+        """Remove /tf from the graph until a plugin advertises it again."""
         if self._tf is not None:
             self._tf.close()
 
@@ -299,7 +299,7 @@ class LocalGraph:
             one.changed()
 
     def deliver(self, name: str, kind: str, message: Any) -> None:
-        """Give a message to all listeners of a topic. Raises MessageFieldError."""
+        """Pass a message to all listeners of a topic. Raises MessageFieldError."""
         topic = self._topics.get(name)
         for listening in self._listening(topic) if topic is not None else ():
             self._hand_over(listening, kind, message)
@@ -309,7 +309,7 @@ class LocalGraph:
         listening.call(converter.convert(message, kind))
 
     def end_publisher(self, publisher: LocalTopic) -> None:
-        """Take a publisher off the graph."""
+        """Remove a publisher from the graph."""
         with self._lock:
             publishers = self._topic(publisher.name).publishers
             if publisher in publishers:

@@ -39,7 +39,7 @@ class MessageMaker:
         self._queue.put((topic, later, fail))
 
     def stop(self) -> None:
-        """End, after what is waiting."""
+        """Stop the thread after the waiting messages."""
         if self._thread is not None:
             self._queue.put(None)
             self._thread.join(_END_S)

@@ -109,7 +109,7 @@ class Observation:
             self.owner.observations.changed = True
 
     def become(self, wanted: bool) -> None:
-        """Note whether it is wanted, and make its rule again."""
+        """Set whether it has subscribers, and make its record rule again."""
         if not wanted and not self._remembers:
             self._was_idle = True
             self.rule = None
@@ -129,7 +129,7 @@ class Observation:
             self._call()
 
     def places(self) -> Tuple[Dict[int, int], Dict[int, int]]:
-        """Where its links and joint axes are in a part of a record, by row."""
+        """Return the indices of links and joint axes in a part of a record, by row."""
         return self._links, self._axes
 
 
@@ -149,7 +149,7 @@ class Observations:
     def add(self, owner: Any, rate: Rate, call: Callable[[], None],
             resume: Optional[Callable[[], None]], topics: Sequence[Publication], transforms: bool,
             remembers: bool, reads: Reads) -> Observation:
-        """Make one."""
+        """Add an observation."""
         self._made += 1
         made = Observation(owner, self._made, rate, call, resume, topics, transforms, remembers,
                            reads)
@@ -158,13 +158,13 @@ class Observations:
         return made
 
     def end_all(self, owner: Any) -> None:
-        """End those of one plugin."""
+        """End all observations of a plugin."""
         for one in self._all.values():
             if one.owner is owner:
                 one.end()
 
     def ask_again(self, owner: Any) -> None:
-        """The requests of a plugin are answered; see `Observation.ask_again`."""
+        """Record another step for a plugin whose requests are answered."""
         for one in self._all.values():
             if one.owner is owner:
                 one.ask_again()
@@ -174,7 +174,7 @@ class Observations:
         return self._all.get(number)
 
     def new_rules(self, transforms_wanted: bool, again: bool) -> Optional[Tuple[RecordRule, ...]]:
-        """What the engine must record, if that must be sent: it has changed, or `again`."""
+        """Return the engine's record rules if they changed or `again` is set, else None."""
         self.changed = False
         self._all = {number: one for number, one in self._all.items() if not one.ended}
         for one in self._all.values():
@@ -209,7 +209,7 @@ class StepView:
         self._found, self._answers = {}, {}
 
     def show_now(self) -> None:
-        """Show the present."""
+        """Show the present state."""
         self._record = self._part = None
 
     @property
@@ -239,7 +239,7 @@ class StepView:
         return position, rate
 
     def puts(self, row: int) -> float:
-        """How often the joint axis was put somewhere; -1 for the present, which has no count."""
+        """Return the number of times the position was set directly; -1 for the present."""
         return -1.0 if self._part is None else self._recorded_axis(row)[2]
 
     def _recorded_axis(self, row: int) -> Tuple[float, float, float]:
@@ -264,7 +264,7 @@ class StepView:
         return self._answers[kind]
 
     def world_rows(self) -> bytes:
-        """The rows of all links as raw doubles. Raises PluginError."""
+        """Return the rows of all links as raw doubles. Raises PluginError."""
         if self._record is None:
             return self._present()
         rows = self._record.world()

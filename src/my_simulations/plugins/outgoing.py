@@ -21,7 +21,7 @@ class Outgoing:
         self._graph, self._maker = graph, MessageMaker(sent)
 
     def stop(self) -> None:
-        """End, after what is waiting."""
+        """Stop after the waiting messages."""
         self._maker.stop()
 
     def send(self, plugins: Mapping[SimulatedContext, Running], guarded: Callable[..., bool],

@@ -1,4 +1,4 @@
-"""What a `<plugin>` element says: its children, by name and type."""
+"""Parameters of a `<plugin>` element: its children, by name and type."""
 from __future__ import annotations
 
 import math
@@ -17,7 +17,7 @@ class Parameters:
 
     Args:
         xml: the whole element.
-        warn: hears of values that are not what they should be; the default is used then.
+        warn: called with a message for each invalid value, which the default replaces.
     """
 
     def __init__(self, xml: str, warn: Warn = lambda text: None) -> None:
@@ -32,16 +32,16 @@ class Parameters:
         return self._root.find(name) is not None
 
     def text(self, name: str, default: str = "") -> str:
-        """The text of a child without blanks around it; the default where there is none."""
+        """Return the stripped text of a child; the default if there is none."""
         found = self._root.find(name)
         return default if found is None else (found.text or "").strip()
 
     def texts(self, name: str) -> List[str]:
-        """The texts of all children of that name."""
+        """Return the texts of all children of a name."""
         return [(child.text or "").strip() for child in self._root.findall(name)]
 
     def children(self, name: str) -> "List[Parameters]":
-        """The children of that name, as elements with children of their own."""
+        """Return the children of a name, as parameters with children."""
         found = []
         for child in self._root.findall(name):
             made = Parameters("", self._warn)
@@ -50,7 +50,7 @@ class Parameters:
         return found
 
     def attribute(self, name: str, default: str = "") -> str:
-        """An attribute of the element."""
+        """Return an attribute of the element."""
         return str(self._root.get(name, default))
 
     def number(self, name: str, default: float) -> float:
@@ -62,29 +62,29 @@ class Parameters:
         return self._read(name, default, _positive, "a number above 0")
 
     def integer(self, name: str, default: int) -> int:
-        """A whole number."""
+        """Return an integer."""
         return self._read(name, default, lambda text: int(_number(text)), "a whole number")
 
     def flag(self, name: str, default: bool) -> bool:
-        """true or false, 1 or 0, in any letters."""
+        """Return true or false, from true, false, 1 or 0 in any case."""
         words = {"true": True, "1": True, "false": False, "0": False}
         return self._read(name, default, lambda text: words[text.lower()], "true or false")
 
     def vector(self, name: str, default: Vec3 = (0.0, 0.0, 0.0)) -> Vec3:
-        """Three numbers."""
+        """Return three numbers."""
         return self._read(name, default, _three, "three numbers")
 
     def turn(self, name: str, default: Quat = IDENTITY_QUAT) -> Quat:
-        """Roll, pitch and yaw in rad, as a quaternion."""
+        """Return roll, pitch and yaw (rad) as a quaternion."""
         return self._read(name, default, lambda text: quat_from_rpy(*_three(text)),
                           "three numbers")
 
     def pose(self, name: str) -> Pose:
-        """Three numbers and roll, pitch and yaw in rad; that of the origin where there is none."""
+        """Return a pose from x y z (m) and roll pitch yaw (rad); the default is the identity."""
         return self._read(name, Pose(), _pose, "six numbers")
 
     def choice(self, name: str, options: Mapping[str, T], default: T) -> T:
-        """One of some words."""
+        """Return one of some allowed words."""
         return self._read(name, default, lambda text: options[text], " or ".join(options))
 
     def _read(self, name: str, default: T, read: Callable[[str], T], wanted: str) -> T:
@@ -128,5 +128,5 @@ def lowest_rate(*rates: float, default: float = 0.0) -> float:
 
 
 def namespace_or(parameters: Parameters, default: Optional[str]) -> str:
-    """`<robotNamespace>`; where it is missing or empty the default."""
+    """Return `<robotNamespace>`; the default if it is missing or empty."""
     return parameters.text("robotNamespace") or (default or "")

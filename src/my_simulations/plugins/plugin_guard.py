@@ -28,7 +28,7 @@ class PluginGuard:
         self._watch = CallWatch(abandon)
 
     def stop(self) -> None:
-        """End the watch."""
+        """Stop watching calls."""
         self._watch.stop()
 
     def call(self, running: Running, call: Callable[..., None], *arguments: Any,

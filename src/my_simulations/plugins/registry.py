@@ -123,7 +123,7 @@ _ATTRIBUTE = re.compile(r"""(plugin|library)\s*=\s*["']([^"']*)["']""")
 
 
 class UnknownPluginError(SimulationError):
-    """There is no class for a library; the message is one sentence for the user."""
+    """No class exists for a library; the message is one sentence for the user."""
 
 
 def library_name(filename: str) -> str:

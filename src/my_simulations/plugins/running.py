@@ -138,11 +138,11 @@ class ModelPlugins:
 
 
 def _parts(model: Model) -> Tuple[List[str], List[Tuple[str, str, str, str]]]:
-    """Names of the links, and of the joints with their types and ends."""
+    """Return the names of links, and names, types, parents and children of joints."""
     return ([link.name for link in model.links],
             [(joint.name, joint.type, joint.parent, joint.child) for joint in model.joints])
 
 
 def _are_same(known: List[Found], found: List[Found]) -> bool:
-    """Whether both have the same plugins, in any order."""
+    """Return whether both lists have the same plugins, in any order."""
     return len(known) == len(found) and all(known.count(one) == found.count(one) for one in found)

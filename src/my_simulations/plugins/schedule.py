@@ -27,7 +27,7 @@ class ScheduledCall:
         self.single = rate is None
 
     def next(self, moment: Moment) -> int:
-        """The first step after a moment at which it is due."""
+        """Return the first step after a moment at which the call is due."""
         if self._rate is not None:
             return self._rate.after(moment.step, moment.clock)
         return max(moment.step + 1, first_step(moment.clock, self._ns))
@@ -56,11 +56,11 @@ class Schedule:
         self.moment, self.sim_ns = moment, moment.sim_ns
 
     def every(self, owner: Any, hertz: float, call: Callable[[], None]) -> ScheduledCall:
-        """A call at a rate in Hz; 0 or less is every step."""
+        """Schedule calls at a rate in Hz; 0 or less is every step."""
         return self._add(ScheduledCall(owner, Rate(hertz), call))
 
     def once(self, owner: Any, ns: int, call: Callable[[], None]) -> ScheduledCall:
-        """One call, in the first step from now on that does not begin before a sim time."""
+        """Schedule one call in the first step that does not begin before a sim time."""
         return self._add(ScheduledCall(owner, None, call, ns))
 
     def _add(self, made: ScheduledCall) -> ScheduledCall:

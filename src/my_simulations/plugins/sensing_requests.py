@@ -63,7 +63,7 @@ class SensingRequests:
         self._told = -_AGAIN_S
 
     def forget(self) -> None:
-        """Discard pending scans and pictures after sim time was set back."""
+        """Discard pending scans and pictures after sim time was set."""
         self._scan = None
         self._shots.clear()
 

@@ -91,7 +91,7 @@ class SimulatedContext(GraphUser):
     # -- for the host ----------------------------------------------------------------------------
 
     def bind(self, entity: Entity) -> None:
-        """The model has other rows, or another name, now. Raises PluginError for what is gone."""
+        """Use the model's new rows and name. Raises PluginError for a missing link or joint."""
         self.entity = self._rows.entity = entity
         self.model = entity.model.name
         for link in self._links.values():
@@ -121,7 +121,7 @@ class SimulatedContext(GraphUser):
         self.let_go()
 
     def let_go(self) -> None:
-        """Detach what the plugin has attached, and push nothing any more."""
+        """Remove the joints and the wrenches of the plugin."""
         self.orders.pushes.clear()
         if self.push_ids:
             self.simulator.wrenches.remove(list(self.push_ids.values()))
@@ -133,12 +133,12 @@ class SimulatedContext(GraphUser):
 
     @property
     def now_ns(self) -> int:
-        """Sim time of this step."""
+        """Sim time of this step, ns."""
         return self._schedule.sim_ns
 
     @property
     def step_size(self) -> float:
-        """Of the simulation, s."""
+        """Step size of the simulation, s."""
         return self.simulator.physics.settings.max_step_size
 
     @property
@@ -153,7 +153,7 @@ class SimulatedContext(GraphUser):
         return moment.step if moment is not None else self.simulator.clock.step
 
     def every(self, hertz: float, call: Callable[[], None]) -> ScheduledCall:
-        """Be called at a rate."""
+        """Call a function at a rate."""
         return self._schedule.every(self, hertz, call)
 
     def observe(self, hertz: float, call: Callable[[], None],
@@ -162,7 +162,7 @@ class SimulatedContext(GraphUser):
                 remembers: bool = False,
                 contacts: bool = False, efforts: Sequence[str] = (),
                 wrenches: Sequence[str] = (), world: bool = False) -> Observation:
-        """Follow the world at a rate."""
+        """Call a function that only reads, at a rate."""
         if transforms:
             self.graph.offer_transforms()
         return self.observations.add(
@@ -179,7 +179,7 @@ class SimulatedContext(GraphUser):
                 queries_of(reads, self._rows))
 
     def once(self, ns: int, call: Callable[[], None]) -> ScheduledCall:
-        """Be called once."""
+        """Call a function once."""
         return self._schedule.once(self, ns, call)
 
     # -- the model -------------------------------------------------------------------------------
@@ -200,27 +200,27 @@ class SimulatedContext(GraphUser):
 
     @property
     def gravity(self) -> Vec3:
-        """World axes."""
+        """Gravity, m/s^2, world axes."""
         return self.simulator.physics.gravity
 
     @property
     def seed(self) -> int:
-        """Of what is drawn at random."""
+        """Seed of random numbers."""
         return self.simulator.world.seed
 
     @property
     def magnetic_field(self) -> Vec3:
-        """T, world axes."""
+        """Magnetic field, T, world axes."""
         return self.simulator.world.magnetic_field
 
     @property
     def wind(self) -> Vec3:
-        """m/s, world axes."""
+        """Present wind, m/s, world axes."""
         return self.simulator.world.wind.linear_velocity
 
     @property
     def place_on_earth(self) -> Optional[SphericalCoordinates]:
-        """Where the world's origin is."""
+        """Spherical coordinates of the world's origin."""
         return self.simulator.world.spherical_coordinates
 
     def link(self, name: str) -> SimulatedLink:
@@ -247,11 +247,11 @@ class SimulatedContext(GraphUser):
         return self._joints[name]
 
     def joint_wrench(self, name: str) -> Optional[JointWrench]:
-        """What a joint transmitted in the last step."""
+        """Return the wrench that a joint transmitted in the last step."""
         return self._readings.wrench(self.entity, self._rows.joint(name).name)
 
     def drive_level(self, x: float, y: float, yaw_rate: float) -> None:
-        """Move level from now on."""
+        """Move the model in its horizontal plane from now on."""
         self.orders.planar = self._level = PlanarVelocity(
             self.entity.model_id, finite(x, "x"), finite(y, "y"), finite(yaw_rate, "yaw_rate"))
 
@@ -261,24 +261,24 @@ class SimulatedContext(GraphUser):
         return self.entity.model
 
     def transmissions(self, parameter: str) -> List[Transmission]:
-        """Those of the description, else of a parameter."""
+        """Return the transmissions of the description, else of a parameter."""
         return transmissions_of(self.entity.model, parameter,
                                 lambda: self.search_parameter(parameter, ""))
 
     def push(self, link: str, force: Vec3, torque: Vec3) -> None:
-        """A wrench from now on."""
+        """Apply a wrench from now on."""
         self.orders.pushes[self._pushed(link)] = (vector(force, "force"),
                                                   vector(torque, "torque"), None)
 
     def push_by(self, link: str, law: WrenchLaw) -> None:
-        """The wrench of a law from now on."""
+        """Apply the wrench of a law from now on."""
         self.orders.pushes[self._pushed(link)] = (ZERO3, ZERO3, law)
 
     def _pushed(self, link: str) -> str:
         return link if "::" in link and not self._rows.has_link(link) else self.scoped(link)
 
     def scoped(self, link: str) -> str:
-        """The name that a link of the model has in the world."""
+        """Return the name of a link of the model in the world."""
         row = self._rows.link(link)
         return f"{self.model}::{self.entity.link_names[row - self.entity.first_link_row]}"
 
@@ -287,11 +287,11 @@ class SimulatedContext(GraphUser):
         return self._rows.joint(name)
 
     def move(self, pose: Pose, twist: Twist = STILL) -> None:
-        """Put the model somewhere."""
+        """Set the model's pose and twist."""
         self.simulator.states.set_model_state(self.model, pose, twist)
 
     def hold(self, held: bool) -> None:
-        """Keep the model where it is put."""
+        """Keep the model at rest at its pose, or release it."""
         self._held = held
         self.simulator.models.hold(self.model, held)
 
@@ -303,7 +303,7 @@ class SimulatedContext(GraphUser):
             normal_force, lateral, longitudinal)])
 
     def mimic(self, follower: str, leader: str, multiplier: float, offset: float) -> None:
-        """Have a joint follow another one."""
+        """Make a joint follow another one."""
         (joint, ahead) = self.joint(follower), self.joint(leader)
         spec = next(one for one in self.entity.model.joints if one.name == joint.spec_name)
         wanted = Mimic(ahead.spec_name, multiplier, offset)
@@ -338,16 +338,16 @@ class SimulatedContext(GraphUser):
             self._attached.append(name)
 
     def detach(self, name: str) -> bool:
-        """Let go."""
+        """Remove the joint of `attach`."""
         self._attached = [one for one in self._attached if one != name]
         return self.simulator.models.detach(name)
 
     def efforts(self, joints: Sequence[str]) -> List[float]:
-        """What was spent on joints in the last step."""
+        """Return the efforts of motors and servos in the last step."""
         return self._readings.efforts([self.joint(name).row for name in joints])
 
     def set_joint_positions(self, positions: Dict[str, float]) -> None:
-        """Move joints at once."""
+        """Set joint positions at once."""
         self.simulator.joints.set_positions(
             {f"{self.model}::{self.joint(name).spec_name}": value
              for name, value in positions.items()})
@@ -386,7 +386,7 @@ class SimulatedContext(GraphUser):
         return self._readings.contacts()
 
     def topic_uses(self) -> List[TopicUse]:
-        """The topics it offers and hears; from any thread."""
+        """Return the topics of the plugin; from any thread."""
         link, pose = "", IDENTITY
         if self.sensor is not None:
             link, pose = self._scope + self.sensor_link, self.sensor.pose
@@ -403,7 +403,7 @@ class SimulatedContext(GraphUser):
         self._say(Severity.NOTE, text)
 
     def warn(self, text: str) -> None:
-        """Warn the user."""
+        """Report a warning to the user."""
         self._say(Severity.WARNING, text)
 
     def _say(self, severity: Severity, text: str) -> None:

@@ -26,7 +26,7 @@ class Offer:
         return self._topic.wanted
 
     def publish(self, message: Any) -> None:
-        """Publish."""
+        """Publish a message."""
         self._owner.outbox.append((self._topic, message))
 
     def publish_later(self, make: Callable[[], Any]) -> None:
@@ -61,7 +61,7 @@ class OpenEnd:
         self._owner, self._end = owner, end
 
     def close(self) -> None:
-        """Take it off the graph."""
+        """Remove the subscription or service from the ROS graph."""
         self._owner.close_one(self._end)
 
 
@@ -91,7 +91,7 @@ class PluginGraph:
         self._closed = threading.Event()
 
     def close(self) -> None:
-        """Take everything off the graph."""
+        """Remove everything from the ROS graph."""
         for one in self._opened:
             one.close()
         self._opened.clear()
@@ -99,19 +99,19 @@ class PluginGraph:
         self._closed.set()
 
     def close_one(self, end: Closing) -> None:
-        """Take one thing off the graph."""
+        """Remove one topic, subscription or service from the ROS graph."""
         if end in self._opened:
             self._opened.remove(end)
             self._uses.pop(id(end), None)
             end.close()
 
     def uses(self) -> List[Tuple[str, str, bool]]:
-        """Name, type, and whether it is heard, of each topic that is open; from any thread."""
+        """Return name, type, and whether it is a subscription, of each topic; from any thread."""
         return list(self._uses.values())
 
     def _open(self, begin: Callable[[str], Any], name: str, kind: str,
               heard: Optional[bool] = None) -> Any:
-        """Begin something under its full name; `heard` for topics."""
+        """Open a topic or service under its full name; `heard` for topics only."""
         full = self._name(name)
         try:
             end = begin(full)
@@ -123,7 +123,7 @@ class PluginGraph:
         return end
 
     def use_namespace(self, namespace: str) -> None:
-        """What names are relative to: "/" is the root, "" the node's own namespace."""
+        """Set the namespace of relative names: "/" is the root, "" the node's namespace."""
         namespace = namespace.strip()
         self._namespace = namespace.rstrip("/") or namespace[:1]
 
@@ -133,18 +133,18 @@ class PluginGraph:
         return f"{self._namespace.rstrip('/')}/{name}"
 
     def message(self, kind: str) -> Any:
-        """A new message."""
+        """Return a new message."""
         try:
             return self._graph.message(kind)
         except MissingTypeError as missing:
             raise PluginError(str(missing)) from missing
 
     def stamp(self, ns: int) -> Any:
-        """A time as messages have it."""
+        """Return a time as a message field."""
         return self._graph.stamp(ns)
 
     def publish(self, name: str, kind: str, queue: int, latch: bool) -> Offer:
-        """Offer a topic."""
+        """Advertise a topic."""
         if not name:
             return Offer(self, _Nowhere())
         return Offer(self, self._open(
@@ -152,7 +152,7 @@ class PluginGraph:
             False))
 
     def subscribe(self, name: str, kind: str, call: Callable[[Any], None], queue: int) -> OpenEnd:
-        """Hear a topic."""
+        """Subscribe to a topic."""
         waiting: Deque[Any] = deque(maxlen=max(1, queue))
 
         def deliver() -> None:
@@ -180,7 +180,7 @@ class PluginGraph:
                     call(request, response)
                 except RequestError as refused:
                     faults.append(refused)
-                except Exception as raised:  # the caller hears of it as well
+                except Exception as raised:  # the caller gets the fault as well
                     faults.append(PluginError(str(raised)))
                     raise
                 finally:
@@ -197,25 +197,25 @@ class PluginGraph:
 
         try:
             end = self._open(lambda full: self._graph.serve(full, kind, asked), name, kind)
-        except ServiceTakenError as taken:  # roscpp says so, and Gazebo's plugins go on
+        except ServiceTakenError as taken:  # roscpp reports it, and Gazebo's plugins continue
             warn(str(taken))
             end = _Nowhere()
         return OpenEnd(self, end)
 
     def parameter(self, name: str, default: Any) -> Any:
-        """A parameter of the namespace."""
+        """Return a parameter of the namespace."""
         return self._graph.parameter(self._namespace, name, default)
 
     def search_parameter(self, name: str, default: Any) -> Any:
-        """A parameter of the namespace or above."""
+        """Return a parameter of the namespace or of a parent."""
         return self._graph.search_parameter(self._namespace, name, default)
 
     def offer_transforms(self) -> None:
-        """Offer tf."""
+        """Advertise tf."""
         self._graph.offer_transforms(self._changed)
 
     def transform(self, parent: str, child: str, pose: Pose, ns: int) -> None:
-        """Broadcast to tf, as of a sim time."""
+        """Broadcast a transform to tf, stamped with a sim time."""
         self.transforms.append((ns, (str(parent), str(child), pose_of(pose, "a transform"))))
 
 
@@ -234,42 +234,42 @@ class GraphUser:
         raise NotImplementedError
 
     def warn(self, text: str) -> None:
-        """Warn the user."""
+        """Report a warning to the user."""
         raise NotImplementedError
 
     def use_namespace(self, namespace: str) -> None:
-        """What names are relative to."""
+        """Set the namespace of relative names."""
         self.graph.use_namespace(namespace)
 
     def message(self, kind: str) -> Any:
-        """A new message."""
+        """Return a new message."""
         return self.graph.message(kind)
 
     def stamp(self, ns: Optional[int] = None) -> Any:
-        """A time as messages have it."""
+        """Return a time as a message field."""
         return self.graph.stamp(self.now_ns if ns is None else ns)
 
     def publish(self, name: str, kind: str, queue: int = 1, latch: bool = False) -> Offer:
-        """Offer a topic."""
+        """Advertise a topic."""
         return self.graph.publish(name, kind, queue, latch)
 
     def subscribe(self, name: str, kind: str, call: Callable[[Any], None],
                   queue: int = 1) -> OpenEnd:
-        """Hear a topic."""
+        """Subscribe to a topic."""
         return self.graph.subscribe(name, kind, call, queue)
 
     def serve(self, name: str, kind: str, call: Callable[[Any, Any], None]) -> OpenEnd:
-        """Offer a service."""
+        """Advertise a service."""
         return self.graph.serve(name, kind, call, self.warn)
 
     def parameter(self, name: str, default: Any) -> Any:
-        """A parameter of the namespace."""
+        """Return a parameter of the namespace."""
         return self.graph.parameter(name, default)
 
     def search_parameter(self, name: str, default: Any) -> Any:
-        """A parameter of the namespace or above."""
+        """Return a parameter of the namespace or of a parent."""
         return self.graph.search_parameter(name, default)
 
     def transform(self, parent: str, child: str, pose: Pose) -> None:
-        """Broadcast to tf."""
+        """Broadcast a transform to tf."""
         self.graph.transform(parent, child, pose, self.now_ns)

@@ -73,11 +73,11 @@ class SimulatedJoint:
 
     @property
     def puts(self) -> float:
-        """How often it was put somewhere."""
+        """The number of times the position was set directly."""
         return self._view.puts(self.row)
 
     def drive(self, rate: float, effort: float) -> None:
-        """Turn the motor."""
+        """Drive the motor."""
         self.motor = JointMotor(self.row, finite(rate, "the rate of a motor"),
                                 number(effort, "the effort of a motor"))
         self._orders.motors[self.row] = self.motor

@@ -27,7 +27,7 @@ from .testing_joints import FakeJoint, FakeLink
 
 
 class Message:
-    """A message of any type: fields that are asked for come into being."""
+    """A message of any type; a field is created when it is read."""
 
     def __init__(self, **fields: Any) -> None:
         for name, value in fields.items():
@@ -161,7 +161,7 @@ class FakeContext:
     # -- what a test does --------------------------------------------------------------------------
 
     def advance(self, seconds: float) -> None:
-        """Let sim time pass: joints turn, and the plugin is called when it wants to be."""
+        """Advance sim time: joints move, and the scheduled functions are called."""
         clock = Clock(0, 0, round(self.step_size * 1e12))
         for _ in range(round(seconds / self.step_size)):
             for joint in self.joints.values():
@@ -173,7 +173,7 @@ class FakeContext:
             self._compute_laws()
 
     def hear(self, topic: str, **fields: Any) -> None:
-        """Have a message arrive; dictionaries are messages in it."""
+        """Deliver a message on a topic; dictionaries become nested messages."""
         self._heard[topic](Message(**fields))
 
     # -- Context -----------------------------------------------------------------------------------
@@ -184,7 +184,7 @@ class FakeContext:
         return round(self.step * self.step_size * 1e9)
 
     def every(self, hertz: float, call: Callable[[], None]) -> Any:
-        """Be called at a rate."""
+        """Call a function at a rate."""
         self._calls.append(_Call(self._calls, call, Rate(hertz), stops=True))
         return self._calls[-1]
 
@@ -212,7 +212,7 @@ class FakeContext:
         return self._calls[-1]
 
     def once(self, ns: int, call: Callable[[], None]) -> Any:
-        """Be called once."""
+        """Call a function once."""
         self._calls.append(_Call(self._calls, call, None, ns))
         return self._calls[-1]
 
@@ -230,20 +230,20 @@ class FakeContext:
         return self.joints[name]
 
     def transmissions(self, parameter: str) -> List[Transmission]:
-        """Those of the description."""
+        """Return the transmissions of the description."""
         return self.description.transmissions
 
     def drive_level(self, x: float, y: float, yaw_rate: float) -> None:
-        """Noted."""
+        """Record the call."""
         self.level = (x, y, yaw_rate)
 
     def push(self, link: str, force: Vec3, torque: Vec3) -> None:
-        """Noted."""
+        """Record the call."""
         self.pushes[link] = (force, torque)
         self._laws.pop(link, None)
 
     def push_by(self, link: str, law: WrenchLaw) -> None:
-        """Noted."""
+        """Record the call."""
         self._laws[link] = law
         self._compute_laws()
 
@@ -254,31 +254,31 @@ class FakeContext:
                                              link.inertial.pose.position)
 
     def move(self, pose: Pose, twist: Twist = STILL) -> None:
-        """The model jumps."""
+        """Set the model's pose and twist."""
         self.pose, self.twist = pose, twist
 
     def hold(self, held: bool) -> None:
-        """Noted."""
+        """Record the call."""
         self.held = held
 
     def scoped(self, link: str) -> str:
-        """Below the name of the model."""
+        """Return the link's name below that of the model."""
         self.link(link)
         return f"{self.model}::{link}"
 
     def joint_spec(self, name: str) -> JointSpec:
-        """Of the description."""
+        """Return the description of a joint."""
         for joint in self.description.joints:
             if joint.name == name:
                 return joint
         raise PluginError(f"model '{self.model}' has no joint '{name}'")
 
     def slip(self, link: str, joint: str, *values: float) -> None:
-        """Noted."""
+        """Record the call."""
         self.slips[link] = (joint, *values)
 
     def mimic(self, follower: str, leader: str, multiplier: float, offset: float) -> None:
-        """Noted."""
+        """Record the call."""
         self.joint(follower), self.joint(leader)
         self.followers[follower] = (leader, multiplier, offset)
 
@@ -287,35 +287,35 @@ class FakeContext:
         return self.links.setdefault(scoped, FakeLink(scoped))
 
     def models(self) -> Dict[str, Model]:
-        """What a test says."""
+        """Return the value set by the test."""
         return self.others
 
     def attach(self, name: str, parent: str, child: str) -> None:
-        """Noted."""
+        """Record the call."""
         self.attached[name] = (parent, child)
 
     def detach(self, name: str) -> bool:
-        """Noted."""
+        """Record the call."""
         return self.attached.pop(name, None) is not None
 
     def efforts(self, joints: Sequence[str]) -> List[float]:
-        """What was spent on joints."""
+        """Return the efforts of joints."""
         return [self.joint(name).effort for name in joints]
 
     def set_joint_positions(self, positions: Dict[str, float]) -> None:
-        """Joints jump."""
+        """Set joint positions at once."""
         for name, value in positions.items():
             self.joint(name).put(value)
 
     def scan(self, fan: Any, visuals: bool, call: Callable[[Any, int], None],
              place: Optional[Tuple[str, Pose]] = None) -> None:
-        """Rays meet what a test says (`returns`)."""
+        """Pass the test's `returns` to `call`."""
         self.fans.append((fan, visuals))
         call(self.returns, self.now_ns)
 
     def photograph(self, views: Any, call: Callable[[Any, int], None], stream: str = "",
                    queue: bool = False) -> bool:
-        """Cameras see what a test says (`pictures`)."""
+        """Pass the test's `pictures` to `call`, unless they are `late`."""
         if self.late:
             return False
         self.views.append(list(views))
@@ -323,38 +323,38 @@ class FakeContext:
         return True
 
     def sensors(self) -> List[Tuple[str, Sensor]]:
-        """What a test says."""
+        """Return the value set by the test."""
         return self.model_sensors
 
     def link_names(self) -> Dict[int, str]:
-        """What a test says."""
+        """Return the value set by the test."""
         return self.labels
 
     def joint_wrench(self, name: str) -> Optional[JointWrench]:
-        """What a test says."""
+        """Return the value set by the test."""
         return self.wrenches.get(name)
 
     def contacts(self) -> List[Any]:
-        """What a test says."""
+        """Return the value set by the test."""
         return self.touching
 
     def use_namespace(self, namespace: str) -> None:
-        """Before names."""
+        """Set the prefix of names."""
         self._namespace = namespace.strip("/")
 
     def _name(self, name: str) -> str:
         return name if name.startswith("/") or not self._namespace else f"{self._namespace}/{name}"
 
     def message(self, kind: str) -> Any:
-        """A message of any kind."""
+        """Return a message of any type."""
         return Message()
 
     def stamp(self, ns: Optional[int] = None) -> Any:
-        """Nanoseconds."""
+        """Return a time in ns."""
         return self.now_ns if ns is None else ns
 
     def publish(self, name: str, kind: str, queue: int = 1, latch: bool = False) -> Any:
-        """Offer a topic."""
+        """Advertise a topic."""
         if not name:
             return _Topic([], lambda: False)
         name = self._name(name)
@@ -362,12 +362,12 @@ class FakeContext:
 
     def subscribe(self, name: str, kind: str, call: Callable[[Any], None],
                   queue: int = 1) -> "FakeHandle":
-        """Hear a topic."""
+        """Subscribe to a topic."""
         self._heard[self._name(name)] = call
         return FakeHandle(lambda: self._heard.pop(self._name(name)))
 
     def serve(self, name: str, kind: str, call: Callable[[Any, Any], None]) -> "FakeHandle":
-        """Offer a service."""
+        """Advertise a service."""
         self.services[self._name(name)] = call
         return FakeHandle(lambda: self.services.pop(self._name(name)))
 
@@ -381,17 +381,17 @@ class FakeContext:
         return found
 
     def search_parameter(self, name: str, default: Any) -> Any:
-        """What a test says."""
+        """Return the value set by the test."""
         return self.ros_parameters.get(name, default)
 
     def transform(self, parent: str, child: str, pose: Pose) -> None:
-        """Noted."""
+        """Record the call."""
         self.transforms.append((parent, child, pose))
 
     def info(self, text: str) -> None:
-        """Noted."""
+        """Record the call."""
         self.said.append(text)
 
     def warn(self, text: str) -> None:
-        """Noted."""
+        """Record the call."""
         self.said.append(text)

@@ -11,7 +11,7 @@ from ..geometry import IDENTITY, STILL
 
 
 class FakeLink:
-    """A link that is where a test puts it."""
+    """A link at a pose that a test sets."""
 
     def __init__(self, name: str) -> None:
         self.name, self.pose, self.twist = name, IDENTITY, STILL
@@ -42,18 +42,18 @@ class FakeJoint:
         self._law: Optional[ServoLaw] = None
 
     def put(self, position: float) -> None:
-        """Jump to a position, at rest."""
+        """Set the position at once, with velocity 0."""
         self.position, self.velocity = position, 0.0
         self.puts += 1
         if self.servo is not None and self.servo.holds:
             self.steer(self.servo)
 
     def drive(self, rate: float, effort: float) -> None:
-        """Turn the motor."""
+        """Drive the motor."""
         self.motor = (rate, effort)
 
     def steer(self, servo: JointServo) -> None:
-        """Hand over to a servo."""
+        """Drive the axis by a servo."""
         servo = servo.held_at(self.position)
         before, self.servo = self.servo, servo
         if not servo.drive:
@@ -64,7 +64,7 @@ class FakeJoint:
             self._law = None
 
     def step(self, step: int, dt: float) -> None:
-        """Turn for one step."""
+        """Integrate one step."""
         if self.stuck:
             self.velocity = 0.0
             return

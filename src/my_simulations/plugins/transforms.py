@@ -1,4 +1,4 @@
-"""What /tf says: where frames are in each other, the newest of each."""
+"""Stores the newest transforms of /tf."""
 from __future__ import annotations
 
 from typing import Any, Dict, Optional, Tuple
@@ -11,7 +11,7 @@ _DEEPEST = 100  # frames above another: more is a loop
 
 
 class Transforms:
-    """Hears `/tf` and `/tf_static`."""
+    """Subscribes to `/tf` and `/tf_static`."""
 
     def __init__(self, context: Context) -> None:
         self._parents: Dict[str, Tuple[str, Pose]] = {}
@@ -29,12 +29,12 @@ class Transforms:
             self._parents[child] = (parent, Pose(pose.position, normalised(pose.orientation)))
 
     def look_up(self, frame: str, child: str) -> Optional[Pose]:
-        """Where `child` is in `frame`; None where /tf has not connected them."""
+        """Return the pose of `child` in `frame`; None if /tf does not connect them."""
         (top, one), (other_top, other) = self._root(frame), self._root(child)
         return compose(inverse(one), other) if top == other_top else None
 
     def _root(self, frame: str) -> Tuple[str, Pose]:
-        """The topmost frame above a frame, and where the frame is in it."""
+        """Return the root of the tree of a frame, and the frame's pose in it."""
         frame, pose = frame.lstrip("/"), IDENTITY
         for _ in range(_DEEPEST):
             if frame not in self._parents:

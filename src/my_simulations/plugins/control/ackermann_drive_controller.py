@@ -48,7 +48,7 @@ class AckermannDriveController(BaseController):
             self._places += [(x, half), (x, -half)]
 
     def drive(self, velocity: Planar) -> None:
-        """Wheels roll about the centre of the turn."""
+        """Steer and drive the wheels about the centre of the turn."""
         speed, _, yaw_rate = velocity
         for (wheel, steer), (x, y) in zip(self._corners, self._places):
             angle, rim = rolling(x, y, speed, yaw_rate)
@@ -58,11 +58,11 @@ class AckermannDriveController(BaseController):
             wheel.command((speed - yaw_rate * side * self._width) / self._radius)
 
     def begin_count(self) -> None:
-        """From here."""
+        """Store the present joint positions as the start of the odometry."""
         self._turned = [wheel.position for wheel in self._middle]
 
     def way(self, dt: float) -> Planar:
-        """By what the wheels in the middle have turned."""
+        """Return the motion of the base from the rotation of the middle wheels."""
         if self.open_loop:
             return self.last[0] * dt, 0.0, self.last[2] * dt
         before, self._turned = self._turned, [wheel.position for wheel in self._middle]

@@ -2,8 +2,8 @@
 
 Each axle is one wheel; the second controller is the older form of the first. `angular.z` of a
 command is the steering angle, rad, as in the original. Where it differs: with `open_loop` the base
-turns as that angle says (there the angle counts as a yaw rate). Multipliers correct the odometry
-alone.
+turns as that angle says (original: the angle counts as a yaw rate). Multipliers correct the
+odometry alone.
 """
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ class AckermannSteeringController(BaseController):
         self._steer.command(velocity[2])
 
     def begin_count(self) -> None:
-        """From here."""
+        """Store the present joint positions as the start of the odometry."""
         self._turned = self._wheel.position
 
     def way(self, dt: float) -> Planar:

@@ -58,24 +58,24 @@ class BaseController(Controller):
         raise NotImplementedError
 
     def drive(self, velocity: Planar) -> None:
-        """Have the wheels turn so that the base moves."""
+        """Drive the wheels so that the base moves with a velocity."""
         raise NotImplementedError
 
     def begin_count(self) -> None:
-        """What the wheels have done counts from here."""
+        """Store the present joint positions as the start of the odometry."""
 
     def way(self, dt: float) -> Planar:
-        """How far the base went in the last `dt` s by what its wheels have done: m, m, rad."""
+        """Return the motion of the base in the last `dt` s from its wheels: m, m, rad."""
         raise NotImplementedError
 
     def limited(self, wanted: Planar, dt: float) -> Planar:
-        """A command within the limits."""
+        """Return a command within the limits."""
         found = [limits.limited(new, last, before, dt) for limits, new, last, before in zip(
             self.limits, wanted, self.last, self.before)]
         return found[0], found[1], found[2]
 
     def tell_more(self) -> None:
-        """Publish what goes with the odometry."""
+        """Publish further messages with the odometry."""
 
     def more_topics(self) -> List[Publication]:
         """The topics of `tell_more`."""
@@ -109,7 +109,7 @@ class BaseController(Controller):
         self._pose: Planar = STANDING
 
     def start(self) -> None:
-        """Stand; count from here."""
+        """Stop the base, and restart the odometry."""
         self.command = STANDING
         self.last = self.before = STANDING
         self._velocities: Deque[Planar] = deque(maxlen=self.window if self.smooths else 1)
@@ -125,7 +125,7 @@ class BaseController(Controller):
             self.observe(self._publish_hz, self._tell, topics, transforms=self._broadcasts)
 
     def stop(self) -> None:
-        """Stand."""
+        """Stop the base."""
         self._end_command()
         self._change.end()
         self.drive(STANDING)
@@ -168,14 +168,14 @@ class BaseController(Controller):
         return done
 
     def _tell_command(self) -> None:
-        """Publish what is commanded since the last update."""
+        """Publish the velocity command of the last update."""
         assert self._limited is not None
         message = stamped(self.context, "geometry_msgs/TwistStamped")
         message.twist.linear.x, message.twist.linear.y, message.twist.angular.z = self.last
         self._limited.publish(message)
 
     def _count(self) -> None:
-        """Integrate an arc, exactly."""
+        """Integrate the odometry exactly along an arc."""
         now = self.context.now_ns
         dt = (now - self._now_ns) * 1e-9
         self._now_ns = now
@@ -187,7 +187,7 @@ class BaseController(Controller):
 
     @property
     def velocity(self) -> Planar:
-        """What is told of it."""
+        """The velocity that the odometry contains."""
         count = max(1, len(self._velocities))
         forward, sideways, turn = (sum(one[axis] for one in self._velocities) / count
                                    for axis in range(3))
@@ -213,7 +213,7 @@ class BaseController(Controller):
     # -- geometry ----------------------------------------------------------------------------------
 
     def place(self, joint: JointSpec) -> Vec3:
-        """Where a joint is in the model, at joint positions 0."""
+        """Return the pose of a joint in the model at joint positions 0."""
         for link in self.context.description.links:
             if link.name == joint.child:
                 return transform(link.pose, joint.pose.position)
@@ -234,7 +234,7 @@ class BaseController(Controller):
                           f" {self.name}/wheel_radius")
 
     def positive(self, **lengths: float) -> None:
-        """Check lengths in m. Raises PluginError."""
+        """Check that lengths (m) are above 0. Raises PluginError."""
         for name, length in lengths.items():
             if length <= 0.0:
                 raise PluginError(f"{self.name}: {name} is {length:g} m; it must be positive")

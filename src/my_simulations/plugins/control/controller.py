@@ -1,4 +1,4 @@
-"""The base class of controllers, and what they see."""
+"""The base class of controllers."""
 from __future__ import annotations
 
 from typing import Any, Callable, Dict, List, Sequence
@@ -41,14 +41,14 @@ class Controller:
     # -- for subclasses ----------------------------------------------------------------------------
 
     def load(self) -> None:
-        """Read parameters, take joints, offer topics."""
+        """Read parameters, claim joints, advertise topics."""
         raise NotImplementedError
 
     def start(self) -> None:
-        """Begin: from now on its joints are its own."""
+        """Start the controller; it has claimed its joints."""
 
     def stop(self) -> None:
-        """End; joints are released afterwards."""
+        """Stop the controller; its joints are released afterwards."""
 
     def take(self, interface: str, name: str) -> HardwareJoint:
         """Claim a joint. Raises PluginError."""
@@ -57,7 +57,7 @@ class Controller:
         return joint
 
     def publish(self, topic: str, kind: str, queue: int = 1, latch: bool = False) -> Publication:
-        """Offer a topic below its name."""
+        """Advertise a topic below the controller's name."""
         made = self.context.publish(f"{self.name}/{topic}", kind, queue, latch)
         self._handles.append(made)
         return made
@@ -82,11 +82,11 @@ class Controller:
         self._handles.append(self.context.subscribe(f"{self.name}/{topic}", kind, heard))
 
     def serve(self, name: str, kind: str, call: Callable[[Any, Any], None]) -> None:
-        """Offer a service below its name."""
+        """Advertise a service below the controller's name."""
         self._handles.append(self.context.serve(f"{self.name}/{name}", kind, call))
 
     def keep(self, handle: Handle) -> None:
-        """Something else that ends with the controller."""
+        """Store a handle to close when the controller is unloaded."""
         self._handles.append(handle)
 
     def offer_gains(self, path: str, joint: HardwareJoint, gains: PidGains,
@@ -99,18 +99,18 @@ class Controller:
         self.keep(tunable(self.context, f"{self.name}/{path}", gains, take))
 
     def every(self, hertz: float, call: Callable[[], None]) -> None:
-        """Be called at a rate in Hz of sim time while it runs."""
+        """Call a function at a rate in Hz of sim time while the controller runs."""
         self._timers.append(self.context.every(hertz, call))
 
     def observe(self, hertz: float, call: Callable[[], None],
                 topics: Sequence[Publication] = (), **reads: Any) -> None:
-        """Follow the world at a rate while it runs; see `Context.observe`."""
+        """Call a reading function at a rate while the controller runs; see `Context.observe`."""
         self._timers.append(self.context.observe(hertz, call, topics, **reads))
 
     # -- for the manager ---------------------------------------------------------------------------
 
     def switch_on(self) -> None:
-        """Start."""
+        """Start the controller."""
         self.state, self._told = RUNNING, ""
         for interface, names in self.claimed.items():
             for name in names:
@@ -118,7 +118,7 @@ class Controller:
         self.start()
 
     def switch_off(self) -> None:
-        """Stop, and release its joints."""
+        """Stop the controller and release its joints."""
         for timer in self._timers:
             timer.end()
         self._timers = []
@@ -129,7 +129,7 @@ class Controller:
                 self.hardware.release(name)
 
     def close(self) -> None:
-        """Take everything off the graph."""
+        """Remove the controller from the ROS graph."""
         for handle in self._handles:
             handle.close()
         self._handles = []

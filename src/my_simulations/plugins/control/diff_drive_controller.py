@@ -38,14 +38,14 @@ class DiffDriveController(BaseController):
         self.positive(wheel_separation=self._separation, wheel_radius=min(self._radii))
 
     def drive(self, velocity: Planar) -> None:
-        """Rims as fast as the ground below them."""
+        """Drive each wheel so that it rolls without slip."""
         x, _, yaw = velocity
         for side, radius, sign in zip(self._sides, self._radii, (-1.0, 1.0)):
             for wheel in side:
                 wheel.command((x + sign * yaw * self._separation / 2.0) / radius)
 
     def begin_count(self) -> None:
-        """From here."""
+        """Store the present joint positions as the start of the odometry."""
         self._turned = self._wheel_ways()
 
     def _wheel_ways(self) -> Tuple[float, float]:
@@ -53,7 +53,7 @@ class DiffDriveController(BaseController):
         return left, right
 
     def way(self, dt: float) -> Planar:
-        """By what the wheels have turned."""
+        """Return the motion of the base from the rotation of the wheels."""
         if self.open_loop:
             return self.last[0] * dt, 0.0, self.last[2] * dt
         before, self._turned = self._turned, self._wheel_ways()

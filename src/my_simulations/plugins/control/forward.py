@@ -18,7 +18,7 @@ class Forward(Controller):
         self.subscribe("command", "std_msgs/Float64", self._hear)
 
     def start(self) -> None:
-        """Stay, or stand."""
+        """Hold the position, or command 0."""
         self._joint.rest()
 
     def _hear(self, message: Any) -> None:
@@ -37,7 +37,7 @@ class Group(Controller):
         self.subscribe("command", "std_msgs/Float64MultiArray", self._hear)
 
     def start(self) -> None:
-        """Stay, or stand."""
+        """Hold the position, or command 0."""
         for joint in self.joints:
             joint.rest()
 

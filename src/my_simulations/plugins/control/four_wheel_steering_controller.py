@@ -162,7 +162,7 @@ class FourWheelSteeringController(BaseController):
         return [(angle, rim * moving) for angle, rim in angles]
 
     def begin_count(self) -> None:
-        """From here."""
+        """Store the present joint positions as the start of the odometry."""
         self._turned = self._positions()
         self._changes: Deque[Tuple[float, float, float, float]] = deque(maxlen=self.window)
         self._state = (0.0, 0.0, 0.0)

@@ -46,11 +46,11 @@ class Gripper(Controller):
         self._gains = gains
 
     def start(self) -> None:
-        """Hold."""
+        """Hold the position."""
         self._hold()
 
     def stop(self) -> None:
-        """The goal ends."""
+        """End the goal."""
         self._watch.end()
         self._preempt("the controller was stopped")
 

@@ -36,7 +36,7 @@ class JointLoop(Controller):
         self._gains = gains
 
     def start(self) -> None:
-        """Stay, or stand."""
+        """Hold the position, or command 0."""
         self._go(0.0 if self.of_rate else self._joint.position)
         self.observe(min(_STATE_HZ, 1.0 / self.period) if self.period else _STATE_HZ, self._tell,
                      [self._state], efforts=[self._joint.name])
@@ -91,7 +91,7 @@ class EffortPositionGroup(Group):
                              partial(self._gains.__setitem__, joint.name))
 
     def start(self) -> None:
-        """Stay."""
+        """Hold the present positions."""
         for joint in self.joints:
             self.command(joint, joint.position)
 

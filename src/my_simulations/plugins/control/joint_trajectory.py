@@ -73,7 +73,7 @@ class JointTrajectory(Controller):
         self.serve("query_state", "control_msgs/QueryTrajectoryState", self._query)
 
     def start(self) -> None:
-        """Stay where the joints are."""
+        """Hold the joints at their present positions."""
         self._splines = [Spline((standing(joint.position),), self.context.step)
                          for joint in self._joints]
         self._send()
@@ -81,7 +81,7 @@ class JointTrajectory(Controller):
             self.observe(self._state_hz, self._tell, [self._state])
 
     def stop(self) -> None:
-        """The goal ends."""
+        """End the goal."""
         self._unwatch()
         self._preempt("the controller was stopped")
 

@@ -64,7 +64,10 @@ def limits_of(joint: Joint, context: Context) -> JointLimits:
 
 
 def holding_effort(model: Model, joint: Joint, gravity: Vec3) -> float:
-    """An effort that holds what a joint carries in any configuration, N m or N, and some more."""
+    """Return an effort (N m or N) that holds the weight on a joint in any configuration.
+
+    It includes a margin.
+    """
     links = {link.name: link for link in model.links}
     if joint.child not in links:
         return 0.0
@@ -89,7 +92,7 @@ def holding_effort(model: Model, joint: Joint, gravity: Vec3) -> float:
 
 
 def joint_origin(joint: Joint, model: Model) -> Vec3:
-    """Where a joint is in its model, at joint positions 0."""
+    """Return the pose of a joint in its model at joint positions 0."""
     for link in model.links:
         if link.name == joint.child:
             return transform(link.pose, joint.pose.position)

@@ -91,12 +91,12 @@ class ControllerManager:
 
     @property
     def controllers(self) -> Dict[str, Controller]:
-        """The loaded ones by name."""
+        """The loaded controllers by name."""
         return dict(self._loaded)
 
     @property
     def claimed(self) -> List[str]:
-        """The joints of the controllers that run."""
+        """The joints of the running controllers."""
         return [name for one in self._loaded.values() if one.state == RUNNING
                 for names in one.claimed.values() for name in names]
 
@@ -162,7 +162,7 @@ class ControllerManager:
             self._start(one)
 
     def close(self) -> None:
-        """End all."""
+        """Unload all controllers."""
         for one in self._loaded.values():
             if one.state == RUNNING:
                 one.switch_off()

@@ -72,7 +72,7 @@ class MecanumDriveController(BaseController):
             wheel.command((x + way * y + side * self._arm * yaw) / self._radius)
 
     def begin_count(self) -> None:
-        """From here."""
+        """Store the present joint positions as the start of the odometry."""
         self._turned = self._positions()
 
     def _positions(self) -> Tuple[float, ...]:

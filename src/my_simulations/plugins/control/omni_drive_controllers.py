@@ -58,7 +58,7 @@ class WheelController(Controller):
                               f" {missing}")
 
     def start(self) -> None:
-        """Stand; keep the steering angles."""
+        """Stop the base; keep the steering angles."""
         self._command, self._moving = None, False
         self._targets = [WheelTarget(joint.position, 0.0) for joint in self._steers]
         self._rates = [0.0] * len(self._wheels)
@@ -68,7 +68,7 @@ class WheelController(Controller):
             self.observe(self._hertz, self._publish, [self._commands])
 
     def stop(self) -> None:
-        """Stand."""
+        """Stop the base."""
         self._change.end()
         for joint in (*self._steers, *self._drives):
             joint.command(0.0)
@@ -169,7 +169,7 @@ class OdometryController(Controller):
         return [WheelState(steer.position, drive.position) for steer, drive in self._joints]
 
     def _count(self) -> None:
-        """Integrate an arc, exactly."""
+        """Integrate the odometry exactly along an arc."""
         now = self.context.now_ns
         dt, self._now_ns = (now - self._now_ns) * 1e-9, now
         if dt <= 0.0:

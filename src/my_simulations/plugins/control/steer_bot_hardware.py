@@ -3,7 +3,7 @@
 Parameters are those of steer_drive_ros, below `steer_bot_hardware_gazebo`: the joint `rear_wheel`
 stands for `virtual_rear_wheels` and `virtual_front_wheels`, which all turn at its rate, the joint
 `front_steer` for `virtual_front_steers`. Where it differs: the places of the steering axes tell
-left from right (there their order); with `enable_ackermann_link` the wheels are steered by the
+left from right (original: their order); with `enable_ackermann_link` the wheels are steered by the
 geometry of Ackermann, tan(angle) = h tan(a) / (h +- w/2 tan(a)), else both by the commanded angle
 (the original steers them by half of the difference, and without the link the left one by twice the
 angle); `gains` are not used, motors without limits of effort and rate turn the joints.
@@ -46,11 +46,11 @@ class JointGroup(HardwareJoint):
 
     @property
     def drive_gains(self) -> None:
-        """There are none."""
+        """None: the joints have no gains."""
         return None
 
     def command(self, value: float) -> None:
-        """A rate or a position."""
+        """Command a rate or a position."""
         if not self.halted:
             self._value, self.is_held = value, False
             for joint, share in self._parts:
@@ -61,13 +61,13 @@ class JointGroup(HardwareJoint):
         return self._value
 
     def hold(self) -> None:
-        """Hold all where they are."""
+        """Hold all joints at their positions."""
         for joint, _ in self._parts:
             joint.hold()
         self.is_held = True
 
     def rest(self) -> None:
-        """Positions are held, rates are 0."""
+        """Hold positions, or command rate 0."""
         if not self.halted:
             for joint, _ in self._parts:
                 joint.rest()
@@ -101,7 +101,7 @@ class SteerBotHardware(Hardware):
             self._active[name] = group
 
     def _place(self, joint: HardwareJoint) -> float:
-        """How far a joint is to the left in the model, m."""
+        """Return the y coordinate of a joint in the model, m."""
         return joint_origin(self._context.joint(joint.name).spec, self._context.description)[1]
 
     def _made(self, name: str, interface: str) -> HardwareJoint:

@@ -1,8 +1,8 @@
 """libgazebo_ros_diff_drive.so: two driven wheels, odometry, tf.
 
 Parameters, defaults, topics and laws are those of gazebo_plugins. Where it differs: wheel frames
-are given in the links that carry the wheels (there: in the model); encoder odometry comes from the
-positions of the wheels, so that it has no drift of its own; its forward velocity has a sign.
+are given in the links that carry the wheels (original: in the model); encoder odometry comes from
+the positions of the wheels, so that it has no drift of its own; its forward velocity has a sign.
 """
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ class DiffDrive(OdometryDrive):
                             remembers=self._encoder and self._publishes)
 
     def reset(self) -> None:
-        """Stand, and count from here."""
+        """Stop the robot, and restart the odometry."""
         self._command.stop()
         self._change.end()
         self._counter.reset()

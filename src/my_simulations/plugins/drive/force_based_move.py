@@ -63,7 +63,7 @@ class ForceBasedMove(Plugin):
                             transforms=self._broadcasts)
 
     def reset(self) -> None:
-        """Stand."""
+        """Stop the robot."""
         self._command.stop()
         self._change.end()
         self._begin()

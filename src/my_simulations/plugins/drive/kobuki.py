@@ -78,7 +78,7 @@ class Kobuki(Plugin):
         self._change.begin()
 
     def reset(self) -> None:
-        """Stand, and count from here."""
+        """Stop the robot, and restart the odometry."""
         self._command.stop()
         self._change.end()
         self._begin_count()

@@ -2,7 +2,7 @@
 
 Parameters, defaults, topics and lengths are those of limo_gazebo_sim: controllers of ros_control
 steer the wheels by their `command` topics. Where it differs: the wheels on both sides roll by their
-distances from the centre of the turn (there by 0.4 of the track); a turn on the spot leaves the
+distances from the centre of the turn (original: by 0.4 of the track); a turn on the spot leaves the
 wheels straight; `<leftHingeJoint>` and `<rightHingeJoint>` are not used, as there.
 """
 from __future__ import annotations

@@ -14,7 +14,7 @@ DRIVE_COVARIANCE = (1e-5, 1e-5, _NO_IDEA, _NO_IDEA, _NO_IDEA, 1e-3)
 
 
 def planar(x: float, y: float, yaw: float) -> Pose:
-    """A pose on the ground."""
+    """Return a pose in the plane of the ground."""
     return Pose((x, y, 0.0), quat_from_rpy(0.0, 0.0, yaw))
 
 
@@ -44,7 +44,7 @@ class WheelTurns:
         self.forget()
 
     def forget(self) -> None:
-        """Count from here."""
+        """Restart the count at the present wheel positions."""
         self._last = [(joint.position, joint.puts) for joint in self._joints]
 
     def since(self, dt: float) -> List[float]:
@@ -72,17 +72,17 @@ class WheelCounter:
         self.reset()
 
     def reset(self) -> None:
-        """Count from here."""
+        """Reset the pose, and restart the count at the present wheel positions."""
         self._x = self._y = self._yaw = 0.0
         self.forget_way()
 
     def forget_way(self) -> None:
-        """What the wheels have turned since the last count does not count."""
+        """Discard the rotation of the wheels since the last count."""
         self._wheels.forget()
 
     @property
     def pose(self) -> Pose:
-        """On the ground."""
+        """The pose in the plane of the ground."""
         return planar(self._x, self._y, self._yaw)
 
     def count(self, dt: float) -> Tuple[float, float, float]:

@@ -39,7 +39,7 @@ class SkidSteerDrive(Plugin):
         context.observe(hertz, self.tell, self._odometer.topics, transforms=self._broadcasts)
 
     def reset(self) -> None:
-        """Stand."""
+        """Stop the robot."""
         self._command.stop()
         self._change.end()
         self._drive()

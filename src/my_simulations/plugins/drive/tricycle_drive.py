@@ -69,7 +69,7 @@ class TricycleDrive(OdometryDrive):
         return (left, right) if one >= other else (right, left)
 
     def reset(self) -> None:
-        """Stand, and count from here."""
+        """Stop the robot, and restart the odometry."""
         self._command.stop()
         self._change.end()
         self._counter.reset()

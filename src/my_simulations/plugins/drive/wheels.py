@@ -32,12 +32,12 @@ class VelocityCommand:
         context.subscribe(topic, "geometry_msgs/Twist", finite_only(context, topic, self._hear))
 
     def stop(self) -> None:
-        """As if none had come."""
+        """Discard the last command."""
         self.x = self.y = self.yaw = 0.0
         self._end_expiry()
 
     def clock_set(self) -> None:
-        """A command that is in force expires by the new clock."""
+        """Schedule the expiry of the last command again after sim time was set back."""
         if self._expiry is not None:
             self._begin_expiry()
 
@@ -50,7 +50,7 @@ class VelocityCommand:
             self._change.begin()
 
     def look(self) -> None:
-        """Forget a command that is too old."""
+        """Discard a command that has expired."""
         if self._time_out is not None and self._time_out.is_over:
             self.stop()
 
@@ -75,7 +75,7 @@ class WheelFrames:
                        for joint in joints]
 
     def send(self) -> None:
-        """As of now."""
+        """Publish the present state."""
         for parent, child, carrier, wheel in self._pairs:
             self._context.transform(parent, child, compose(inverse(carrier.pose), wheel.pose))
 
@@ -92,7 +92,7 @@ class WheelStates:
         self.topics: List[Publication] = [self._topic]
 
     def send(self) -> None:
-        """As of now."""
+        """Publish the present state."""
         if not self._topic.wanted:
             return
         message = stamped(self._context, "sensor_msgs/JointState", self._frame)

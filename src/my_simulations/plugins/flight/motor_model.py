@@ -85,7 +85,7 @@ class MotorModel(Plugin):
         self.context.observe(0.0, publish, [topic], efforts=efforts)
 
     def reset(self) -> None:
-        """The rotor stands."""
+        """Stop the rotor."""
         if self._timer is not None:
             self._timer.end()
             self._timer = None
@@ -93,7 +93,7 @@ class MotorModel(Plugin):
         self.clock_set()
 
     def clock_set(self) -> None:
-        """Lags count from here."""
+        """Restart the time of the lags."""
         self._last_ns = self.context.now_ns
 
     def _hear_wind(self, message: Any) -> None:
@@ -128,7 +128,7 @@ class MotorModel(Plugin):
                            -abs(pid.number("iMin", 0.0)), abs(pid.number("iMax", 0.0))))
 
     def update(self) -> None:
-        """Before each step."""
+        """Apply the rotor's forces in each step."""
         dt = (self.context.now_ns - self._last_ns) * 1e-9
         self._last_ns = self.context.now_ns
         speed = self._joint.velocity * self._slowdown

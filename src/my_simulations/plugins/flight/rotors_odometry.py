@@ -2,7 +2,7 @@
 
 Parameters, defaults and topics are those of rotors_gazebo_plugins. Pose and velocity are those of
 `<linkName>` in `<parentFrameId>`, a link of the model or the world; the velocity is in the axes of
-the link. Where it differs: `<unknownDelay>` is added to stamps in seconds (there also in
+the link. Where it differs: `<unknownDelay>` is added to stamps in seconds (original: also in
 nanoseconds); noise depends on the seed of the world, not on `<randomEngineSeed>`;
 `<covarianceImage>` is not supported.
 """

@@ -68,7 +68,7 @@ class RotorsImu(Imu):
                          dynamic_bias_correlation_time=time)
 
     def reset(self) -> None:
-        """Biases begin again."""
+        """Reset the biases."""
         for errors in self._errors:
             errors.reset(self.context.now_ns)
         super().reset()
@@ -184,7 +184,7 @@ class RotorsGps(Plugin):
         context.observe(context.sensor.update_rate, self.update, [self._fix, self._speed])
 
     def reset(self) -> None:
-        """Noise begins again."""
+        """Reset the noise."""
         for noise in self._place:
             noise.reset(self.context.now_ns)
 

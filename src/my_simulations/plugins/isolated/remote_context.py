@@ -14,14 +14,14 @@ from .messages import CONTEXT, METHODS, PROPERTIES, HandleMade, Start
 
 
 class RemoteHandle:
-    """Something in the node that the plugin uses by its number."""
+    """An object in the node that the plugin uses by its number."""
 
     def __init__(self, connection: Connection, made: HandleMade) -> None:
         self._connection, self.number = connection, made.number
         connection.readings.states[made.number] = made.state
 
     def push_by(self, link: str, law: WrenchLaw) -> None:
-        """The wrench of a law from now on."""
+        """Apply the wrench of a law from now on."""
         self._order("push_by", link, law)
 
     def _order(self, name: str, *arguments: Any) -> None:
@@ -68,16 +68,16 @@ class RemoteJoint(RemoteHandle):
 
     @property
     def puts(self) -> float:
-        """How often it was put somewhere."""
+        """The number of times the position was set directly."""
         return float(self._connection.state(self.number)[2])
 
     def drive(self, rate: float, effort: float) -> None:
-        """Turn the motor."""
+        """Drive the motor."""
         self._order("drive", finite(rate, "the rate of a motor"),
                     number(effort, "the effort of a motor"))
 
     def steer(self, servo: Any) -> None:
-        """Hand over to a servo."""
+        """Drive the axis by a servo of the engine."""
         self._order("steer", servo)
 
 
@@ -90,7 +90,7 @@ class RemoteTopic(RemoteHandle):
         return bool(self._connection.state(self.number))
 
     def publish(self, message: Any) -> None:
-        """Publish."""
+        """Publish a message."""
         self._order("publish", message)
 
     def publish_later(self, make: Callable[[], Any]) -> None:
@@ -98,7 +98,7 @@ class RemoteTopic(RemoteHandle):
         self._order("publish", make())
 
     def close(self) -> None:
-        """Take the topic off the graph."""
+        """Remove the topic from the ROS graph."""
         self._order("close")
 
 
@@ -158,16 +158,16 @@ class RemoteContext:
         return self._connection.readings.step
 
     def every(self, hertz: float, call: Callable[[], None]) -> RemoteEnd:
-        """Be called at a rate."""
+        """Call a function at a rate."""
         return self._scheduled("every", hertz, call)
 
     def observe(self, hertz: float, call: Callable[[], None], topics: Sequence[Any] = (),
                 **options: Any) -> RemoteEnd:
-        """Follow the world at a rate."""
+        """Call a function that only reads, at a rate."""
         return self._scheduled("observe", hertz, call, list(topics), **options)
 
     def once(self, ns: int, call: Callable[[], None]) -> RemoteEnd:
-        """Be called once."""
+        """Call a function once."""
         return self._scheduled("once", ns, call)
 
     def _scheduled(self, name: str, *arguments: Any, **named: Any) -> RemoteEnd:
@@ -198,15 +198,15 @@ class RemoteContext:
         return found
 
     def drive_level(self, x: float, y: float, yaw_rate: float) -> None:
-        """Move level from now on."""
+        """Move the model in its horizontal plane from now on."""
         self._order("drive_level", finite(x, "x"), finite(y, "y"), finite(yaw_rate, "yaw_rate"))
 
     def push(self, link: str, force: Vec3, torque: Vec3) -> None:
-        """A wrench from now on."""
+        """Apply a wrench from now on."""
         self._order("push", link, vector(force, "force"), vector(torque, "torque"))
 
     def push_by(self, link: str, law: WrenchLaw) -> None:
-        """The wrench of a law from now on."""
+        """Apply the wrench of a law from now on."""
         self._order("push_by", link, law)
 
     def _order(self, name: str, *arguments: Any) -> None:
@@ -221,17 +221,17 @@ class RemoteContext:
         return pickle.loads(self._messages[kind])
 
     def publish(self, name: str, kind: str, queue: int = 1, latch: bool = False) -> RemoteTopic:
-        """Offer a topic."""
+        """Advertise a topic."""
         topic: RemoteTopic = self._handle("publish", name, kind, queue, latch)
         return topic
 
     def subscribe(self, name: str, kind: str, call: Callable[[Any], None],
                   queue: int = 1) -> RemoteEnd:
-        """Hear a topic."""
+        """Subscribe to a topic."""
         return self._scheduled("subscribe", name, kind, call, queue)
 
     def serve(self, name: str, kind: str, call: Callable[[Any, Any], None]) -> RemoteEnd:
-        """Offer a service."""
+        """Advertise a service."""
         def answer(request: Any, response: Any) -> Any:
             call(request, response)
             return response
@@ -239,13 +239,13 @@ class RemoteContext:
         return self._scheduled("serve", name, kind, answer)
 
     def transform(self, parent: str, child: str, pose: Pose) -> None:
-        """Broadcast to tf."""
+        """Broadcast a transform to tf."""
         self._order("transform", str(parent), str(child), pose_of(pose, "a transform"))
 
     def info(self, text: str) -> None:
-        """Inform the user."""
+        """Report information to the user."""
         self._order("info", str(text))
 
     def warn(self, text: str) -> None:
-        """Warn the user."""
+        """Report a warning to the user."""
         self._order("warn", str(text))

@@ -26,7 +26,7 @@ _DIAGONAL_KNOWN = 2  # of sensor_msgs/NavSatFix
 
 
 class _OfSensor(Plugin):
-    """What the three have in common."""
+    """Base class of the three sensors."""
 
     block: Any = None
 

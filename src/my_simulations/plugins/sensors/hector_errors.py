@@ -2,8 +2,8 @@
 
 value * scaleError + offset + drift + white noise. The drift is a first-order Markov process with
 the standard deviation `drift` and the time constant 1 / `driftFrequency` (1 h). It is a function of
-sim time, whatever the rate and whichever samples are taken (there its size depends on the rate): it
-is stepped exactly 50 times in a time constant, and is straight between two steps.
+sim time, whatever the rate and whichever samples are taken (original: its size depends on the
+rate): it is stepped exactly 50 times in a time constant, and is straight between two steps.
 """
 from __future__ import annotations
 

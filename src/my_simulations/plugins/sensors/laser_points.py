@@ -1,7 +1,8 @@
 """Lasers as points: libgazebo_ros_block_laser.so and the libgazebo_ros_velodyne ones.
 
 Parameters, defaults, topics, frames and fields are those of gazebo_plugins and of
-velodyne_gazebo_plugins. A laser of one row has points, too (there the block laser divides by zero).
+velodyne_gazebo_plugins. A laser of one row has points, too (original: the block laser divides by
+zero).
 """
 from __future__ import annotations
 
@@ -104,7 +105,7 @@ class Velodyne(Points):
 
     All rays are of one moment, so `time` is 0. With `<organize_cloud>` a row of the cloud is a
     column of the scan, and a point that is left out is NaN and keeps its ring; faint ones, too
-    (there `<min_intensity>` counts in clouds without order alone).
+    (original: `<min_intensity>` counts in clouds without order alone).
     """
 
     usual_topic = "/points"

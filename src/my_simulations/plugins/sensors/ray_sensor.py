@@ -1,8 +1,8 @@
 """libgazebo_ros_ray_sensor.so: rays as a scan, as points or as a range, by `<outputType>`.
 
 Parameters, defaults and messages are those of gazebo_ros_ray_sensor for ROS 1. Where it differs:
-rays that meet nothing are left out of PointCloud2 (there their points are infinite), and points are
-row by row.
+rays that meet nothing are left out of PointCloud2 (original: their points are infinite), and points
+are row by row.
 """
 from __future__ import annotations
 
@@ -91,9 +91,9 @@ class RaySensor(Plugin):
         self._one.load()
 
     def reset(self) -> None:
-        """Noise begins again."""
+        """Reset the noise."""
         self._one.reset()
 
     def clock_set(self) -> None:
-        """Noise begins again."""
+        """Reset the noise."""
         self._one.clock_set()

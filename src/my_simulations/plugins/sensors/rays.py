@@ -71,7 +71,7 @@ class SampledNoise:
     def apply(self, values: Any, ns: int) -> Any:
         """Values of the sample taken at a sim time, with their noise.
 
-        The noise depends on the sim time only: skipped samples do not change that of others.
+        Random draws depend on the sim time: skipped samples do not change those of others.
         """
         elapsed, self._last_ns = (ns - self._last_ns) * 1e-9, ns
         return self._noise.apply(values, ns, max(0.0, elapsed))

@@ -1,1 +1,1 @@
-"""Plugins that tell or set the state of a robot."""
+"""Plugins that publish or set the state of a robot."""

@@ -26,7 +26,7 @@ class Force(Plugin):
         context.subscribe(topic, "geometry_msgs/Wrench", finite_only(context, topic, self._hear))
 
     def reset(self) -> None:
-        """The wrench goes on, as in Gazebo."""
+        """Keep the wrench after a reset, as in Gazebo."""
         self._act()
 
     def _hear(self, message: Any) -> None:

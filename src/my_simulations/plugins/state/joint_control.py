@@ -35,7 +35,7 @@ class JointControl(Plugin):
                     self.context.joint(name).steer(servo)
 
     def reset(self) -> None:
-        """Targets go on."""
+        """Keep the targets after a reset."""
         self.load()
 
     def _servo(self, p: Parameters) -> JointServo:

@@ -1,7 +1,7 @@
 """libgazebo_ros_p3d.so: ground truth of a link as odometry.
 
 Parameters, defaults and topic are those of gazebo_plugins. In another frame than the world, pose
-and twist are given in that frame's axes (there they are rotated by the wrong sign).
+and twist are given in that frame's axes (original: they are rotated by the wrong sign).
 """
 from __future__ import annotations
 

@@ -4,7 +4,8 @@ Parameters, defaults and topics are those of pal_gazebo_plugins (melodic) and of
 robotnik_gazebo_plugins. Where they differ: noise of the first adds up at the rate of the plugin,
 whether or not there are subscribers, and is drawn from the seed of the world; its offsets, which
 dynamic_reconfigure sets there, are 0. The second gives a velocity in the axes that the link has now
-(there those of the message before), and rotates in the frame of `<worldBodyName>` the right way.
+(original: those of the message before), and rotates in the frame of `<worldBodyName>` the right
+way.
 """
 from __future__ import annotations
 

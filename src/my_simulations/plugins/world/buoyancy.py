@@ -68,14 +68,14 @@ class Buoyancy(Plugin):
         return (total, scale(moment, 1.0 / total)) if total > 0.0 else None
 
     def update(self) -> None:
-        """Push at the centres of volume against the gravity of now."""
+        """Apply buoyancy at the centres of volume, against the present gravity."""
         for link, volume, centre in self._floats:
             force = scale(self.context.gravity, -self._density * volume)
             self.context.push_by(link.name, ForceAtPoint(force, centre))
 
 
 def volume_of(shape: object) -> Optional[float]:
-    """m^3; None for what has none that is known (meshes, planes)."""
+    """Return the volume, m^3; None for shapes without a known one (meshes, planes)."""
     if isinstance(shape, Box):
         return shape.size[0] * shape.size[1] * shape.size[2]
     if isinstance(shape, Sphere):

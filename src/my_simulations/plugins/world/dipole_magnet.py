@@ -4,8 +4,8 @@ Parameters, defaults, topics and law are those of storm_gazebo_ros_magnet: dipol
 distance r e (from m2 to m1). The field at m1 is B = mu0 / (4 pi r^3) (3 (m2 e) e - m2), its torque
 m1 x B, its force 3 mu0 / (4 pi r^4) ((m1 e) m2 + (m2 e) m1 + (m1 m2) e - 5 (m1 e) (m2 e) e).
 Source: Griffiths, Introduction to Electrodynamics, 6.1. Where it differs: the force acts at the
-magnet (there at the centre of mass of the link); without `<topicNs>` the topics are below the name
-of the link.
+magnet (original: at the centre of mass of the link); without `<topicNs>` the topics are below the
+name of the link.
 """
 from __future__ import annotations
 
