@@ -1,4 +1,4 @@
-"""Builds the bodies of a model, as often as the world begins anew."""
+"""Build the bodies of a model, again after each reset of the world."""
 from __future__ import annotations
 
 import itertools
@@ -35,7 +35,7 @@ from .implicit_axes import mobility
 from .mass_matrix import MassMatrix
 from .rims import with_ends, with_rims
 
-_LIGHT = 1e-6  # share of a link's mass for the piece between the two axes it hangs on
+_LIGHT = 1e-6  # share of a link's mass for the piece between the two axes of its joint
 _OTHER = 2.0   # factor: closer moments count as those of the shape
 _JOINT_TYPES = {"revolute": pybullet.JOINT_REVOLUTE, "prismatic": pybullet.JOINT_PRISMATIC,
                 "fixed": pybullet.JOINT_FIXED, "ball": pybullet.JOINT_SPHERICAL}
@@ -78,12 +78,12 @@ class _Tree:
 
 
 class Builder:
-    """What a model becomes: everything about its bodies that no pose changes.
+    """Builds the bodies of one model; keeps all data of them that do not depend on the pose.
 
     Attributes:
         model_id: the model's number.
-        plans: which links make a body.
-        link_rows, joint_rows: those of the tables that are the model's.
+        plans: the links of each body.
+        link_rows, joint_rows: the rows of the model in the link and the joint table.
     """
 
     def __init__(self, command: LoadModel, shapes: ShapeFactory) -> None:
@@ -108,9 +108,9 @@ class Builder:
                         else self._tree(plan, command.meshes) for plan in self.plans]
 
     def build(self, pose: Pose) -> List[Body]:
-        """All bodies, with the model frame at `pose` and Gazebo's dynamics, not PyBullet's.
+        """Build all bodies with the model frame at `pose`, and with Gazebo's dynamics parameters.
 
-        Raises ShapeError; then what had been built is gone.
+        Raises ShapeError, after it has removed the bodies built so far.
         """
         built: List[Body] = []
         try:
@@ -175,9 +175,9 @@ class Builder:
         """Create the body of a link in PyBullet; returns its number.
 
         In its first step a rigid body has the inertia of its shape at the mass with which it was
-        created (measured): what `changeDynamics` sets counts from the second step on. So if the
-        moments of the file are others, the body is created with a mass that gives their mean. The
-        moments of a shape are kept: PyBullet keeps some memory of each body that it creates.
+        created (measured); `changeDynamics` applies from the second step on. If the moments of the
+        file differ from these, the body is created with a mass that gives their mean. The
+        moments of a shape are cached, because PyBullet leaks memory for each created body.
         """
         def create(mass: float) -> int:
             uid: int = pybullet.createMultiBody(
@@ -315,7 +315,7 @@ class Builder:
                     balls=tuple(balls), pieces=tuple(pieces))
 
     def _ease(self, uid: int, axes: Sequence[Axis]) -> None:
-        """Work out once how easily the axes of a tree move."""
+        """Store the mobility of each axis of a tree, 1/kg or 1/(kg m^2); computed once."""
         if axes and axes[0].row not in self._eases:
             found: Any = mobility(
                 MassMatrix(uid), [axis.index for axis in axes]).diagonal().tolist()
@@ -335,14 +335,14 @@ class Builder:
                                                    above.orientation))
 
     def remove(self, built: Sequence[Body]) -> None:
-        """Take the bodies out of PyBullet."""
+        """Remove the bodies from PyBullet."""
         self._ignore_each_other(built, False)
         for body in built:
             remove(body)
             self._shapes.give(body.shapes)
 
     def _ignore_each_other(self, built: Sequence[Body], ignored: bool = True) -> None:
-        """Links of one model collide only where `self_collide` asks (`SelfCollision`)."""
+        """Disable collisions of links of one model, except where `self_collide` enables them."""
         if self._model.static:
             return
         for plan, body in zip(self.plans, built):
@@ -364,6 +364,6 @@ def _colliders(body: Body) -> List[_Collider]:
 
 
 def _fit(uid: int, index: int, shape: Recipe) -> None:
-    """Take off the 1 mm that Bullet adds around a convex hull; those in compounds keep it."""
+    """Remove the margin of 1 mm that Bullet adds to a convex hull; hulls in compounds keep it."""
     if shape.is_hull:
         pybullet.changeDynamics(uid, index, collisionMargin=0.0)

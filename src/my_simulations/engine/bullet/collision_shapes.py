@@ -1,4 +1,4 @@
-"""Collision shapes of a link, in PyBullet's terms."""
+"""Make the collision shapes of a link in PyBullet."""
 from __future__ import annotations
 
 import contextlib
@@ -38,22 +38,22 @@ from ..scratch_folder import Scratch
 from .face_boxes import FaceBoxes
 
 MAX_SHAPES = 16
-"""Shapes in one compound; one more kills the process (measured, PyBullet 3.2.7)."""
+"""Shapes in one compound; one more crashes the process (measured, PyBullet 3.2.7)."""
 
 MAX_TRIANGLES = 100_000
-"""Triangles of a static shape; larger meshes are divided. Bullet takes 0.15 s for so many."""
+"""Triangles of a static shape; larger meshes are divided. Bullet needs 0.15 s for so many."""
 
 _ROWS = 10_000
 
 _MARGIN = 1e-3
-"""What Bullet adds around a hull in a compound, m; that of a lone one can be taken off."""
+"""Margin of a hull in a compound, m; the margin of a single hull can be removed."""
 
 _FLOOR = 1e6
 """Half the edge of the box that stands below a plane, m."""
 
 
 class ShapeError(SimulationError):
-    """A collision that PyBullet refuses; the message is one sentence for the user."""
+    """PyBullet rejects a collision; the message is one sentence for the user."""
 
 
 class HullFile:
@@ -73,14 +73,14 @@ def _remove(path: str) -> None:
 
 @dataclass(frozen=True)
 class Recipe:
-    """A compound as PyBullet is asked for it, as often as wanted: the file's names, arguments.
+    """The arguments with which PyBullet makes a compound shape, any number of times.
 
     Attributes:
         role: "plane", "floor" for the box that stands below a plane, "faces" for boxes in place of
             the flat faces of meshes, or "" (see `collision_groups`).
-        is_hull: it is one convex hull of points.
-        frame: where its body stands, seen from that of the link.
-        hulls: the file of the arguments that is for this recipe and equal ones only.
+        is_hull: whether it is one convex hull of points.
+        frame: pose of its body in the frame of the link's body.
+        hulls: the file that only this recipe and equal ones use.
     """
 
     names: str
@@ -96,7 +96,7 @@ class Recipe:
         return repr((self.arguments, self.is_hull))
 
     def make(self) -> int:
-        """PyBullet's number of a new one. Raises ShapeError."""
+        """Make a shape and return its PyBullet number. Raises ShapeError."""
         shape: int = pybullet.createCollisionShapeArray(**self.arguments)
         if shape < 0:
             raise ShapeError(f"the physics engine refused the collision shapes {self.names}")
@@ -104,10 +104,10 @@ class Recipe:
 
 
 class ShapeFactory:
-    """Knows what makes a shape. Meshes go through files of its own, removed at the end.
+    """Makes shapes. It passes meshes to PyBullet in scratch files, which `close` removes.
 
     Attributes:
-        moments: of a new rigid body, in kg m^2, by the number of its shape and its mass.
+        moments: principal moments of a new rigid body, kg m^2, by its shape number and mass.
     """
 
     def __init__(self) -> None:
@@ -127,10 +127,10 @@ class ShapeFactory:
 
     @property
     def unseen(self) -> int:
-        """A visual shape of one triangle, for all bodies of a world; nobody looks at them here.
+        """A visual shape of one triangle for all bodies of a world; nothing is rendered here.
 
-        Without one PyBullet makes a picture of every collision shape, textures and all: a sphere
-        or a plane takes three times as long to create, a mesh is read twice (measured).
+        Without it PyBullet makes a textured visual shape for every collision shape: a sphere or
+        a plane then takes three times as long to create, and a mesh is read twice (measured).
         """
         if self._unseen < 0:
             self._unseen = pybullet.createVisualShape(
@@ -138,53 +138,53 @@ class ShapeFactory:
         return self._unseen
 
     def take(self, recipe: Recipe) -> int:
-        """PyBullet's number of a shape that no body has. Raises ShapeError.
+        """Return the PyBullet number of a shape that no body uses. Raises ShapeError.
 
-        PyBullet keeps shapes when their body is removed, and refuses to remove them: with a new one
-        for each body it grows by 3.5 kB a body, else by 0.9 kB (measured, 3.2.7).
+        PyBullet keeps the shapes of removed bodies and cannot remove them. With a new shape for
+        each body, memory grows by 3.5 kB per body; with reuse, by 0.9 kB (measured, 3.2.7).
         """
         unused = self._unused.get(recipe.key)
         return unused.pop() if unused else recipe.make()
 
     def give(self, taken: Sequence[Tuple[Recipe, int]]) -> None:
-        """Shapes whose body was removed, for the next one like it."""
+        """Store the shapes of a removed body, so that `take` can return them again."""
         for recipe, number in taken:
             self._unused.setdefault(recipe.key, []).append(number)
 
     def forget_world(self) -> None:
-        """The simulation was reset, and what was made for it is gone; files stay."""
+        """Discard the shapes after a reset of the simulation; mesh files stay."""
         self._unseen = -1
         self._unused.clear()
         self.moments.clear()
 
     def recipes(self, collisions: Sequence[Collision], meshes: MeshTable, frame: Pose,
                 static: bool, whole: bool = False) -> List[Recipe]:
-        """What makes the shape of a link, files written: one, or several for a large static link.
+        """Return the recipes of a link, mesh files written; only a static link can have several.
 
         Args:
-            collisions: the link's, poses in the link frame.
+            collisions: the collisions of the link, with poses in the link frame.
             meshes: loaded meshes by `mesh_key`.
-            frame: the link frame seen from the frame the body is built in.
-            static: static meshes collide as triangles, and boxes in place of their flat faces,
-                others as their convex hull.
-            whole: all triangles of static meshes, and no boxes.
+            frame: pose of the link frame in the frame in which the body is built.
+            static: meshes of a static link collide as triangles, with boxes for their flat
+                faces. Meshes of other links collide as convex hulls.
+            whole: use all triangles of static meshes, without boxes.
 
         Raises:
-            ShapeError: there is no such shape.
+            ShapeError: a geometry has no collision shape.
         """
         if static:
             return list(self.static_recipes(collisions, meshes, frame, whole))
         solid = [c for c in collisions if not isinstance(c.geometry, Empty)]
         if len(solid) <= MAX_SHAPES:
             return [self._recipe(solid, meshes, frame, static)] if solid else []
-        # A moving link must be one body: curved shapes first, the rest as hulls of one file.
+        # A moving link must be one body. Shapes beyond the limit become hulls in one file.
         solid.sort(key=lambda c: isinstance(c.geometry, (Box, Mesh)))
         kept, rest = solid[:MAX_SHAPES - 1], solid[MAX_SHAPES - 1:]
         return [self._recipe(kept, meshes, frame, static, self._hulls(rest, meshes, frame))]
 
     def static_recipes(self, collisions: Sequence[Collision], meshes: MeshTable, frame: Pose,
                        whole: bool = False) -> Iterator[Recipe]:
-        """As `recipes` for a static link, one after the other: each takes less than a second.
+        """Yield the recipes of a static link one by one; each takes less than a second.
 
         A mesh of more than `MAX_TRIANGLES` is divided into pieces with a recipe each.
         """
@@ -209,7 +209,7 @@ class ShapeFactory:
     def prepare(self, model: Model, meshes: MeshTable) -> Iterator[None]:
         """Make the shapes of a static model in advance, one for each value of the iterator.
 
-        `take` returns them later, so that little remains to be done when the model is built.
+        `take` returns them later, so that the build of the model takes little time.
 
         Raises:
             ShapeError: a shape cannot be made.
@@ -223,10 +223,10 @@ class ShapeFactory:
                 yield
 
     def _floor(self, plane: Collision, meshes: MeshTable, frame: Pose) -> Recipe:
-        """The box whose top is a plane, with a body of its own in its middle.
+        """Return the box whose top is a plane; its own body has its origin in the box centre.
 
-        If the shape had an offset instead, Bullet would make a compound of it: steps in which boxes
-        stand on it then take a tenth more instructions, and end with the same bits (measured).
+        With an offset shape instead, Bullet makes a compound. Steps with boxes on it then take
+        10 % more instructions, for bit-identical results (measured).
         """
         assert isinstance(plane.geometry, Plane)
         turn = _to_z(plane.geometry)
@@ -291,10 +291,10 @@ class ShapeFactory:
         raise ShapeError(f"no collision shape for {type(geometry).__name__}")
 
     def _hulls(self, collisions: Sequence[Collision], meshes: MeshTable, frame: Pose) -> HullFile:
-        """Several collisions as one file of convex parts, in the body's frame.
+        """Write several collisions to one file of convex parts, in the body's frame.
 
-        The path depends on the content only, so that equal links have equal recipes, and take the
-        shapes that an earlier one has left.
+        The path depends on the content only. So equal links have equal recipes, and reuse the
+        shapes of removed links.
         """
         stream, first = io.StringIO(), 1
         for collision in collisions:
@@ -313,14 +313,14 @@ class ShapeFactory:
         return file
 
     def _hull(self, geometry: Geometry) -> str:
-        """A curved shape that Bullet does not have, as a hull of points."""
+        """Write a curved shape that Bullet does not have as a hull of points; return the path."""
         points = hull_points(geometry)
         return self._file(repr(geometry), MeshData(points, naming_triangles(len(points))), True)
 
     def _file(self, key: str, mesh: MeshData, static: bool, margin: float = 0.0) -> str:
-        """The mesh as a file: PyBullet takes compounds of meshes by file name only.
+        """Write a mesh to a file; PyBullet accepts meshes in compounds by file name only.
 
-        Static ones as their triangles, moving ones as their convex pieces, smaller by `margin` m.
+        Static meshes are written as triangles, others as convex parts shrunk by `margin`, m.
         """
         key = f"{key} {len(mesh.triangles) if static else 'pieces'} {margin}"
         if key not in self._files:
@@ -342,10 +342,10 @@ class ShapeFactory:
 
 
 def _write_part(stream: TextIO, vertices: np.ndarray, triangles: np.ndarray, first: int) -> None:
-    """One OBJ object; `first` is the file-wide number of its first vertex."""
+    """Write one OBJ object; `first` is the number of its first vertex in the file."""
     stream.write(f"o part{first}\n")
     for rows, line in ((vertices, "v %r %r %r\n"), (triangles + first, "f %d %d %d\n")):
-        for at in range(0, len(rows), _ROWS):  # one operation for many lines is five times as fast
+        for at in range(0, len(rows), _ROWS):  # many lines in one operation: five times as fast
             some = rows[at:at + _ROWS]
             stream.write(line * len(some) % tuple(some.ravel().tolist()))
 
@@ -359,7 +359,7 @@ def _triangles(collision: Collision, meshes: MeshTable) -> int:
 
 
 def _divided(collision: Collision, meshes: MeshTable) -> Iterator[Tuple[Collision, MeshTable]]:
-    """Collisions with `MAX_TRIANGLES` of a mesh each, in its order, and the mesh of each."""
+    """Divide a mesh collision into collisions of at most `MAX_TRIANGLES`, each with its mesh."""
     assert isinstance(collision.geometry, SOLIDS)
     key = mesh_key(collision.geometry)
     mesh = meshes[key]
@@ -370,7 +370,7 @@ def _divided(collision: Collision, meshes: MeshTable) -> Iterator[Tuple[Collisio
 
 
 def _pieces(collision: Collision, meshes: MeshTable) -> List[Tuple[np.ndarray, np.ndarray]]:
-    """The convex pieces of a collision as points, and triangles that name them all."""
+    """Return the convex parts of a collision: points, and triangles that use all of them."""
     geometry = collision.geometry
     if isinstance(geometry, SOLIDS):
         mesh = meshes[mesh_key(geometry)]

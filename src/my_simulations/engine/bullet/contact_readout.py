@@ -1,4 +1,4 @@
-"""The contacts of the last step, by link row."""
+"""Read the contacts of the last step, by link row."""
 from __future__ import annotations
 
 from typing import Callable, Dict, List, Optional, Tuple
@@ -14,11 +14,12 @@ from .bodies import Body
 def read_contacts(bodies: Dict[int, Body], limit: int,
                   load: Callable[[int, int, Vec3], Optional[float]],
                   *more_friction: Callable[[int, int, Vec3], Vec3]) -> Tuple[Contact, ...]:
-    """At most `limit` contacts between known links; `bodies` by PyBullet's number.
+    """Return at most `limit` contacts between registered links; `bodies` by PyBullet's number.
 
-    `more_friction` tell what acts on a link, of body and index, at a point besides Bullet's; `load`
-    what presses there, where that is not what Bullet says. Points that are apart and carry nothing
-    are none, as in Gazebo, whose engines have contacts of overlapping shapes alone.
+    Each function in `more_friction` returns the friction that this engine adds to Bullet's, N, at
+    a point of a link (body number, link index, point). `load` returns the normal force, N, that
+    replaces Bullet's, or None. Points of separated surfaces without a load are omitted: Gazebo's
+    engines report contacts of overlapping shapes only.
     """
     found: List[Contact] = []
     for contact in pybullet.getContactPoints():
@@ -29,7 +30,7 @@ def read_contacts(bodies: Dict[int, Body], limit: int,
                 part.row for part in body.colliders
                 if part.index == index or (body.rigid and part.index == BASE)][:1]
         if len(rows) == 2:
-            # Bullet does not solve points that are apart: what they tell is of an older step.
+            # Bullet does not solve points of separated surfaces: their forces are of an older step.
             force = contact[9] if contact[8] <= 0.0 else 0.0
             for place in (contact[1], contact[3], contact[5]), (contact[2], contact[4], contact[6]):
                 told = load(*place)

@@ -1,27 +1,28 @@
-"""What keeps standing things where they stand.
+"""Keep bodies at rest in place: separate initial overlaps, and choose the solver accuracy.
 
-After something was put into the world overlaps are parted without giving velocity, for a second at
-most: with split impulses Bullet moves rigid bodies apart and leaves their momentum alone, so that a
-body that starts in a shelf does not jump out of it, and one with a large moment of inertia does not
-turn on for ever. Their price is that Bullet forgets to put joints back that went past their stops,
-so that is done here, without velocity too.
+Split impulses act for at most 1 s after a body was added. With them Bullet separates overlapping
+rigid bodies without a change of momentum. So a body that starts inside a shelf does not jump out,
+and a body with a large moment of inertia does not keep turning. In this mode Bullet does not
+correct joints that are past their limits; this module corrects them, also without velocity.
 
-With that, contacts may begin with 0.99 of the impulse that they had in the step before. The split
-impulses end once nothing is deep: with them a stack of ten boxes leans by 1 mm a second, and a wall
-of 200 bricks moves 1.7 mm in one (measured).
+Meanwhile contacts start with up to 0.99 of their impulse of the step before. Split impulses end
+once no overlap is deep: with them a stack of ten boxes leans by 1 mm per second, and a wall of 200
+bricks moves 1.7 mm per second (measured).
 
-Bullet ends its iterations once no row changes a velocity by more than sqrt(1e-7) m/s, at which a
-thing that stands may drift. Contacts of articulated bodies start from nothing in each step (there
-is no warm start for them): a parked robot went 1 mm and 0.8 degrees in a minute, or slid where its
-wheels were not solved in 50 iterations (measured). While one that touches something is slow, the
-world is solved to 3e-8 m/s and with more iterations, which takes five times as long. One that has
-then stood still for half a second, that nothing acts on but gravity and static bodies, and of which
-no motor moves an axis, is held: put back with its joints every 16 steps, at rest. Until something
-touches it, the world is solved as if it were not there. Rigid bodies that may not sleep, or that a
-force or a tie keeps awake, creep where friction holds them; while there are such, it is solved to
-3e-6 m/s. What moves, sleeps, or stands on the level costs nothing. Small ones that may not sleep
-creep on the level too, for which 3e-4 m/s is much: twenty cards of 2 mm went 2.7 mm apart in 20 s,
-solved so 0.3 mm.
+Bullet ends its iterations once no constraint row changes a velocity by more than sqrt(1e-7) m/s.
+With this residual a body at rest can drift. Contacts of articulated bodies have no warm start: a
+parked robot moved 1 mm and 0.8 degrees in a minute, or slid if 50 iterations did not solve its
+wheels (measured). The accuracy depends on the bodies:
+
+- While a slow articulated body touches something, the residual is 3e-8 m/s, with more iterations.
+  Steps then take five times as long.
+- An articulated body is held after it has stood still for half a second, if only gravity and static
+  bodies act on it and no motor moves an axis. Every 16 steps it and its joints are set back to the
+  held pose, at rest. Until another body touches it, it does not affect the accuracy.
+- Rigid bodies that may not sleep, or that a force or a tie keeps awake, creep on slopes. While
+  there are such bodies, the residual is 3e-6 m/s. Small ones creep on level floors too: twenty
+  cards of 2 mm moved 2.7 mm apart in 20 s, with this residual 0.3 mm.
+- Bodies that move, sleep, or stand on a level floor cost nothing.
 """
 from __future__ import annotations
 
@@ -38,28 +39,28 @@ from .rest_place import put_at_rest, read_place
 from .step_helper import FAR, StepHelper, next_multiple
 from .world_parameters import USUAL_ACCURACY, Accuracy, WorldParameters
 
-JointStates = Sequence[Any]  # as PyBullet tells them
+JointStates = Sequence[Any]  # as PyBullet returns them
 
-EVERY = 16            # steps between two looks at articulated bodies
-_RIGID_EVERY = 256    # and at rigid ones, of which there may be hundreds
+EVERY = 16            # steps between two checks of articulated bodies
+_RIGID_EVERY = 256    # the same for rigid bodies, of which there may be hundreds
 _SLOW = 0.02          # m/s and rad/s: of the base, and of all joints
-_STILL = 2e-5         # m/s and rad/s, of the base: more is a motion of its own
-_STILL_JOINT = 3e-4   # rad/s or m/s: of a wheel of 6 cm whose base creeps so fast
-_CLEAR = 3            # looks
-_STANDS = 32          # looks: to be held, an acceleration must be below 4e-5 m/s^2
-_PUSHED = 2e-3        # m/s and rad/s, of the base: one that is held has less between two looks
+_STILL = 2e-5         # m/s and rad/s, of the base: a faster one moves, it does not creep
+_STILL_JOINT = 3e-4   # rad/s or m/s: the rate of a wheel of 6 cm on a base at _STILL
+_CLEAR = 3            # checks
+_STANDS = 32          # checks until a body is held; its acceleration is then below 4e-5 m/s^2
+_PUSHED = 2e-3        # m/s and rad/s: the base of a held body is slower between two checks
 _PUSHED_JOINT = 0.05  # rad/s or m/s
-_ON_ITS_WAY = 0.1     # share of the rate that is wanted of an axis
-_LEANS = 0.02         # friction by normal force
-_SMALL = 0.06         # m, radius: such a body creeps on the level too
+_ON_ITS_WAY = 0.1     # share of the commanded rate: an axis above it moves
+_LEANS = 0.02         # friction force / normal force: above it, a body leans
+_SMALL = 0.06         # m, radius: a smaller body creeps on level floors too
 _FOR_LEANING_BODIES = Accuracy(residual=1e-11)
 _FOR_STANDING_ROBOTS = Accuracy(4, 1e-15)
 _PARTING = 1.0        # s, at most
-_LEAST = 0.1          # s, at least: what is put down a little higher has landed
-_SHALLOW = 1e-4       # m: overlaps that may part with velocity
-_OVERLAPS_EVERY = 64  # steps between two looks at them
-_PAST_STOP = 1e-6     # rad or m past a stop that do not matter
-_PUT_BACK = 0.5       # share of the way back to the stop at each look
+_LEAST = 0.1          # s, at least: bodies placed just above a surface have landed by then
+_SHALLOW = 1e-4       # m: smaller overlaps may be separated with velocity
+_OVERLAPS_EVERY = 64  # steps between two checks of overlaps
+_PAST_STOP = 1e-6     # rad or m past a limit that are tolerated
+_PUT_BACK = 0.5       # share of the way back to the limit at each check
 
 
 @dataclass
@@ -67,10 +68,10 @@ class _Tree:
     """An articulated body.
 
     Attributes:
-        indices: of its axes.
-        looks: in a row at which it stood still.
-        clear: looks for which an arm that touched nothing need not be asked what it touches.
-        held: where its base, if it has a free one, and its axes are put back to; None: it is not.
+        indices: PyBullet's indices of its axes.
+        looks: consecutive checks at which it stood still.
+        clear: checks for which an arm without contacts is not queried for contacts.
+        held: pose of its base, if that is free, and of its axes to restore; None: not held.
     """
 
     body: Body
@@ -81,12 +82,12 @@ class _Tree:
 
 
 class ContactSettling(StepHelper):
-    """Chooses how exactly Bullet solves, and holds robots that stand.
+    """Chooses the accuracy of Bullet's solver, and holds robots at rest.
 
     Args:
-        parameters: of the world.
-        loaded: tells the bodies that timed forces act on in this step.
-        driven: tells the rate to which the axis of a row is driven; 0 for none.
+        parameters: solver parameters of the world.
+        loaded: returns the bodies that timed forces act on in this step.
+        driven: returns the rate to which the axis of a row is driven; 0 for none.
         notify: is called when a body is fixed at rest, or released.
     """
 
@@ -98,11 +99,11 @@ class ContactSettling(StepHelper):
         self._loaded, self._driven, self._notify = loaded, driven, notify
         self._trees: Dict[int, _Tree] = {}
         self._moving: Set[int] = set()
-        self._rigid: Dict[int, Body] = {}     # awake, or reached by a command since the last look
+        self._rigid: Dict[int, Body] = {}     # awake, or changed by a command since the last check
         self._leaning = False
         self._parting_steps, self._least_steps = 1000, 100
-        self._new = False                     # something was put in since the last look
-        self._arrived: List[_Tree] = []       # of that, what has axes
+        self._new = False                     # a body was added since the last check
+        self._arrived: List[_Tree] = []       # added articulated bodies
         self._until: Optional[int] = None     # the step at which split impulses end
 
     def configure(self, dt: float) -> None:
@@ -110,7 +111,7 @@ class ContactSettling(StepHelper):
         self._parting_steps, self._least_steps = round(_PARTING / dt), round(_LEAST / dt)
 
     def add(self, body: Body) -> None:
-        """Know a body; only articulated ones and those that may not sleep matter."""
+        """Register a body; only articulated ones and those that may not sleep matter."""
         self._new = True
         if body.moves:
             self._moving.add(body.uid)
@@ -122,7 +123,7 @@ class ContactSettling(StepHelper):
             self._rigid[body.uid] = body
 
     def forget(self, body: Body) -> None:
-        """A body is gone."""
+        """Discard the data of a removed body."""
         self._trees.pop(body.uid, None)
         self._arrived = [tree for tree in self._arrived if tree.body is not body]
         self._moving.discard(body.uid)
@@ -132,7 +133,7 @@ class ContactSettling(StepHelper):
             self._parameters.request_accuracy(USUAL_ACCURACY)
 
     def clear(self) -> None:
-        """All bodies are gone."""
+        """Discard the data of all bodies."""
         self._trees.clear()
         self._arrived.clear()
         self._moving.clear()
@@ -141,7 +142,7 @@ class ContactSettling(StepHelper):
         self._new, self._until = False, None
 
     def handle_event(self, event: BodyEvent, body: Body) -> None:
-        """A command reached a body: it may move from now on, or may not sleep any more."""
+        """Release a body that a command changed: it can move, or must not sleep."""
         if body.rigid and body.moves:
             self._rigid[body.uid] = body
         tree = self._trees.get(body.uid)
@@ -157,7 +158,7 @@ class ContactSettling(StepHelper):
         return PARTING_NOT_BEGUN if self._new else self._until
 
     def resume_parting(self, end: Optional[int]) -> None:
-        """Part overlaps as at the time of a saved state, not as of models just put in."""
+        """Resume the split impulses of a saved state; added models do not start them again."""
         if end == PARTING_NOT_BEGUN:
             return
         self._new, self._until = False, end
@@ -166,12 +167,12 @@ class ContactSettling(StepHelper):
 
     @property
     def held(self) -> Dict[int, RestPlace]:
-        """Where bodies are held, by their first link rows."""
+        """The poses of held bodies, by their first link rows."""
         return {tree.body.lead_row: tree.held for tree in self._trees.values()
                 if tree.held is not None}
 
     def hold(self, body: Body, place: RestPlace) -> None:
-        """Hold an articulated body at a place, like one that has stood still for long."""
+        """Hold an articulated body at a pose, as if it had stood still long enough."""
         tree = self._trees[body.uid]
         tree.looks = _STANDS + 1
         tree.held = place
@@ -179,7 +180,7 @@ class ContactSettling(StepHelper):
         self._notify(BodyEvent.FIXED_AT_REST, body)
 
     def due(self, step: int) -> int:
-        """At once when something was put in, else the next look."""
+        """The next step if a body was added, otherwise the step of the next check."""
         if self._new:
             return step
         if self._trees or self._until is not None:
@@ -187,11 +188,11 @@ class ContactSettling(StepHelper):
         return next_multiple(step, _RIGID_EVERY) if self._rigid else FAR
 
     def before(self, step: int, dt: float, gravity: Vec3) -> None:
-        """See now and then whether something stands."""
+        """Check periodically which bodies are at rest, and request the solver accuracy."""
         if self._new:
             self._new, self._until = False, step + self._parting_steps
             self._parameters.split_impulses(True)
-            # At once: an arm whose zero pose is past its stops may stand in the ground there.
+            # At once: an arm whose zero pose is past its limits may be inside the ground there.
             for tree in self._arrived if step % EVERY else ():
                 _put_back(tree.body, _states(tree))
             self._arrived.clear()
@@ -218,7 +219,7 @@ class ContactSettling(StepHelper):
             _FOR_LEANING_BODIES if self._leaning else USUAL_ACCURACY)
 
     def _is_parted(self, step: int) -> bool:
-        """Whether nothing lies deep in anything else any more."""
+        """Whether no contact overlaps by more than `_SHALLOW`."""
         assert self._until is not None
         if step < self._until - self._parting_steps + self._least_steps:
             return False
@@ -260,9 +261,9 @@ class ContactSettling(StepHelper):
         return True
 
     def _is_driven(self, body: Body, states: JointStates) -> bool:
-        """Whether a motor or a servo moves an axis: slow as it is, it is on its way.
+        """Whether a motor or a servo moves an axis, however slowly.
 
-        One that is blocked, as a wheel against a wall, has none of the rate that it is to have.
+        A blocked axis, as of a wheel against a wall, stays below a tenth of its commanded rate.
         """
         for axis, (_, rate, *_) in zip(body.axes, states):
             wanted = self._driven(axis.row)
@@ -272,13 +273,13 @@ class ContactSettling(StepHelper):
 
 
 def _states(tree: _Tree) -> JointStates:
-    """Of its axes."""
+    """Return the states of the axes of a tree."""
     found: JointStates = pybullet.getJointStates(tree.body.uid, tree.indices) or ()
     return found
 
 
 def _put_back(body: Body, states: JointStates) -> None:
-    """Move joints that are past a stop towards it, their rates unchanged."""
+    """Move joints that are past a limit towards it, with unchanged rates."""
     for axis, (position, rate, *_) in zip(body.axes, states):
         past = position - min(max(position, axis.lower), axis.upper)
         if abs(past) > _PAST_STOP:
@@ -286,7 +287,7 @@ def _put_back(body: Body, states: JointStates) -> None:
 
 
 def _creeps(body: Body) -> bool:
-    """A rigid body is slow, and small, or friction carries a share of its weight."""
+    """Whether a rigid body is slow, and small or partly held by friction."""
     uid = body.uid
     if _speed(uid) > _SLOW:
         return False
@@ -301,6 +302,6 @@ def _creeps(body: Body) -> bool:
 
 
 def _speed(uid: int) -> float:
-    """The largest part of the velocities of a body, m/s or rad/s."""
+    """Return the largest component of a body's velocities, m/s or rad/s."""
     linear, angular = pybullet.getBaseVelocity(uid)
     return max(map(abs, (*linear, *angular)))

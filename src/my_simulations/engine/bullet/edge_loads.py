@@ -1,11 +1,11 @@
-"""How the weight of a base is shared by the edges of its wheels, where they slide.
+"""Distribute the weight of a base over the edges of its sliding wheels.
 
-Four wide wheels stand on eight edges of a level floor. How much each carries is not determined for
-rigid bodies, and the solver keeps whichever solution it began with: the inner edges on the right
-and the outer ones on the left, say, which turned a Husky at 1.08 rad/s. Real wheels, and contacts
-of Gazebo with their `kp`, are a little soft: where all give way alike, the load is linear in where
-an edge is. It has the same sum and the same moments. With it, and Coulomb's law at each edge, the
-Husky turns at 1.36 rad/s.
+Four wide wheels stand on a level floor on eight edges. For rigid bodies the load of each edge is
+statically indeterminate, and the solver keeps the solution with which it began. Such a solution
+loaded the inner edges on the right and the outer ones on the left; a Husky then turned at 1.08
+rad/s. Real wheels, and Gazebo's contacts with `kp`, are compliant: with equal stiffness at all
+edges, the load is a linear function of the position. It has the same sum and the same moments. With
+this load, and Coulomb's law at each edge, the Husky turns at 1.36 rad/s.
 """
 from __future__ import annotations
 
@@ -18,19 +18,19 @@ from ...geometry import Vec3, conjugate, cross, dot, norm, rotate, scale
 from .bodies import Part
 from .link_states import Motion
 
-Contact = Tuple[Any, ...]  # as PyBullet tells them
+Contact = Tuple[Any, ...]  # as PyBullet returns them
 Loads = Tuple[List[Contact], List[float]]
-_Plane = Tuple[Vec3, Vec3, Vec3, float]  # two directions in it, its normal, its height along that
+_Plane = Tuple[Vec3, Vec3, Vec3, float]  # two directions in it, its normal, its height along it
 
-_NEAR = 1e-4   # m: an edge nearer to the floor than this carries its share
-_LYING = 0.02  # of the axle along the normal of the floor: a wheel that is tilted has one edge
-_LEVEL = 1e-3  # m: floors that differ by more are several
-_ALIKE = 0.999  # of normals, likewise
+_NEAR = 1e-4   # m: an edge closer to the floor carries a load
+_LYING = 0.02  # of the axle along the floor normal: a wheel tilted more has one edge
+_LEVEL = 1e-3  # m: floors with a larger height difference are not one plane
+_ALIKE = 0.999  # cosine: floors with a smaller one between their normals, likewise
 
 
 @dataclass
 class _Edge:
-    """Contacts of one edge of a wheel, the middle of their places in the plane of the floor."""
+    """Contacts of one edge of a wheel, and their mean position in the floor plane, m."""
 
     wheel: int
     contacts: List[Contact]
@@ -39,7 +39,7 @@ class _Edge:
 
 
 def axle_of(part: Part, link: Link) -> Optional[Vec3]:
-    """The axis of the only collision of a link, a cylinder, in PyBullet's frame; else None."""
+    """Return the axis of a link's only collision if it is a cylinder, in PyBullet's frame."""
     if len(link.collisions) != 1 or not isinstance(link.collisions[0].geometry, Cylinder):
         return None
     along = rotate(link.collisions[0].pose.orientation, (0.0, 0.0, 1.0))
@@ -47,18 +47,18 @@ def axle_of(part: Part, link: Link) -> Optional[Vec3]:
 
 
 def carrying(contacts: Sequence[Contact]) -> Loads:
-    """Those of a link's contacts that carry something, and what, N."""
+    """Return the contacts of a link that carry a load, and their loads, N."""
     kept = [contact for contact in contacts if contact[9] > 0.0 and contact[8] <= 0.0]
     return kept, [contact[9] for contact in kept]
 
 
 def shared(wheels: Sequence[Tuple[Motion, Vec3, Sequence[Contact]]]) -> List[Loads]:
-    """The contacts that carry each wheel of a body, with the loads of edges that give way alike.
+    """Return the loaded contacts of each wheel of a body, with loads for equally stiff edges.
 
     Args:
-        wheels: of each its motion, the axle in PyBullet's frame, and all its contacts.
+        wheels: the motion, the axle in PyBullet's frame, and all contacts of each wheel.
 
-    Where the wheels do not stand on one plane, or an edge would be pulled down, loads stay.
+    If the wheels do not stand on one plane, or a load would be negative, Bullet's loads stay.
     """
     found = [carrying(contacts) for _, _, contacts in wheels]
     first = next((contacts[0] for contacts, _ in found if contacts), None)
@@ -91,7 +91,7 @@ def shared(wheels: Sequence[Tuple[Motion, Vec3, Sequence[Contact]]]) -> List[Loa
 
 def _edges(wheel: int, centre: Vec3, axis: Vec3, contacts: Sequence[Contact], plane: _Plane,
            moments: List[float]) -> Optional[List[_Edge]]:
-    """The edges of a wheel; adds load and moments of its contacts. None off the plane."""
+    """Return the edges of a wheel, or None off the plane; add its loads to `moments`."""
     (tx, ty, tz), (sx, sy, sz), (nx, ny, nz), height = plane
     u, v, w = centre
     a, b, c = axis
@@ -117,7 +117,7 @@ def _edges(wheel: int, centre: Vec3, axis: Vec3, contacts: Sequence[Contact], pl
 
 def _spread(edges: List[_Edge], total: float, x_load: float, y_load: float,
             ) -> Optional[List[float]]:
-    """The load of each edge, linear in x and y; None where that cannot be said."""
+    """Return the load of each edge, linear in x and y; None if there is no positive solution."""
     count = len(edges)
     x0 = y0 = xx = xy = yy = 0.0
     for edge in edges:

@@ -1,10 +1,10 @@
-"""Boxes in place of the flat faces of static meshes.
+"""Replace the flat faces of static meshes by boxes.
 
-What slides over the inner edges of triangles is stopped and thrown up: a box of 20 cm at 0.7 m/s
-lost 70 % of its speed in 3 s on a level floor without friction. Bullet can correct the normals at
-such edges (GEOM_CONCAVE_INTERNAL_EDGE), but for static bodies of its multibody solver only, whose
-contacts know no split impulses; upright cylinders are thrown up none the less. Boxes have no inner
-edges, no margin, and give four points of contact at once.
+Bodies that slide over inner edges of triangles lose speed and are lifted: a box of 20 cm at
+0.7 m/s lost 70 % of its speed in 3 s on a level floor without friction. Bullet can correct the
+normals at such edges (GEOM_CONCAVE_INTERNAL_EDGE), but only for static bodies of its multibody
+solver. Contacts of that solver have no split impulses, and upright cylinders are still lifted.
+Boxes have no inner edges and no margin, and give four contact points at once.
 """
 from __future__ import annotations
 
@@ -26,22 +26,22 @@ from ..convex.flat_faces import FlatFaces, Rectangle, flat_faces
 from ..principal_inertia import quat_of
 
 _THIN = 2.2e-3
-"""Thickness of such a box, m: Bullet's margin of 1 mm must fit on both sides."""
+"""Thickness of a face box, m: Bullet's margin of 1 mm must fit on both sides."""
 
 
 _MOST_TRIANGLES = 500_000
-"""Larger meshes keep all their triangles: looking for flat faces takes 1 s for so many."""
+"""Larger meshes keep all triangles: the search for flat faces takes 1 s for so many."""
 
 
 class FaceBoxes:
-    """Knows the flat faces of meshes, by their keys. Height maps have none of their own."""
+    """Caches the flat faces of meshes by mesh key; height maps are not searched."""
 
     def __init__(self) -> None:
-        self._faces: Dict[str, Optional[FlatFaces]] = {}   # None: none, so nothing is kept
+        self._faces: Dict[str, Optional[FlatFaces]] = {}   # None: the mesh has no flat faces
 
     def parted(self, solid: Sequence[Collision],
                meshes: MeshTable) -> Tuple[List[Collision], List[Collision], Dict[str, MeshData]]:
-        """What collides as before, the boxes, and the meshes without their flat faces."""
+        """Return the unchanged collisions, the boxes, and the meshes without their flat faces."""
         left: List[Collision] = []
         boxes: List[Collision] = []
         rest = dict(meshes)
@@ -62,7 +62,7 @@ class FaceBoxes:
         return left, boxes, rest
 
     def _known(self, key: str, meshes: MeshTable) -> Optional[FlatFaces]:
-        """The flat faces of a mesh, None if it has none or was not loaded."""
+        """Return the flat faces of a mesh; None if it has none or is not loaded."""
         if key not in self._faces and key in meshes:
             found = (flat_faces(meshes[key])
                      if len(meshes[key].triangles) <= _MOST_TRIANGLES else None)
@@ -71,7 +71,7 @@ class FaceBoxes:
 
 
 def _place(face: Rectangle) -> Pose:
-    """The middle of the box: its top is the face, or the face is in its middle."""
+    """Return the pose of the box: the face is its top, or its middle for a two-sided face."""
     depth = 0.0 if face.from_both else 0.5 * _THIN
     x, y, z = (face.centre - depth * face.axes[2]).tolist()
     return Pose((x, y, z), quat_of(face.axes.T))

@@ -1,15 +1,15 @@
-"""Force-dependent slip (slip1, slip2): a surface that slips by its slip times the friction force.
+"""Force-dependent slip (slip1, slip2): the slip velocity is the slip times the friction force.
 
-Source: ODE's manual, "Contact"; Gazebo Classic 11 adds up the slips of the two surfaces, and counts
-them for the whole pair, however many points touch. Bullet's friction knows no slip, so it is taken
-away from such links (a share of 0.001 stays) and acts as an external force of ours. With the slip
-velocity v, the slip s and the force F of the step before, the next one is
+Source: ODE's manual, "Contact". Gazebo Classic 11 adds the slips of the two surfaces, and applies
+the sum to the whole pair, for any number of contact points. Bullet's friction has no such slip. So
+it is reduced to a share of 0.001 for such links, and this module applies friction as an external
+force. With the slip velocity v, the slip s and the force F of the last step, the next force is
 
     F' = (h F - v) / (s + h),  at most mu times the normal force,
 
-where h is how much velocity a force gives in one step: where nothing changes any more v = -s F
-exactly, and a slip that is stiff against the step (s less than h) does not overshoot for long. One
-that is stiffer still (a wheel that hardly turns) is none, and Bullet's friction acts.
+where h is the velocity change per force in one step, s/kg. In a steady state v = -s F exactly.
+For a slip below h the overshoot decays quickly. A slip far below h (a wheel that hardly turns)
+counts as no slip, and Bullet's friction acts.
 """
 from __future__ import annotations
 
@@ -39,22 +39,22 @@ from .bodies import Axis, Body, Part
 from .extra_surfaces import anisotropy
 from .surface_coefficients import directed, of_link
 
-_STIFF = 0.02           # of h: a slip below it is none
-_LEFT = 1e-3            # share of Bullet's friction that stays where ours acts
-_NEAR = 0.05            # m: a point that has moved further in one step is another one
+_STIFF = 0.02           # of h: a smaller slip counts as none
+_LEFT = 1e-3            # share of Bullet's friction that stays where this module applies friction
+_NEAR = 0.05            # m: a contact point that moved further in one step is a different one
 _LEAST_MOMENT = 1e-9    # kg m^2
 
 Key = Tuple[int, int]   # body uid, link index
-Contacts = List[Tuple[Any, ...]]  # as PyBullet tells them
+Contacts = List[Tuple[Any, ...]]  # as PyBullet returns them
 
 
 @dataclass
 class _Slippery:
-    """A link that is known.
+    """A registered link.
 
     Attributes:
-        slips: m/(N s), along and across `first`; across is along where there is no `first`.
-        first: the first direction, in the principal axes; None where slips have no direction.
+        slips: m/(N s), along and across `first`; both are equal without `first`.
+        first: the first direction, in the principal axes; None if the slip is isotropic.
         mus: coefficients along and across.
     """
 
@@ -67,26 +67,26 @@ class _Slippery:
 
     @property
     def slides(self) -> bool:
-        """Whether it slips by itself."""
+        """Whether it has a slip."""
         return any(self.slips)
 
 
 @dataclass
 class _Pair:
-    """Two links that touch: what acts on the first, along and across, N."""
+    """Two links in contact: the friction on the first, along and across, N; and by point."""
 
     force: Tuple[float, float] = (0.0, 0.0)
     points: Dict[Vec3, Vec3] = field(default_factory=dict)
 
 
 def slips(link: Link) -> bool:
-    """Whether a link slips by itself."""
+    """Whether the surface of a link has a slip."""
     surface = of_link(link)
     return bool(surface.slip1 or (surface.slip2 and any(surface.fdir1)))
 
 
 class ForceDependentSlip:
-    """Lets links slip."""
+    """Applies friction with force-dependent slip to links."""
 
     def __init__(self) -> None:
         self._links: Dict[Key, _Slippery] = {}
@@ -98,11 +98,11 @@ class ForceDependentSlip:
 
     @property
     def idle(self) -> bool:
-        """True when nothing slips."""
+        """True if no link has a slip."""
         return not self._slides
 
     def add(self, body: Body, part: Part, link: Link) -> None:
-        """Know a link of a body; of its surfaces the one that counts."""
+        """Register a link of a body with the surface that decides (`counting_collision`)."""
         collision = counting_collision(link)
         surface = Surface() if collision is None else collision.surface
         slips, first = (surface.slip1, surface.slip2), None
@@ -124,7 +124,7 @@ class ForceDependentSlip:
                 self._slides[key] = known
 
     def forget(self, body: Body) -> None:
-        """A body is gone."""
+        """Discard the data of a removed body."""
         for axis in body.axes:
             self._axes.pop(axis.row, None)
         for part in body.colliders:
@@ -137,20 +137,20 @@ class ForceDependentSlip:
             del self._pairs[pair]
 
     def clear(self) -> None:
-        """All bodies are gone."""
+        """Discard the data of all bodies."""
         for table in (self._links, self._rows, self._axes, self._slides, self._pairs,
                       self._wheels):
             table.clear()
 
     def set_wheels(self, wheels: Iterable[WheelSlip]) -> None:
-        """Let wheels slip by their own speed; those of links that have gone are ignored."""
+        """Set slips of wheels that depend on their speed; wheels of removed links are ignored."""
         for wheel in wheels:
             if wheel.row in self._rows and wheel.joint_row in self._axes:
                 self._wheels[wheel.row] = wheel
                 self._slides.update({key: self._links[key] for key in self._rows[wheel.row]})
 
     def friction(self, uid: int, index: int, at: Vec3) -> Vec3:
-        """What acts on a link at a contact besides Bullet's friction, N, world axes."""
+        """Return the friction on a link at a contact besides Bullet's, N, world axes."""
         best, found = _NEAR, ZERO3
         for (one, _), pair in self._pairs.items():
             for point, force in pair.points.items() if one == (uid, index) else ():
@@ -160,7 +160,7 @@ class ForceDependentSlip:
         return found
 
     def forces_on(self, uid: int) -> Iterator[Tuple[int, Vec3, Vec3]]:
-        """What acted on the links of a body in the last step: index, force, where; world axes."""
+        """Yield the friction on a body in the last step: link index, force, point; world axes."""
         for (one, two), pair in self._pairs.items():
             for at, force in pair.points.items():
                 if one[0] == uid:
@@ -169,7 +169,7 @@ class ForceDependentSlip:
                     yield two[1], scale(force, -1.0), at
 
     def apply(self, dt: float) -> None:
-        """Act before the next step of `dt` s."""
+        """Apply the friction of the next step, of `dt` s."""
         for wheel in self._wheels.values():
             self._turn(wheel)
         before, self._pairs = self._pairs, {}
@@ -190,7 +190,7 @@ class ForceDependentSlip:
     # -- links -------------------------------------------------------------------------------------
 
     def _turn(self, wheel: WheelSlip) -> None:
-        """Slips of a wheel from how fast it turns."""
+        """Set the slips of a wheel from its rate."""
         body, axis = self._axes[wheel.joint_row]
         rate = pybullet.getJointState(body.uid, axis.index)[1]
         share = wheel.radius * abs(rate) / wheel.normal_force
@@ -201,7 +201,7 @@ class ForceDependentSlip:
 
     def _rub(self, key: Key, other: Key, contacts: Contacts, pair: _Pair,
              dt: float) -> List[bool]:
-        """Work out and apply the friction of two links; in which directions there is a slip."""
+        """Compute and apply the friction of two links; return the directions that have a slip."""
         one, two = self._links[key], self._links[other]
         mine, theirs = _state(key), _state(other)
         carried = sum(contact[9] for contact in contacts)
@@ -232,7 +232,7 @@ class ForceDependentSlip:
             share = scale(force, contact[9] / carried)
             turning = subtract(velocity, slip)
             for n, axis in enumerate((along, across)):
-                if slides[n]:   # what turns about the contact's middle
+                if slides[n]:   # slip from rotation about the centre of the contact
                     share = add(share, scale(axis, -dot(turning, axis)
                                              / (len(contacts) * (soft[n] + gain))))
             pair.points[contact[5]] = share
@@ -245,7 +245,7 @@ class ForceDependentSlip:
 
 
 def _take(key: Key, link: _Slippery, ours: Tuple[bool, bool]) -> None:
-    """Take Bullet's friction away in the directions in which ours acts."""
+    """Reduce Bullet's friction in the directions in which this module applies friction."""
     if ours == link.ours:
         return
     link.ours = ours
@@ -270,7 +270,7 @@ def _velocity(state: _State, at: Vec3) -> Vec3:
 
 
 def _along(link: _Slippery, state: _State, normal: Vec3) -> Optional[Vec3]:
-    """The first direction in the plane of contact, or none."""
+    """Return the first direction in the contact plane, or None."""
     if link.first is None:
         return None
     first = rotate(state[1], link.first)
@@ -286,7 +286,7 @@ def _any_across(normal: Vec3) -> Vec3:
 
 
 def _ease(link: _Slippery, state: _State, contacts: Contacts) -> float:
-    """How easily a force at a contact accelerates a link, at most, 1/kg."""
+    """Return an upper bound of the acceleration of a link per force at a contact, 1/kg."""
     if not link.moves or link.part.mass <= 0.0:
         return 0.0
     arm = max(norm(subtract(contact[5], state[0])) for contact in contacts)

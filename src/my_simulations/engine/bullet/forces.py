@@ -1,4 +1,4 @@
-"""What acts on bodies anew in every step: timed forces, weightless links, dampers, springs.
+"""Apply the forces of each step: timed forces, weightless links, dampers, springs.
 
 PyBullet forgets external forces and joint torques after one step.
 """
@@ -40,10 +40,10 @@ _ROW = struct.Struct(f"={LINK_WIDTH}d")
 
 
 class Forces(StepHelper):
-    """All that must be done before the next step.
+    """Applies forces and efforts before each step.
 
     Attributes:
-        slip: links whose surfaces slip.
+        slip: friction of links with force-dependent slip.
     """
 
     events = frozenset((BodyEvent.STATE_SET, BodyEvent.STATE_REPAIRED, BodyEvent.FIXED_AT_REST,
@@ -54,11 +54,10 @@ class Forces(StepHelper):
                  release: Callable[[Body, Axis], None] = lambda body, axis: None,
                  motor_of: Callable[[int], Motor] = lambda row: None,
                  read_links: Callable[[Tuple[int, ...]], bytes] = lambda rows: b"") -> None:
-        """`loops_changed` gets the axis rows that PID loops drive whenever these change.
+        """`loops_changed` receives the axis rows that PID loops drive whenever these change.
 
-        `release` gives an axis that a servo has left back to its motor, or its friction; `motor_of`
-        returns the motor of the axis of a row. `read_links` returns the rows of links as they are
-        now.
+        `release` restores the motor or friction of an axis that a servo left. `motor_of` returns
+        the motor of the axis of a row. `read_links` returns the current rows of links.
         """
         self._motor_of, self._read_links = motor_of, read_links
         self._by_law: Dict[int, Tuple[Vec3, Vec3]] = {}   # of the last step, by force id
@@ -72,13 +71,13 @@ class Forces(StepHelper):
         self._axes: Dict[int, Tuple[Body, Axis]] = {}
         self._weightless: Dict[int, Tuple[Body, Part]] = {}
         self._implicit: Dict[int, ImplicitAxes] = {}
-        self._resting: Dict[int, ImplicitAxes] = {}   # dampers of bodies that are held
+        self._resting: Dict[int, ImplicitAxes] = {}   # dampers of bodies that are fixed at rest
         self._limits: Dict[int, Tuple[float, float]] = {}
         self.servos = JointServos(self._axes, wake, release)
         self.slip = ForceDependentSlip()
 
     def add_body(self, body: Body) -> None:
-        """Know the rows of a new body."""
+        """Register the rows of a new body."""
         for part in body.parts:
             self._parts[part.row] = (body, part)
             if not part.gravity and body.moves:
@@ -93,7 +92,7 @@ class Forces(StepHelper):
             self._limits[row] = (effort, rate)
 
     def set_implicit(self, body: Body, axes: Optional[ImplicitAxes]) -> None:
-        """Let these springs and dampers, or none, act on the axes of a body."""
+        """Set the springs and dampers of the axes of a body; None removes them."""
         for table in (self._implicit, self._resting):
             table.pop(body.uid, None)
         if axes is not None:
@@ -102,7 +101,7 @@ class Forces(StepHelper):
     def handle_event(self, event: BodyEvent, body: Body) -> None:
         """Reset loops after joints were set; omit dampers of a body that is fixed at rest."""
         if event is BodyEvent.FIXED_AT_REST:
-            # A servo may move it at any time.
+            # A servo can move the body at any time.
             if not self.servos.drives(body):
                 self._exchange_dampers(body, self._implicit, self._resting)
         elif event is BodyEvent.RELEASED:
@@ -137,7 +136,7 @@ class Forces(StepHelper):
             self._limits.pop(axis.row, None)
 
     def add(self, forces: Sequence[TimedForce]) -> str:
-        """Queue timed forces; returns why not, or ""."""
+        """Queue timed forces; return the reason of a refusal, or ""."""
         for force in forces:
             if force.row not in (self._parts if isinstance(force, TimedWrench) else self._axes):
                 return "the link or joint of the wrench or effort does not exist"
@@ -165,7 +164,7 @@ class Forces(StepHelper):
         self._loops_changed(rows)
 
     def clear(self) -> None:
-        """All bodies are gone, and every timed force with them."""
+        """Discard all bodies and all timed forces."""
         ended = bool(self._loops)
         for table in (self._timed, self._acting, self._by_law, self._loops, self._resumed,
                       self._parts, self._axes, self._weightless, self._implicit, self._resting,
@@ -181,16 +180,16 @@ class Forces(StepHelper):
         return tuple((number, loop.memory) for number, loop in self._loops.items())
 
     def resume_loops(self, memories: Sequence[Tuple[int, LoopMemory]]) -> None:
-        """Let PID loops that begin to act continue from these states, by force id."""
+        """Resume PID loops that start from now on with these states, by force id."""
         self._resumed = dict(memories)
 
     def damper_memories(self) -> Tuple[Tuple[int, DamperMemory], ...]:
-        """What springs and dampers have measured, by the first joint row of a body."""
+        """The states of springs and dampers, by the first joint row of a body."""
         return tuple((axes.first_row, axes.memory)
                      for table in (self._implicit, self._resting) for axes in table.values())
 
     def resume_dampers(self, memories: Sequence[Tuple[int, DamperMemory]]) -> None:
-        """Let springs and dampers continue from what they measured."""
+        """Resume springs and dampers with saved states, by the first joint row of a body."""
         for row, memory in memories:
             self._implicit[self._axes[row][0].uid].resume(memory)
 
@@ -219,12 +218,12 @@ class Forces(StepHelper):
         return {self._target(force).uid for force in self._acting.values()} | self.servos.moving
 
     def due(self, step: int) -> int:
-        """Each step while something acts anew in it."""
+        """Each step while any force acts, otherwise `FAR`."""
         return step if (self._timed or self._weightless or self._implicit
                         or not self.slip.idle or not self.servos.idle) else FAR
 
     def before(self, step: int, dt: float, gravity: Vec3) -> None:
-        """Everything that acts in the step that begins at count `step`."""
+        """Apply all forces of the step that begins at count `step`."""
         efforts: Dict[int, float] = {}
         if self._timed:
             self._begin_and_end(step)
@@ -249,7 +248,7 @@ class Forces(StepHelper):
             self.slip.apply(dt)
 
     def _give(self, efforts: Dict[int, float]) -> None:
-        """Efforts by row, all of a body in one call: a call for each costs four times as much."""
+        """Apply efforts by row, one call per body; a call per axis takes four times as long."""
         bodies: Dict[int, Tuple[List[int], List[float]]] = {}
         for row, effort in efforts.items():
             body, axis = self._axes[row]
@@ -260,9 +259,9 @@ class Forces(StepHelper):
             pybullet.setJointMotorControlArray(uid, indices, pybullet.TORQUE_CONTROL, forces=given)
 
     def _limited(self, force: TimedEffort, dt: float) -> float:
-        """An effort within the limits of its axis, each by itself as in Gazebo.
+        """Return a timed effort within the limits of its axis, each by itself as in Gazebo.
 
-        Nothing in the direction in which the axis moves faster than its velocity limit.
+        The effort is 0 if it would accelerate an axis that is above its velocity limit.
         """
         effort = force.effort
         effort_limit, rate_limit = self._limits.get(force.row, (-1.0, -1.0))
@@ -298,7 +297,7 @@ class Forces(StepHelper):
             targets = [self._target(force) for force in beginning]
             self._wake(targets)
             for body in targets:
-                # As in Gazebo, where a force wakes its body in each step.
+                # As in Gazebo, a force keeps its body awake.
                 body.loads += 1
                 if body.loads == 1:
                     set_sleep(body)
@@ -318,13 +317,13 @@ class Forces(StepHelper):
         if force != _NOTHING:
             pybullet.applyExternalForce(body.uid, part.index, force, at, pybullet.WORLD_FRAME)
         if torque != _NOTHING and body.rigid:
-            # Bullet's damping, of the step, would take its share off it.
+            # Compensates Bullet's damping, which reduces the added velocity in this step.
             _spin_up(body.uid, turn, part.moments, scale(torque, dt / body.turn_kept))
         elif torque != _NOTHING:
             pybullet.applyExternalTorque(body.uid, part.index, torque, pybullet.WORLD_FRAME)
 
     def _computed(self, wrench: TimedWrench, law: WrenchLaw, com: Vec3) -> Tuple[Vec3, Vec3]:
-        """Force and torque by the state of the link; none if they are not finite."""
+        """Return force and torque for the state of the link; zero if they are not finite."""
         n = _ROW.unpack(self._read_links((wrench.row,)))
         force, torque = law.wrench(Pose(n[0:3], n[3:7]), Twist(n[7:10], n[10:13]), com)
         found = (force, torque) if is_finite(*force, *torque) else (_NOTHING, _NOTHING)
@@ -333,22 +332,22 @@ class Forces(StepHelper):
 
 
 def _in_world(wrench: TimedWrench, part: Part, turn: Quat) -> Tuple[Vec3, Vec3]:
-    """Force, and torque about the centre of mass, in world axes; `turn` is that of PyBullet."""
+    """Return force, and torque about the centre of mass, in world axes; `turn`: PyBullet's."""
     force, torque, point = wrench.force, wrench.torque, wrench.point
     if wrench.in_link_axes:
-        # The link's axes, not the principal ones that PyBullet's frame follows.
+        # PyBullet's frame has the principal axes, the wrench is given in the link's axes.
         back = conjugate(part.link_from_com.orientation)
         force, torque, point = (rotate(turn, rotate(back, v)) for v in (force, torque, point))
     return force, add(torque, cross(point, force)) if any(point) else torque
 
 
 def _spin_up(uid: int, turn: Quat, moments: Vec3, impulse: Vec3) -> None:
-    """Give a rigid body angular momentum (N m s, world axes).
+    """Add angular momentum to a rigid body (N m s, world axes).
 
-    Bullet leaves torques out of its friction: what friction holds would creep by the velocity that
-    a torque gives in one step. And in a body's first step, and in the first after it was put
-    somewhere, a torque would meet the inertia of its shape, or of its former attitude: Bullet turns
-    the inertia along at the end of a step.
+    This replaces a torque for two reasons. Bullet's friction does not include torques, so a body
+    held by friction would creep by the velocity that a torque adds in one step. Bullet updates
+    the inertia tensor only at the end of a step. In the first step of a body a torque would use
+    the inertia of its shape; in the first step after a new pose, that of the former attitude.
     """
     linear, angular = pybullet.getBaseVelocity(uid)
     a, b, c = rotate(conjugate(turn), impulse)

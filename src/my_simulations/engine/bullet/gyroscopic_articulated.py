@@ -44,14 +44,14 @@ class GyroscopicArticulated:
         self._then: Dict[int, Whole] = {}
 
     def add(self, body: Body) -> None:
-        """Know a body; those joined to the world, turned by gravity or damped are left alone."""
+        """Register a body, except one joined to the world, turned by gravity, or damped."""
         if (not body.rigid and body.moves and body.base is not None
                 and all(part.gravity and not part.link.linear_decay and not part.link.angular_decay
                         for part in body.parts)):
             self._bodies[body.uid] = body
 
     def forget(self, body: Body) -> None:
-        """A body is gone."""
+        """Discard the data of a removed body."""
         self._bodies.pop(body.uid, None)
         self._then.pop(body.uid, None)
 
@@ -60,7 +60,7 @@ class GyroscopicArticulated:
         self._then.pop(body.uid, None)
 
     def clear(self) -> None:
-        """All bodies are gone."""
+        """Discard the data of all bodies."""
         self._bodies.clear()
         self._then.clear()
 

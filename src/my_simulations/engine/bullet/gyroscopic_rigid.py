@@ -1,13 +1,13 @@
-"""Keeps the angular momentum of bodies that tumble freely.
+"""Conserve the angular momentum of bodies that tumble freely.
 
 Bullet integrates the gyroscopic torque to first order: a body with three different moments that
 turns at 10 rad/s loses 3 to 5 % of its momentum and 10 % of its energy in 20 s. Without torque the
-momentum L = R I R^T w stays (Euler's equations), so the attitude follows q' = w(q) q / 2 with
-w = R I^-1 R^T L alone: after 8 ms of free flight it is put where Runge-Kutta 4 says. It met nothing
-if its velocity has changed by gravity alone. Of a damped body the damping's share is taken off L
-after each step.
+momentum L = R I R^T w is constant (Euler's equations), so the attitude follows q' = w(q) q / 2 with
+w = R I^-1 R^T L. After each 8 ms of free flight the attitude is set to the Runge-Kutta 4 solution.
+A body flies freely if gravity alone has changed its velocity. For a damped body, L is reduced by
+the damping after each step.
 
-Only bodies that turn fast are looked at; which they are is asked now and then.
+Only bodies that turn fast are corrected; a periodic check finds them.
 """
 from __future__ import annotations
 
@@ -23,9 +23,9 @@ from .body_events import COMMANDED, BodyEvent
 from .gyroscopic_articulated import GyroscopicArticulated
 from .step_helper import FAR, StepHelper, next_multiple
 
-_EVERY = 16        # steps between two looks for fast bodies
+_EVERY = 16        # steps between two checks for fast bodies
 _FAST = 1.0        # rad/s
-_ROUND = 0.02      # relative difference of moments that is none
+_ROUND = 0.02      # relative difference below which moments count as equal
 _SPAN = 8.1e-3     # s of free flight after which an attitude is corrected
 _ANGLE = 0.05      # rad of a step of Runge-Kutta
 _STATE_EVENTS = frozenset((BodyEvent.STATE_SET, BodyEvent.STATE_REPAIRED))
@@ -45,7 +45,7 @@ class GyroscopicRigid(StepHelper):
     events = COMMANDED | _STATE_EVENTS
 
     def __init__(self, loaded: Callable[[], Set[int]]) -> None:
-        """`loaded` tells the rows of links that a load acts on in this step."""
+        """`loaded` returns the rows of the links on which a timed force acts in this step."""
         self._loaded = loaded
         self._flights: Dict[int, _Flight] = {}   # since the last multiple of `_steps`
         self._steps = 1
@@ -56,7 +56,7 @@ class GyroscopicRigid(StepHelper):
         self._trees = GyroscopicArticulated()
 
     def add(self, body: Body) -> None:
-        """Know a body; only rigid, moving ones with different moments matter."""
+        """Register a body; only rigid, moving ones with different moments matter."""
         moments = body.parts[0].moments
         if body.rigid and body.moves and max(moments) - min(moments) > _ROUND * max(moments):
             self._moments[body.uid] = moments
@@ -66,7 +66,7 @@ class GyroscopicRigid(StepHelper):
         self._trees.add(body)
 
     def forget(self, body: Body) -> None:
-        """A body is gone."""
+        """Discard the data of a removed body."""
         self._moments.pop(body.uid, None)
         self._bodies.pop(body.uid, None)
         self._flights.pop(body.uid, None)
@@ -76,7 +76,7 @@ class GyroscopicRigid(StepHelper):
         self._trees.forget(body)
 
     def clear(self) -> None:
-        """All bodies are gone."""
+        """Discard the data of all bodies."""
         self._moments.clear()
         self._bodies.clear()
         self._damped.clear()
@@ -85,13 +85,13 @@ class GyroscopicRigid(StepHelper):
         self._trees.clear()
 
     def handle_event(self, event: BodyEvent, body: Body) -> None:
-        """Drop what was measured of a body before a command."""
+        """Discard the state of a body that was recorded before a command."""
         self._flights.pop(body.uid, None)
         if event in _STATE_EVENTS:
             self._trees.moved(body)
 
     def due(self, step: int) -> int:
-        """Each step while what tumbles is damped or has joints, else begin and end of 8 ms."""
+        """Each step for damped or articulated bodies, otherwise the start and end of 8 ms."""
         look = FAR if not self._moments and self._trees.idle else next_multiple(step, _EVERY)
         if self._trees.busy or not self._damped.isdisjoint(self._fast):
             return step
@@ -100,7 +100,7 @@ class GyroscopicRigid(StepHelper):
         return min(next_multiple(step, self._steps), next_multiple(step + 1, self._steps) - 1)
 
     def before(self, step: int, dt: float, gravity: Vec3) -> None:
-        """See now and then who turns fast, and note their motion."""
+        """Find fast bodies periodically, and record their motion."""
         if step % _EVERY == 0:
             self._steps = next((n for n in (8, 4, 2) if n * dt <= _SPAN), 1)
             self._fast = [uid for uid in self._moments if _is_fast(uid)]
@@ -113,7 +113,7 @@ class GyroscopicRigid(StepHelper):
                                              *pybullet.getBaseVelocity(uid))
 
     def after(self, step: int, dt: float, gravity: Vec3) -> None:
-        """Give the bodies that met nothing the attitude and velocity of their momentum."""
+        """Set attitude and velocity of freely flying bodies to match their angular momentum."""
         if self._trees.busy:
             self._trees.after(self._loaded())
         ends = (step + 1) % self._steps == 0
@@ -135,14 +135,14 @@ class GyroscopicRigid(StepHelper):
                          scale(gravity, span))
 
     def _correct(self, uid: int, flight: _Flight, span: float) -> None:
-        """Give a body that has flown for `span` s the attitude and velocity of its momentum."""
+        """Correct a body after `span` s of free flight to match its angular momentum."""
         moments = self._moments[uid]
         momentum = scale(_momentum(flight.turn, flight.angular, moments),
                          self._bodies[uid].turn_kept)
         turn, parts = flight.turn, ceil(span * norm(flight.angular) / _ANGLE)
         for _ in range(parts):
             turn = _turned(turn, momentum, moments, span / parts)
-        linear = pybullet.getBaseVelocity(uid)[0]  # first: placing a body stops it
+        linear = pybullet.getBaseVelocity(uid)[0]  # read first: setting the pose resets it
         pybullet.resetBasePositionAndOrientation(
             uid, pybullet.getBasePositionAndOrientation(uid)[0], turn)
         pybullet.resetBaseVelocity(uid, linear, _velocity(turn, momentum, moments))
@@ -162,7 +162,7 @@ def _momentum(turn: Quat, angular: Vec3, moments: Vec3) -> Vec3:
 def _velocity(turn: Quat, momentum: Vec3, moments: Vec3) -> Vec3:
     """w = R I^-1 R^T L, world axes; any length of the quaternion.
 
-    Written out: a step takes it five times for each body that tumbles.
+    Written without matrices for speed: each correction calls it several times.
     """
     x, y, z, w = turn
     one = 1.0 / sqrt(x * x + y * y + z * z + w * w)

@@ -165,17 +165,17 @@ class HelperSet:
         self.forces.servos.set_up(body, model, dt)
 
     def use_step_size(self, body: Body, model: Model) -> None:
-        """The step size has changed: work out anew what follows from it."""
+        """Recompute all values of a body that depend on the step size."""
         self.set_up_axes(body, model)
         self._decay.add(body, self.settings.step_size)
 
     def forget(self, body: Body) -> None:
-        """A body is gone."""
+        """Discard the data of a removed body."""
         for keeper in self._keepers:
             keeper.forget(body)
 
     def clear(self) -> None:
-        """All bodies are gone."""
+        """Discard the data of all bodies."""
         self.notices.forget_all()
         for keeper in self._keepers:
             keeper.clear()

@@ -1,20 +1,20 @@
-"""Springs and dampers of joint axes, integrated so that no stiffness diverges.
+"""Integrate springs and dampers of joint axes implicitly, stable for any stiffness.
 
 Bullet's joint damping is explicit: it is wrong above a tenth of I / dt and diverges above 2 I / dt,
 and an explicit spring does so above 4 I / dt^2. For the axes of one body, with the mobility matrix
-A (what acceleration a torque gives, all else free), dampers D, springs K at reference r, and the
-acceleration a that everything else gives them, the rates after the step are
+A (acceleration per torque with all other axes free), dampers D, springs K with reference r, and the
+acceleration a by all other forces, the rates after the step are
 
     (1 + dt F A (D + s dt K)) w' = w + dt F (a - A K (q - r)),  F = (e^x - 1) / x,  x = dt A_ii D_i
 
-which for one axis is the exact decay of a damper. Springs that are soft against the step (s near 0)
-act on the position before the step, as the rest of the integrator does, and keep their energy;
-stiff ones (s = 1) on the one after it. The torques that make it so are A^-1 ((w' - w) / dt - a).
-Efforts that are known count as known; of the rest of a, the steps before tell.
+which for one axis is the exact decay of a damper. Soft springs (s near 0) act on the position
+before the step, as in the rest of the integrator, and conserve energy. Stiff springs (s = 1) act on
+the position after it. The torques with this result are A^-1 ((w' - w) / dt - a). Known efforts
+enter a directly; the rest of a is estimated from the steps before.
 
-A motor that keeps its rate cancels the damper of its axis. If both act, the solver has to find that
-in each step, and does not within its iterations: wheels of 10 g with dampers of 1 N m s/rad turned
-0.6 and 0 % too fast. So such a damper acts only if the motor lacks the effort to overcome it.
+A motor that keeps its rate cancels the damper of its axis. If both act, the solver must cancel them
+in each step, and does not converge within its iterations: wheels of 10 g with dampers of
+1 N m s/rad turned 0.6 and 0 % too fast. So such a damper acts only if the motor cannot overcome it.
 """
 from __future__ import annotations
 
@@ -29,15 +29,15 @@ from ..run_state import DamperMemory
 from .bodies import Axis, Body
 from .mass_matrix import MassMatrix
 
-_TRUST = 0.5       # share of the newest look at what else accelerates the axes
-_FAR = 0.05        # rad or m: axes that have moved so far may have another mobility
-_EVERY = 100       # steps after which it is looked at anyway, for what other axes did
+_TRUST = 0.5       # weight of the newest estimate of the acceleration by other forces
+_FAR = 0.05        # rad or m: after this motion of an axis the mobility is recomputed
+_EVERY = 100       # steps after which it is recomputed anyway, as other axes can change it
 _STIFF = 10.0      # s is this times the spring's (w dt)^2, at most 1
 _MOST_DECAYS = 50.0
-_AT_RATE = 0.02    # of the rate of a motor: an axis as near to it is kept there
+_AT_RATE = 0.02    # of the rate of a motor: within it, the motor keeps the rate
 
 Motor = Optional[Tuple[float, float]]
-"""The rate of a motor, rad/s or m/s, and the most that it may spend, N m or N; None without one."""
+"""The rate of a motor, rad/s or m/s, and its largest effort, N m or N; None without a motor."""
 
 
 class ImplicitAxes:
@@ -59,14 +59,14 @@ class ImplicitAxes:
         self._others = 1.0 - _TRUST, _TRUST / dt, _TRUST
         self._tree: Optional[MassMatrix] = None
         self._ease = np.eye(len(self._rows))
-        self._tells: List[int] = []               # which of the axes change the mobility
-        self._constant = False                    # none does, nor anything else
+        self._tells: List[int] = []               # axes whose position changes the mobility
+        self._constant = False                    # no joint of the body does
         self._prepared_at: Optional[List[float]] = None
         self._age = 0
         self.disturbed()
 
     def disturbed(self) -> None:
-        """The joints were set: what was seen of them says nothing any more."""
+        """Discard the estimates after the joints were set."""
         self._other = [0.0] * len(self._rows)
         self._rates: Optional[List[float]] = None
         self._given: List[float] = []
@@ -80,27 +80,27 @@ class ImplicitAxes:
 
     @property
     def memory(self) -> DamperMemory:
-        """What was measured, for `resume`."""
+        """The state of the estimates, for `resume`."""
         states = pybullet.getJointStates(self._body.uid, self._indices)
         return DamperMemory(tuple(self._other), None if self._rates is None else tuple(self._rates),
                             tuple(self._given), tuple(self._efforts),
                             tuple(self._spent or [state[3] for state in states]))
 
     def resume(self, memory: DamperMemory) -> None:
-        """Continue from what was measured."""
+        """Continue from a saved state."""
         self._other, self._given = list(memory.other), list(memory.given)
         self._rates = None if memory.rates is None else list(memory.rates)
         self._efforts, self._spent = list(memory.efforts), list(memory.spent)
 
     def add_to(self, efforts: Dict[int, float], motor_of: Callable[[int], Motor]) -> None:
-        """Add the efforts of the next step, N m or N by row, to those that act anyway.
+        """Add the efforts of the next step, N m or N by row, to the other efforts.
 
         `motor_of` returns the motor of the axis of a row.
         """
         states = pybullet.getJointStates(self._body.uid, self._indices)
         positions, rates = [state[0] for state in states], [state[1] for state in states]
         if self._rates is not None:
-            # What accelerated the axes besides us: (w - w_before) / dt - given, smoothed.
+            # Acceleration by all other forces: (w - w_before) / dt - given, smoothed.
             kept, per_rate, trust = self._others
             self._other = [kept * other + per_rate * (rate - before) - trust * given
                            for other, rate, before, given in zip(
@@ -137,7 +137,7 @@ class ImplicitAxes:
                 and abs(load + float(self._damping[n]) * target) <= most)
 
     def _prepare_again(self, positions: List[float]) -> None:
-        """Look at the mobility when it may have changed: wheels that turn do not change it."""
+        """Recompute the mobility if it may have changed; turning wheels do not change it."""
         before = self._prepared_at
         if before is not None and self._constant:
             return
@@ -148,9 +148,10 @@ class ImplicitAxes:
             self._prepare()
 
     def _prepare(self) -> None:
-        """The efforts, and what accelerations they and the known ones give, are linear.
+        """Compute `_answer` and `_at_rest`: the linear map of a step, and its constant part.
 
-        In rates, positions, other accelerations and known efforts: `_answer`, and `_at_rest`.
+        Input: rates, positions, other accelerations, known efforts. Output: efforts of springs and
+        dampers, and the accelerations that these and the known efforts give.
         """
         dt, count = self._dt, len(self._rows)
         if self._tree is None:
@@ -167,7 +168,7 @@ class ImplicitAxes:
         keep = np.linalg.inv(one + dt * spread[:, None] * ease * (
             self._damping + share * dt * self._stiffness))
         gain = keep * spread                      # of a dt in w'
-        pull = -(gain @ (ease * self._stiffness))  # own acceleration by position
+        pull = -(gain @ (ease * self._stiffness))  # acceleration by springs per position
         own = np.hstack([(keep - one) / dt, pull, gain - one, (gain - one) @ ease])
         given = own.copy()
         given[:, 3 * count:] += ease
@@ -178,14 +179,14 @@ class ImplicitAxes:
 
 
 def mobility(tree: MassMatrix, indices: List[int]) -> np.ndarray:
-    """The acceleration of each joint for an effort on each, all other freedoms left free.
+    """Return the acceleration of each joint per effort on each; other joints move freely.
 
     (n, n), 1/kg or 1/(kg m^2), in the present configuration.
     """
     mass = tree.now()
-    if not np.isfinite(mass).all():  # it has diverged, and is put back at the next look
+    if not np.isfinite(mass).all():  # it has diverged; the next check restores it
         return np.eye(len(indices))
-    # An axis whose limits are one and the same is welded, and nothing moves it.
+    # An axis with equal limits is welded and does not move.
     moving = [n for n, index in enumerate(indices) if index in tree.places]
     chosen = [tree.places[indices[n]] for n in moving]
     answer = np.zeros((len(indices), len(indices)))
@@ -196,5 +197,5 @@ def mobility(tree: MassMatrix, indices: List[int]) -> np.ndarray:
 def _inverse(matrix: np.ndarray) -> np.ndarray:
     try:
         return np.linalg.inv(matrix)
-    except np.linalg.LinAlgError:  # a freedom without mass
+    except np.linalg.LinAlgError:  # a degree of freedom without mass
         return np.linalg.pinv(matrix)

@@ -1,4 +1,4 @@
-"""How the tables look when a world begins anew."""
+"""Cache the link and joint tables of a world at its start, for later resets."""
 from __future__ import annotations
 
 from typing import NamedTuple, Sequence, Tuple
@@ -12,7 +12,7 @@ from .state_readout import StateReadout
 from .state_restore import Entry
 
 Start = Tuple[Entry, Pose]
-"""A model, and the world pose of its frame at which it begins."""
+"""A model, and the initial world pose of its frame."""
 
 
 class _Rows(NamedTuple):
@@ -22,7 +22,7 @@ class _Rows(NamedTuple):
 
 
 class InitialStateCache:
-    """The rows that models have when they have just been built at some pose.
+    """Stores the rows of models as built at a pose.
 
     The same builder and the same pose give the same rows, bit for bit.
     """
@@ -32,7 +32,7 @@ class InitialStateCache:
         self._known: "WeakKeyDictionary[Builder, _Rows]" = WeakKeyDictionary()
 
     def keep(self, starts: Sequence[Start]) -> None:
-        """Remember the rows of models that have just been built, and nothing else has happened."""
+        """Store the rows of models that were just built; no step may have been made since."""
         self._readout.read()
         for entry, pose in starts:
             links, joints = entry.builder.link_rows, entry.builder.joint_rows
@@ -40,7 +40,7 @@ class InitialStateCache:
                                                self._readout.joints[joints].copy())
 
     def show(self, starts: Sequence[Start]) -> bool:
-        """Put these rows into the tables; False, and nothing is done, unless all are known."""
+        """Write the stored rows to the tables; return False and write none if any is missing."""
         known = [self._known.get(entry.builder) for entry, _ in starts]
         if any(rows is None or rows.pose != pose for rows, (_, pose) in zip(known, starts)):
             return False

@@ -108,7 +108,7 @@ class InterModelJoints(BodyObserver):
                 set_sleep(tied)
 
     def clear(self) -> None:
-        """All bodies are gone."""
+        """Discard the data of all bodies."""
         self._ties.clear()
         self._anchor = None
 

@@ -1,4 +1,4 @@
-"""What a tree of joints cannot say: closed loops, screws, gearboxes, axes that follow others."""
+"""Make constraints for joints outside the tree: closed loops, screws, gearboxes, mimics."""
 from __future__ import annotations
 
 import math
@@ -12,9 +12,9 @@ from ..body_plan import NO_LINK, BodyPlan
 from .bodies import Axis, Body, Part
 from .constraint_book import ConstraintBook, Number
 
-_FORCE = 1e7          # N or N m: what a closed loop or a gear may need
-_HINGE_LENGTH = 0.1   # m between the points that stand for a hinge
-_LEAST_RADIUS = 0.01  # m, of the points that stand for no freedom at all
+_FORCE = 1e7          # N or N m: largest force or torque of a closed loop or a gear
+_HINGE_LENGTH = 0.1   # m between the two points that represent a hinge
+_LEAST_RADIUS = 0.01  # m, of the points that represent a fixed joint
 _ERP = 0.2
 
 End = Tuple[Body, Part]
@@ -23,12 +23,12 @@ End = Tuple[Body, Part]
 
 def tie(book: ConstraintBook, joint: Joint, child: End, child_from_joint: Pose,
         parent: Optional[End], parent_from_joint: Pose) -> List[Number]:
-    """Hold a link to another as a joint would, limits and what else its axes have aside.
+    """Connect two links like a joint, without limits and other properties of its axes.
 
-    PyBullet has no hinge between bodies: points that stay together stand for it. Universal joints
-    hold as balls. Sliding ones are for links of articulated bodies only. Of the joint, type and
-    axis count; its frame is given in the frame of both links, or of the world for `parent` None.
-    Returns the numbers of the constraints in the book.
+    PyBullet has no hinge between bodies; two point-to-point constraints represent one. Universal
+    joints act as ball joints. Prismatic joints require links of articulated bodies. Only type and
+    axis of the joint are used; its frame is given in the frames of both links, or of the world for
+    `parent` None. Returns the numbers of the constraints in the book.
     """
     points: List[Vec3] = [(0.0, 0.0, 0.0)]
     kind = {"fixed": pybullet.JOINT_FIXED, "prismatic": pybullet.JOINT_PRISMATIC}.get(
@@ -37,16 +37,16 @@ def tie(book: ConstraintBook, joint: Joint, child: End, child_from_joint: Pose,
     if joint.type in ("revolute", "continuous"):
         points = [scale(axis, half * _HINGE_LENGTH) for half in (-0.5, 0.5)]
     elif joint.type == "fixed" and (child[0].rigid or (parent is not None and parent[0].rigid)):
-        kind = pybullet.JOINT_POINT2POINT  # to rigid bodies "fixed" gets the turns wrong
+        kind = pybullet.JOINT_POINT2POINT  # "fixed" constrains rotations of rigid bodies wrongly
         points = _about_the_centre(child[1], child_from_joint)
     return [_tie(book, child, compose(child_from_joint, Pose(at)), parent,
                  compose(parent_from_joint, Pose(at)), kind, axis) for at in points]
 
 
 def _about_the_centre(part: Part, link_from_joint: Pose) -> List[Vec3]:
-    """Three points, in the joint frame, about a link's centre of mass.
+    """Return three points around a link's centre of mass, in the joint frame.
 
-    As far from it as the mass is on average, they move the least when one of them is corrected.
+    Their distance is the mean radius of gyration: a correction of one then moves the others least.
     """
     radius = max(_LEAST_RADIUS, (sum(part.moments) / max(part.mass, 1e-9) / 2.0) ** 0.5)
     joint_from_com = compose(inverse(link_from_joint), part.link_from_com)
@@ -62,7 +62,7 @@ def _tie(book: ConstraintBook, one: End, mine: Pose, other: Optional[End], their
     if other is not None:
         theirs = compose(inverse(other[1].link_from_com), theirs)
         uid, index = other[0].uid, other[1].index
-        if body.rigid and not other[0].rigid:  # PyBullet wants the articulated body first
+        if body.rigid and not other[0].rigid:  # PyBullet requires the articulated body first
             (body, part), uid, index = other, body.uid, part.index
             mine, theirs = theirs, mine
     is_rigid = body.rigid and (other is None or other[0].rigid)
@@ -72,10 +72,10 @@ def _tie(book: ConstraintBook, one: End, mine: Pose, other: Optional[End], their
 
 
 class Constraints:
-    """The constraints of one model; `remove` before its bodies go.
+    """The constraints of one model; call `remove` before its bodies are removed.
 
     Attributes:
-        closing: what stands for joints that close loops: numbers in the book by the joint's name.
+        closing: constraints of joints that close loops: numbers in the book by joint name.
     """
 
     def __init__(self, book: ConstraintBook, model: Model, plans: Sequence[BodyPlan],
@@ -104,14 +104,14 @@ class Constraints:
         return self._end(name)
 
     def remove(self) -> None:
-        """Take them out."""
+        """Remove all constraints of the model."""
         self._book.remove(self._made)
         self._made.clear()
 
     # -- loops -----------------------------------------------------------------------------------
 
     def _close(self, joint: Joint) -> None:
-        """A joint that would close a loop."""
+        """Make the constraints of a joint that closes a loop."""
         parent, child = self._end(joint.parent), self._end(joint.child)
         at = self._model_from_joint(joint)
         made: List[int] = []
@@ -126,7 +126,7 @@ class Constraints:
         self.closing[joint.name] = made
 
     def _seen_from(self, end: End, at: Pose) -> Pose:
-        """A pose of the model frame seen from a link, at joint positions 0."""
+        """Return a pose given in the model frame in the frame of a link, at joint positions 0."""
         index = next(n for n, (_, other) in self._parts.items() if other is end[1])
         return compose(inverse(self._model.links[index].pose), at)
 
@@ -147,7 +147,7 @@ class Constraints:
 
     def _gear(self, follower: Tuple[Body, int], leader: Tuple[Body, int], ratio: float,
               target: float = 0.0) -> None:
-        """follower + ratio leader = target, of two axes of one body."""
+        """Constrain two axes of one body: follower + ratio leader = target."""
         if follower[0].uid != leader[0].uid:
             return
         self._made.append(self._book.make(False, (
@@ -156,7 +156,7 @@ class Constraints:
             gearRatio=ratio, maxForce=_FORCE, erp=_ERP, relativePositionTarget=target))
 
     def _screws(self, plan: BodyPlan, body: Body) -> None:
-        """Turning by thread_pitch rad a metre; positive pitches are left-handed in Gazebo."""
+        """Constrain screws to thread_pitch rad per metre; positive is left-handed in Gazebo."""
         offset = 0 if plan.fixed_base else 1
         for n, node in enumerate(plan.links[:-1]):
             following = plan.links[n + 1]
@@ -174,7 +174,7 @@ class Constraints:
                         axis.follower = turning, -pitch
 
     def _gearbox(self, joint: Joint) -> None:
-        """theta2 = -ratio theta1: angles of child and parent about the reference link."""
+        """Constrain theta2 = -ratio theta1: angles of child and parent to the reference link."""
         first = self._axis_between(joint.gearbox_reference, joint.parent)
         second = self._axis_between(joint.gearbox_reference, joint.child)
         if first is not None and second is not None:

@@ -1,4 +1,4 @@
-"""Motors of joint axes: a rate, and the effort that may be spent on it (ODE's `vel` and `fmax`)."""
+"""Motors of joint axes: a rate, and the largest effort for it (ODE's `vel` and `fmax`)."""
 from __future__ import annotations
 
 from typing import Callable, Dict, Iterable, List, Mapping, Optional, Set, Tuple
@@ -14,7 +14,7 @@ from .joint_axes import specs_of
 
 
 class JointMotors(BodyObserver):
-    """Keeps PyBullet's velocity motors as told; on axes without one they are the friction."""
+    """Sets PyBullet's velocity motors; on axes without a motor they represent joint friction."""
 
     def __init__(self, axes: Mapping[int, Tuple[Body, Axis]],
                  wake: Callable[[List[Body]], None]) -> None:
@@ -26,7 +26,7 @@ class JointMotors(BodyObserver):
         self._yielding: Set[int] = set()
 
     def yield_to(self, rows: Set[int]) -> None:
-        """PID loops drive these axes: their motors rest meanwhile, only friction stays."""
+        """Disable the motors of axes that PID loops drive from now on; friction stays."""
         changed, self._yielding = rows ^ self._yielding, set(rows)
         for row in changed:
             if row in self._motors and row in self._axes:
@@ -44,7 +44,7 @@ class JointMotors(BodyObserver):
         return self._driven.get(row)
 
     def set(self, motors: Iterable[JointMotor]) -> None:
-        """Set these; others stay. Raises CommandRefusedError, and then none is set."""
+        """Set these motors; others stay. Raises CommandRefusedError before any motor is set."""
         changed = list(motors)
         for motor in changed:
             if motor.row not in self._axes:
@@ -62,7 +62,7 @@ class JointMotors(BodyObserver):
             self._wake(list(woken.values()))
 
     def set_up(self, body: Body, model: Model) -> None:
-        """The axes of a body of `model` got their limits and friction (anew): motors go on."""
+        """Apply motors, or friction, to axes whose limits and friction were set (again)."""
         for axis, spec in specs_of(body, model):
             self._specs[axis.row] = spec
             if axis.row in self._motors:
@@ -71,20 +71,20 @@ class JointMotors(BodyObserver):
                 self._note(axis.row, spec.motor_rate, spec.friction)
 
     def forget(self, body: Body) -> None:
-        """A body is gone."""
+        """Discard the data of a removed body."""
         for axis in body.axes:
             self._motors.pop(axis.row, None)
             self._specs.pop(axis.row, None)
             self._driven.pop(axis.row, None)
 
     def clear(self) -> None:
-        """All bodies are gone."""
+        """Discard the data of all bodies."""
         self._motors.clear()
         self._specs.clear()
         self._driven.clear()
 
     def restore(self, body: Body, axis: Axis) -> None:
-        """Let the motor of an axis act, or without one its friction."""
+        """Enable the motor of an axis, or its friction if it has no motor."""
         motor = self._motors.get(axis.row)
         if motor is not None and motor.effort > 0.0 and axis.row not in self._yielding:
             rate, effort = motor.rate, motor.effort

@@ -1,4 +1,4 @@
-"""Servos of joint axes: loops and trajectories that are evaluated in every step."""
+"""Servos of joint axes: control loops and trajectories, evaluated in each step."""
 from __future__ import annotations
 
 import math
@@ -21,8 +21,7 @@ _FAST = 1e5     # rad/s or m/s, likewise
 class _Loops:
     """The servos of one body that must be computed in every step.
 
-    Two kinds, each with its joint indices, functions and rows: those that give an effort, and those
-    that set the rate of a motor.
+    There are two kinds: servos that return an effort, and servos that set the rate of a motor.
     """
 
     def __init__(self, uid: int) -> None:
@@ -48,32 +47,32 @@ class _Kind:
         self.advances: List[Advance] = []
 
     def advanced(self, uid: int, step: int) -> List[float]:
-        """What each wants in the step that begins at a count."""
+        """Return the effort or rate of each servo in the step that begins at count `step`."""
         return [advance(position, rate, step) for (position, rate, _, _), advance in zip(
             pybullet.getJointStates(uid, self.indices), self.advances)]
 
 
 class JointServos:
-    """Keeps servos; what needs no computing is left to PyBullet's motors."""
+    """Stores servos; PyBullet's motors run those that need no computation in each step."""
 
     def __init__(self, axes: Mapping[int, Tuple[Body, Axis]],
                  wake: Callable[[List[Body]], None],
                  release: Callable[[Body, Axis], None]) -> None:
-        """`release` gives an axis back to its motor, or its friction."""
+        """`release` restores the motor of an axis, or its friction."""
         self._axes, self._wake, self._release = axes, wake, release
         self._laws: Dict[int, ServoLaw] = {}
         self._busy: Dict[int, _Loops] = {}
         self._yielding: Set[int] = set()
         self._dt = 0.0
-        self._step = -1   # when they acted last
+        self._step = -1   # of the last call of `act`
 
     @property
     def idle(self) -> bool:
-        """Whether nothing must be computed."""
+        """Whether no servo must be computed in each step."""
         return not self._busy
 
     def yield_to(self, rows: Set[int]) -> None:
-        """PID loops drive these axes: their servos rest meanwhile, only friction stays."""
+        """Disable the servos of axes that PID loops drive from now on; friction stays."""
         changed, self._yielding = rows ^ self._yielding, set(rows)
         for row in changed & self._laws.keys():
             body, axis = self._axes[row]
@@ -87,9 +86,9 @@ class JointServos:
         return body.uid in self._busy
 
     def rate_of(self, row: int) -> float:
-        """The rate to which an axis is driven, rad/s or m/s, splines aside; 0 for one that is not.
+        """Return the rate to which an axis is driven, rad/s or m/s; 0 if none, or on a spline.
 
-        Of an axis that goes to a position, the most that it may have on its way.
+        For a position target it is the largest rate on the way.
         """
         law = self._laws.get(row)
         if law is None or law.servo.spline is not None or row in self._yielding:
@@ -101,7 +100,7 @@ class JointServos:
 
     @property
     def moving(self) -> Set[int]:
-        """PyBullet's numbers of bodies that are on their way along a spline."""
+        """PyBullet's numbers of bodies that move along a spline."""
         return {uid for uid, loops in self._busy.items()
                 if any(law.moves(self._step) for kind in (loops.efforts, loops.motors)
                        for law in kind.laws)}
@@ -139,14 +138,14 @@ class JointServos:
         return tuple((row, law.memory) for row, law in self._laws.items())
 
     def resume(self, memories: Iterable[Tuple[int, ServoMemory]]) -> None:
-        """Continue from the states of servos, which were set again."""
+        """Continue from saved states; the servos must be set before."""
         for row, memory in memories:
             self._laws[row].resume(memory)
             self._drive(*self._axes[row])
         self._sort()
 
     def set_up(self, body: Body, model: Model, dt: float) -> None:
-        """The axes of a body got their limits and friction (anew): servos go on."""
+        """Restart the servos of axes whose limits and friction were set (again)."""
         for axis, _ in specs_of(body, model):
             law = self._laws.get(axis.row)
             if law is not None:
@@ -157,7 +156,7 @@ class JointServos:
         self._sort()
 
     def disturbed(self, body: Body) -> None:
-        """The joints of a body were set."""
+        """Reset the servos of a body whose joints were set."""
         for axis in body.axes:
             law = self._laws.get(axis.row)
             if law is not None:
@@ -167,23 +166,23 @@ class JointServos:
                     self._drive(body, axis)
 
     def forget(self, body: Body) -> None:
-        """A body is gone."""
+        """Discard the data of a removed body."""
         self._busy.pop(body.uid, None)
         for axis in body.axes:
             self._laws.pop(axis.row, None)
 
     def clear(self) -> None:
-        """All bodies are gone."""
+        """Discard the data of all bodies."""
         self._laws.clear()
         self._busy.clear()
         self._yielding.clear()
         self._step = -1
 
     def act(self, efforts: Dict[int, float], shared: AbstractSet[int], step: int) -> None:
-        """Act in the step that begins at a count.
+        """Apply the servos in the step that begins at count `step`.
 
-        The efforts of bodies (PyBullet's numbers) that something else acts on, too, are added to
-        `efforts`, N m or N by row; those of others are given at once, a body at a time.
+        `shared` are PyBullet's numbers of bodies with other efforts. For these the efforts are
+        added to `efforts`, N m or N by row. For other bodies they are applied in one call each.
         """
         self._step = step
         for uid, loops in self._busy.items():
@@ -202,7 +201,7 @@ class JointServos:
                     targetVelocities=loops.motors.advanced(uid, step), forces=loops.forces)
 
     def efforts(self, rows: Sequence[int]) -> Tuple[float, ...]:
-        """What was spent on axes in the last step; 0 without a servo or motor."""
+        """Return the efforts on axes in the last step, N m or N; 0 without a servo or motor."""
         found: List[float] = []
         for row in rows:
             law = self._laws.get(row)
@@ -216,7 +215,7 @@ class JointServos:
         return tuple(found)
 
     def _sort(self) -> None:
-        """Find out anew what must be computed for which body."""
+        """Collect the servos that must be computed in each step, by body."""
         self._busy = {}
         for row, law in self._laws.items():
             if not law.steady and row not in self._yielding:
@@ -224,7 +223,7 @@ class JointServos:
                 self._busy.setdefault(body.uid, _Loops(body.uid)).add(axis, law)
 
     def _drive(self, body: Body, axis: Axis) -> None:
-        """Hand over what PyBullet does by itself."""
+        """Set the PyBullet motor of a servo that needs no computation in each step."""
         law = self._laws.get(axis.row)
         if law is None or not law.steady or law.gives_effort or axis.row in self._yielding:
             return

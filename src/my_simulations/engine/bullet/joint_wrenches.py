@@ -1,13 +1,12 @@
-"""What joints transmit, by d'Alembert's principle.
+"""Compute the wrenches that joints transmit, by d'Alembert's principle.
 
-What a joint exerts on the links that hang on it is what accelerates them, less all else that acts
-on them: gravity, contacts, wrenches from outside, and constraints that hold them to others.
-Bullet's own joint sensors are not used: with more than one joint they count Coriolis forces twice,
-and leave out what motors and stops exert (measured: 4 to 80 % off).
+The wrench of a joint on its outboard links is their inertial wrench minus all other forces on them:
+gravity, contacts, external wrenches, and constraints to other links. Bullet's own joint sensors are
+not used. With more than one joint they count Coriolis forces twice, and they omit the efforts of
+motors and limits (measured: 4 to 80 % off).
 
-The last step before a read-out is looked at, from before whatever acts ahead of it to after
-whatever corrects it, so that a model that is held or moved by command shows the forces of the
-motion that is seen.
+The last step before a read-out is measured, including all helpers that act before and after it. So
+the forces of a model that is held or moved by command match its visible motion.
 """
 from __future__ import annotations
 
@@ -46,22 +45,22 @@ from .sliding import Sliding
 from .state_restore import Entry
 
 FORGOTTEN = 100_000
-"""Steps without a reading after which a joint is not measured any more."""
+"""Steps without a reading after which a joint is no longer measured."""
 
 Key = Tuple[int, str]
 
 
 @dataclass(frozen=True)
 class _Cut:
-    """A joint, and what hangs on it.
+    """A joint, and its outboard links.
 
     Attributes:
         body: the body that the joint is in.
         chain: its links.
         joint: its description.
         child, parent: the parts at its ends; None for the world.
-        hung: the parts that move with its outer end, that one first.
-        parent_from_joint: its frame at position 0; used where the child is the world.
+        hung: the parts of its outboard links, the link at the joint first.
+        parent_from_joint: its frame at position 0; used if the child is the world.
     """
 
     body: Body
@@ -74,11 +73,11 @@ class _Cut:
 
 
 class _Seen:
-    """A body around a step.
+    """The state of a body before and after a step.
 
     Attributes:
-        before, after: how its links moved; Bullet tells the rest until it steps again.
-        outside: what acts on it besides gravity and what Bullet tells of.
+        before, after: states of its links; Bullet keeps its contact forces until the next step.
+        outside: forces on it, besides gravity, that Bullet does not report.
     """
 
     def __init__(self, body: Body, chain: Chain, outside: Acting) -> None:
@@ -90,7 +89,7 @@ class _Seen:
         self._answer: Optional[_WorkedOut] = None
 
     def worked_out(self, dt: float) -> "_WorkedOut":
-        """How its links were, how they were accelerated, and what acted on them."""
+        """Return the states of its links, their accelerations, and the forces on them."""
         if self._answer is None:
             before = states(self.body, self.before)
             note_contacts(self.outside, self.body)
@@ -104,14 +103,14 @@ _WorkedOut = Tuple[Dict[int, State], Dict[int, Motion], Acting]
 
 
 class JointWrenches(BodyObserver):
-    """Measures the joints that somebody reads."""
+    """Measures the joints whose wrenches are read."""
 
     def __init__(self, models: Mapping[int, Entry], forces: Forces, sliding: Sliding) -> None:
         self._models = models
         self._forces = forces
         self._sliding = sliding
         self._cuts: Dict[Key, _Cut] = {}
-        self._wanted: Dict[Key, int] = {}      # steps until it is forgotten
+        self._wanted: Dict[Key, int] = {}      # steps until its measurement ends
         self._seen: Dict[int, _Seen] = {}
         self._found: Dict[Key, Optional[JointWrench]] = {}
         self._dt = 0.0
@@ -119,11 +118,11 @@ class JointWrenches(BodyObserver):
 
     @property
     def idle(self) -> bool:
-        """True when nobody reads."""
+        """True if no joint is measured."""
         return not self._wanted
 
     def read(self, command: ReadJointWrenches) -> Tuple[Optional[JointWrench], ...]:
-        """The wrenches of the last step, and measure these joints from now on."""
+        """Return the wrenches of the last step, and measure these joints in the next steps."""
         for key in command.joints:
             self._wanted[key] = FORGOTTEN
             cut = self._cuts.get(key)
@@ -134,21 +133,21 @@ class JointWrenches(BodyObserver):
         return tuple(self._found.get(key) for key in command.joints)
 
     def forget(self, body: Body) -> None:
-        """A body is gone, and its model with it."""
+        """Discard the data of a removed body and its model."""
         for table in (self._cuts, self._wanted, self._found):
             for key in [key for key in table if key[0] == body.model_id]:
                 del table[key]
         self._seen.pop(body.uid, None)
 
     def clear(self) -> None:
-        """All bodies are gone; who reads goes on reading, of models of the same numbers."""
+        """Discard the data of all bodies; joints of models with the same numbers stay measured."""
         for table in (self._cuts, self._seen, self._found):
             table.clear()
 
     # -- a step ------------------------------------------------------------------------------------
 
     def before(self, steps: int) -> None:
-        """Before the last of `steps` steps, all that acts ahead of it included."""
+        """Record the states before the last of `steps` steps, before any helper acts."""
         for key in list(self._wanted):
             self._wanted[key] -= steps
             cut = self._cuts.get(key) or self._cut(key)
@@ -165,7 +164,7 @@ class JointWrenches(BodyObserver):
                 self._seen[body.uid] = _Seen(body, cut.chain, self._sliding_friction(body))
 
     def after(self, dt: float, gravity: Vec3) -> None:
-        """After that step, all that corrects it included."""
+        """Record the states after that step, after all helpers have acted."""
         self._dt, self._gravity = dt, gravity
         for seen in self._seen.values():
             seen.after = look(seen.body)
@@ -178,7 +177,7 @@ class JointWrenches(BodyObserver):
                 note(seen.outside, part.index, force, at, torque)
 
     def _sliding_friction(self, body: Body) -> Acting:
-        """The friction that acts on a body in the next step besides Bullet's."""
+        """Return the friction on a body in the next step besides Bullet's."""
         found: Acting = {}
         if self._sliding.busy:
             for contact in pybullet.getContactPoints(bodyA=body.uid):
@@ -187,7 +186,7 @@ class JointWrenches(BodyObserver):
         return found
 
     def _wrench(self, cut: _Cut, seen: _Seen) -> Optional[JointWrench]:
-        """None where a state is not finite."""
+        """Return the wrench of a joint; None if a state is not finite."""
         before, motions, acting = seen.worked_out(self._dt)
         child, parent = _link_pose(cut.child, before), _link_pose(cut.parent, before)
         anchor = (transform(child, cut.joint.pose.position) if cut.child is not None
@@ -242,7 +241,7 @@ def _cut_at(entry: Entry, body: Body, links: Sequence[TreeLink], n: int) -> _Cut
 
 
 def _without_a_cut(entry: Entry, name: str) -> Optional[JointWrench]:
-    """Of a joint on which nothing hangs: one that closes a loop, or of a static model."""
+    """Return the wrench of a joint without outboard links: in a loop, or of a static model."""
     joint = next((one for one in entry.model.joints if one.name == name), None)
     constraints = entry.constraints.closing.get(name, [])
     if joint is not None and entry.model.static:
@@ -251,7 +250,7 @@ def _without_a_cut(entry: Entry, name: str) -> Optional[JointWrench]:
 
 
 def _closing_wrench(entry: Entry, joint: Joint, constraints: Sequence[int]) -> JointWrench:
-    """From the constraints that stand for a joint, as they are now."""
+    """Return the wrench of a loop-closing joint from its constraints."""
     ends = [entry.constraints.end(joint.child), entry.constraints.end(joint.parent)]
     poses = [IDENTITY if end is None else _link_pose(end[1], states(end[0], look(end[0])))
              for end in ends]
@@ -274,7 +273,7 @@ def _closing_wrench(entry: Entry, joint: Joint, constraints: Sequence[int]) -> J
 
 
 def _link_pose(part: Optional[Part], found: Dict[int, State]) -> Pose:
-    """Where a link frame is; the world for None."""
+    """Return the pose of a link frame; the world frame for None."""
     if part is None:
         return IDENTITY
     state = found[part.index]

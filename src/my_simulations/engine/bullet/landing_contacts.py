@@ -1,19 +1,18 @@
-"""Lets what lands flat land flat: finds all points at which it will touch, before the impact.
+"""Find all contact points of a landing body before its impact, so that it lands flat.
 
-Bullet finds one point a step where shapes meet, and four at once for two boxes only. The first
-impact of a can or a mesh that lands upright would so be taken by one point of its rim: from 5 cm
-it tilts by 6 degrees, from 0.3 m it falls over (measured). Bullet keeps points from step to step,
-though, and solves all that it has. So in the step in which a flying body will touch something, it
-is tilted to and fro by 2 mrad about the place where it touches, Bullet looks for contacts each
-time, and the body is put back: the points lie on the corners, or around the rim. It stays tilted
-by 0.1 mrad, so that the one point that the step adds is a corner too, not one in between that takes
-the place of another. Points that do not touch yet, as of a body that lands on a corner, carry
-nothing.
+Bullet finds one contact point per step and pair, and four at once only for two boxes. So the first
+impact of a can or a mesh that lands upright would act at one point of its rim. It would tilt by 6
+degrees from 5 cm, and fall over from 0.3 m (measured). Bullet keeps contact points between steps
+and solves all of them. So in the step in which a flying body will touch a surface, the body is
+tilted back and forth by 2 mrad about the contact. Bullet detects contacts after each tilt, then the
+body is moved back. The points lie on its corners, or around its rim. The body stays tilted by
+0.1 mrad: then the point that the step adds is a corner too, and does not replace a better one.
+Points of surfaces that do not touch yet, as of a body that lands on a corner, carry no load.
 
-Who flies is asked now and then; of what flies, how far it is from what it could reach, and then not
-again before it can be there. Two that fly beside each other are asked again once one of them has
-landed. A box or a can that is tilted by more than what `LandingPoints` tries lands on a corner, so
-it is not asked before it can have turned that far. What stands, or sleeps, costs next to nothing.
+A periodic check finds flying bodies. For each, the distance to all bodies in reach gives the step
+of the next check. If two bodies fly side by side, one is checked again once the other has landed.
+A box or a can with a tilt beyond the limit of `LandingPoints` lands on a corner; it is checked
+again when it can have turned that far. Bodies that stand or sleep cost almost nothing.
 """
 from __future__ import annotations
 
@@ -46,19 +45,19 @@ from .step_helper import FAR, StepHelper, looks_until_turn, turn_of
 from .world_parameters import Accuracy, WorldParameters
 
 EVERY = 16
-"""Steps between two looks for bodies that fly."""
+"""Steps between two checks for flying bodies."""
 
-_ROUNDS = 2        # looks until every body was asked
-_RESTS = 0.03      # m/s: what flies is faster 3 ms after it left the ground
-_BOUNCE = 8        # steps until one that has landed is looked at again
-_BOUNCES = 4       # such looks until it is one of those that are asked now and then
-_PATIENCE = 7      # turns that one that sleeps is left out; one that rests: 1
-_SOFT = 2e-3       # m/s: what comes slower tilts nothing
-_SETTLES = 2.5     # steps of falling: what was put down at rest falls no longer
-_AHEAD = 16        # steps for which a flying body looks ahead, at most
+_ROUNDS = 2        # checks until every body had its turn
+_RESTS = 0.03      # m/s: a body in free fall is faster after 3 ms
+_BOUNCE = 8        # steps until a landed body is checked again
+_BOUNCES = 4       # such checks until only the periodic check applies
+_PATIENCE = 7      # turns that a sleeping body is left out; 1 for a body at rest
+_SOFT = 2e-3       # m/s: a slower impact does not tilt the body
+_SETTLES = 2.5     # steps of free fall: a body placed at rest on a surface gains less speed
+_AHEAD = 16        # steps, at most, until the next check of a flying body
 _NONE = (0.0, 0.0, 0.0)
 _FOR_IMPACTS = Accuracy(10, 1e-15)
-"""After 50 iterations a block ten times as high as wide that lands at 10 m/s turns on."""
+"""With 50 iterations, a block ten times as high as wide keeps turning after it lands at 10 m/s."""
 
 
 @dataclass
@@ -66,13 +65,13 @@ class _Flight:
     """One body that flies, or has just landed.
 
     Attributes:
-        look: step of the next look at it.
-        arrives: step before which it touches nothing but what flies beside it.
-        on_ground: looks in a row at which it touched something.
-        seen: step of the last look at which it flew, and its velocity then, m/s.
-        beside: bodies that flew as well, near it, at the last look.
-        through: bodies that it does not meet.
-        tried: what it lay in when points were sought.
+        look: step of its next check.
+        arrives: step before which it can touch only bodies that fly beside it.
+        on_ground: consecutive checks at which it touched something.
+        seen: step of the last check at which it flew, and its velocity then, m/s.
+        beside: flying bodies near it at the last check.
+        through: bodies with which it does not collide.
+        tried: bodies that it overlapped when contact points were searched.
     """
 
     body: Body
@@ -86,11 +85,11 @@ class _Flight:
 
 
 class LandingContacts(StepHelper):
-    """Finds the contact points of what lands before Bullet solves its impact.
+    """Finds the contact points of landing bodies before Bullet solves the impact.
 
     Args:
-        landed: is told which body lands, and the normal of what it lands on.
-        parameters: of the world.
+        landed: called with the number of a landing body, and the normal of the surface.
+        parameters: solver parameters of the world.
     """
 
     events = COMMANDED
@@ -102,16 +101,16 @@ class LandingContacts(StepHelper):
         self._bodies: Dict[int, Body] = {}
         self._meets: Dict[int, Filters] = {}
         self._points = LandingPoints(self._meets)
-        self._alone: Dict[int, Tuple[Vec3, ...]] = {}   # axes of what is one box or cylinder
+        self._alone: Dict[int, Tuple[Vec3, ...]] = {}   # axes of single boxes or cylinders
         self._order: Optional[List[int]] = None
         self._moving: Set[int] = set()
-        self._uneven: Dict[int, None] = {}  # not made of boxes, balls and planes alone
-        self._asleep: Dict[int, int] = {}   # turns that are left out
+        self._uneven: Dict[int, None] = {}  # with other shapes than boxes, spheres and planes
+        self._asleep: Dict[int, int] = {}   # turns for which a body is left out
         self._flights: Dict[int, _Flight] = {}
-        self._next = FAR                    # the first step at which a flight is looked at
+        self._next = FAR                    # the step of the first due check
 
     def add(self, body: Body, part: Part, link: Link) -> None:
-        """Know one link of a body; only bodies that can tilt as they land matter."""
+        """Register one link of a body; only bodies that can tilt as they land matter."""
         known = (Box, Sphere, Empty) if body.moves else (Box, Sphere, Empty, Plane)
         if not all(isinstance(collision.geometry, known) for collision in link.collisions):
             self._uneven[body.uid] = None
@@ -129,7 +128,7 @@ class LandingContacts(StepHelper):
         self._order = None
 
     def forget(self, body: Body) -> None:
-        """A body is gone."""
+        """Discard the data of a removed body."""
         for table in (self._bodies, self._meets, self._alone, self._uneven, self._asleep,
                       self._flights):
             table.pop(body.uid, None)
@@ -137,7 +136,7 @@ class LandingContacts(StepHelper):
         self._order = None
 
     def clear(self) -> None:
-        """All bodies are gone."""
+        """Discard the data of all bodies."""
         for table in (self._bodies, self._meets, self._alone, self._uneven, self._asleep,
                       self._flights):
             table.clear()
@@ -146,14 +145,14 @@ class LandingContacts(StepHelper):
         self._next = FAR
 
     def handle_event(self, event: BodyEvent, body: Body) -> None:
-        """A command reached a body: it may fly from now on."""
+        """Check a body that a command changed: it may fly from the next step on."""
         self._asleep.pop(body.uid, None)
         if body.uid in self._bodies and self._watched():
             self._flights[body.uid] = _Flight(body)
             self._next = 0
 
     def due(self, step: int) -> int:
-        """The next look at a flight, or for new ones."""
+        """The step of the next check of a flight, or for new flights."""
         watched = self._watched()
         if not watched:
             return FAR
@@ -162,12 +161,12 @@ class LandingContacts(StepHelper):
         return max(step, min(turn, self._next))
 
     def flies(self, uid: int, step: int) -> bool:
-        """Whether it is known that a body touches nothing in this step."""
+        """Whether a body certainly touches nothing in this step."""
         flight = self._flights.get(uid)
         return flight is not None and step < flight.arrives
 
     def see_rolling(self, links: AbstractSet[Tuple[int, int]], step: int) -> None:
-        """Contact points of links that roll are dropped for this step: their bodies do not fly."""
+        """Record rolling links before their contacts are dropped: their bodies do not fly."""
         if self._next > step:
             return
         for flight in [self._flights[uid] for uid, _ in links if uid in self._flights]:
@@ -175,7 +174,7 @@ class LandingContacts(StepHelper):
                 self._is_on_ground(flight, step, pybullet.getBaseVelocity(flight.body.uid)[0])
 
     def before(self, step: int, dt: float, gravity: Vec3) -> None:
-        """Look for flights now and then, and find the points of those that end in this step."""
+        """Find flights periodically, and the contact points of those that end in this step."""
         if step % EVERY == 0:
             self._ask(turn_of(self._watched(), step // EVERY, _ROUNDS))
         touches: List[Touch] = []
@@ -187,7 +186,7 @@ class LandingContacts(StepHelper):
             self._parameters.request_step_accuracy(_FOR_IMPACTS)
             self._parameters.restore_spacing()
         while touches:
-            # Two that land on each other would tilt together; so one after the other.
+            # Two bodies that land on each other must not be tilted at the same time.
             now: Dict[int, Touch] = {}
             for touch in touches:
                 if touch.other not in now:
@@ -196,7 +195,7 @@ class LandingContacts(StepHelper):
             touches = [touch for touch in touches if touch.uid not in now]
 
     def _ask(self, uids: List[int]) -> None:
-        """Find out which bodies may fly; what rests is asked less often."""
+        """Find bodies that may fly; bodies at rest are checked less often."""
         for uid in uids:
             if self._asleep.get(uid):
                 self._asleep[uid] -= 1
@@ -208,7 +207,7 @@ class LandingContacts(StepHelper):
                 self._flights[uid] = _Flight(self._bodies[uid], on_ground=_BOUNCES)
 
     def _watched(self) -> List[int]:
-        """The bodies that can land on something, one of both not made of boxes.
+        """Return the bodies to check; none if all bodies consist of boxes, spheres and planes.
 
         Bullet finds all points of two boxes by itself.
         """
@@ -220,7 +219,7 @@ class LandingContacts(StepHelper):
         self._next = min((flight.look for flight in self._flights.values()), default=FAR)
 
     def _is_on_ground(self, flight: _Flight, step: int, linear: Vec3) -> bool:
-        """Whether a body touches something; then it is not looked at for some steps."""
+        """Whether a body touches something; then its next check is some steps later."""
         uid = flight.body.uid
         if not any(contact[9] > 0.0 for contact in pybullet.getContactPoints(bodyA=uid)):
             return False
@@ -237,13 +236,13 @@ class LandingContacts(StepHelper):
         return True
 
     def _look_at_those_beside(self, uid: int, step: int) -> None:
-        """A body flies no longer: those that flew beside it may hit it."""
+        """Check the bodies that flew beside a landed one: they may hit it."""
         for flight in self._flights.values():
             if uid in flight.beside:
                 flight.look = min(flight.look, step + 1)
 
     def _look(self, flight: _Flight, step: int, dt: float, gravity: Vec3) -> List[Touch]:
-        """What a body will touch in this step, deepest first; finds out when to look again."""
+        """Return the deepest contact of a body in this step, if any, and plan its next check."""
         body, uid = flight.body, flight.body.uid
         linear, angular = pybullet.getBaseVelocity(uid)
         flew = flight.seen is not None and flies(
@@ -263,11 +262,11 @@ class LandingContacts(StepHelper):
         for other in self._within(flight, low, high, reach):
             moves = other in self._moving
             if moves and other in self._flights and self._flights[other].seen is not None:
-                flight.beside.add(other)   # it is looked at again once the other one has landed
+                flight.beside.add(other)   # checked again once the other body has landed
                 continue
-            way = dt * (speed + (speed_of(other) if moves else 0.0))   # of a step, at most
+            way = dt * (speed + (speed_of(other) if moves else 0.0))   # in one step, at most
             points = pybullet.getClosestPoints(uid, other, way * (_AHEAD + 2))
-            if not points or way == 0.0:   # without gravity what is at rest meets nothing
+            if not points or way == 0.0:   # without gravity a body at rest stays there
                 continue
             nearest = min(points, key=lambda point: point[8])
             gap: float = nearest[8]
@@ -277,10 +276,10 @@ class LandingContacts(StepHelper):
             steps = max(0.0, gap) / max(1e-9, dt * (speed_in + spin + _AHEAD * fall))
             free = int(min(free, steps))
             tilt = self._tilt_beyond_flat(uid, turn, normal)
-            if tilt > 0.0:   # on a corner it lands by itself
+            if tilt > 0.0:   # it lands on a corner, for which one point is enough
                 steps = max(steps, tilt / max(dt * norm(angular), tilt / _AHEAD))
             lands = speed_in > max(_SOFT, _SETTLES * fall)
-            if gap <= 0.0 and not lands:   # it lies there, or leaves
+            if gap <= 0.0 and not lands:   # it rests there, or moves away
                 steps = max(steps, _BOUNCE)
             ahead = int(min(ahead, steps))
             if gap > 0.0 or tilt > 0.0:
@@ -297,7 +296,7 @@ class LandingContacts(StepHelper):
         return touches[:1]
 
     def _tilt_beyond_flat(self, uid: int, turn: Quat, normal: Vec3) -> float:
-        """How far a body must turn, rad, to land on a face or on its side; 0 if it may land so."""
+        """Return the turn, rad, until a body can land on a face or its side; 0 if it can now."""
         axes = self._alone.get(uid)
         if axes is None:
             return 0.0
@@ -306,7 +305,7 @@ class LandingContacts(StepHelper):
         return max(0.0, (tilt if len(axes) > 1 else min(tilt, asin(along[0]))) - MOST_TILT)
 
     def _within(self, flight: _Flight, low: Vec3, high: Vec3, reach: float) -> List[int]:
-        """What a body may meet within `reach`, m, in the order of numbers."""
+        """Return the bodies within `reach`, m, with which a body may collide, by number."""
         uid, margin = flight.body.uid, (reach, reach, reach)
         found = pybullet.getOverlappingObjects(subtract(low, margin), add(high, margin)) or ()
         return sorted({other for other, _ in found if other != uid
@@ -314,7 +313,7 @@ class LandingContacts(StepHelper):
                        and (uid in self._uneven or other in self._uneven)})
 
     def _lies_in(self, flight: _Flight, other: int) -> bool:
-        """Whether a body is in another that it did not touch a step before: they do not meet."""
+        """Whether an earlier search found a body inside another: the two do not collide."""
         if other in flight.tried:
             flight.through.add(other)
         flight.tried.add(other)
@@ -322,7 +321,7 @@ class LandingContacts(StepHelper):
 
 
 def _axes_of(body: Body, part: Part, link: Link) -> Tuple[Vec3, ...]:
-    """In the frame of its principal axes, those across the faces of a rigid box or cylinder."""
+    """Return the face normals of a rigid box or cylinder, in the frame of its principal axes."""
     if not body.rigid or len(link.collisions) != 1:
         return ()
     shape = link.collisions[0].geometry

@@ -1,4 +1,4 @@
-"""Finds all points at which bodies that land will touch, by tilting them back and forth."""
+"""Find all contact points of landing bodies by tilting them back and forth."""
 from __future__ import annotations
 
 from math import atan2, cos, hypot, pi, sin
@@ -10,27 +10,27 @@ from ...geometry import Quat, Vec3, add, cross, dot, multiply, norm, rotate, sca
 from . import collision_groups
 
 MOST_TILT = 0.15
-"""How far a flat body is tilted at most, rad: one that lands more tilted lands on a corner."""
+"""Largest tilt of a flat body, rad: a body with a larger one lands on a corner."""
 
 Filters = List[Tuple[int, collision_groups.Filter]]
-"""What the links of a body meet, with PyBullet's link indices."""
+"""Collision filters of the links of a body, with PyBullet's link indices."""
 
-_TILT = 2e-3       # rad: of the first round
-_HINT = 1e-4       # rad: of the landing step, in which Bullet finds one more point: a corner too
-_LOST = 1e-3       # m above a surface points are lost
-_ACROSS = 0.8      # of a normal along an axis: less is across it
+_TILT = 2e-3       # rad: tilt in the first round
+_HINT = 1e-4       # rad: tilt in the landing step, so that the point Bullet adds is a corner
+_LOST = 1e-3       # m: Bullet drops points that are farther from the surface
+_ACROSS = 0.8      # of a normal along an axis: a smaller part counts as across it
 _DIRECTIONS = 4    # a quarter of a turn each
 _QUARTER = pi / 2.0
-_FIRST = 0.65      # rad: not along the edges of what stands square to the axes
+_FIRST = 0.65      # rad: not along the edges of bodies that are aligned with the axes
 
 
 class Touch(NamedTuple):
-    """Where a body will touch another in this step.
+    """A contact that a body will make in this step.
 
     Attributes:
         gap: m, below 0 for an overlap.
-        normal: points at the body.
-        at, turn: where the body is.
+        normal: points to the body.
+        at, turn: pose of the body.
         width, breadth: the least and largest extent of the body across the normal, m.
     """
 
@@ -47,17 +47,17 @@ class Touch(NamedTuple):
 
     @property
     def most(self) -> float:
-        """The largest tilt of a flat body with which all of it is in the other, rad."""
+        """The largest tilt, rad, with which the whole face is inside the other body."""
         return min(MOST_TILT, -self.gap / self.width)
 
     @property
     def raised(self) -> float:
-        """By how much to raise it, m, so that no point is lost when it is tilted so far."""
+        """The lift, m, with which Bullet drops no point at the tilt `most`."""
         return -max(0.0, self.most * self.width - _LOST)
 
 
 class _Trial(NamedTuple):
-    """How to tilt a body, about which axis and how far, rad, and by how much to raise it, m."""
+    """A tilt of a body: direction of the axis and angle, rad, and lift, m."""
 
     touch: Touch
     angle: float
@@ -66,7 +66,7 @@ class _Trial(NamedTuple):
 
 
 class LandingPoints:
-    """Lets Bullet find the points of bodies that land.
+    """Makes Bullet find the contact points of landing bodies.
 
     Args:
         meets: the filters of the bodies, by PyBullet's numbers.
@@ -76,24 +76,24 @@ class LandingPoints:
         self._meets = meets
 
     def find(self, touches: List[Touch]) -> None:
-        """Tilt bodies about where they will touch, and let Bullet look for points."""
+        """Tilt bodies about their contacts, and have Bullet detect the contact points."""
         trials = [_Trial(touch, _FIRST, _TILT, -touch.gap) for touch in touches]
-        # What is long and thin has corners that no four directions find, but these do.
+        # The first directions miss corners of long, thin bodies; directions along them do not.
         trials = [trial._replace(angle=_longest(trial.touch, points))
                   for trial, points in zip(trials, self._try(trials))]
         self._try(trials)
-        # What lands tilted, and is so deep already that all of it touches, touches everywhere.
+        # A tilted body may be so deep that its whole face touches: larger tilts find all corners.
         wide = [_Trial(trial.touch, _lowest(trial.touch), trial.touch.most, trial.touch.raised)
                 for trial in _leaning([trial for trial in trials if trial.touch.most > _TILT])]
         self._try(wide)
-        # And what leans none the less lands on its corner.
+        # Bodies whose centre of mass is still outside their points land on a corner.
         leaning = {trial.touch.uid for trial in _leaning(wide)}
         self._try([trial for trial in trials if trial.touch.uid in leaning])
 
     def _try(self, trials: List[_Trial]) -> List[List[Vec3]]:
-        """Have four points found for each body; gives all places that were seen.
+        """Find up to four contact points of each body; return the positions of all points found.
 
-        Each is left in such a pose that Bullet's own point will be the last of them.
+        Each body is left in a pose in which the point that Bullet adds is the last of these.
         """
         found: List[List[Vec3]] = [[] for _ in trials]
         for trial in trials:
@@ -105,19 +105,19 @@ class LandingPoints:
             for trial, places in zip(trials, found):
                 places += [point[5] for point in pybullet.getContactPoints(trial.touch.uid)]
         for touch, angle, _, _ in trials:
-            sunk = max(0.0, touch.gap + _HINT * touch.breadth)  # or points would not touch
+            sunk = max(0.0, touch.gap + _HINT * touch.breadth)  # else points would not touch
             _tilt(touch, angle - _QUARTER, _HINT, -sunk)
-            pybullet.resetBaseVelocity(touch.uid, *touch.velocity)  # placing a body stops it
+            pybullet.resetBaseVelocity(touch.uid, *touch.velocity)  # setting the pose resets it
         return found
 
     def _drop_points(self, uid: int) -> None:
-        """Let a body have four new points on each surface: Bullet does not choose well of more."""
+        """Drop the contact points of a body: Bullet keeps four per pair, and selects them badly."""
         for index, meets in self._meets[uid]:
             meets.set(uid, index)
 
 
 def _longest(touch: Touch, places: List[Vec3]) -> float:
-    """The angle of the way between the two places that are farthest apart, rad."""
+    """Return the direction between the two positions that are farthest apart, rad."""
     side, fore = _sides(touch.normal)
     points = [(dot(place, side), dot(place, fore)) for place in places]
     ways = [(a[0] - b[0], a[1] - b[1]) for at, a in enumerate(points) for b in points[:at]]
@@ -126,14 +126,14 @@ def _longest(touch: Touch, places: List[Vec3]) -> float:
 
 
 def _sides(normal: Vec3) -> Tuple[Vec3, Vec3]:
-    """Two directions across a normal, and across each other."""
+    """Return two directions, perpendicular to a normal and to each other."""
     side = cross(normal, (1.0, 0.0, 0.0) if abs(normal[0]) < 0.9 else (0.0, 1.0, 0.0))
     side = scale(side, 1.0 / norm(side))
     return side, cross(normal, side)
 
 
 def _tilt(touch: Touch, angle: float, tilt: float, raised: float) -> None:
-    """Tilt a body about the place that it will touch, and raise it by `raised`, m."""
+    """Tilt a body about its contact, and lift it by `raised`, m."""
     normal = touch.normal
     side, fore = _sides(normal)
     axis = add(scale(side, cos(angle)), scale(fore, sin(angle)))
@@ -146,21 +146,21 @@ def _tilt(touch: Touch, angle: float, tilt: float, raised: float) -> None:
 
 
 def _lowest(touch: Touch) -> float:
-    """The angle of four turns whose last one lowers what is lowest already."""
+    """Return the first of four directions, so that the last tilt lowers the lowest point."""
     side, fore = _sides(touch.normal)
     lever = subtract(touch.place, touch.at)
     return atan2(dot(lever, fore), dot(lever, side)) - 2.0 * _QUARTER
 
 
 def _leaning(trials: List[_Trial]) -> List[_Trial]:
-    """Those of bodies whose centre of mass does not lie over the points that touch."""
+    """Return the trials of bodies whose centre of mass is not above their contact points."""
     if trials:
         pybullet.performCollisionDetection()
     return [trial for trial in trials if not _stands(trial.touch)]
 
 
 def _stands(touch: Touch) -> bool:
-    """Whether the centre of mass lies over the points that touch."""
+    """Whether the centre of mass is above the polygon of the contact points."""
     side, fore = _sides(touch.normal)
     levers = [subtract(point[5], touch.at) for point in pybullet.getContactPoints(touch.uid)
               if point[8] <= 0.0]
@@ -170,6 +170,6 @@ def _stands(touch: Touch) -> bool:
 
 
 def extents_across(low: Vec3, high: Vec3, normal: Vec3) -> Tuple[float, float]:
-    """The least and largest extent across a direction, m."""
+    """Return the smallest and largest extent across a direction, m."""
     extents = [b - a for a, b, along in zip(low, high, normal) if abs(along) < _ACROSS]
     return min(extents), max(extents)

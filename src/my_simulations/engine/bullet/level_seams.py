@@ -1,17 +1,18 @@
-"""Lets upright cylinders slide on level floors, and over the seam of two as over one.
+"""Correct upright cylinders that slide on level floors, and over seams between floors.
 
 Bullet drops a contact point once the two surfaces have slid apart by a fiftieth of the body's size,
-and finds one new point a step: what is fast stands on one or two, and sinks by up to 3 mm.
-So the points of what begins to slide, or meets another floor, are dropped, and the new ones may
-slide apart ten times as far.
+and finds one new point per step. So a fast body stands on one or two points, and sinks by up to
+3 mm. When a body starts to slide, or reaches another floor, its points are therefore dropped, and
+the new points may slide apart ten times as far.
 
-Where such a body, a little in the floor, gets to the next box of the same height, less of it is in
-the side of that box than in its top, and Bullet pushes it back: a can of 0.7 m/s turned round at
-the first seam of a floor of tiles. A side that lies below the floor cannot be met in truth. So what
-it pushed has the velocity of before the step again, without what would tilt or sink it; friction of
-that step is lost with it.
+At a seam, the body overlaps the next box of the same height less in its side than in its top. So
+Bullet pushes it back: a can at 0.7 m/s turned round at the first seam of a tiled floor. A side
+below floor level cannot cause a real contact. So a body that such a side has pushed gets back its
+velocity of before the step, without tilting and sinking. This also removes the friction of that
+step.
 
-Bullet finds four points of two boxes in each step; what rolls meets no sides.
+Boxes need no correction, because Bullet finds four points of two boxes in each step. Rolling
+cylinders do not touch the sides.
 """
 from __future__ import annotations
 
@@ -30,36 +31,36 @@ from .step_helper import FAR, StepHelper, next_multiple
 from .world_parameters import WorldParameters
 
 EVERY = 8
-"""Steps between two looks at what slides."""
+"""Steps between two checks of sliding bodies."""
 
-_WIDE = 0.2        # of a body's size: points that slid farther apart are dropped
-_FAST = 0.05       # m/s: what is slower does not sink
-_LEVEL = 1e-4      # m: two floors of one height differ by less
-_UP = 0.999        # of a normal, or an axis, along z: less is a side, or leans
-_NEAR = 0.06       # m beyond the way until the next look: Bullet knows a pair 5 cm ahead
+_WIDE = 0.2        # of a body's size: points of surfaces that slid farther apart are dropped
+_FAST = 0.05       # m/s: a slower body does not sink
+_LEVEL = 1e-4      # m: floors with a smaller height difference are level
+_UP = 0.999        # of a normal, or an axis, along z: less is a side, or a leaning body
+_NEAR = 0.06       # m beyond the path until the next check: Bullet finds pairs 5 cm ahead
 
 _Velocity = Tuple[Vec3, Vec3]
 
 
 class LevelSeams(StepHelper):
-    """Keeps what slides on level floors on them, and takes back what their sides do to it.
+    """Keeps sliding bodies on level floors, and undoes the pushes of sides below floor level.
 
     Args:
-        fast: tells the rigid bodies that slide just now.
-        parameters: of the world.
+        fast: returns the rigid bodies that slide now.
+        parameters: solver parameters of the world.
     """
 
     def __init__(self, fast: Callable[[], Collection[int]], parameters: WorldParameters) -> None:
         self._fast, self._parameters = fast, parameters
         self._bodies: Dict[int, Tuple[collision_groups.Filter, Vec3]] = {}   # and their axis
         self._static: Set[int] = set()
-        self._floors: Set[int] = set()         # those that have sides
-        self._sliding: Dict[int, Set[int]] = {}   # and the floors on which its points are wide
-        self._level: Dict[int, Set[int]] = {}  # floors of one height about those near a seam
+        self._floors: Set[int] = set()         # static bodies with sides
+        self._sliding: Dict[int, Set[int]] = {}   # and the floors with its wide points
+        self._level: Dict[int, Set[int]] = {}  # bodies near a seam, and level floors there
         self._before: Dict[int, _Velocity] = {}
 
     def add(self, body: Body, part: Part, link: Link) -> None:
-        """Know one link of a body."""
+        """Register one link of a body."""
         shapes = [collision.geometry for collision in link.collisions]
         if body.moves:
             axis = axis_of(link)
@@ -73,27 +74,27 @@ class LevelSeams(StepHelper):
             self._floors.update(body.uids)
 
     def forget(self, body: Body) -> None:
-        """A body is gone."""
+        """Discard the data of a removed body."""
         for table in (self._bodies, self._sliding, self._level, self._before):
             table.pop(body.uid, None)
         self._static.difference_update(body.uids)
         self._floors.difference_update(body.uids)
 
     def clear(self) -> None:
-        """All bodies are gone."""
+        """Discard the data of all bodies."""
         for table in (self._bodies, self._sliding, self._level, self._before):
             table.clear()
         for group in (self._static, self._floors):
             group.clear()
 
     def due(self, step: int) -> int:
-        """Each step while something is near a seam, else the next look."""
+        """Each step while a body is near a seam, otherwise the step of the next check."""
         if self._level:
             return step
         return next_multiple(step, EVERY) if self._bodies else FAR
 
     def before(self, step: int, dt: float, gravity: Vec3) -> None:
-        """See now and then who slides; remember how fast those near a seam are."""
+        """Find sliding bodies periodically; record the velocities of bodies near a seam."""
         if step % EVERY == 0:
             self._look(dt, gravity)
         self._before = {uid: pybullet.getBaseVelocity(uid) for uid in self._level}
@@ -101,13 +102,13 @@ class LevelSeams(StepHelper):
             self._widen(uid, [contact[2] for contact in pybullet.getContactPoints(bodyA=uid)])
 
     def after(self, step: int, dt: float, gravity: Vec3) -> None:
-        """Give the velocities of before the step back to those that a side pushed."""
+        """Restore the velocities of before the step for bodies that a side pushed."""
         for uid, ((x, y, z), (_, _, turn)) in self._before.items():
             if self._is_caught(uid, self._level[uid]):
                 pybullet.resetBaseVelocity(uid, (x, y, max(0.0, z)), (0.0, 0.0, turn))
 
     def _look(self, dt: float, gravity: Vec3) -> None:
-        """Find out who slides, and who will be at a seam before the next look."""
+        """Find the bodies that slide, and those that can reach a seam before the next check."""
         self._level.clear()
         fast = self._fast()
         self._sliding = {uid: self._sliding[uid] for uid in fast if uid in self._sliding}
@@ -122,7 +123,7 @@ class LevelSeams(StepHelper):
                     self._see_seam(uid, floors[0], EVERY * dt)
 
     def _widen(self, uid: int, floors: Collection[int]) -> None:
-        """Drop the points of a body that met a floor, so that those of the next step are wide."""
+        """Drop the points of a body on a new floor; its next ones may slide apart farther."""
         wide = self._sliding.setdefault(uid, set())
         if not wide.issuperset(floors):
             self._bodies[uid][0].set(uid, BASE)
@@ -130,7 +131,7 @@ class LevelSeams(StepHelper):
         self._sliding[uid] = set(floors)
 
     def _floors_under(self, uid: int) -> List[int]:
-        """The floors that a body slides on, when it is upright and touches nothing that moves."""
+        """Return the floors of an upright sliding body; none if it touches a moving body."""
         if norm((*pybullet.getBaseVelocity(uid)[0][:2], 0.0)) < _FAST:
             return []
         turn = pybullet.getBasePositionAndOrientation(uid)[1]
@@ -141,12 +142,12 @@ class LevelSeams(StepHelper):
             return []
         upright = [contact for contact in contacts if contact[7][2] > _UP]
         floors = {contact[2]: None for contact in sorted(upright, key=lambda each: each[8])}
-        if floors:   # the one that it stands on is first, the sides that it meets come last
+        if floors:   # the floor under it first, the sides that it touches last
             floors.update((contact[2], None) for contact in contacts)
         return list(floors)
 
     def _see_seam(self, uid: int, floor: int, duration: float) -> None:
-        """Remember the floors of one height that a body may reach within `duration`, s."""
+        """Store the level floors that a body can reach within `duration`, s, if more than one."""
         reach = norm(pybullet.getBaseVelocity(uid)[0]) * duration + _NEAR
         low, high = pybullet.getAABB(uid, BASE)
         found = pybullet.getOverlappingObjects([c - reach for c in low],
@@ -159,7 +160,7 @@ class LevelSeams(StepHelper):
 
     @staticmethod
     def _is_caught(uid: int, level: Set[int]) -> bool:
-        """Whether a body that touches nothing but level floors is pushed by a side of one."""
+        """Whether the side of a level floor pushes a body that touches only such floors."""
         pushing = [contact for contact in pybullet.getContactPoints(bodyA=uid)
                    if contact[9] > 0.0 and contact[8] <= 0.0]
         return (all(contact[2] in level for contact in pushing)

@@ -1,10 +1,10 @@
-"""How the links of an articulated body move, and are accelerated, in one step of Bullet.
+"""Compute velocities and accelerations of the links of an articulated body in one step.
 
-Bullet changes the rates of joints by what acts in the configuration at the beginning of a step.
-The difference of a link's velocities over the step also holds how far the links turned in it,
-which is another thing by the length of the step (1 % of the torques of an arm that whips). So the
-accelerations at the beginning are built up from link to link: what changes there is the velocity
-of a link against its parent, in the parent's axes.
+Bullet computes joint accelerations from the forces in the configuration at the start of a step. The
+difference of a link's world velocities over the step also contains the rotation of the links in it.
+This error is proportional to the step size (1 % of the torques of an arm in fast motion). So the
+accelerations at the start are computed link by link, from the root. Each link adds the change of
+its velocity relative to its parent, in the parent's axes.
 """
 from __future__ import annotations
 
@@ -50,15 +50,15 @@ class Motion(NamedTuple):
 class Chain:
     """The links of a body, parents first: each with its parent and the joint between them.
 
-    The joint is a point, seen from the link's centre of mass, in its principal axes. The parent of
-    a root, and of what hangs on a fixed base, is None.
+    The joint is a point relative to the link's centre of mass, in its principal axes. The parent of
+    a root, and of the first links on a fixed base, is None.
     """
 
     links: Tuple[Tuple[Part, Optional[Part], Vec3], ...]
 
     @classmethod
     def of(cls, parts: Mapping[int, Part], links: Sequence[TreeLink]) -> "Chain":
-        """`parts` by the link's position in the model."""
+        """Return the chain of a body; `parts` by the link's index in the model."""
         found: List[Tuple[Part, Optional[Part], Vec3]] = []
         for link in links:
             if link.index == NO_LINK:
@@ -73,11 +73,11 @@ class Chain:
 
 
 Look = Tuple[Any, Any, Sequence[Any]]
-"""The links of a body as PyBullet tells them: pose and velocity of the base, the other links."""
+"""PyBullet's states of a body: pose and velocity of the base, states of the other links."""
 
 
 def look(body: Body) -> Look:
-    """How all links of a body move; `states` makes it readable."""
+    """Read the states of all links of a body; `states` converts them."""
     indices = [part.index for part in body.parts if part.index != BASE]
     return (pybullet.getBasePositionAndOrientation(body.uid), pybullet.getBaseVelocity(body.uid),
             pybullet.getLinkStates(body.uid, indices, computeLinkVelocity=1,
@@ -85,7 +85,7 @@ def look(body: Body) -> Look:
 
 
 def states(body: Body, seen: Look) -> Dict[int, State]:
-    """The same by PyBullet's index."""
+    """Convert the result of `look` to states by PyBullet's link index."""
     found: Dict[int, State] = {}
     if body.base is not None:
         found[BASE] = State(*seen[0], *seen[1])
@@ -96,7 +96,7 @@ def states(body: Body, seen: Look) -> Dict[int, State]:
 
 def accelerations(chain: Chain, before: Mapping[int, State], after: Mapping[int, State],
                   dt: float) -> Dict[int, Motion]:
-    """Of all links at the beginning of a step of `dt` s, by PyBullet's index."""
+    """Return the accelerations of all links at the start of a step of `dt` s, by index."""
     found: Dict[int, Motion] = {}
     for part, parent, joint in chain.links:
         state, later = before[part.index], after[part.index]
@@ -122,9 +122,9 @@ def accelerations(chain: Chain, before: Mapping[int, State], after: Mapping[int,
 
 
 def inertial_wrench(part: Part, state: State, motion: Motion, gravity: Vec3) -> Tuple[Vec3, Vec3]:
-    """What must act on a link besides gravity for it to be accelerated so.
+    """Return the wrench, without gravity, that gives a link its acceleration.
 
-    Force, N, and torque about its centre of mass, N m, world axes.
+    Force, N, and torque about the centre of mass, N m, world axes.
     """
     back = conjugate(state.turn)
     spin, gain = rotate(back, state.angular), rotate(back, motion.angular)
@@ -139,7 +139,7 @@ _STILL = Motion(ZERO3, ZERO3)
 
 
 def _against(over: State, state: State, joint: Vec3) -> Tuple[Vec3, Vec3]:
-    """How a link slides at its joint, and turns, against its parent, in the parent's axes."""
+    """Return the linear and angular velocity of a joint relative to the parent, in its axes."""
     arm = rotate(state.turn, joint)
     reach = subtract(add(state.position, arm), over.position)
     sliding = subtract(add(state.linear, cross(state.angular, arm)),
@@ -149,5 +149,5 @@ def _against(over: State, state: State, joint: Vec3) -> Tuple[Vec3, Vec3]:
 
 
 def _about(angular: Vec3, rate: Vec3, arm: Vec3) -> Vec3:
-    """How much more a point of a turning body is accelerated than one `arm` before it."""
+    """Return the acceleration of a point of a body relative to another one, `arm` away."""
     return add(cross(angular, arm), cross(rate, cross(rate, arm)))

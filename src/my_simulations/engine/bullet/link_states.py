@@ -1,8 +1,8 @@
-"""Where the links of a body are and how they move: the one reader of PyBullet's link states.
+"""Read poses and velocities of links; all reads of PyBullet's link states are here.
 
-PyBullet tells the place of a hung link as of its last forward kinematics, which whoever read it
-before may have asked for or not. So they are asked for always: then an answer depends on the state
-of the world alone.
+PyBullet returns the pose of a link, other than the base, as of its last forward kinematics. An
+earlier read may have updated them or not. So these functions always request forward kinematics, and
+a result depends only on the state of the world.
 """
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from ..body_plan import BASE
 
 
 class Motion(NamedTuple):
-    """Of a centre of mass and its principal axes, in world axes: m, m/s, rad/s."""
+    """Pose and velocities of a centre of mass and its principal axes; world axes, m, m/s, rad/s."""
 
     position: Vec3
     orientation: Quat
@@ -24,7 +24,7 @@ class Motion(NamedTuple):
 
 
 def hung_states(uid: int, indices: Sequence[int], velocities: int = 1) -> Sequence[Tuple[Any, ...]]:
-    """PyBullet's states of hung links; without `velocities` (0) they end after the pivot's pose."""
+    """Return PyBullet's states of links other than the base; with `velocities` 0 poses only."""
     if not indices:
         return ()
     found: Sequence[Tuple[Any, ...]] = pybullet.getLinkStates(
@@ -33,19 +33,19 @@ def hung_states(uid: int, indices: Sequence[int], velocities: int = 1) -> Sequen
 
 
 def motions(uid: int, indices: Sequence[int]) -> List[Motion]:
-    """Of hung links of a body."""
+    """Return the motions of links of a body other than the base."""
     return [Motion(state[0], state[1], state[6], state[7]) for state in hung_states(uid, indices)]
 
 
 def motion(uid: int, index: int) -> Motion:
-    """Of one link of a body, the base or a hung one."""
+    """Return the motion of one link of a body, the base or another one."""
     if index == BASE:
         return Motion(*pybullet.getBasePositionAndOrientation(uid), *pybullet.getBaseVelocity(uid))
     return motions(uid, (index,))[0]
 
 
 def place(uid: int, index: int) -> Tuple[Vec3, Quat]:
-    """The pose of one link of a body, the base or a hung one, as of `motion`."""
+    """Return the pose of one link of a body, the base or another one, as in `motion`."""
     if index == BASE:
         position, orientation = pybullet.getBasePositionAndOrientation(uid)
     else:

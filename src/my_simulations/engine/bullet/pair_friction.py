@@ -1,14 +1,15 @@
-"""The smaller coefficient of each pair, where PyBullet's product gives something else.
+"""Apply the smaller friction coefficient of each pair, although PyBullet multiplies them.
 
 PyBullet multiplies the stored coefficients of two surfaces; Gazebo takes the smaller mu (its ODE
-backend, surface/friction). Surfaces with mu 1, and static ones, keep what `surfaces` stores, which
-is exact for pairs among them. The others get values for what they touch just now: the logarithms x
-of the stored values must satisfy x_i + x_j = log min(mu_i, mu_j) for every touching pair, which a
-stack or any other tree of contacts satisfies exactly. Contacts in rings over-determine them, as two
-boxes do that stand on the ground side by side; the least squares solution is then used, in which a
-contact counts as much as it carries. What is off all the same is told once.
+backend, surface/friction). Surfaces with mu 1, and static ones, keep the coefficients that
+`surface_coefficients` computes, which are exact for pairs among them. The values of the others
+depend on their current contacts: the logarithms x of the stored values must satisfy
+x_i + x_j = log min(mu_i, mu_j) for every touching pair. A stack, or any other tree of contacts, has
+an exact solution. Rings of contacts are over-determined, as of two boxes that stand on the ground
+side by side. Then the least squares solution is used, weighted by the loads of the contacts. The
+largest remaining error is reported once.
 
-A world without such surfaces pays nothing.
+A world without such surfaces has no extra cost.
 """
 from __future__ import annotations
 
@@ -27,14 +28,14 @@ Node = Tuple[int, int]  # body uid, link index
 Pair = FrozenSet[Node]
 
 EVERY = 4
-"""Steps between two looks at the contacts."""
+"""Steps between two checks of the contacts."""
 
-_MOST_LOOKS = 4       # looks until a surface is asked again that touches what it touched before
-_AT_REST = 16         # the same for one of a body at rest
-_SLOTS = 32           # more than the longest wait
-_RING_EVERY = 8       # looks between two solutions of a ring
-_LEAST_WEIGHT = 1e-3  # of a contact that carries nothing
-_COUNTS = 0.1         # a contact that carries this share of the most is worth a warning
+_MOST_LOOKS = 4       # checks, at most, until the next turn of a surface with unchanged contacts
+_AT_REST = 16         # the same for a body at rest
+_SLOTS = 32           # must exceed the longest wait
+_RING_EVERY = 8       # checks between two solutions of a ring
+_LEAST_WEIGHT = 1e-3  # of a contact without load
+_COUNTS = 0.1         # share of the largest load: contacts below it cause no warning
 _TOLERATED = 0.03
 _SMALLEST = 1e-6
 _NOTHING: FrozenSet[Pair] = frozenset()
@@ -42,10 +43,10 @@ _NO_VELOCITY = ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
 
 
 class FrictionBalance(StepHelper):
-    """Keeps the stored friction of surfaces with unusual coefficients right for their contacts.
+    """Updates the stored friction of surfaces with mu other than 1 to match their contacts.
 
     Args:
-        misfit: told, once, of a body and the share by which its friction is off.
+        misfit: called once, with a body and the relative error of its friction.
     """
 
     events = COMMANDED
@@ -57,16 +58,16 @@ class FrictionBalance(StepHelper):
         self._fixed: Dict[Node, float] = {}
         self._free: Dict[Node, float] = {}
         self._touching: Dict[Node, Set[Pair]] = {}
-        # Who is asked at which look, modulo _SLOTS: a clock that is set does not matter.
+        # Surfaces by check, modulo _SLOTS, so that a change of the step count does not matter.
         self._slots: List[List[Node]] = [[] for _ in range(_SLOTS)]
-        self._wait: Dict[Node, Tuple[int, int]] = {}   # slot, looks from one to the next
-        self._soon: Dict[Node, None] = {}              # asked at the next look
+        self._wait: Dict[Node, Tuple[int, int]] = {}   # slot, checks between two turns
+        self._soon: Dict[Node, None] = {}              # due at the next check
         self._rigid: Set[int] = set()
         self._pairs: Dict[Pair, float] = {}
         self._ring = 0
 
     def add(self, body: Body) -> None:
-        """Know a new body."""
+        """Register a new body."""
         if body.rigid:
             self._rigid.add(body.uid)
         for part in body.colliders:
@@ -80,7 +81,7 @@ class FrictionBalance(StepHelper):
                     self._fixed[node] = max(part.friction, _SMALLEST)
 
     def forget(self, body: Body) -> None:
-        """A body is gone."""
+        """Discard the data of a removed body."""
         self._rigid.discard(body.uid)
         for part in body.colliders:
             for uid in body.uids:
@@ -92,7 +93,7 @@ class FrictionBalance(StepHelper):
                     table.pop(node, None)
 
     def clear(self) -> None:
-        """All bodies are gone."""
+        """Discard the data of all bodies."""
         for table in (self._mu, self._fixed, self._free, self._touching, self._wait, self._soon,
                       self._pairs):
             table.clear()
@@ -103,15 +104,15 @@ class FrictionBalance(StepHelper):
         self._ring = 0
 
     def handle_event(self, event: BodyEvent, body: Body) -> None:
-        """A body was put somewhere or woken: it is asked soon."""
+        """Check the contacts of a moved or activated body soon."""
         for part in body.colliders:
             if (body.uid, part.index) in self._free:
                 self._soon[body.uid, part.index] = None
 
     def before(self, step: int, dt: float, gravity: Vec3) -> None:
-        """Look at contacts; where they are others than before, store new values.
+        """Check contacts periodically; if pairs have changed, store new coefficients.
 
-        In rings also now and then, as what the contacts carry changes.
+        Rings are also solved periodically, because the loads of their contacts change.
         """
         if step % EVERY:
             return
@@ -127,7 +128,7 @@ class FrictionBalance(StepHelper):
             self._solve(nodes, sorted(self._pairs, key=sorted))
 
     def due(self, step: int) -> int:
-        """The next look at which somebody is asked."""
+        """The step of the next check at which a surface is due."""
         if not self._free:
             return FAR
         look = -(-step // EVERY)
@@ -137,7 +138,7 @@ class FrictionBalance(StepHelper):
         return look * EVERY
 
     def _ask_due(self, look: int) -> bool:
-        """Ask the surfaces whose turn it is what they touch. Returns whether that has changed."""
+        """Read the contacts of the surfaces that are due. Returns whether a pair has changed."""
         slot = look % _SLOTS
         due = {node for node in self._slots[slot] if self._wait.get(node, (-1,))[0] == slot}
         due.update(self._soon)
@@ -185,12 +186,12 @@ class FrictionBalance(StepHelper):
             self._misfit(node[0], float(off[worst]))
 
     def _ask(self, node: Node) -> bool:
-        """Note what a surface touches, and the normal forces, N. Returns whether it is other."""
+        """Store the pairs and normal forces, N, of a surface. Returns whether pairs changed."""
         found: Dict[Pair, float] = {}
         uid, index = node
         contacts = [(each[2], each[4], each[9])
                     for each in pybullet.getContactPoints(bodyA=uid, linkIndexA=index)]
-        if uid not in self._rigid:  # of two links of one body, PyBullet tells of one as the first
+        if uid not in self._rigid:  # PyBullet lists a self-contact for one of the two links
             contacts += [(uid, each[3], each[9]) for each in pybullet.getContactPoints(
                 bodyA=uid, bodyB=uid, linkIndexB=index)]
         for other_uid, other_index, force in contacts:
@@ -210,7 +211,7 @@ class FrictionBalance(StepHelper):
         return changed
 
     def _part(self, pair: Pair) -> None:
-        """Two surfaces do not touch any more."""
+        """Remove the pair of two surfaces that no longer touch."""
         self._pairs.pop(pair, None)
         for one in pair:
             self._touching[one].discard(pair)

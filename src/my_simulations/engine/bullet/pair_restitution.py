@@ -62,7 +62,7 @@ class PairRestitution(StepHelper):
         self._models: Dict[Node, int] = {}
 
     def add(self, body: Body) -> None:
-        """Know a new body."""
+        """Register a new body."""
         for part in body.colliders:
             surface = surface_coefficients.of_link(part.link)
             if surface.restitution <= 0.0:
@@ -77,14 +77,14 @@ class PairRestitution(StepHelper):
                 self._models[node] = body.model_id
 
     def forget(self, body: Body) -> None:
-        """A body is gone."""
+        """Discard the data of a removed body."""
         for part in body.colliders:
             for uid in body.uids:
                 for table in (self._kinds, self._stored, self._thresholds, self._models):
                     self._changed |= table.pop((uid, part.index), None) is not None
 
     def clear(self) -> None:
-        """All bodies are gone."""
+        """Discard the data of all bodies."""
         for table in (self._kinds, self._stored, self._thresholds, self._models):
             table.clear()
         self._changed = self._told = False

@@ -42,12 +42,12 @@ class PinnedBodies(StepHelper):
         self._poses[body.uid] = Pose(*pybullet.getBasePositionAndOrientation(body.uid))
 
     def forget(self, body: Body) -> None:
-        """A body is gone."""
+        """Discard the data of a removed body."""
         self._bodies.pop(body.uid, None)
         self._poses.pop(body.uid, None)
 
     def clear(self) -> None:
-        """All bodies are gone."""
+        """Discard the data of all bodies."""
         self._bodies.clear()
         self._poses.clear()
 

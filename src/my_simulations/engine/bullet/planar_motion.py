@@ -46,7 +46,7 @@ class PlanarMotion(StepHelper):
         self._velocities.pop(body.model_id, None)
 
     def clear(self) -> None:
-        """All bodies are gone."""
+        """Discard the data of all bodies."""
         self._velocities.clear()
 
     def due(self, step: int) -> int:

@@ -1,19 +1,18 @@
-"""Takes away friction that Bullet leaves at contacts which carry nothing.
+"""Remove friction that Bullet leaves at contacts without load.
 
 Bullet's solver for rigid bodies solves the friction of a contact only while its normal impulse is
-above zero (btSequentialImpulseConstraintSolver::solveSingleIteration). A contact that carries
-something in an early iteration and nothing in the last one keeps the friction of the early one: a
-unit cube with mu 0.8 that slides on a box stops 18 % too early, with mu 1 26 %. After the step such
-impulses are known, and their effect on the velocities is taken back: 1 % remains.
+above zero (btSequentialImpulseConstraintSolver::solveSingleIteration). If a contact has a load in
+an early iteration and none in the last one, the friction impulse of the early one remains: a unit
+cube that slides on a box stops 18 % too early with mu 0.8, and 26 % with mu 1. After the step this
+module reads such impulses, and removes their effect on the velocities; an error of 1 % remains.
 
-Bullet begins each step with the impulses of the one before, such impulses included: a cube that is
-pushed by 1.15 mu N stays where it is. The friction of a body at rest is corrected only if it is
+Bullet starts each step with the impulses of the one before, including these: a cube that is pushed
+with 1.15 mu N does not move. The friction of a body at rest is corrected only if it is
 more than mu N. If such a body has no velocity that friction could act against, its contact points
-are dropped: the next step begins without impulses.
+are dropped: the next step starts without impulses.
 
-Only bodies that slide are looked at: those that move and do not tumble, fly, roll on one line, or
-lie in a pile. Which they are follows from the step count and their state alone, so runs repeat bit
-for bit.
+Only sliding bodies are checked: those that move and do not tumble, fly, roll on one line, or lie in
+a pile. The selection depends on the step count and their state only, so runs repeat bit for bit.
 """
 from __future__ import annotations
 
@@ -30,33 +29,33 @@ from .body_events import COMMANDED, BodyEvent
 from .step_helper import FAR, StepHelper, looks_until_turn, turn_of
 from .surface_coefficients import directed, of_link
 
-Contact = Tuple[Any, ...]  # as PyBullet tells it
+Contact = Tuple[Any, ...]  # as PyBullet returns it
 Node = Tuple[int, int]  # body uid, link index
 
 EVERY = 8
-"""Steps between two looks at the fast bodies."""
+"""Steps between two checks of the fast bodies."""
 
-_FAST_ROUNDS = 2   # looks until every fast body was asked for its contacts
-_ROUNDS = 16       # looks until every moving body was asked for its speed
+_FAST_ROUNDS = 2   # checks until the contacts of each fast body were read
+_ROUNDS = 16       # checks until the speed of each moving body was read
 _SLOW_ROUNDS = 64  # the same for those found at rest
-_FAST = 2e-3       # m/s, or rad/s: slower ones may rest
-_MAY_STOP = 0.5    # m/s: slower ones are asked in every step, as such friction may stop them
-_STUCK = 2e-5      # m/s: less is no direction
-_BEYOND = 1.001    # of mu N: more friction than that breaks Coulomb's law
-_TUMBLES = 1.5     # rad/s across gravity: nobody knows how far a body that turns over slides
-_CLEAR = 24        # looks for which what flies clear of everything is not asked
+_FAST = 2e-3       # m/s, or rad/s: slower bodies may be at rest
+_MAY_STOP = 0.5    # m/s: slower bodies are checked in each step, as such friction may stop them
+_STUCK = 2e-5      # m/s: a smaller slip has no direction
+_BEYOND = 1.001    # of mu N: more friction violates Coulomb's law
+_TUMBLES = 1.5     # rad/s across gravity: the slip of a body that turns over is not predictable
+_CLEAR = 24        # checks for which a body that flies far from others is left out
 _REACH = 0.02      # m: contacts exist a little before surfaces meet
-_KEPT = 16         # looks for which a body is asked in every step, once it slides or was mended
-_MOST_CONTACTS = 8 # one with more that touches one that moves, or that touches two, is in a pile
-_SOON = -1         # instead of a look: it is not known yet which comes next
+_KEPT = 16         # checks for which a body is read in each step, once it slides or was corrected
+_MOST_CONTACTS = 8 # a body with more that touches a moving body, or two bodies, is in a pile
+_SOON = -1         # instead of a check number: the next check is not known yet
 _NONE = (0.0, 0.0, 0.0)
 
-# What the contacts of a body tell:
+# Classes of bodies by their contacts:
 _FLIES, _PILED, _SLIDES, _MENDED = range(4)
 
 
 class ResidualFriction(StepHelper):
-    """Mends the velocities of sliding rigid bodies after each step.
+    """Corrects the velocities of sliding rigid bodies after each step.
 
     Args:
         rolls: returns whether a rigid body is a cylinder that rolls on its side.
@@ -71,21 +70,21 @@ class ResidualFriction(StepHelper):
         self._moving: Set[int] = set()
         self._watched: Dict[int, None] = {}
         self._fast: Dict[int, None] = {}
-        self._mended: Dict[int, int] = {}   # until which look
+        self._mended: Dict[int, int] = {}   # until which check
         self._asleep: Set[int] = set()
-        self._clear: Dict[int, int] = {}    # until which look
+        self._clear: Dict[int, int] = {}    # until which check
         self._planes: Set[int] = set()
         self._mu: Dict[Node, float] = {}    # of surfaces with one coefficient
         self._rounds: Optional[Tuple[List[int], List[int]]] = None
 
     def add(self, body: Body) -> None:
-        """Know a new body; only rigid ones that move and can have several contacts matter."""
+        """Register a new body; only rigid ones that move and can have several contacts matter."""
         for part in body.colliders:
             if not directed(of_link(part.link)):
                 self._mu.update({(uid, part.index): part.mu for uid in body.uids})
         if not body.moves:
             if not body.radius:
-                self._planes.add(body.uid)  # endless; the box below each says what it says
+                self._planes.add(body.uid)  # infinite; the box below has the same contacts
             return
         self._moving.add(body.uid)
         if not body.rigid:
@@ -98,11 +97,11 @@ class ResidualFriction(StepHelper):
 
     @property
     def fast(self) -> List[int]:
-        """The bodies that slide just now, as far as is known."""
+        """The bodies that slide now, as of their last check."""
         return list(self._fast)
 
     def forget(self, body: Body) -> None:
-        """A body is gone."""
+        """Discard the data of a removed body."""
         for table in (self._bodies, self._watched, self._fast, self._mended, self._clear):
             table.pop(body.uid, None)
         for group in (self._moving, self._trees, self._asleep, self._planes):
@@ -113,7 +112,7 @@ class ResidualFriction(StepHelper):
         self._rounds = None
 
     def clear(self) -> None:
-        """All bodies are gone."""
+        """Discard the data of all bodies."""
         for table in (self._bodies, self._watched, self._fast, self._mended, self._clear):
             table.clear()
         self._mu.clear()

@@ -74,11 +74,11 @@ class RestoredSleep(StepHelper):
         self._commanded.add(body.uid)
 
     def forget(self, body: Body) -> None:
-        """A body is gone."""
+        """Discard the data of a removed body."""
         self._rests.pop(body.uid, None)
 
     def clear(self) -> None:
-        """All bodies are gone."""
+        """Discard the data of all bodies."""
         self._rests.clear()
         self._commanded.clear()
 

@@ -1,12 +1,12 @@
-"""Wheels that stand on both their edges, and rods that lie on both their ends.
+"""Divide wheels and rods into pieces, so that both ends have contacts.
 
-Bullet finds one point a step where a lying cylinder meets a floor, at one edge or the other: a base
-on wide wheels under equal efforts yawed by 13 degrees in 1 s. So the cylinder of a wheel is built
-from a thin disc at each end and a body between them that is a little smaller.
+Bullet finds one contact point per step between a lying cylinder and a floor, at one end or the
+other. A base on wide wheels with equal efforts therefore yawed by 13 degrees in 1 s. So the
+cylinder of a wheel consists of a thin disc at each end and a slightly smaller cylinder between.
 
-A rod without joints lay on one end and the other in turns, for ever: put down from 1 mm it sank 4
-to 6 mm into the floor while overlaps were parted without velocity. So it is built alike, a capsule
-with balls at its ends. ODE finds both ends of either.
+A rod without joints alternated between contacts at its two ends: placed 1 mm above the floor, it
+sank 4 to 6 mm into it while split impulses were on. So rods are built in the same way, capsules
+with a sphere at each end. ODE finds contacts at both ends of either shape.
 """
 from __future__ import annotations
 
@@ -19,20 +19,20 @@ from ...geometry import Pose, compose, cross, dot, inverse, norm, rotate
 from ..body_plan import TreeLink
 from .rolling_contacts import axis_of
 
-_DISC = 2e-3       # m, its width
-_SMALLER = 2e-4    # m, the radius of what lies between
-_NARROWEST = 8e-3  # m: a narrower wheel yaws by less than one sees
-_ALIGNED = 2e-3    # of the joint's axis across that of the cylinder: files say 1.57 or 3.14159
-_CENTRED = 1e-5    # m between the two
-_ROD = 6.0         # whole length by radius: a shorter one stands more often than it lies
-_SHARE = 0.05      # of the radius of a thin rod, by which what lies between is smaller
-_INSET = 1e-4      # m, of its faces: a rod that stands does so on a disc alone
+_DISC = 2e-3       # m, width of a disc
+_SMALLER = 2e-4    # m, by which the radius of the middle piece is smaller
+_NARROWEST = 8e-3  # m: a narrower wheel causes no visible yaw
+_ALIGNED = 2e-3    # sine between the axes of joint and cylinder: files have 1.57 or 3.14159
+_CENTRED = 1e-5    # m between the two axes
+_ROD = 6.0         # whole length / radius: a shorter cylinder stands more often than it lies
+_SHARE = 0.05      # of the radius of a thin rod, by which the middle piece is smaller
+_INSET = 1e-4      # m, of the middle piece's faces: an upright rod stands on a disc only
 
 
 def with_rims(node: TreeLink, collisions: Sequence[Collision], most: int) -> List[Collision]:
-    """The collisions of a link of a tree; of a wheel its cylinder in three pieces.
+    """Return the collisions of a link of a tree, with cylinders of wheels in three pieces.
 
-    `most`: as many collisions the link may have.
+    `most`: largest number of collisions of the link.
     """
     found: List[Collision] = []
     for n, collision in enumerate(collisions):
@@ -42,9 +42,9 @@ def with_rims(node: TreeLink, collisions: Sequence[Collision], most: int) -> Lis
 
 
 def with_ends(link: Link, most: int) -> List[Collision]:
-    """The collisions of a link without joints; of a rod its cylinders and capsules in pieces.
+    """Return the collisions of a link without joints, with those of rods in three pieces.
 
-    `most`: as many collisions the link may have.
+    `most`: largest number of collisions of the link.
     """
     if 3 * len(link.collisions) > most or axis_of(link) is None:
         return link.collisions
@@ -52,7 +52,7 @@ def with_ends(link: Link, most: int) -> List[Collision]:
 
 
 def _rod(collision: Collision) -> List[Collision]:
-    """A long cylinder as two discs and what lies between, a long capsule as two balls and that."""
+    """Divide a long cylinder into two discs and a middle piece, a capsule with spheres."""
     shape = collision.geometry
     if not isinstance(shape, (Capsule, Cylinder)):
         return [collision]
@@ -90,6 +90,6 @@ def _pieces(collision: Collision) -> List[Collision]:
 
 
 def _with(collision: Collision, end: Geometry, z: float, between: Geometry) -> List[Collision]:
-    """A collision as an end at `z` and one at -`z`, m along its axis, and what lies between."""
+    """Replace a collision by ends at `z` and -`z`, m along its axis, and a middle piece."""
     return [replace(collision, geometry=end, pose=compose(collision.pose, Pose((0.0, 0.0, at))))
             for at in (-z, z)] + [replace(collision, geometry=between)]

@@ -1,19 +1,19 @@
-"""Lets lying cylinders roll as they should: neither on by themselves, nor ever faster.
+"""Make lying cylinders roll at constant speed, and keep them at rest on level floors.
 
-Bullet keeps the contact points of a pair from step to step where they were on the surfaces. On a
-cylinder that turns they lag 0.2 to 0.4 mm behind the axle, and what they carry there drives it on:
-a can pushed to 0.05 m/s rolled at 0.4 m/s after 20 s, one at rest rolled out of the room. So the
-points of lying cylinders are dropped before each step; the step finds new ones.
+Bullet keeps the contact points of a pair between steps at fixed places on the surfaces. On a
+rolling cylinder they lag 0.2 to 0.4 mm behind the axle, and their load accelerates it: a can pushed
+to 0.05 m/s rolled at 0.4 m/s after 20 s, and a can at rest started to roll. So the points of lying
+cylinders are dropped before each step; the step finds new ones.
 
-A step finds one new point, at one end or the other, so only one end is pushed out of the floor at a
-time: at the rate of other contacts a cylinder of 3 cm rolls 1.9 mm deep, where Bullet is so inexact
-on boxes that it loses 2 % of 0.05 m/s in 20 s (measured). Where a cylinder rolls on what does
-not move, its overlaps are therefore parted as fast as that gives it no velocity to jump with.
+A step finds one new point, at one end or the other, so it pushes only one end out of the floor.
+With the separation rate of other contacts, a cylinder of 3 cm rolls 1.9 mm deep. There Bullet is
+inaccurate on boxes: the cylinder loses 2 % of 0.05 m/s in 20 s (measured). On static bodies the
+overlaps of a rolling cylinder are therefore separated as fast as possible without a jump.
 
-A cylinder at rest would rock on such points. So one that hardly moves, where the floor is level and
-nothing that moves, no joint and no timed force acts on it, keeps its points, and is stopped in
-every step and put back. One that rocks already is judged by its way between two looks, an even
-count of steps: the velocity of a step says nothing then.
+A cylinder at rest would rock on such points. So a cylinder that hardly moves keeps its points, is
+stopped in each step and set back, if the floor is level and no moving body, joint or timed force
+acts on it. For a cylinder that already rocks, the velocity of one step means nothing. Its motion
+between two checks, an even number of steps apart, decides instead.
 """
 from __future__ import annotations
 
@@ -47,25 +47,25 @@ from .link_states import place
 from .step_helper import FAR, StepHelper, next_multiple
 
 EVERY = 8
-"""Steps between two looks at who lies."""
+"""Steps between two checks for lying cylinders."""
 
-_LYING = 0.1      # of the contact normal along the axis: less is a cylinder on its side
-_UPRIGHT = 0.9    # more is one on its end
-_TURNS = 0.01     # rad/s: joints slower than that need nothing
-_CREEP = 5e-3     # m/s: what rolls slower stands
-_TURN = 0.2       # rad/s: the same for its turning
-_LEVEL = 1e-3     # of gravity along the floor: less is a level one
-_ASLEEP = 3       # looks without velocity: it sleeps, and Bullet leaves it alone
-_HINGED = 3       # looks until a wheel that rolls is looked at again
-_PATIENCE = 8     # looks until one that sleeps, or stands on its end, is looked at again
-_SHIFT = 1e-5     # m between two looks: less is not its own
+_LYING = 0.1      # of the contact normal along the axis: a cylinder below it lies on its side
+_UPRIGHT = 0.9    # a cylinder above it stands on its end
+_TURNS = 0.01     # rad/s: slower joints need no correction
+_CREEP = 5e-3     # m/s: a slower cylinder counts as at rest
+_TURN = 0.2       # rad/s: the same for its angular velocity
+_LEVEL = 1e-3     # of gravity along the floor: a floor below it is level
+_ASLEEP = 3       # checks without velocity: then it sleeps, and Bullet does not move it
+_HINGED = 3       # checks until a rolling wheel is checked again
+_PATIENCE = 8     # checks until a sleeping or upright cylinder is checked again
+_SHIFT = 1e-5     # m between two checks: a shorter motion is drift
 _NONE = (0.0, 0.0, 0.0)
 
-_PARTING = 5.0      # 1/s: the rate at which overlaps of all other contacts are parted
-_MOST = 0.2         # the largest share of an overlap that is parted in one step
-_PUSH = 2.0         # of the speed that gravity gives in one step: what an overlap is parted with
+_PARTING = 5.0      # 1/s: separation rate of the overlaps of all other contacts
+_MOST = 0.2         # largest share of an overlap that is removed in one step
+_PUSH = 2.0         # separation speed of overlaps / speed that gravity adds in one step
 _HARD = 1e12        # N/m: so stiff that only the share counts
-_CHANGE = 0.1       # smaller changes of the share are not worth a call
+_CHANGE = 0.1       # smaller relative changes of the share are not applied
 
 
 Key = Tuple[int, int]  # body uid, link index
@@ -73,13 +73,15 @@ Key = Tuple[int, int]  # body uid, link index
 
 @dataclass
 class _Roller:
-    """A round link: its axis in the frame of its principal axes; looks without velocity.
+    """A link that is round about one axis.
 
     Attributes:
-        hard: its contacts are no springs, so how they part is ours to say.
-        wait: looks at which it need not be looked at.
-        seen: where it was at the last look, if it lay on its side.
-        seamed: it touches triangles.
+        axis: in the frame of its principal axes.
+        hard: its contacts have no stiffness of their own, so this module sets their separation.
+        still: consecutive checks without velocity.
+        wait: checks for which it is left out.
+        seen: its pose at the last check, if it lay on its side.
+        seamed: whether it touches triangles.
     """
 
     body: Body
@@ -91,21 +93,21 @@ class _Roller:
     wait: int = 0
     seen: Optional[Pose] = None
     seamed: bool = False
-    share: float = 0.0   # of an overlap, parted in each step; 0: as PyBullet has it
+    share: float = 0.0   # of an overlap, removed in each step; 0: PyBullet's default
 
 
 class RollingContacts(StepHelper):
     """Drops the contact points of lying cylinders before each step.
 
     Args:
-        dropping: is told, before that, of which links points are dropped, and in which step.
-        loaded: tells the bodies that timed forces act on in this step.
+        dropping: called before that with the links whose points are dropped, and the step.
+        loaded: returns the bodies that timed forces act on in this step.
         flies: returns whether a body is known to touch nothing in a step.
-        find_pairs: finds the pairs that are new, before a step that is set up for what rolls on
-            triangles: the others would keep points as close together as those of such a pair.
+        find_pairs: finds new pairs before a step with the point spacing for cylinders on
+            triangles; otherwise all new pairs would get this spacing.
 
     Attributes:
-        on_seams: what rolls on triangles just now, and its axis in the frame of its principal axes.
+        on_seams: links that roll on triangles now, and their axes in their principal axes.
     """
 
     events = COMMANDED
@@ -124,7 +126,7 @@ class RollingContacts(StepHelper):
         self._seams: Set[int] = set()   # floors of triangles
 
     def add(self, body: Body, part: Part, link: Link) -> None:
-        """Know a link of a body; only moving ones that are cylinders about one axis matter."""
+        """Register a link of a body; only moving ones that are cylinders about one axis matter."""
         if body.moves:
             self._moving.add(body.uid)
         elif any(isinstance(each.geometry, (Heightmap, Mesh)) for each in link.collisions):
@@ -137,7 +139,7 @@ class RollingContacts(StepHelper):
                                                           link.collisions[0].surface.kp >= SOFT)
 
     def forget(self, body: Body) -> None:
-        """A body is gone."""
+        """Discard the data of a removed body."""
         self._standing.pop(body.uid, None)
         self._moving.discard(body.uid)
         self._seams.difference_update(body.uids)
@@ -146,7 +148,7 @@ class RollingContacts(StepHelper):
                 table.pop((body.uid, part.index), None)
 
     def clear(self) -> None:
-        """All bodies are gone."""
+        """Discard the data of all bodies."""
         self.on_seams.clear()
         self._rollers.clear()
         self._rolling.clear()
@@ -155,9 +157,10 @@ class RollingContacts(StepHelper):
         self._seams.clear()
 
     def handle_event(self, event: BodyEvent, body: Body) -> None:
-        """A rigid body was put somewhere or given another velocity: it may roll at once.
+        """Treat a rigid body as rolling after a command changed its pose or velocity.
 
-        A force or a motor moves what lies still only: what stands on its end keeps its points.
+        A force or a motor target matters only for cylinders at rest on their side; upright
+        cylinders keep their points.
         """
         if event in ACTUATED and body.uid not in self._standing:
             return
@@ -169,7 +172,7 @@ class RollingContacts(StepHelper):
             self._rolling[body.uid, BASE] = roller.meets
 
     def landed(self, uid: int, normal: Vec3) -> None:
-        """A rigid body is about to touch something: if it stands on it, it keeps its points."""
+        """Keep the points of a rigid body that is about to land on its end."""
         roller = self._rollers.get((uid, BASE))
         if roller is not None and (uid, BASE) in self._rolling:
             turn = pybullet.getBasePositionAndOrientation(uid)[1]
@@ -190,7 +193,7 @@ class RollingContacts(StepHelper):
         return uid in self._seams
 
     def before(self, step: int, dt: float, gravity: Vec3) -> None:
-        """Find out now and then who rolls, and let it roll in the next step."""
+        """Find rolling links periodically, and drop their contact points."""
         if step % EVERY == 0 and self._rollers:
             loaded = self._loaded()
             for key, roller in self._rollers.items():
@@ -223,13 +226,13 @@ class RollingContacts(StepHelper):
                 pybullet.setCollisionFilterGroupMask(*key, meets.group, meets.mask)
 
     def due(self, step: int) -> int:
-        """Each step while something rolls, or stands, else the next look."""
+        """Each step while a link rolls or is kept at rest, otherwise the step of the next check."""
         if self._rolling or self._standing:
             return step
         return next_multiple(step, EVERY) if self._rollers else FAR
 
     def _rolls(self, roller: _Roller, dt: float, gravity: Vec3, loaded: bool) -> bool:
-        """Whether a link lies on its side and does not stand; finds out whether it does."""
+        """Whether a link lies on its side and moves; if it is at rest, keep it there."""
         uid, index = roller.body.uid, roller.part.index
         if roller.body.rigid:
             linear, angular = pybullet.getBaseVelocity(uid)
@@ -271,9 +274,9 @@ class RollingContacts(StepHelper):
         return True
 
     def _part(self, roller: _Roller, contacts: Tuple[Any, ...], dt: float, weight: float) -> None:
-        """Set how fast the overlaps of a link are parted. `weight`: gravity, m/s^2.
+        """Set the separation rate of the overlaps of a link. `weight`: gravity, m/s^2.
 
-        Wheels keep the usual rate on triangles, whose edges would drive them on.
+        Wheels on triangles keep the usual rate; a higher one at edges would accelerate them.
         """
         share = least = min(_MOST, _PARTING * dt)
         key = roller.body.uid, roller.part.index
@@ -288,7 +291,7 @@ class RollingContacts(StepHelper):
                                     contactDamping=dt * _HARD * (1.0 / share - 1.0))
 
     def _stand(self, uid: int, before: Optional[Pose]) -> None:
-        """Let a body stand where it stood at the last look, if it did and moved since by itself."""
+        """Keep a body at rest; set it back to its pose at the last check if it only drifted."""
         at = Pose(*pybullet.getBasePositionAndOrientation(uid))
         if before is not None and dist(at.position, before.position) < _SHIFT:
             x, y, _ = before.position
@@ -297,9 +300,9 @@ class RollingContacts(StepHelper):
         self._standing[uid] = at
 
     def _on_level(self, contacts: Tuple[Any, ...], gravity: Vec3) -> bool:
-        """Whether a body only stands on level floors that do not move.
+        """Whether all contacts of a body are with static, level floors.
 
-        Edges of triangles beside it, which carry nothing, may be inclined.
+        Points without overlap, as of triangle edges beside it, may be inclined.
         """
         limit = _LEVEL * norm(gravity)
         return all(contact[2] not in self._moving and (
@@ -312,14 +315,14 @@ def _slow(linear: Vec3, angular: Vec3) -> bool:
 
 
 def _mean(before: Pose, after: Pose, duration: float) -> Tuple[Vec3, Vec3]:
-    """The velocities, linear and angular, that lead from one pose to another in `duration` s."""
+    """Return the mean linear and angular velocity between two poses, `duration` s apart."""
     turn = rotation_vector(multiply(after.orientation, conjugate(before.orientation)))
     return (scale(subtract(after.position, before.position), 1.0 / duration),
             scale(turn, 1.0 / duration))
 
 
 def axis_of(link: Link) -> Optional[Vec3]:
-    """The one axis that all shapes of a link are round about, in the link frame, or None."""
+    """Return the common axis of a link's cylinders and capsules, in the link frame, or None."""
     found: List[Pose] = []
     for collision in link.collisions:
         if isinstance(collision.geometry, (Cylinder, Capsule)):

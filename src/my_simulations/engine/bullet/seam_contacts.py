@@ -1,16 +1,14 @@
-"""Lets wheels and cylinders roll over the seams between triangles as over one surface.
+"""Correct the forces on wheels and cylinders that roll over seams between triangles.
 
-Where a lying cylinder is a little deep in a floor of triangles, it meets the edge of the triangle
-ahead or behind too. That edge carries part of the weight, pushes against the way or along it, and
-turns the wheel: at 0.05 m/s a wheel lost or gained up to 80 % of its speed in 10 s. Two things
-cure that:
+A lying cylinder that overlaps a floor of triangles also touches the edge of the triangle ahead or
+behind. That edge carries part of the weight, pushes along or against the motion, and turns the
+wheel: at 0.05 m/s a wheel lost or gained up to 80 % of its speed in 10 s. Two corrections are made:
 
-- Bullet takes a new point for an old one when they are as near as its breaking threshold, a
-  fiftieth of the body's size. So a point on an edge replaced the one below the axle. While
-  something rolls on triangles, the threshold is smaller for pairs that are new in a step, as its
-  own are in each.
-- What the edges did wrong in a step is taken back in the next one: their normal forces should have
-  acted along the normal of the deepest point, and through the axle.
+- Bullet merges a new point with an old one within its breaking threshold, a fiftieth of the body's
+  size. So a point on an edge replaced the one below the axle. While a cylinder rolls on triangles,
+  the threshold is smaller for new pairs; its own pairs are new in each step.
+- The error of the edge forces in a step is compensated in the next one: the normal forces should
+  act along the normal of the deepest point, and through the axle.
 """
 from __future__ import annotations
 
@@ -27,16 +25,16 @@ from .rolling_contacts import EVERY, Key, RollingContacts
 from .step_helper import FAR, StepHelper, next_multiple
 from .world_parameters import WorldParameters
 
-_APART = 5e-4  # of a body's size: points that are nearer are one; usually more
-_CHORD = 1.5   # of the way that lies in the floor: an edge farther off the axle is an obstacle
-_SAME = 0.95   # cosine between two normals of one surface
+_APART = 5e-4  # of a body's size: closer points are merged (Bullet's default: 0.02)
+_CHORD = 1.5   # of the half chord in the floor: an edge beyond it is an obstacle
+_SAME = 0.95   # smallest cosine between two normals of one surface
 _NONE = (0.0, 0.0, 0.0)
 
-Contact = Tuple[Any, ...]  # as PyBullet tells it
+Contact = Tuple[Any, ...]  # as PyBullet returns it
 
 
 class _Push(NamedTuple):
-    """What is to act in the next step: N at a place, N m, world axes."""
+    """A force, N, at a point, and a torque, N m, for the next step; world axes."""
 
     force: Vec3
     place: Vec3
@@ -44,7 +42,7 @@ class _Push(NamedTuple):
 
 
 class SeamContacts(StepHelper):
-    """Takes back what the edges of triangles do to what rolls over them."""
+    """Compensates the forces of triangle edges on rolling links."""
 
     events = COMMANDED
 
@@ -54,27 +52,27 @@ class SeamContacts(StepHelper):
         self._pushes: Dict[Key, List[_Push]] = {}
 
     def forget(self, body: Body) -> None:
-        """A body is gone."""
+        """Discard the data of a removed body."""
         for key in [key for key in self._pushes if key[0] == body.uid]:
             del self._pushes[key]
 
     def clear(self) -> None:
-        """All bodies are gone."""
+        """Discard the data of all bodies."""
         self._at.clear()
         self._pushes.clear()
 
     def handle_event(self, event: BodyEvent, body: Body) -> None:
-        """Drop the forces on a body that a command reached."""
+        """Discard the forces on a body that a command changed."""
         self.forget(body)
 
     def due(self, step: int) -> int:
-        """Each step while something rolls on triangles, else the next look for such."""
+        """Each step while a link rolls on triangles, otherwise the step of the next check."""
         if self._pushes or self._rolling.on_seams:
             return step
         return next_multiple(step, EVERY) if self._rolling.knows_seams else FAR
 
     def before(self, step: int, dt: float, gravity: Vec3) -> None:
-        """Push against what went wrong in the last step."""
+        """Compensate the edge forces of the last step; record the poses of rolling links."""
         for (uid, index), pushes in self._pushes.items():
             for push in pushes:
                 pybullet.applyExternalForce(uid, index, push.force, push.place,
@@ -88,7 +86,7 @@ class SeamContacts(StepHelper):
             self._parameters.request_spacing(_APART)
 
     def after(self, step: int, dt: float, gravity: Vec3) -> None:
-        """See what went wrong in the step that began at count `step`."""
+        """Compute the compensation for the step that began at count `step`."""
         if not self._at:
             return
         for key, (centre, axis) in self._at.items():
@@ -105,7 +103,7 @@ class SeamContacts(StepHelper):
 
 
 def _pushes(contacts: List[Contact], centre: Vec3, axis: Vec3) -> List[_Push]:
-    """What takes back the work of edges at one end of a cylinder: none, or one push."""
+    """Return the compensation for edge forces at one end of a cylinder: none or one push."""
     deepest = min(contacts, key=lambda contact: contact[8])
     lever = subtract(deepest[5], centre)
     along = dot(lever, axis)
@@ -126,5 +124,5 @@ def _pushes(contacts: List[Contact], centre: Vec3, axis: Vec3) -> List[_Push]:
 
 
 def _across(vector: Vec3, axis: Vec3) -> Vec3:
-    """The part of a vector across an axis."""
+    """Return the component of a vector perpendicular to an axis."""
     return subtract(vector, scale(axis, dot(vector, axis)))

@@ -1,20 +1,21 @@
-"""Friction of sliding wheels: mu N against the slip, whatever their heading.
+"""Friction of sliding wheels: mu N against the slip, for any heading.
 
-Bullet's solver for articulated bodies works friction out along the world's axes. With its pyramid
-what slides diagonally meets up to 1.41 of mu; with its cone the two directions count by how easily
-the link moves along them, so that a driven wheel hardly feels slip along its axle: a skid-steered
-base turned at 0.68 to 1.08 rad/s, or at 0.09 to 0.73, where Coulomb's law has 0.73.
+Bullet's solver for articulated bodies computes friction along the world axes. With its pyramid, the
+friction on a body that slides diagonally is up to 1.41 mu N. With its cone, the mobility of the
+link weights the two directions, so that a driven wheel has hardly any friction along its axle. A
+skid-steered base turned at 0.68 to 1.08 rad/s (pyramid) or 0.09 to 0.73 rad/s (cone); Coulomb's law
+gives 0.73 rad/s.
 
-So once a link that hangs on a joint slides on something static, Bullet's friction is taken away
-from it (a share of 0.001 along each axis remains), and Coulomb's law acts as an external force at
-each contact. Where `mu` holds along `fdir1` and `mu2` across it, M is the tensor of both in the
-plane of the floor, and friction is -N M (M v) / |M v| at the slip v: of all forces within the
-ellipse of M, the one that takes the most power away.
+So once a link on a joint slides on a static body, Bullet's friction is reduced to a share of 0.001
+along each axis, and Coulomb friction acts as an external force at each contact. If `mu` applies
+along `fdir1` and `mu2` across it, M is the tensor of both in the floor plane. At the slip v the
+friction is -N M (M v) / |M v|. Of all forces within the ellipse of M, this one dissipates the most
+power.
 
-A force against a slip of a few centimetres a second or less would overshoot within a step; there it
-grows in proportion to the slip. So as to come to rest, such a link gets Bullet's friction back
-every 64 steps, for as long as that slows it down, and keeps it once all such links of its body are
-held.
+At a slip of a few centimetres per second or less, the full force would overshoot within a step; so
+there it is proportional to the slip. To come to rest, a slow link gets Bullet's friction back every
+64 steps, for as long as that slows it down. It keeps it once Bullet holds all such links of its
+body.
 """
 from __future__ import annotations
 
@@ -35,21 +36,21 @@ from .step_helper import FAR, StepHelper, next_multiple
 from .surface_coefficients import directed
 
 EVERY = 16
-"""Steps between two looks at who slides."""
+"""Steps between two checks for sliding links."""
 
-_SELDOM = 4        # looks until one that hangs on the world is looked at again
-_SLIDES = 2e-3     # m/s of slip: a link at rest never has it
-_HELD = 5e-4       # m/s: what slips less than that is held
-_SOFT = 4.0        # steps of braking by friction: a slip that ends sooner meets less of it
-_TRY = 64          # steps between two tries whether Bullet's friction holds a slow link
-_SLOWS = 0.98      # of the slip of the step before: a try goes on while it becomes less
-_LOST = 20         # steps without contact: it flies
+_SELDOM = 4        # checks until a body with a fixed base is checked again
+_SLIDES = 2e-3     # m/s of slip: links at rest stay below it
+_HELD = 5e-4       # m/s of slip: a link below it is held
+_SOFT = 4.0        # steps of braking: friction is reduced on a slip that would end sooner
+_TRY = 64          # steps between two tests whether Bullet's friction holds a slow link
+_SLOWS = 0.98      # of the slip of the step before: a test continues while the slip is below it
+_LOST = 20         # steps without contact after which a link no longer slides
 _NONE = (0.0, 0.0, 0.0)
 _OURS = (1e-3,) * 3
 _BULLETS = (1.0,) * 3
 
 Key = Tuple[int, int]  # body uid, link index
-Contacts = List[Tuple[Any, ...]]  # as PyBullet tells them
+Contacts = List[Tuple[Any, ...]]  # as PyBullet returns them
 
 
 @dataclass(frozen=True)
@@ -76,14 +77,14 @@ class _Slide:
     """A link that slides.
 
     Attributes:
-        axle: of a wheel (`edge_loads`).
-        directions: in which its coefficients differ; None for one coefficient.
-        forces: of the next step, N, by where they act, world axes.
-        loads: what presses there, N.
+        axle: axis of a wheel (`edge_loads`), or None.
+        directions: two coefficients and their direction; None for one coefficient.
+        forces: friction in the next step, N, by contact point, world axes.
+        loads: normal forces, N, by contact point.
         slip: mean velocity across the floor after the last step, m/s.
-        trying: Bullet has its friction in this step.
-        held: and holds it.
-        slow: it meets less than Coulomb's friction, as its slip would end within a few steps.
+        trying: whether Bullet's friction acts in this step, as a test.
+        held: whether Bullet's friction holds it.
+        slow: whether its friction is reduced, as its slip would end within a few steps.
         apart: steps since it last touched something.
     """
 
@@ -101,9 +102,9 @@ class _Slide:
 
 
 class Sliding(StepHelper):
-    """Applies Coulomb's law to links that hang on joints and slide on static bodies."""
+    """Applies Coulomb friction to links of joints that slide on static bodies."""
 
-    # Not after a new force or motor target: a wheel that slides goes on sliding.
+    # A new force or motor target does not end the sliding of a wheel.
     events = frozenset({BodyEvent.ACTIVATED})
 
     def __init__(self) -> None:
@@ -116,14 +117,14 @@ class Sliding(StepHelper):
         self._wanted = True
 
     def configure(self, wanted: bool) -> None:
-        """Whether friction is a cone; a pyramid is Bullet's own."""
+        """Enable (friction cone) or disable (friction pyramid, left to Bullet) this module."""
         self._wanted = wanted
         if not wanted:
             for key in list(self._slides):
                 self._give_back(key)
 
     def add(self, body: Body, part: Part, link: Link) -> None:
-        """Know a link of a body. Bullet keeps what slides on a floor with two coefficients."""
+        """Register a link of a body. Bullet's friction stays on floors with two coefficients."""
         collision = counting_collision(link)
         if collision is None:
             return
@@ -141,13 +142,13 @@ class Sliding(StepHelper):
                 self._fixed.add(body.uid)
 
     def leave(self, body: Body, part: Part) -> None:
-        """The friction of a link is another's business."""
+        """Stop the friction of a link, for which another module is responsible."""
         if (body.uid, part.index) in self._slides:
             self._give_back((body.uid, part.index))
         self._parts.get(body.uid, {}).pop(part.index, None)
 
     def forget(self, body: Body) -> None:
-        """A body is gone."""
+        """Discard the data of a removed body."""
         self._fixed.discard(body.uid)
         for uid in body.uids:
             for table in (self._static, self._parts, self._mass):
@@ -157,23 +158,23 @@ class Sliding(StepHelper):
             self._directions.pop((body.uid, part.index), None)
 
     def clear(self) -> None:
-        """All bodies are gone."""
+        """Discard the data of all bodies."""
         for table in (self._static, self._parts, self._mass, self._slides, self._directions):
             table.clear()
         self._fixed.clear()
 
     def handle_event(self, event: BodyEvent, body: Body) -> None:
-        """Give the links of a body back to Bullet."""
+        """Restore Bullet's friction for the links of a body."""
         for key in [key for key in self._slides if key[0] == body.uid]:
             self._give_back(key)
 
     def friction(self, uid: int, index: int, at: Vec3) -> Vec3:
-        """What acts on a link at a contact besides Bullet's friction, N, world axes."""
+        """Return the friction on a link at a contact besides Bullet's, N, world axes."""
         slide = self._slides.get((uid, index))
         return _NONE if slide is None else slide.forces.get(at, _NONE)
 
     def load(self, uid: int, index: int, at: Vec3) -> Optional[float]:
-        """What presses on a link that slides at a contact, N; None for another link or point."""
+        """Return the normal force on a sliding link at a contact, N; None for other contacts."""
         slide = self._slides.get((uid, index))
         return None if slide is None else slide.loads.get(at)
 
@@ -183,19 +184,19 @@ class Sliding(StepHelper):
         return bool(self._slides)
 
     def before(self, step: int, dt: float, gravity: Vec3) -> None:
-        """Let friction act in the next step."""
+        """Apply the friction of the next step."""
         for (uid, index), slide in self._slides.items():
             for at, force in slide.forces.items():
                 pybullet.applyExternalForce(uid, index, force, at, pybullet.WORLD_FRAME)
 
     def due(self, step: int) -> int:
-        """Each step while a link slides, else the next look, which comes after a step."""
+        """Each step while a link slides, otherwise the step of the next check."""
         if self._slides:
             return step
         return next_multiple(step, EVERY) if self._wanted and self._parts else FAR
 
     def after(self, step: int, dt: float, gravity: Vec3) -> None:
-        """See how links slide after the step that began at count `step`; now and then, which."""
+        """Compute friction after the step that began at count `step`; periodically find slides."""
         if step % EVERY == 0 and self._wanted:
             seldom = step % (_SELDOM * EVERY) == 0
             for uid, parts in self._parts.items():
@@ -230,7 +231,7 @@ class Sliding(StepHelper):
         return any(contact[2] not in self._static for contact in contacts)
 
     def _loads(self) -> Dict[Key, Tuple[Motion, Loads]]:
-        """How each link that slides moves, and what carries it; wheels of a body share."""
+        """Return motion and loads of each sliding link; wheels of a body share their load."""
         bodies: Dict[int, List[int]] = {}
         for uid, index in self._slides:
             bodies.setdefault(uid, []).append(index)
@@ -253,7 +254,7 @@ class Sliding(StepHelper):
 
     def _go_on(self, key: Key, moves: Motion, carried_by: Loads, step: int, dt: float,
                gravity: float) -> None:
-        """Work out the forces of the next step, or give the link back to Bullet."""
+        """Compute the friction of the next step, or restore Bullet's friction."""
         slide = self._slides[key]
         contacts, loads = carried_by
         slide.forces = {}
@@ -285,17 +286,17 @@ class Sliding(StepHelper):
             slow = slow or speed < soft * mu
             if speed > 0.0:
                 slide.forces[contact[5]] = scale(along, -mu * load / max(speed, soft * mu))
-        # A slip that is larger than before is the answer to a command.
+        # A slip that has grown is the effect of a command.
         turned = dot(slip, before) < 0.0 and norm(slip) < norm(before) + _HELD
         slide.slow = slow
         if turned or (slow and step % _TRY == 0):
             self._try(key, slide, True)
 
     def _keep_alike(self) -> None:
-        """Take links back from Bullet while others of their body slide and are slow.
+        """End the test of Bullet's friction on links while other links of their body slide slowly.
 
-        Bullet's friction holds at once, that of what is slow grows with the slip: a base of which
-        Bullet held two wheels did not turn.
+        Bullet's friction holds at once, the friction of a slow link grows with the slip: a base of
+        which Bullet held two wheels did not turn.
         """
         slow = {uid for (uid, _), slide in self._slides.items() if slide.slow and not slide.trying}
         if slow:
@@ -304,9 +305,9 @@ class Sliding(StepHelper):
                     self._try(key, slide, False)
 
     def _give_back_held(self) -> None:
-        """Give the links of a body back to Bullet together, once it holds all of them.
+        """Restore Bullet's friction for the links of a body together, once it holds all of them.
 
-        Bullet stops a slip sooner: a base with one wheel here and the other there would turn.
+        Bullet stops a slip sooner: a base with different friction on its wheels would turn.
         """
         sliding = {uid for (uid, _), slide in self._slides.items() if not slide.held}
         for key in [key for key in self._slides if key[0] not in sliding]:
@@ -314,7 +315,7 @@ class Sliding(StepHelper):
 
     @staticmethod
     def _try(key: Key, slide: _Slide, trying: bool) -> None:
-        """Let Bullet's friction act in the next step, or ours again."""
+        """Use Bullet's friction from the next step on, or that of this module again."""
         slide.trying, slide.held = trying, False
         if trying:
             slide.forces = {}
@@ -325,16 +326,16 @@ class Sliding(StepHelper):
 
 
 def _bullets(slide: _Slide) -> Vec3:
-    """What Bullet's friction of a link needs: shares of its coefficient by direction."""
+    """Return PyBullet's anisotropicFriction of a link that does not slide."""
     return _BULLETS if slide.directions is None else slide.directions.shares
 
 
 def _weighed(slip: Vec3, directions: _Directions, turn: Quat, normal: Vec3,
              most: float) -> Tuple[float, float, Vec3]:
-    """The coefficient against a slip, the speed of that, and the velocity to act against.
+    """Return a coefficient mu, a speed and a velocity; friction is -mu N velocity / speed.
 
-    The last two so that friction is mu N / speed against it: both are |M (M v)| / mu, in m/s, for
-    one coefficient the slip itself. `turn`: of PyBullet's frame; `most`: the floor's coefficient.
+    Velocity and speed have the size of |M (M v)| / mu, in m/s; with one coefficient this is the
+    slip. `turn`: orientation of PyBullet's frame; `most`: the floor's coefficient.
     """
     first = rotate(turn, directions.first)
     mu, mu2 = min(directions.mu, most), min(directions.mu2, most)
@@ -355,10 +356,10 @@ def _weighed(slip: Vec3, directions: _Directions, turn: Quat, normal: Vec3,
 
 
 def _slips(moves: Motion, contacts: Contacts, loads: List[float]) -> Tuple[List[Vec3], Vec3]:
-    """The velocity of a link across the floor at each contact, and their mean, m/s.
+    """Return the velocity of a link along the floor at each contact, and their mean, m/s.
 
-    Contacts count by what they carry: a wheel of a robot in a curve rolls on the edge that carries
-    it, while the other one slips.
+    The mean is weighted by load: a wheel of a robot in a curve rolls on its loaded edge, while the
+    other edge slips.
     """
     centre, _, (u, v, w), (p, q, r) = moves
     found: List[Vec3] = []

@@ -71,7 +71,7 @@ class StateReadout(BodyObserver):
         self._closing: Dict[int, ClosingJoint] = {}
 
     def add_joints(self, rows: slice, closing: Sequence[ClosingJoint]) -> None:
-        """Know a new model's rows of the joint table; `closing` are its joints without an axis."""
+        """Register a new model's rows of the joint table; `closing`: its joints without an axis."""
         self.used_joints = max(self.used_joints, rows.stop)
         self.joints[rows] = 0.0
         self._closing.update((one.row, one) for one in closing)
@@ -86,7 +86,7 @@ class StateReadout(BodyObserver):
             self._closing.pop(row, None)
 
     def add(self, body: Body) -> None:
-        """Know a new body."""
+        """Register a new body."""
         self._asked = []
         for part in body.parts:
             self.used_links = max(self.used_links, part.row + 1)

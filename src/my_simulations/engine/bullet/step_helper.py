@@ -1,4 +1,4 @@
-"""What the engine does around the steps of Bullet, one part a question."""
+"""Run the helpers that act before and after the steps of Bullet."""
 from __future__ import annotations
 
 from collections import deque
@@ -10,17 +10,17 @@ from .bodies import Body
 from .body_events import COMMANDED, BodyEvent, BodyObserver
 
 FAR = 1 << 30
-"""More steps than are ever made in one go."""
+"""More steps than any run makes in one call."""
 
 Item = TypeVar("Item")
 _Call = Callable[[int, float, Vec3], None]
 
 
 class StepHelper(BodyObserver):
-    """Acts around steps.
+    """Acts before and after steps.
 
-    Everything it does follows from step counts, commands and the state of the world, never from how
-    many steps are made in one go: so runs repeat bit for bit.
+    Its actions depend on step counts, commands and the state of the world only. The number of steps
+    per call must not matter: so runs repeat bit for bit.
     """
 
     def before(self, step: int, dt: float, gravity: Vec3) -> None:
@@ -30,15 +30,15 @@ class StepHelper(BodyObserver):
         """Act after the step that began at count `step`."""
 
     def due(self, step: int) -> int:
-        """The first step from count `step` on around which it acts, as far as is known now.
+        """Return the first step, `step` or later, before or after which the helper must act.
 
-        `FAR` for none. It stays right until the helper has acted or a command reached a body.
+        `FAR` for none. The result is valid until the helper acts or a command changes a body.
         """
         return FAR
 
 
 class StepLoop(BodyObserver):
-    """Makes steps and calls helpers around those where they are due, in their order."""
+    """Makes steps, and calls the helpers that are due before and after them, in order."""
 
     events = COMMANDED | {BodyEvent.FIXED_AT_REST, BodyEvent.RELEASED}
 
@@ -59,27 +59,27 @@ class StepLoop(BodyObserver):
         self._moving: Set[int] = set()
 
     def add(self, body: Body) -> None:
-        """Know a new body."""
+        """Register a new body."""
         self.changed()
         if body.moves:
             self._moving.add(body.uid)
 
     def forget(self, body: Body) -> None:
-        """A body is gone."""
+        """Discard the data of a removed body."""
         self.changed()
         self._moving.discard(body.uid)
 
     def clear(self) -> None:
-        """All bodies are gone."""
+        """Discard the data of all bodies."""
         self.changed()
         self._moving.clear()
 
     def handle_event(self, event: BodyEvent, body: Body) -> None:
-        """Ask all helpers again when they are due."""
+        """Compute again, before the next step, when each helper is due."""
         self._notified = True
 
     def changed(self) -> None:
-        """Ask all helpers again when they are due."""
+        """Compute again, before the next step, when each helper is due."""
         self._dues = []
 
     def run(self, first: int, count: int, dt: float, gravity: Vec3) -> None:
@@ -87,14 +87,14 @@ class StepLoop(BodyObserver):
         helpers, one = self._helpers, self._one
         step, end = first, first + count
         dues, (follows, due) = self._dues, self._next
-        # A world that steps in real time asks for one step at a time: what was known still holds.
+        # A world in real time makes one step per call: the due steps of the last call still hold.
         if not dues or self._notified or follows != first:
             dues = [helper.due(step) for helper in helpers]
             due = min(dues)
         while step < end:
             free = min(due, end) - step
             if free > 0:
-                # Bullet takes 13 us for a step of nothing, which a world at rest pays each time.
+                # An empty step of Bullet takes 13 us, so a world without moving bodies omits it.
                 self._prepare()
                 if self._moving:
                     deque(starmap(one, repeat((), free)), maxlen=0)  # a loop without bytecode
@@ -104,7 +104,7 @@ class StepLoop(BodyObserver):
             others = min([end, *(at for at in dues if at > step)])
             befores = [n for n in acting if self._befores[n] is not None]
             afters = [n for n in acting if self._afters[n] is not None]
-            # Mostly the same helpers act in each step: no other is asked until something changes.
+            # Mostly the same helpers act in each step. The others are checked after a change only.
             while step < others:
                 self._notified = False
                 self._call(self._befores, befores, step, dt, gravity)
@@ -146,22 +146,22 @@ class StepLoop(BodyObserver):
 
 
 def next_multiple(step: int, every: int) -> int:
-    """The first multiple of `every` from `step` on."""
+    """Return the first multiple of `every` that is not below `step`."""
     return step + -step % every
 
 
-_FEWEST = 8  # items a turn: a look costs about as much as asking two of them
+_FEWEST = 8  # items per turn: a check costs about as much as two items
 
 
 def turn_of(items: List[Item], look: int, rounds: int) -> List[Item]:
-    """The items whose turn it is at count `look`, when each has its turn once in `rounds` looks."""
+    """Return the items that are due at check `look`; each is due once in `rounds` checks."""
     share = max(_FEWEST, -(-len(items) // rounds))
     at = look % rounds * share
     return items[at:at + share]
 
 
 def looks_until_turn(count: int, look: int, rounds: int) -> int:
-    """How many looks after `look` the next of `count` items has its turn; 0 for at this one."""
+    """Return the number of checks after `look` until one of `count` items is due; 0: now."""
     if not count:
         return FAR
     at = look % rounds

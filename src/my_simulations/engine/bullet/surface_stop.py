@@ -1,16 +1,17 @@
-"""Lets what falls fast reach a surface, not go deep into it.
+"""Stop fast bodies at the surface that they hit, before they penetrate it deeply.
 
-A body of 10 m/s moves 1 cm in a step, and Bullet solves an impact only once bodies overlap: a box
-that fell 5 m was 6 mm deep in the floor for a step. So in the step in which a body would go deeper
-than 1.8 mm, it is put back by as much of its way beforehand; its velocity stays. It arrives a part
-of a step later.
+A body at 10 m/s moves 1 cm per step, and Bullet solves an impact only once bodies overlap: a box
+that fell 5 m penetrated the floor by 6 mm for a step. If a body would go deeper than 1.8 mm in a
+step, it is moved back before the step by the excess; its velocity is kept. It arrives a fraction of
+a step later.
 
-A body that bounces is put back to the surface itself, with the velocity that it had there. Bullet
-pushes bodies out of overlaps at 5 m/s for each metre, and a body that is lifted by what it fell too
-deep gains energy: each bounce would be 0.2 % higher than the last one, from 5 m with steps of 1 ms.
+A bouncing body is moved back to the surface itself, with the velocity that it had there. Bullet
+separates overlaps at 5 m/s per metre, and this lift adds energy: from 5 m, with steps of 1 ms, each
+bounce would be 0.2 % higher than the last one.
 
-Bodies are asked for their speed no sooner than gravity can have made them fast, and those that are
-fast, what is ahead, no sooner than they can be there. Small balls are swept along their way (CCD).
+The speed of a slow body is checked again when gravity can have made it fast. The surroundings of a
+fast body are checked again when it can have reached something. Small balls use Bullet's continuous
+collision detection (CCD) instead.
 """
 from __future__ import annotations
 
@@ -29,16 +30,16 @@ from .step_helper import FAR, StepHelper
 from .surface_coefficients import of_link, restitution
 from .world_parameters import LEAST_BOUNCE
 
-_DEEP = 1.8e-3   # m: the depth that a body may reach in one step of 1 ms or less
-_LEAST = 3e-5    # m: bodies that overlap less may slow down by 1e-5 m a step before they touch
-_DEEPEST = 3.0   # times as deep in longer steps, at most: otherwise slow rolling counts as fast
-_AHEAD_S = 0.016 # s for which a fast body looks ahead
-_AHEAD = 16      # steps for which it does, at most
-_SELDOM = 256    # steps between two looks at a slow one, at most
+_DEEP = 1.8e-3   # m: allowed penetration in one step of 1 ms or less
+_LEAST = 3e-5    # m, for bouncing bodies: below it Bullet may brake by 1e-5 m a step before contact
+_DEEPEST = 3.0   # largest factor of the depth for longer steps, else slow rolling counts as fast
+_AHEAD_S = 0.016 # s between two checks of a fast body
+_AHEAD = 16      # the same in steps, at most
+_SELDOM = 256    # steps between two checks of a slow body, at most
 
 
 class _Motion(NamedTuple):
-    """Of a body: its centre of mass, velocity (m/s) and angular velocity (rad/s)."""
+    """Centre of mass (m), velocity (m/s) and angular velocity (rad/s) of a body."""
 
     centre: Vec3
     linear: Vec3
@@ -49,18 +50,18 @@ class _Motion(NamedTuple):
         return cls(pybullet.getBasePositionAndOrientation(uid)[0], *pybullet.getBaseVelocity(uid))
 
     def radius(self, low: Vec3, high: Vec3) -> float:
-        """The most that a point between two corners is away from the centre, m."""
+        """Return the largest distance of a point in a box from the centre, m."""
         x, y, z = self.centre
         return norm((max(high[0] - x, x - low[0]), max(high[1] - y, y - low[1]),
                      max(high[2] - z, z - low[2])))
 
     def nearing(self, other: "_Motion", radius: float) -> float:
-        """The most by which points of both near each other, m/s, within `radius` of this one."""
+        """Return an upper bound, m/s, of the approach speed of points within `radius`, m."""
         return norm(subtract(self.linear, other.linear)) + norm(self.angular) * radius + (
             norm(other.angular) * (dist(self.centre, other.centre) + radius))
 
     def at(self, place: Vec3) -> Vec3:
-        """The velocity of a point, as if joints stood still, m/s."""
+        """Return the velocity of a point, m/s, without joint rates."""
         return add(self.linear, cross(self.angular, subtract(place, self.centre)))
 
 
@@ -68,7 +69,7 @@ _STILL = _Motion((0.0, 0.0, 0.0), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
 
 
 class SurfaceStop(StepHelper):
-    """Takes back a part of the last step of what lands on something."""
+    """Moves bodies back before the step in which they would penetrate a surface."""
 
     events = COMMANDED
 
@@ -76,14 +77,14 @@ class SurfaceStop(StepHelper):
         self._bodies: Dict[int, Body] = {}
         self._moving: Set[int] = set()
         self._bouncing: Set[int] = set()
-        self._radii: Dict[int, float] = {}        # of spheres that hold rigid bodies, m
-        self._floors: Set[int] = set()            # the boxes below planes
-        self._next: Dict[int, int] = {}           # the step of the next look, by body
-        self._seen: Dict[int, _Motion] = {}       # of other bodies, in this step
-        self._looks: List[Tuple[int, int]] = []   # a heap of them; those that are not next are old
+        self._radii: Dict[int, float] = {}        # of bounding spheres of rigid bodies, m
+        self._floors: Set[int] = set()            # boxes below planes
+        self._next: Dict[int, int] = {}           # the step of the next check, by body
+        self._seen: Dict[int, _Motion] = {}       # motions of other bodies in this step
+        self._looks: List[Tuple[int, int]] = []   # a heap of (step, body), valid if in `_next`
 
     def add(self, body: Body) -> None:
-        """Know a new body."""
+        """Register a new body."""
         if not body.moves:
             planes = [one for part in body.parts for one in part.link.collisions
                       if isinstance(one.geometry, Plane)]
@@ -96,11 +97,11 @@ class SurfaceStop(StepHelper):
             if any(restitution(of_link(part.link)) > 0.0 for part in body.colliders):
                 self._bouncing.add(body.uid)
         if body.rigid:
-            # The radius holds the corners of the box about a body: a ball's is shorter.
+            # `radius` reaches the corners of the bounding box; that of a ball is smaller.
             self._radii[body.uid] = body.radius * (3.0 ** -0.5 if body.is_ball else 1.0)
 
     def forget(self, body: Body) -> None:
-        """A body is gone."""
+        """Discard the data of a removed body."""
         self._bodies.pop(body.uid, None)
         self._radii.pop(body.uid, None)
         self._next.pop(body.uid, None)
@@ -109,7 +110,7 @@ class SurfaceStop(StepHelper):
         self._floors.difference_update(body.uids)
 
     def clear(self) -> None:
-        """All bodies are gone."""
+        """Discard the data of all bodies."""
         for table in (self._bodies, self._next, self._radii):
             table.clear()
         for group in (self._moving, self._bouncing, self._floors):
@@ -117,18 +118,18 @@ class SurfaceStop(StepHelper):
         self._looks.clear()
 
     def handle_event(self, event: BodyEvent, body: Body) -> None:
-        """A command reached a body: it may be fast from now on."""
+        """Check a body that a command changed: it may be fast from the next step on."""
         if body.uid in self._bodies:
             self._plan(body.uid, 0)
 
     def due(self, step: int) -> int:
-        """The next look."""
+        """The step of the next check."""
         while self._looks and self._is_old(*self._looks[0]):
             heappop(self._looks)
         return max(step, self._looks[0][0]) if self._looks else FAR
 
     def before(self, step: int, dt: float, gravity: Vec3) -> None:
-        """Look at those whose turn it is, and put back what would go deep in this step."""
+        """Check the bodies that are due; move back those that would go deep in this step."""
         now: List[int] = []
         while self._looks and self._looks[0][0] <= step:
             look = heappop(self._looks)
@@ -148,7 +149,7 @@ class SurfaceStop(StepHelper):
         return self._next.get(uid) != step
 
     def _look(self, body: Body, dt: float, gravity: Vec3) -> int:
-        """Put a body back if need be. Returns how many steps later to look again."""
+        """Move a body back if it would go deep. Returns the steps until its next check."""
         linear, angular = pybullet.getBaseVelocity(body.uid)
         bounces = body.uid in self._bouncing
         deep = _LEAST if bounces else _DEEP * min(_DEEPEST, max(1.0, dt / 1e-3))
@@ -167,19 +168,19 @@ class SurfaceStop(StepHelper):
                 linear = subtract(linear, scale(gravity, late * dt + (0.0 if body.rigid else dt)))
             start = subtract(end, scale(add(linear, scale(gravity, dt)), dt))
             pybullet.resetBasePositionAndOrientation(body.uid, start, turn)
-            pybullet.resetBaseVelocity(body.uid, linear, angular)  # placing a body stops it
+            pybullet.resetBaseVelocity(body.uid, linear, angular)  # setting the pose resets it
             self._seen.pop(body.uid, None)
         return ahead
 
     def _way(self, body: Body, here: _Motion, ahead: int, deep: float, dt: float, gravity: Vec3,
              ) -> Tuple[int, float]:
-        """Steps (at most `ahead`) for which nothing is reached, and the share of this one to undo.
+        """Return the steps (at most `ahead`) until contact, and the share of this step to undo.
 
-        `deep`: the depth to arrive at, m. The share is below 0 for a body that arrives less deep,
-        -inf for one that does not arrive in this step.
+        `deep`: the allowed penetration, m. The share is below 0 if the body penetrates less, and
+        -inf if it does not reach a surface in this step.
         """
         uid, late, fall = body.uid, -inf, norm(gravity) * dt
-        speed = norm(here.linear) + ahead * fall   # the most that it has meanwhile
+        speed = norm(here.linear) + ahead * fall   # largest speed until then
         reach, radius = speed * dt * (ahead + 2), self._radii.get(uid, 0.0)
         (x, y, z), around = here.centre, radius + reach
         low, high = (x - around, y - around, z - around), (x + around, y + around, z + around)
@@ -192,12 +193,12 @@ class SurfaceStop(StepHelper):
         for other in sorted({pair[0] for pair in near} - {uid} - self._floors):
             there = self._motion(other) if other in self._moving else _STILL
             nearing = (here.nearing(there, radius) + fall) * dt
-            # What falls or slides together is no danger, and finding its nearest points is dear.
+            # Bodies that move together do not collide, and their closest points are expensive.
             if nearing <= deep:
                 continue
             towards = speed + norm(there.linear)
             apart = dist(here.centre, there.centre) - radius - self._radii.get(other, inf)
-            if apart > nearing:   # not in this step: when it may be there is enough to know
+            if apart > nearing:   # not in this step: a lower bound of the time is enough
                 ahead = min(ahead, max(1, int(apart / (towards * dt))))
                 continue
             points = pybullet.getClosestPoints(uid, other, towards * dt * (ahead + 2))
@@ -217,7 +218,7 @@ class SurfaceStop(StepHelper):
         return ahead, late
 
     def _motion(self, uid: int) -> _Motion:
-        """The motion of a body in this step."""
+        """Return the motion of a body in this step."""
         found = self._seen.get(uid)
         if found is None:
             found = self._seen[uid] = _Motion.of(uid)
@@ -225,5 +226,5 @@ class SurfaceStop(StepHelper):
 
 
 def _depth(point: Tuple[float, ...]) -> float:
-    """The distance at a closest point, m, below 0 for an overlap."""
+    """Return the distance at a closest point, m, below 0 for an overlap."""
     return point[8]

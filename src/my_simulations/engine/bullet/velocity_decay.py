@@ -1,9 +1,9 @@
-"""SDF's velocity_decay.
+"""Apply velocity_decay of SDFormat.
 
-Gazebo's ODE takes the share off a link's velocities in every step, and what acts on it then has its
-say. For joint-free bodies Bullet's damping d is the same, which leaves (1 - d) ** dt of a velocity;
-but where little is left of it in one second, d cannot be told from 1, and there it is taken off
-here. On links of articulated bodies the force and torque act that would take it off a free link.
+Gazebo's ODE reduces the velocities of a link by this share in each step, before other forces act.
+For joint-free bodies Bullet's damping d has the same effect: it leaves (1 - d) ** dt of a velocity.
+But if little of it is left after one second, d rounds to 1, and this module reduces the velocity.
+For links of articulated bodies it applies the force and torque with this effect on a free link.
 """
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ class VelocityDecay(StepHelper):
         self._links: Dict[int, Tuple[Body, Part, float, float]] = {}
 
     def add(self, body: Body, dt: float) -> None:
-        """Know a body, or anew after the step size was set; `dt`: step size, s."""
+        """Register a body, or update it after a change of the step size; `dt`: step size, s."""
         for part in body.parts if body.moves else ():
             link = part.link
             linear, angular = min(1.0, link.linear_decay), min(1.0, link.angular_decay)
@@ -38,12 +38,12 @@ class VelocityDecay(StepHelper):
                 self._links[part.row] = (body, part, linear, angular)
 
     def forget(self, body: Body) -> None:
-        """A body is gone."""
+        """Discard the data of a removed body."""
         for part in body.parts:
             self._links.pop(part.row, None)
 
     def clear(self) -> None:
-        """All bodies are gone."""
+        """Discard the data of all bodies."""
         self._links.clear()
 
     def due(self, step: int) -> int:
