@@ -58,8 +58,8 @@ class _Call:
     """A call that is under way.
 
     Attributes:
-        looked: whether it was looked at. Its times count from the first look on, so that the many
-            calls that come back before it cost nothing.
+        looked: whether it was checked. Its times count from the first check on, so that the many
+            calls that return before it cost nothing.
         interrupted: monotonic time; 0 before.
         abandoned: another thread has taken over.
     """
@@ -95,8 +95,8 @@ class CallWatch:
     """Watches the calls of one thread at a time.
 
     Args:
-        abandon: hears of a call that cannot be ended: its subject, and why. The thread that is in
-            it will end with `CallOverdue` if it ever comes back.
+        abandon: called with the subject of a call that cannot be ended, and the reason. Its thread
+            will end with `CallOverdue` if it ever returns.
     """
 
     def __init__(self, abandon: Callable[[Any, str], None]) -> None:

@@ -171,9 +171,9 @@ class Context(Protocol):
                 wrenches: Sequence[str] = (), world: bool = False) -> "Ending":
         """Follow the world at a rate in Hz of sim time, without stopping it.
 
-        As `every`, but `call` comes some milliseconds after the step, while the world goes on. The
-        context then shows that step: its time, the model's pose, and the links and joints that the
-        plugin has looked up before. `call` can publish, but not act.
+        As `every`, but `call` comes some milliseconds after the step, while the world continues.
+        The context then shows that step: its time, the model's pose, and the links and joints that
+        the plugin has looked up before. `call` can publish, but not act.
 
         Args:
             hertz: 0 or less is every step.
@@ -337,11 +337,11 @@ class Context(Protocol):
                    stream: str = "", queue: bool = False) -> bool:
         """Take pictures of the world as of now.
 
-        `call` gets them in the order of the views, and the sim time (ns) they show. One call of a
-        stream is on its way at a time: while the one before is not published, pictures are late.
-        The world then goes on, these are left out (False), and the user is told; a world that is
-        stepped manually waits instead. `stream` names cameras of a plugin that take turns of their
-        own. With `queue` the next ones may be asked for while messages of the last ones are made.
+        `call` gets them in the order of the views, and the sim time (ns) they show. A stream has
+        one pending call at a time: until its pictures are published, further pictures are late.
+        Then the world continues, these are left out (False), and the user gets a warning; a world
+        that is stepped manually waits instead. `stream` names cameras of a plugin with calls
+        independent of other streams. `queue` allows a call while messages of the last are made.
         """
 
     def sensors(self) -> List[Tuple[str, Sensor]]:

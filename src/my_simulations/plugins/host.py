@@ -1,9 +1,9 @@
 """Runs the plugins of all models of a simulator, in one thread.
 
 Plugins that only read follow the engine by its records (`observations.py`). For plugins that act
-the engine waits at exact steps: what they order (motors, velocities) is sent to the engine in one
-command; then the engine goes on, and only then messages are published, so that publishing costs no
-sim time.
+the engine waits at exact steps: their commands (motors, velocities) are sent to the engine
+together; then the engine resumes. Messages are published after that, so the engine does not wait
+for publishing.
 """
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ class PluginHost:
         simulator: the world; started.
         graph: how plugins reach ROS.
         registry: finds their classes.
-        log: hears of plugins that are unknown or fail.
+        log: receives the faults of plugins that are unknown or fail.
         patience: how long a call of a plugin may take; loading may compute twice as long.
         isolate: run each plugin that is not of this package in a process of its own.
         scene: casts rays and takes pictures; it is not closed. None for one of this host.

@@ -31,7 +31,7 @@ class MessageMaker:
         self._thread: Optional[threading.Thread] = None
 
     def put(self, topic: Topic, later: Later, fail: Callable[[Exception], None]) -> None:
-        """Have a message made and published; `fail` hears, in that thread, of what goes wrong."""
+        """Queue a message to make and publish; `fail` gets an exception, in that thread."""
         later.unsent.append(None)
         if self._thread is None:
             self._thread = threading.Thread(target=self._run, name="plugin messages", daemon=True)
@@ -52,7 +52,7 @@ class MessageMaker:
             topic, later, fail = item
             try:
                 topic.send(later.make())
-            except Exception as fault:  # a plugin's; whose it is, is told and switched off
+            except Exception as fault:  # of a plugin, which is reported and switched off
                 fail(fault)
             finally:
                 later.unsent.popleft()

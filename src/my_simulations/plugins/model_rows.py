@@ -12,10 +12,10 @@ from .context import PluginError
 
 
 class ModelRows:
-    """The rows of one model. Names are looked for in the plugin's scope (`inner::`) first.
+    """The rows of one model. Names are searched in the plugin's scope (`inner::`) first.
 
     As in Gazebo, a name may begin with that of the model; one that begins with the name of another
-    model is none of this one.
+    model is not found.
 
     Attributes:
         entity: the model as it is now.

@@ -33,7 +33,7 @@ class StepwiseChange:
         return self._timer is not None
 
     def begin(self) -> None:
-        """Call `update` at the next step of the rate, and go on until it is done."""
+        """Call `update` at the steps of the rate, from the next one until it is done."""
         if self._timer is None:
             self._last_ns = None
             self._timer = self._context.every(self._hertz, self._call)

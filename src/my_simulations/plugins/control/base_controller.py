@@ -40,12 +40,12 @@ def along_arc(pose: Planar, way: Planar) -> Planar:
 
 
 class BaseController(Controller):
-    """Hears `cmd_vel`, tells `odom` and the transform from odom to the base.
+    """Subscribes to `cmd_vel`; publishes `odom` and the transform from odom to the base.
 
     Attributes:
-        open_loop: odometry is what was commanded, else what the wheels have done.
-        smooths: the velocity that is told is the mean of the last ones.
-        goes_sideways: a command's `linear.y` counts.
+        open_loop: odometry integrates the commands, else the rotation of the wheels.
+        smooths: the published velocity is the mean of the last ones.
+        goes_sideways: a command's `linear.y` is used.
     """
 
     smooths = True
@@ -145,7 +145,7 @@ class BaseController(Controller):
                           float(message.angular.z)))
 
     def obey(self, command: Planar) -> bool:
-        """Follow a command from now on; one that is not finite is none, and told once."""
+        """Follow a command from now on; ignore one that is not finite, and warn once."""
         finite = all(map(math.isfinite, command))
         if finite:
             self.command = command
@@ -159,7 +159,7 @@ class BaseController(Controller):
         return finite
 
     def _update(self, dt: float) -> bool:
-        """Follow the command; whether the base is told the whole of it."""
+        """Apply the command within its limits; return whether the velocity no longer changes."""
         wanted = STANDING if self._time_out.is_over else self.command
         limited = self.limited(wanted, dt)
         done = self.before == self.last == limited

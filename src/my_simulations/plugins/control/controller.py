@@ -64,9 +64,9 @@ class Controller:
 
     def subscribe(self, topic: str, kind: str, call: Callable[[Any], None],
                   checks: bool = False) -> None:
-        """Hear a topic below its name; while it does not run, the user is told of commands.
+        """Subscribe to a topic below its name; warn of messages while it does not run.
 
-        Messages with NaN or infinity are passed over, unless `call` itself checks its messages.
+        Messages with NaN or infinity are ignored, unless `call` itself checks its messages.
         """
         if not checks:
             call = finite_only(self.context, f"{self.name}/{topic}", call)

@@ -1,8 +1,8 @@
 """four_wheel_steering_controller: four wheels that are driven, and steered, on their own.
 
 Joints, parameters, topics and commands are those of ros_controllers. The odometry is the motion of
-the base that fits the rolling of all four wheels best (least squares); where the wheels agree, that
-is what the original tells.
+the base that fits the rolling of all four wheels best (least squares); if the wheels agree, it
+equals the odometry of the original.
 """
 from __future__ import annotations
 

@@ -84,7 +84,7 @@ class Gripper(Controller):
         self._go(self._joint.position, self._default_effort)
 
     def _go(self, wanted: float, most: float) -> None:
-        """To a position; a maximum effort of 0 is none of an effort joint, as in the original."""
+        """Move to a position; limit 0 of an effort joint is no effort (as in the original)."""
         self._wanted, self._most = wanted, abs(most)
         if self._gains is None:
             self._joint.follow(wanted, most_effort=self._most or math.inf)
@@ -92,7 +92,7 @@ class Gripper(Controller):
             self._joint.follow(wanted, gains=self._gains, by_rates=True, most_effort=self._most)
 
     def _look(self, dt: float) -> bool:
-        """End the goal if the joint is there, or holds something; whether there is no goal."""
+        """End a goal that is reached or holds something; return whether there is no goal left."""
         goal = self._goal
         if goal is None or not goal.active:
             return True

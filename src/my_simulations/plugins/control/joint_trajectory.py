@@ -220,7 +220,7 @@ class JointTrajectory(Controller):
         following.goal.abort(result, text)
 
     def _tracked(self) -> "List[_Tracked]":
-        """What each joint should do in this step, and does; looked at once for all who ask."""
+        """Return the desired and present state of each joint, computed once in a step."""
         step, splines = self.context.step, self._splines
         if self._seen_at != step or self._seen_of is not splines:
             self._seen_at, self._seen_of = step, splines
@@ -229,7 +229,7 @@ class JointTrajectory(Controller):
                           for joint, spline in zip(self._joints, splines)]
         return self._seen
 
-    # -- what is told ------------------------------------------------------------------------------
+    # -- messages ----------------------------------------------------------------------------------
 
     def _send_feedback(self, following: "_Following") -> None:
         now = self.context.now_ns

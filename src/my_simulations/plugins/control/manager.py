@@ -212,13 +212,13 @@ class ControllerManager:
     # -- services ----------------------------------------------------------------------------------
 
     def _tried(self, what: str, call: Callable[..., None], *arguments: Any) -> bool:
-        """Whether it could be done; why not is told the user."""
+        """Return whether a call succeeded; report a failure to the user."""
         try:
             call(*arguments)
             return True
         except PluginError as fault:
             self._context.warn(f"could not {what}: {fault}")
-        except Exception as fault:  # a controller's own fault: the others go on
+        except Exception as fault:  # a controller's own fault: the others continue
             self._context.warn(f"could not {what}: {type(fault).__name__}: {fault}")
         return False
 

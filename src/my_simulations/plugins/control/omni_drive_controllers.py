@@ -85,7 +85,7 @@ class WheelController(Controller):
         self._change.begin()
 
     def _update(self, dt: float) -> bool:
-        """Follow the command; whether the base stands."""
+        """Follow the command; return whether the base stands still."""
         angles = [joint.position for joint in self._steers]
         if self._moving and self._time_out.is_over:
             self._command = STANDING
@@ -150,7 +150,7 @@ class OdometryController(Controller):
         self._pose = self._velocity = STANDING
 
     def start(self) -> None:
-        """Begin at the origin, or go on after a stop in the same moment."""
+        """Begin at the origin, or at the last pose after a stop in the same step."""
         self._now_ns = self.context.now_ns
         if self._now_ns != self._stopped_ns:
             self._pose = STANDING

@@ -2,7 +2,7 @@
 
 Topics, messages, modes and limits are those of unitree_ros. Each step the engine applies tau + Kp
 (q - q_now) + Kd (dq - dq_now), within the joint's effort. Where it differs: the rate is the joint's
-own (original: one that is filtered); the state is told 200 times a second of sim time, or as often
+own (original: a filtered one); the state is published 200 times a second of sim time, or as often
 as the parameter `publish_rate` says (original: after each step).
 """
 from __future__ import annotations

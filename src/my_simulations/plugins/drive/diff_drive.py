@@ -77,7 +77,7 @@ class DiffDrive(OdometryDrive):
             self._states.send()
 
     def _accelerate(self, dt: float) -> bool:
-        """Follow the command; whether the wheels are told the whole of it."""
+        """Approach the command; return whether the wheel speeds have reached it."""
         speeds, turn = self._speeds(dt), self._command.yaw * self._separation / 2.0
         self._drive(speeds)
         return speeds == (self._command.x - turn, self._command.x + turn)

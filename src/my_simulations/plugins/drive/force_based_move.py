@@ -1,11 +1,11 @@
-"""libgazebo_ros_force_based_move.so (hector): forces on the base make it move as it is told.
+"""libgazebo_ros_force_based_move.so (hector): forces on the base make it follow a velocity command.
 
 Parameters, defaults, topics and laws are those of hector_gazebo_plugins and of its copies
 (librobotnik_force_based_move.so, libridgeback_ros_force_based_move.so), which differ in their
 watchdogs: in every step a force along x and y of the base, and a torque about its vertical, in
-proportion to what its velocity lacks, which the engine computes. Odometry is the truth, from where
-the robot began. Where it differs: Robotnik's robots brake when the watchdog has stopped them
-(there, they are put back to one place), and go on telling their odometry.
+proportion to its velocity error, which the engine computes. Odometry is the true pose relative to
+the initial one. Where it differs: Robotnik's robots brake when the watchdog has stopped them
+(original: they are put back to one place), and continue to publish their odometry.
 """
 from __future__ import annotations
 

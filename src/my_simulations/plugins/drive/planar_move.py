@@ -1,4 +1,4 @@
-"""libgazebo_ros_planar_move.so: a model that moves level as it is told.
+"""libgazebo_ros_planar_move.so: a model that follows a planar velocity command.
 
 Parameters, defaults, topics and laws are those of gazebo_plugins: before every step the model gets
 the velocity of the last command, its vertical velocity included, which is 0.

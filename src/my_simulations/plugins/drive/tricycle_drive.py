@@ -88,7 +88,7 @@ class TricycleDrive(OdometryDrive):
             self._states.send()
 
     def _follow(self, dt: float) -> bool:
-        """Follow the command; whether motor and servo have the whole of it."""
+        """Approach the command; return whether motor and servo have reached it."""
         self._steer(max(-_MOST_STEERING, min(_MOST_STEERING, self._command.yaw)))
         wanted, present = self._command.x / self._radius, self._wheel.velocity
         rate = self._accelerated(wanted, present, dt)

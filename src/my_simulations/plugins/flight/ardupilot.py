@@ -123,7 +123,7 @@ class ArduPilot(Plugin):
             self._socket.close()
 
     def reset(self) -> None:
-        """ArduPilot is looked for again."""
+        """Wait for the first packet of ArduPilot again."""
         self._wait_for_first()
 
     clock_set = reset

@@ -1,8 +1,8 @@
 """Colour cameras: libgazebo_ros_camera.so, and those called triggered, multi and both.
 
-Parameters, defaults, topics and frames are those of gazebo_plugins (`camera_parameters` tells of
-two differences). Pictures are drawn while somebody listens, and show the step they are stamped
-with. Where they are drawn slower than the rate asks for, some are left out, and physics goes on.
+Parameters, defaults, topics and frames are those of gazebo_plugins with two differences
+(see `camera_parameters`). Pictures are rendered while there are subscribers, and show the step of
+their stamp. If rendering is slower than the rate, some are left out, and physics continues.
 """
 from __future__ import annotations
 

@@ -56,7 +56,7 @@ class SensorErrors:
 
     @property
     def drifts(self) -> bool:
-        """Whether there is a drift that goes on."""
+        """Whether the drift is not 0."""
         return any(self.drift)
 
     def _stepped(self, number: int, before: Sequence[float]) -> List[float]:

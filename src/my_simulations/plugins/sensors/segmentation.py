@@ -1,7 +1,7 @@
 """libmy_simulations_segmentation_camera.so: which link each pixel shows. Not in Gazebo Classic.
 
 In a `<sensor>` of type camera, with the parameters of libgazebo_ros_camera.so. The image is mono16:
-0 for nothing, else a number whose link `labels` tells, a latched std_msgs/String of JSON:
+0 for nothing, else the number of a link, as listed on `labels`, a latched std_msgs/String of JSON:
 {"1": "model::link", ...}. A link keeps its number while the plugin runs.
 """
 from __future__ import annotations

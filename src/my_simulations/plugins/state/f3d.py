@@ -1,9 +1,9 @@
-"""libgazebo_ros_f3d.so: what accelerates a link, as geometry_msgs/WrenchStamped.
+"""libgazebo_ros_f3d.so: the total wrench on a link, as geometry_msgs/WrenchStamped.
 
 Parameters, topic and header are those of gazebo_plugins: N and N m in world axes. It is mass times
 acceleration, and the change of the angular momentum about the centre of mass, over the time between
-two messages: everything that acts, gravity and contacts among it (the original tells what its
-engine happens to have added up).
+two messages: all forces, including gravity and contacts (the original publishes the forces that
+its engine has accumulated).
 """
 from __future__ import annotations
 

@@ -92,7 +92,7 @@ class JointPoseTrajectory(Plugin):
             self._await()
 
     def _known(self, names: Any) -> Tuple[List[Joint], List[int]]:
-        """The joints that there are, and their columns; others are told and skipped."""
+        """Return the existing joints and their columns; report and skip the others."""
         joints, columns = [], []
         for n, name in enumerate(names):
             try:
@@ -103,7 +103,7 @@ class JointPoseTrajectory(Plugin):
         return joints, columns
 
     def _await(self) -> None:
-        """The next point comes at its time, and in another step: one a step, as the original."""
+        """Schedule the next point at its time; each step applies one, as in the original."""
         if self._points:
             self._next = self.context.once(self._points[0][0], self._play)
         else:

@@ -17,7 +17,7 @@ from ..context import Link
 from ..parameters import Parameters
 
 _WATER = 999.1026  # kg/m^3, at 15 degrees
-_GRAVITY_HZ = 10.0  # how often another gravity is looked for
+_GRAVITY_HZ = 10.0  # how often a change of gravity is checked
 
 
 class Buoyancy(Plugin):
@@ -41,7 +41,7 @@ class Buoyancy(Plugin):
         self.update()
 
     def _given(self, blocks: "List[Parameters]") -> Dict[str, Tuple[float, Vec3]]:
-        """Volume and centre by link; what cannot be used is told, and collisions count instead."""
+        """Return volume and centre by link; report invalid ones, which collisions replace."""
         found: Dict[str, Tuple[float, Vec3]] = {}
         names = {link.name for link in self.context.description.links}
         for block in blocks:

@@ -1,7 +1,7 @@
 """libElevatorPlugin.so and libgazebo_ros_elevator.so: a lift with a door that goes to floors.
 
-Parameters, gains and the order of things are those of Gazebo: close the door, go to the floor, open
-the door, wait, close it; while that goes on other calls are left out. A floor is a number in a
+Parameters, gains and the sequence are those of Gazebo: close the door, go to the floor, open the
+door, wait, close it; further calls are ignored meanwhile. A floor is a number in a
 std_msgs/String. The wait passes in sim time.
 """
 from __future__ import annotations

@@ -45,7 +45,7 @@ class LiftDrag(Plugin):
             self.context.push_by(self._link.name, self._wing)
 
     def _control_joint(self, name: str) -> Optional[Joint]:
-        """One that is not there is told, and the wing flies without it, as in Gazebo."""
+        """Return the control joint; report a missing one and ignore it, as in Gazebo."""
         if not name:
             return None
         try:
