@@ -369,7 +369,7 @@ class Editor:
             self.renew()
         self._page.sent.clear()
         asyncio.run_coroutine_threadsafe(
-            self._handle(self._page.client, text), self._loop).result(60)
+            self._handle(self._page.client, text, False), self._loop).result(60)
         found: List[Hashable] = []
         for one in self._page.sent:
             issues = one.get("issues") or ([one["issue"]] if "issue" in one else [])
@@ -382,7 +382,7 @@ class Editor:
     def _ask(self, message: Dict[str, Any]) -> Any:
         self._page.sent.clear()
         asyncio.run_coroutine_threadsafe(
-            self._handle(self._page.client, json.dumps(message)), self._loop).result(60)
+            self._handle(self._page.client, json.dumps(message), False), self._loop).result(60)
         return next(one for one in self._page.sent
                     if one.get("type") == "reply" and one["id"] == message["id"])
 
