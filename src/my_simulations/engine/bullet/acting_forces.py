@@ -1,4 +1,4 @@
-"""What contacts and constraints exerted on the links of a body in the last step."""
+"""Collect the contact and constraint forces on the links of a body in the last step."""
 from __future__ import annotations
 
 from typing import Any, Dict, Iterable, List, Mapping, Sequence, Tuple
@@ -12,21 +12,21 @@ from .bodies import Body
 from .link_motion import State
 
 Acting = Dict[int, List[Tuple[Vec3, Vec3, Vec3]]]
-"""By PyBullet's index of a link: force, where it acts, and torque; N, m, N m, world axes."""
+"""Force, point of action and torque by PyBullet's link index; N, m, N m, world axes."""
 
 
 def note(found: Acting, index: int, force: Vec3, at: Vec3, torque: Vec3 = ZERO3) -> None:
-    """Add what acts on a link, if anything does."""
+    """Add a force and a torque on a link, unless both are zero."""
     if any(force) or any(torque):
         found.setdefault(index, []).append((force, at, torque))
 
 
 def note_contacts(found: Acting, body: Body) -> None:
-    """Add what Bullet's contacts exert on the links of a body."""
+    """Add the contact forces of Bullet on the links of a body."""
     mine = pybullet.getContactPoints(bodyA=body.uid)
     if not mine:
         return
-    # Asked for one body, PyBullet swaps points and normals of some contacts, but not the
+    # In queries for one body, PyBullet swaps points and normals of some contacts, but not the
     # directions of friction (measured, 3.2.7).
     owners = body.owners
     for contact in pybullet.getContactPoints() if any(
@@ -42,7 +42,7 @@ def note_contacts(found: Acting, body: Body) -> None:
 
 
 def note_constraints(found: Acting, body: Body, links: Mapping[int, State]) -> None:
-    """Add what the constraints of loops and ties exert on the links of a body."""
+    """Add the forces of loop and tie constraints on the links of a body."""
     for n in range(pybullet.getNumConstraints()):
         number = pybullet.getConstraintUniqueId(n)
         info = pybullet.getConstraintInfo(number)

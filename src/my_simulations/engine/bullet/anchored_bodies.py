@@ -1,7 +1,7 @@
-"""Bodies that hang on the world by a joint: moving them turns that joint, as far as it can.
+"""Move bodies that a joint connects to the world; the joint position follows within its limits.
 
-In Gazebo the anchor of such a joint stays in the world, and its angle follows from the pose of the
-link. Here joint positions are what is kept, so they are changed together with the pose.
+In Gazebo the anchor of such a joint stays in the world, and its position follows from the pose of
+the link. PyBullet stores joint positions instead, so they are set together with the pose.
 """
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How fast, and from where, one body comes nearer to another."""
+"""Compute extents and approach speeds of bodies."""
 from __future__ import annotations
 
 from math import dist
@@ -9,11 +9,11 @@ import pybullet
 from ...geometry import Vec3, add, cross, dot, norm, subtract
 from .bodies import Body
 
-_SAME = 1e-9  # m/s, or share: as rounding changes a velocity
+_SAME = 1e-9  # m/s, or share: rounding errors of a velocity
 
 
 def extent(body: Body) -> Tuple[Vec3, Vec3]:
-    """The lowest and highest corner of a box along the world's axes about a body."""
+    """Return the lowest and highest corner of the axis-aligned bounding box of a body."""
     boxes = [pybullet.getAABB(body.uid, part.index) for part in body.colliders]
     low = (min(box[0][0] for box in boxes), min(box[0][1] for box in boxes),
            min(box[0][2] for box in boxes))
@@ -23,28 +23,28 @@ def extent(body: Body) -> Tuple[Vec3, Vec3]:
 
 
 def approach(uid: int, other: Optional[int], place: Vec3, normal: Vec3) -> float:
-    """How fast a body comes nearer to another at a place, m/s; None: what does not move."""
+    """Return the approach speed of two bodies at a point, m/s; `other` None: a static one."""
     speed = -dot(_velocity_at(uid, place), normal)
     return speed if other is None else speed + dot(_velocity_at(other, place), normal)
 
 
 def _velocity_at(uid: int, place: Vec3) -> Vec3:
-    """Of a point of a body, as if joints stood still."""
+    """Return the velocity of a point of a body, m/s, without joint rates."""
     linear, angular = pybullet.getBaseVelocity(uid)
     lever = subtract(place, pybullet.getBasePositionAndOrientation(uid)[0])
     return add(linear, cross(angular, lever))
 
 
 def speed_of(uid: int) -> float:
-    """Of the base of a body, m/s."""
+    """Return the linear speed of the base of a body, m/s."""
     linear: Vec3 = pybullet.getBaseVelocity(uid)[0]
     return norm(linear)
 
 
 def flies(body: Body, before: Vec3, now: Vec3, pull: Vec3) -> bool:
-    """Whether a rigid body met nothing: nothing but gravity has changed its velocity, m/s.
+    """Whether only gravity has changed the velocity of a rigid body, from `before` to `now`, m/s.
 
-    `pull`: what gravity gives in this time, m/s.
+    `pull`: velocity that gravity adds in this time, m/s.
     """
     alone = add(before, pull) if body.parts[0].gravity else before
     return dist(now, alone) <= _SAME * (1.0 + norm(alone))

@@ -34,7 +34,7 @@ _SMALL = 0.025  # m, half of its least extent: a larger body meets 1 cm even at 
 _SWEPT = 0.25   # of that: for a ball 5 mm wide 0.4 bounces right, 0.8 does not (measured)
 
 FASTEST_RATE = 1e6
-"""To what rates of joints, rad/s or m/s, are clamped; PyBullet's default is 100."""
+"""Largest joint rate, rad/s or m/s; PyBullet clamps faster ones, by default at 100."""
 
 
 @dataclass
@@ -44,7 +44,7 @@ class Part:
     Attributes:
         link_from_com: the centre of mass and the principal axes.
         moments: about those axes, kg m^2.
-        mu, friction: the coefficient of the file, and what PyBullet was given to store.
+        mu, friction: the coefficients of the file, and as stored in PyBullet.
         link: its description, with the collisions that it carries (see `surface_pieces`).
     """
 
@@ -73,9 +73,9 @@ class Axis:
 
     Attributes:
         number: which of its joint's axes it is.
-        ease: what acceleration an effort of 1 gives it, all else free, as the file has the body.
-        lower, upper: its stops, rad or m.
-        follower: of a screw PyBullet's index of its other half, and how far that one goes with it.
+        ease: its mobility at joint positions 0, other joints free, 1/kg or 1/(kg m^2).
+        lower, upper: its limits, rad or m.
+        follower: for a screw, PyBullet's index of its other half, and the ratio of the motions.
     """
 
     row: int
@@ -210,9 +210,9 @@ def set_dynamics(uid: int, index: int, surface: Surface, mass: float, moments: V
 
 
 def set_sleep(body: Body) -> None:
-    """Let a rigid body sleep from now on, or keep it awake: what ties or pushes it has changed.
+    """Allow or forbid a rigid body to sleep, after a change of its ties or loads.
 
-    Bullet ignores the forces on a sleeper (measured), and lets one that speeds up slowly sleep.
+    Bullet ignores forces on a sleeping body (measured), and slowly accelerated bodies can sleep.
     """
     if body.rigid and body.moves and body.may_sleep:
         pybullet.changeDynamics(
@@ -222,22 +222,22 @@ def set_sleep(body: Body) -> None:
 
 
 def let_rest(uid: int) -> None:
-    """Mark a rigid static body as asleep, as Bullet does itself; PyBullet's settings wake it.
+    """Mark a rigid static body as asleep, as Bullet does; PyBullet's settings have woken it.
 
-    Else its pairs with sleepers are gone through in every step: a world of 100 sleeping boxes then
-    takes 87 us a step instead of 13.
+    Otherwise each step processes its pairs with sleeping bodies: a world of 100 sleeping boxes
+    then takes 87 us per step instead of 13.
     """
     pybullet.changeDynamics(uid, BASE, activationState=pybullet.ACTIVATION_STATE_SLEEP)
 
 
 def remove(body: Body) -> None:
-    """Take the body out of PyBullet."""
+    """Remove the body from PyBullet."""
     for uid in body.uids:
         pybullet.removeBody(uid)
 
 
 def place(body: Body, link_pose: Pose) -> None:
-    """Put a body so that its first part's link frame has the world pose `link_pose`."""
+    """Set the pose of a body: its first part's link frame gets the world pose `link_pose`."""
     at = body.parts[0].com_pose(link_pose)
     pybullet.resetBasePositionAndOrientation(body.uid, at.position, at.orientation)
     for uid, (recipe, _) in zip(body.more, body.shapes[1:]):
@@ -254,12 +254,12 @@ def put_axis(body: Body, axis: Axis, position: float, rate: float = 0.0) -> None
 
 
 def piece_pose(at: Pose, recipe: Recipe) -> Pose:
-    """Where the body of a piece of a link stands, when the link's own is `at`."""
+    """Return the pose of the body of a piece, for the pose `at` of the link's body."""
     return at if recipe.frame is IDENTITY else compose(at, recipe.frame)
 
 
 def launch(body: Body, link_pose: Pose, twist: Twist) -> None:
-    """Give the base the velocity `twist` (at its link origin, world axes)."""
+    """Set the velocity of the base to `twist` (at its link origin, world axes)."""
     com = body.parts[0].com_twist(link_pose, twist)
     pybullet.resetBaseVelocity(body.uid, com.linear, com.angular)
 

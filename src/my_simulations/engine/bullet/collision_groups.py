@@ -1,6 +1,6 @@
-"""Which links meet which, as Bullet's groups and masks say it.
+"""Set which links collide, with Bullet's collision groups and masks.
 
-Two links meet when each one's group shares a bit with the other's mask. The groups hold a link's
+Two links collide if each one's group shares a bit with the other's mask. The groups hold a link's
 collide_bitmask (SDF, surface/contact), shifted, and what it is made of; the masks what it meets.
 
 A plane is two things here. Bullet finds one point a step where a shape meets a plane, and four at
@@ -17,32 +17,32 @@ from ...description.model import Link
 from ...description.shapes import Box, Empty
 
 EVERYTHING = 0xffff
-"""The collide_bitmask of a surface that says nothing."""
+"""The default collide_bitmask of a surface."""
 
 BOTH = 0
-"""PyBullet's collisionFilterMode for what is said above; its default lets one side decide."""
+"""PyBullet's collisionFilterMode for this rule; by default one matching side is enough."""
 
 _BOXES, _OTHERS = 1, 2
 _SHIFT = 8
 
 
 class Filter(NamedTuple):
-    """What `setCollisionFilterGroupMask` is told of a link."""
+    """Collision group and mask of a link."""
 
     group: int
     mask: int
 
     def set(self, uid: int, index: int) -> None:
-        """Let a link of a body meet what it may. Forgets the contact points it has."""
+        """Set group and mask of a link. Bullet then drops the contact points of the link."""
         pybullet.setCollisionFilterGroupMask(uid, index, self.group, self.mask)
 
 
 NOTHING = Filter(0, 0)
-"""Of a link without collisions: it meets nothing."""
+"""Filter of a link without collisions: it collides with no link."""
 
 
 def moving(link: Link) -> Filter:
-    """Of a link that moves: it meets what shares a bit of the collide_bitmask with it."""
+    """Return the filter of a moving link; it collides if collide_bitmasks share a bit."""
     bits = _bits(link)
     solid = [c.geometry for c in link.collisions if not isinstance(c.geometry, Empty)]
     kind = _BOXES if all(isinstance(geometry, Box) for geometry in solid) else _OTHERS
@@ -50,7 +50,7 @@ def moving(link: Link) -> Filter:
 
 
 def static(link: Link, role: str = "") -> Filter:
-    """Of what never moves by itself; `role`: that of the recipe it was made from."""
+    """Return the filter of a static link; `role`: `Recipe.role` of its shape."""
     bits = _bits(link)
     return Filter(bits << _SHIFT, {"plane": _OTHERS, "floor": _BOXES}.get(role, _BOXES | _OTHERS))
 
@@ -68,7 +68,7 @@ def _bits(link: Link) -> int:
 
 
 def ignore(one: int, other: int, index: int, other_index: int, ignored: bool = True) -> None:
-    """Let two links pass through each other, or not any more.
+    """Disable collisions of two links, or enable them again.
 
     Bullet keeps this when the bodies are removed, and gives their numbers to the next ones.
     """

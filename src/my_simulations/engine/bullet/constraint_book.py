@@ -1,8 +1,9 @@
-"""Bullet's constraints: the one place that makes them and takes them out.
+"""Make and remove all constraints of Bullet.
 
-To take out one of a multibody, PyBullet 3.2 frees the last constraint of its table as well if that
-one is between two rigid bodies (it looks at the place into which the last one was moved). The
-next use of that one ends the process. So those between rigid bodies are lifted meanwhile.
+PyBullet 3.2 has a fault: when it removes a constraint of a multibody, it also frees the last
+constraint of its table if that one is between two rigid bodies (it reads the slot into which the
+last one was moved). The next use of the freed constraint crashes the process. So constraints
+between rigid bodies are removed first, and made again afterwards.
 """
 from __future__ import annotations
 
@@ -12,7 +13,7 @@ from typing import Any, Dict, Iterable, Mapping, Tuple
 import pybullet
 
 Number = int
-"""Of a constraint in the book; PyBullet's own may change."""
+"""The number of a constraint in the book; its PyBullet number can change."""
 
 
 @dataclass
@@ -23,7 +24,7 @@ class _Entry:
     changed_to: Mapping[str, Any]
 
     def make(self) -> None:
-        """Put it into the world."""
+        """Create the constraint in PyBullet."""
         self.uid = int(pybullet.createConstraint(*self.made_with))
         pybullet.changeConstraint(self.uid, **self.changed_to)
 
@@ -40,8 +41,8 @@ class ConstraintBook:
 
         Args:
             is_rigid: whether both bodies are rigid ones.
-            made_with: what pybullet.createConstraint takes, in order.
-            changed_to: what pybullet.changeConstraint takes.
+            made_with: the arguments of pybullet.createConstraint.
+            changed_to: the keyword arguments of pybullet.changeConstraint.
         """
         entry = _Entry(-1, is_rigid, made_with, changed_to)
         entry.make()
@@ -50,7 +51,7 @@ class ConstraintBook:
         return self._next
 
     def remove(self, numbers: Iterable[Number]) -> None:
-        """Take constraints out; the bodies must still be there."""
+        """Remove constraints; their bodies must still exist."""
         going = [self._entries.pop(number) for number in numbers]
         lifted = [] if all(one.is_rigid for one in going) else [
             one for one in self._entries.values() if one.is_rigid]
@@ -60,5 +61,5 @@ class ConstraintBook:
             one.make()
 
     def clear(self) -> None:
-        """The world was emptied."""
+        """Discard all entries after a reset of the world."""
         self._entries.clear()

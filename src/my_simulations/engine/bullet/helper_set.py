@@ -1,4 +1,4 @@
-"""What acts around the steps of Bullet and what remembers bodies, made and wired to one another."""
+"""Create and connect the helpers of a world: step helpers, and stores of body data."""
 from __future__ import annotations
 
 from functools import partial
@@ -44,19 +44,19 @@ from .world_parameters import WorldParameters
 
 
 class HelperSet:
-    """The helpers of a world, each of which sees the bodies that are added here.
+    """The helpers of a world; bodies added here are registered with each helper.
 
     Attributes:
         settings: the settings in use, see `configure`.
-        loop: makes the steps, with the helpers around them.
-        notices: what users are told of bodies.
+        loop: makes the steps and calls the helpers before and after them.
+        notices: events for users about bodies.
         readout: the tables of states.
-        row_reader: single rows of these tables as they are now.
-        waker: wakes what a command reaches.
-        mover: puts models, links and joints elsewhere.
+        row_reader: reads current values of single rows of these tables.
+        waker: wakes the bodies that a command affects.
+        mover: sets poses and velocities of models, links and joints.
         book: the constraints of joints.
-        forces, motors, planar, holds, sliding, ties, wrenches: what commands set and read.
-        settling, divergence, restored_sleep: have a part of the run state (`RunStates`).
+        forces, motors, planar, holds, sliding, ties, wrenches: targets of commands.
+        settling, divergence, restored_sleep: store parts of the run state (`RunStates`).
 
     Args:
         models: by id.
@@ -113,7 +113,7 @@ class HelperSet:
         self.planar = PlanarMotion(models, self.mover.present_model_pose,
                                    waker_for(BodyEvent.PLANAR_VELOCITY_CHANGED))
         self.wrenches = JointWrenches(models, self.forces, self.sliding)
-        # What acts around the steps, in the order in which it does.
+        # The step helpers, in the order in which they act.
         helpers = (self._friction, self._bounces, self.settling, self._decay, self.forces,
                    self.planar, self._rolling, self._spin, self._residual, self.sliding,
                    self.holds, self._stop, self._landing, self._level, self._seams,
@@ -158,7 +158,7 @@ class HelperSet:
         self.set_up_axes(body, model)
 
     def set_up_axes(self, body: Body, model: Model) -> None:
-        """Give the axes of a body the limits, friction, springs and motors of its model."""
+        """Apply the limits, friction, springs and motors of a model to the axes of a body."""
         dt = self.settings.step_size
         joint_axes.set_up(body, model, self.forces, dt)
         self.motors.set_up(body, model)

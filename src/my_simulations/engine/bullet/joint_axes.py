@@ -34,7 +34,7 @@ def specs_of(body: Body, model: Model) -> List[Tuple[Axis, JointAxis]]:
 
 
 def set_up(body: Body, model: Model, forces: AxisEfforts, dt: float) -> None:
-    """Give every axis of a body the limits, friction, damping and spring of the description."""
+    """Apply limits, friction, damping and springs of the description to the axes of a body."""
     mass = sum(part.mass for part in body.parts)
     _free(body)
     found = specs_of(body, model)
@@ -99,7 +99,7 @@ def _free(body: Body) -> None:
 
 
 def _limit(body: Body, axis: Axis, spec: JointAxis, mass: float) -> None:
-    """A one-sided limit gets a far stop on the other side: PyBullet knows both or none."""
+    """Set the limits of an axis; a missing one is far away: PyBullet requires both or none."""
     lower, upper = spec.lower, spec.upper
     axis.lower, axis.upper = (lower, upper) if lower <= upper else (-math.inf, math.inf)
     if lower <= -INFINITE and upper >= INFINITE:

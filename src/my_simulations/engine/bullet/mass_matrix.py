@@ -1,9 +1,9 @@
-"""The joint-space mass matrix of an articulated body.
+"""Compute the joint-space mass matrix of an articulated body.
 
-PyBullet's own (calculateMassMatrix) is of no use: it keeps a copy of each body by its address in
-memory and looks at no change, so that a body that comes where another has gone gets the masses, or
-the number of axes, of that one (measured, 3.2.7). It also refuses inertia that no body can have,
-which files do have.
+PyBullet's calculateMassMatrix is not usable: it caches a copy of each body by memory address and
+never updates it. So a new body at the address of a removed one gets the masses, or the number of
+axes, of the removed one (measured, 3.2.7). It also rejects physically impossible inertia tensors,
+which occur in files.
 
 M = sum over links of m Jv^T Jv + Jw^T I Jw, with the Jacobians of the centre of mass and of the
 rotation (Featherstone, Rigid Body Dynamics Algorithms, 2008, section 3.1).
@@ -17,7 +17,7 @@ import pybullet
 
 from .link_states import hung_states
 
-_CENTRED = 1e-7  # m: a centre of mass so near its axis is on it
+_CENTRED = 1e-7  # m: a centre of mass closer to the axis counts as on it
 _ROUND = 1e-6    # share by which moments of what is round may differ
 
 _AXES = {pybullet.JOINT_REVOLUTE: True, pybullet.JOINT_PRISMATIC: False}  # kind: it turns

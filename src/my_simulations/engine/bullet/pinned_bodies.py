@@ -24,7 +24,7 @@ class PinnedBodies(StepHelper):
         self._poses: Dict[int, Pose] = {}
 
     def set(self, bodies: Iterable[Body]) -> None:
-        """Hold these, and let go of all others."""
+        """Hold these bodies and release all others."""
         before = self._bodies
         self._bodies = {body.uid: body for body in bodies
                         if body.moves and (body.rigid or body.base is not None)}
@@ -52,11 +52,11 @@ class PinnedBodies(StepHelper):
         self._poses.clear()
 
     def due(self, step: int) -> int:
-        """Each step, when something is held."""
+        """Each step while a body is held, otherwise `FAR`."""
         return step if self._poses else FAR
 
     def after(self, step: int, dt: float, gravity: Vec3) -> None:
-        """Undo what the last step did to them."""
+        """Restore the poses of held bodies after a step, at rest."""
         for uid, pose in self._poses.items():
             pybullet.resetBasePositionAndOrientation(uid, pose.position, pose.orientation)
             pybullet.resetBaseVelocity(uid, _STILL, _STILL)

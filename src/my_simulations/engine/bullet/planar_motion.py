@@ -1,4 +1,4 @@
-"""Models that move level as they are told, whatever acts on them."""
+"""Move models in the horizontal plane at commanded velocities, regardless of forces."""
 from __future__ import annotations
 
 import math
@@ -14,7 +14,7 @@ from .step_helper import FAR, StepHelper
 
 
 class PlanarMotion(StepHelper):
-    """Gives bodies their velocity before every step."""
+    """Sets the commanded velocities of models before each step."""
 
     def __init__(self, models: Mapping[int, Entry], model_pose: Callable[[Entry], Pose],
                  wake: Callable[[List[Body]], None]) -> None:
@@ -24,7 +24,7 @@ class PlanarMotion(StepHelper):
         self._velocities: Dict[int, PlanarVelocity] = {}
 
     def set(self, velocities: Iterable[PlanarVelocity]) -> None:
-        """Move these models, and no others; those that have gone are ignored."""
+        """Move these models and stop all others; removed models are ignored."""
         before = self._velocities
         self._velocities = {one.model_id: one for one in velocities
                             if one.model_id in self._models}
@@ -42,7 +42,7 @@ class PlanarMotion(StepHelper):
                 set_sleep(body)
 
     def forget(self, body: Body) -> None:
-        """A body is gone, and its model with it."""
+        """Discard the data of a removed body and its model."""
         self._velocities.pop(body.model_id, None)
 
     def clear(self) -> None:
@@ -50,11 +50,11 @@ class PlanarMotion(StepHelper):
         self._velocities.clear()
 
     def due(self, step: int) -> int:
-        """Each step, when a model is told how to move."""
+        """Each step while a model has a commanded velocity, otherwise `FAR`."""
         return step if self._velocities else FAR
 
     def before(self, step: int, dt: float, gravity: Vec3) -> None:
-        """Act before the next step."""
+        """Set the velocities for the next step."""
         for number, wanted in self._velocities.items():
             entry = self._models[number]
             at, turn = self._model_pose(entry)

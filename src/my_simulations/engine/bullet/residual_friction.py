@@ -121,7 +121,7 @@ class ResidualFriction(StepHelper):
         self._rounds = None
 
     def handle_event(self, event: BodyEvent, body: Body) -> None:
-        """A body was put somewhere or given another velocity: it is looked at soon."""
+        """Check a body soon after a command changed its pose or velocity."""
         if body.uid in self._watched:
             self._fast[body.uid] = None
             self._mended[body.uid] = _SOON
@@ -131,7 +131,7 @@ class ResidualFriction(StepHelper):
                 self._rounds = None
 
     def due(self, step: int) -> int:
-        """Each step while bodies are mended, else the next look, which comes after a step."""
+        """Each step while bodies are corrected, otherwise the step of the next check."""
         if not self._watched:
             return FAR
         if self._mended:
@@ -143,7 +143,7 @@ class ResidualFriction(StepHelper):
                                    looks_until_turn(len(self._fast), look, _FAST_ROUNDS)))
 
     def after(self, step: int, dt: float, gravity: Vec3) -> None:
-        """Mend what the step that began at count `step` left, and look around now and then."""
+        """Correct bodies after the step that began at count `step`; periodically check others."""
         look = step // EVERY
         seen: Set[int] = set()
         flying = [uid for uid in list(self._mended)
@@ -153,10 +153,10 @@ class ResidualFriction(StepHelper):
         for uid in flying:
             self._look_ahead(uid, look, dt, gravity)
 
-    # -- who needs it ----------------------------------------------------------------------------
+    # -- selection -------------------------------------------------------------------------------
 
     def _keep_on(self, uid: int, found: int, look: int) -> bool:
-        """Go on mending a body in every step, or not. Returns False when it flies."""
+        """Decide whether to check a body in each step. Returns False if it flies."""
         until = self._mended[uid]
         if found == _SLIDES and until != _SOON and self._rolls(uid):
             found = _PILED
@@ -171,7 +171,7 @@ class ResidualFriction(StepHelper):
         return found != _FLIES
 
     def _look(self, look: int, seen: Set[int], dt: float, gravity: Vec3) -> List[int]:
-        """Ask those whose turn it is. Returns which of them fly."""
+        """Check the bodies that are due. Returns those that fly."""
         awake, asleep = self._lists()
         flying = [uid for uid in turn_of(awake, look, _ROUNDS) + turn_of(
             asleep, look, _SLOW_ROUNDS) if not self._ask(uid, look, gravity)]
@@ -188,14 +188,14 @@ class ResidualFriction(StepHelper):
         return flying
 
     def _lists(self) -> Tuple[List[int], List[int]]:
-        """Who is asked for its speed: what moved when it was asked last, and what did not."""
+        """Return the bodies whose speed is checked: those that moved when last checked, others."""
         if self._rounds is None:
             self._rounds = ([uid for uid in self._watched if uid not in self._asleep],
                             [uid for uid in self._watched if uid in self._asleep])
         return self._rounds
 
     def _ask(self, uid: int, look: int, gravity: Vec3) -> bool:
-        """Find out whether a body is fast, slow or at rest. Returns False when it flew so far."""
+        """Classify a body as fast, slow or at rest. Returns False if it flew until now."""
         until = self._clear.pop(uid, None)
         if until is not None and until > look:
             self._clear[uid] = until
@@ -218,12 +218,12 @@ class ResidualFriction(StepHelper):
         return True
 
     def _look_ahead(self, uid: int, look: int, dt: float, gravity: Vec3) -> None:
-        """Leave a body that flies alone for as long as it meets nothing, else ask it often."""
+        """Skip a flying body while no other body is near its path; otherwise check it often."""
         centre = pybullet.getBasePositionAndOrientation(uid)[0]
         linear = pybullet.getBaseVelocity(uid)[0]
         reach, span = self._bodies[uid].radius + _REACH, (_CLEAR + _ROUNDS) * EVERY * dt
         ways = [v * span + g * span * span / 2.0 for v, g in zip(linear, gravity)]
-        rise = norm(gravity) * span * span / 8.0  # the most that a parabola is above its chord
+        rise = norm(gravity) * span * span / 8.0  # largest height of a parabola above its chord
         low = [c + min(0.0, way) - reach - rise for c, way in zip(centre, ways)]
         high = [c + max(0.0, way) + reach + rise for c, way in zip(centre, ways)]
         near = pybullet.getOverlappingObjects(low, high) or ()
@@ -233,16 +233,16 @@ class ResidualFriction(StepHelper):
         else:
             self._fast[uid] = None
 
-    # -- mending ---------------------------------------------------------------------------------
+    # -- correction ------------------------------------------------------------------------------
 
     def _is_held(self, uid: int) -> bool:
-        """Whether friction that was left holds a slow body against Coulomb's law."""
+        """Whether residual friction holds a slow body against Coulomb's law."""
         contacts = pybullet.getContactPoints(bodyA=uid)
         return (len(contacts) <= _MOST_CONTACTS and any(map(_is_left, contacts))
                 and self._is_beyond_mu(uid, contacts))
 
     def _is_beyond_mu(self, uid: int, contacts: Sequence[Contact]) -> bool:
-        """Whether the friction of one surface on a body is more than mu N."""
+        """Whether the friction of any surface on a body exceeds mu N."""
         loads: Dict[Node, float] = {}
         frictions: Dict[Node, Vec3] = {}
         for contact in contacts:
@@ -257,7 +257,7 @@ class ResidualFriction(StepHelper):
                    for node, load in loads.items() if node in self._mu)
 
     def _mend(self, uid: int, seen: Set[int], dt: float) -> int:
-        """Take back what was left at the contacts of a body. Returns what they tell."""
+        """Undo the residual friction at the contacts of a body. Returns the class of the body."""
         contacts = pybullet.getContactPoints(bodyA=uid)
         if len(contacts) > _MOST_CONTACTS:
             return _PILED if any(each[2] in self._moving for each in contacts) else _SLIDES
@@ -268,7 +268,7 @@ class ResidualFriction(StepHelper):
                 if neighbour >= 0:
                     return _PILED
                 neighbour = other
-            # Those with joints go through another solver, which leaves nothing.
+            # Bodies with joints use another solver, which leaves no residual friction.
             if _is_left(contact) and other not in seen and other not in self._trees:
                 left.append(contact)
         if left:
@@ -285,7 +285,7 @@ class ResidualFriction(StepHelper):
         return _MENDED if left else _SLIDES if contacts else _FLIES
 
     def _take_back(self, uid: int, other: int, contact: Tuple[Any, ...], dt: float) -> None:
-        """Undo the friction impulses of one contact: the first acts against the slip."""
+        """Undo the friction impulses of one contact; the first direction opposes the slip."""
         ours = self._motion(uid, contact[5])
         theirs = self._motion(other, contact[6])
         along: Vec3 = contact[11]
@@ -296,7 +296,7 @@ class ResidualFriction(StepHelper):
         self._push(other, (-impulse[0], -impulse[1], -impulse[2]), theirs[0])
 
     def _motion(self, uid: int, at: Vec3) -> Tuple[Vec3, Vec3]:
-        """The arm from a body's centre of mass to a point, and the point's velocity."""
+        """Return the arm from a body's centre of mass to a point, and the velocity of the point."""
         if uid not in self._bodies:
             return _NONE, _NONE
         centre = pybullet.getBasePositionAndOrientation(uid)[0]
@@ -306,7 +306,7 @@ class ResidualFriction(StepHelper):
         return arm, (vx + turn[0], vy + turn[1], vz + turn[2])
 
     def _push(self, uid: int, impulse: Vec3, arm: Vec3) -> None:
-        """Change the velocities of a body by an impulse, N s, that attacks at `arm`."""
+        """Apply an impulse, N s, to a body at the offset `arm` from its centre of mass."""
         body = self._bodies.get(uid)
         if body is None:
             return
@@ -322,15 +322,15 @@ class ResidualFriction(StepHelper):
 
 
 def _is_left(contact: Contact) -> bool:
-    """Whether a contact that carries nothing has friction.
+    """Whether a contact without load has friction.
 
-    Forces of a contact whose surfaces lie apart are older ones: this step did not solve it.
+    Contacts of separated surfaces are excluded: their forces are of an older step.
     """
     return contact[9] <= 0.0 and contact[10] != 0.0 and contact[8] <= 0.0
 
 
 def _tumbles(angular: Vec3, gravity: Vec3) -> bool:
-    """Whether a body turns over; turning about what is upright it may well slide."""
+    """Whether a body turns over; rotation about the vertical does not count."""
     pull = norm(gravity)
     about = dot(angular, gravity) / pull if pull > 0.0 else 0.0
     return dot(angular, angular) - about * about > _TUMBLES * _TUMBLES

@@ -1,4 +1,4 @@
-"""Reads and sets what the engine has learned from earlier steps (see `engine.run_state`)."""
+"""Read and set the engine's internal state from earlier steps (see `engine.run_state`)."""
 from __future__ import annotations
 
 from typing import Dict, Mapping, Tuple

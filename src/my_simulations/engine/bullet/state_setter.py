@@ -1,4 +1,4 @@
-"""Puts bodies somewhere, and tells everyone who remembers where they were."""
+"""Set poses, velocities and joint positions, and notify the helpers that store them."""
 from __future__ import annotations
 
 import struct

@@ -1,8 +1,8 @@
-"""What PyBullet stores for a surface so that pairs come out as Gazebo's.
+"""Compute the coefficients to store in PyBullet, so that pairs match Gazebo.
 
-PyBullet multiplies the coefficients of the two surfaces; Gazebo takes the smaller one. As stored
-here, pairs of moving surfaces with mu 1 (the default) and static ones are exact; `friction` mends
-the others.
+PyBullet multiplies the coefficients of the two surfaces; Gazebo takes the smaller one. With these
+values, pairs of moving surfaces with mu 1 (the default) and static ones are exact; `pair_friction`
+corrects the others.
 """
 from __future__ import annotations
 
@@ -17,19 +17,19 @@ NEVER_BOUNCES = 1e4
 
 
 def of_link(link: Link) -> Surface:
-    """The surface of a link: PyBullet knows one a link (see `counting_collision`)."""
+    """Return the surface of a link; PyBullet has one per link (see `counting_collision`)."""
     found = counting_collision(link)
     return Surface() if found is None else found.surface
 
 
 def friction(surface: Surface, static: bool) -> float:
-    """The lateral friction to store."""
+    """Return the lateral friction to store."""
     return min(coefficient(surface), 1.0) if static else coefficient(surface)
 
 
 def restitution(surface: Surface) -> float:
     """The restitution of a surface by itself: 0 unless it can reach its threshold.
 
-    `PairRestitution` stores what suits the other surfaces of the world, too.
+    `PairRestitution` adjusts it to the other surfaces of the world.
     """
     return surface.restitution if surface.bounce_threshold < NEVER_BOUNCES else 0.0

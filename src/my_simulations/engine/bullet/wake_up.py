@@ -1,7 +1,7 @@
-"""Wakes sleepers before something happens to what they rest on.
+"""Wake sleeping bodies before a command changes them or their supports.
 
-PyBullet wakes a sleeper only when an awake body hits it; a sleeper stays in mid-air when its
-support is deleted or moved, and ignores velocities and forces (measured). So the target of a
+PyBullet wakes a sleeping body only if an awake body hits it. A sleeping body stays in mid-air if
+its support is deleted or moved, and ignores velocities and forces (measured). So the target of a
 command and its contact island are woken first.
 """
 from __future__ import annotations
@@ -13,26 +13,26 @@ import pybullet
 from ..body_plan import BASE
 from .bodies import Body
 
-_REACH = 0.02  # m: contacts exist a little before surfaces meet
+_REACH = 0.02  # m: Bullet makes contacts slightly before surfaces touch
 _WORLD_SIZE = 1e9
 
 
 class WakeUp:
-    """Knows the bodies by number and wakes islands."""
+    """Wakes bodies and their contact islands."""
 
     def __init__(self, bodies: Dict[int, Body], touch: Callable[[Body], None]) -> None:
         self._bodies = bodies
         self._touch = touch
 
     def everything(self) -> None:
-        """Wake all that can move."""
+        """Wake all moving bodies."""
         for body in self._bodies.values():
             self._rouse(body)
 
     def around(self, targets: Iterable[Body], awake: bool = False) -> None:
-        """Wake the targets, whatever overlaps them, and so on through moving bodies.
+        """Wake the targets, the bodies that overlap them, and so on through moving bodies.
 
-        With `awake` the targets were woken just now, and have been put elsewhere since.
+        `awake`: the targets were already woken, and have been moved since.
         """
         queue: List[Body] = list({body.uid: body for body in targets}.values())
         seen: Set[int] = {body.uid for body in queue}
