@@ -1,4 +1,4 @@
-"""What the engine has learned from earlier steps, besides poses, velocities and commands."""
+"""Internal state of the engine from earlier steps, besides poses, velocities and commands."""
 from __future__ import annotations
 
 from dataclasses import dataclass
@@ -39,7 +39,7 @@ class ServoMemory:
 
 @dataclass(frozen=True)
 class DamperMemory:
-    """What springs and dampers of a body have measured on its axes.
+    """State of the springs and dampers on the axes of a body.
 
     Attributes:
         other: rad/s^2 or m/s^2, the accelerations by everything else.
@@ -71,7 +71,7 @@ class RestPlace:
 
 @dataclass(frozen=True)
 class RunState:
-    """What a run needs to continue besides poses, velocities and commands.
+    """The state that a run requires to continue, besides poses, velocities and commands.
 
     The impulses from which the contact solver starts are not included: PyBullet cannot set them.
 

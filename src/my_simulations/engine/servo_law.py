@@ -1,4 +1,4 @@
-"""What a joint servo does in each step: ros_control's controllers and joint limits, as arithmetic.
+"""Compute a joint servo in each step: the arithmetic of ros_control's controllers and limits.
 
 Sources: control_toolbox::Pid; joint_limits_interface's saturation and soft limits;
 gazebo_ros_control's DefaultRobotHWSim. No physics engine is needed here.
@@ -52,7 +52,7 @@ class Pid:
         self.integral, self.error = memory.integral, memory.error
 
     def disturbed(self) -> None:
-        """What is measured has jumped: its difference is no rate."""
+        """Discard the last error after a jump of the measured value."""
         self.error = None
 
     def command(self, error: float, dt: float, slope: Optional[float] = None) -> float:
@@ -79,7 +79,7 @@ class Pid:
 
 
 class ServoLaw:
-    """One servo at work.
+    """The state and the law of one servo.
 
     Attributes:
         servo: as it was given.
@@ -136,7 +136,7 @@ class ServoLaw:
         self.before, self.last = memory.before, memory.last
 
     def disturbed(self) -> None:
-        """The joint was put somewhere."""
+        """Reset the loops after the position of the joint was set."""
         self.before = None
         for loop in (self.loop, self._inner):
             if loop is not None:
@@ -226,7 +226,7 @@ def _target_of(servo: JointServo, dt: float) -> _Target:
 
 
 def _position_loop(law: ServoLaw, target: _Target, dt: float) -> Advance:
-    """What `ServoLaw._advance` does for an effort by a loop about a position, in one call.
+    """Return a fast `ServoLaw._advance` for an effort by a position loop.
 
     An axis of an arm costs a third of what the general form costs.
     """
@@ -266,7 +266,7 @@ def _position_loop(law: ServoLaw, target: _Target, dt: float) -> Advance:
 
 
 def _position_motor(law: ServoLaw, target: _Target, dt: float) -> Advance:
-    """What `ServoLaw._advance` does for a motor that follows a spline, in one call."""
+    """Return a fast `ServoLaw._advance` for a motor that follows a spline."""
     servo = law.servo
     lower, upper, way = servo.lower, servo.upper, servo.most_rate * dt
 

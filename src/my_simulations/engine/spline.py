@@ -1,4 +1,4 @@
-"""Splines in time: what a joint trajectory becomes."""
+"""Splines in time, which represent joint trajectories."""
 from __future__ import annotations
 
 import math

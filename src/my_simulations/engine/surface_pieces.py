@@ -1,4 +1,4 @@
-"""Links whose collisions have unlike friction, in pieces: PyBullet knows one friction a link.
+"""Divide links whose collisions differ in friction: PyBullet has one coefficient per link.
 
 A caster that was lumped into a robot's base (fixed joints merge links in a URDF) has a friction of
 its own in Gazebo. So where a link of a tree has collisions with unlike friction, those with another

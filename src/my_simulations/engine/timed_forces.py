@@ -1,4 +1,4 @@
-"""Commands that let wrenches and efforts act for some time, exact to the step."""
+"""Commands that apply wrenches and efforts for a duration, exact to the step."""
 from __future__ import annotations
 
 from dataclasses import dataclass, replace

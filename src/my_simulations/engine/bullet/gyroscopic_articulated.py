@@ -1,10 +1,10 @@
-"""Keeps the angular momentum of articulated bodies that tumble freely.
+"""Conserve the angular momentum of articulated bodies that tumble freely.
 
-Bullet's gyroscopic terms gain momentum and energy: a body that turns at 10 rad/s is off by 6 % and
-13 % after 20 s. What joints do among the links leaves the momentum L about the common centre of
-mass as it was; so after a free step the whole body is given the velocity that is missing. Its
-attitude was moved on with the velocity I^-1 L of the end of the step instead of that of its
-middle, which would take energy away in the long run: it is turned back by half of the difference.
+Bullet's gyroscopic terms add momentum and energy: a body that turns at 10 rad/s gains 6 % and 13 %
+in 20 s. Joint forces do not change the momentum L about the common centre of mass. So after free
+steps the missing angular velocity is added to the whole body. Bullet has updated the attitude with
+the velocity I^-1 L of the end of a step instead of its middle, which would reduce the energy over
+time. So the body is turned back by half of the difference.
 """
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ _FAST = 2.0  # rad/s
 
 @dataclass
 class Whole:
-    """A body as one: its centre of mass, that one's velocity, momentum and inertia about it."""
+    """Centre of mass of a body, its velocity, and angular momentum and inertia about it."""
 
     centre: np.ndarray
     speed: np.ndarray
@@ -33,10 +33,9 @@ class Whole:
 
 
 class GyroscopicArticulated:
-    """Corrects free, fast articulated bodies, every so many steps.
+    """Corrects free, fast articulated bodies periodically.
 
-    What they are off by adds up over the steps, so it can be mended at the end of a row of them in
-    which a body met nothing.
+    The errors add up over the steps, so one correction after a series of free steps is enough.
     """
 
     def __init__(self) -> None:
@@ -56,7 +55,7 @@ class GyroscopicArticulated:
         self._then.pop(body.uid, None)
 
     def moved(self, body: Body) -> None:
-        """A body was put somewhere, or given another velocity."""
+        """Discard the recorded state of a body whose pose or velocity was set."""
         self._then.pop(body.uid, None)
 
     def clear(self) -> None:
@@ -66,23 +65,23 @@ class GyroscopicArticulated:
 
     @property
     def idle(self) -> bool:
-        """True when no body can need it."""
+        """True if no body can need a correction."""
         return not self._bodies
 
     @property
     def busy(self) -> bool:
-        """True while some body is watched in every step."""
+        """True while a body is checked in each step."""
         return bool(self._then)
 
     def mend(self, dt: float) -> None:
-        """Correct those that met nothing since the last time, and see who turns fast now."""
+        """Correct bodies that moved freely since the last call, and find those that turn fast."""
         for uid, then in self._then.items():
             _mend(self._bodies[uid], then, dt)
         self._then = {uid: _whole(body) for uid, body in self._bodies.items()
                       if not body.ties and _is_fast(uid)}
 
     def after(self, loaded: Set[int]) -> None:
-        """After each step: who met something. `loaded`: rows of links that a load acted on."""
+        """Drop bodies with contacts or loads in the last step. `loaded`: rows of loaded links."""
         for uid in list(self._then):
             body = self._bodies[uid]
             if (body.ties or any(part.row in loaded for part in body.parts)

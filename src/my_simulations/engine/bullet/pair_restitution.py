@@ -1,17 +1,17 @@
-"""The smaller restitution of each pair, where PyBullet's product gives something else.
+"""Apply the smaller restitution of each pair, although PyBullet multiplies them.
 
 Gazebo (ODEPhysics::Collide) takes the smaller restitution_coefficient of two surfaces, and the
-smaller threshold; PyBullet multiplies the stored restitutions, once two shapes touch. So what is
-stored must suit all pairs that may ever meet: the logarithms x of the stored values satisfy
-x_i + x_j = log min(e_i, e_j) as well as they can. That is exact for every world whose moving
-surfaces that bounce are alike, whatever they bounce on. Where they are not, pairs with static
-surfaces come first, and how far others are off is told once.
+smaller threshold; PyBullet multiplies the stored restitutions when two shapes touch. So the
+stored values must fit all pairs that can ever collide: their logarithms x are the least squares
+solution of x_i + x_j = log min(e_i, e_j). It is exact if all moving surfaces that bounce are equal.
+Otherwise pairs with static surfaces have a higher weight, and the error of other pairs is reported
+once.
 
-A pair bounces where one of its thresholds lets it. Surfaces that never bounce by themselves (SDF's
-default threshold) do on those that do; where two such could meet, the moving one is stored as 0.
-PyBullet has one threshold for the world, below which nothing bounces: the smallest of all.
+A pair bounces if the threshold of one surface allows it. So a surface that never bounces by itself
+(SDF's default threshold) bounces on one that does; if two of the former could collide, the moving
+one is stored as 0. PyBullet has one threshold for the world; the smallest of all is used.
 
-Something is worked out when a surface that bounces has come or gone, never in a usual step.
+Values are computed only after a surface that bounces was added or removed.
 """
 from __future__ import annotations
 
@@ -31,12 +31,12 @@ from .world_parameters import WorldParameters
 Node = Tuple[int, int]  # body uid, link index
 
 _AMONG_MOVING = 0.05     # weight of a pair of moving surfaces; of one with a static surface: 1
-_MOST_KINDS = 60         # of more, pairs of moving surfaces are not looked at
+_MOST_KINDS = 60         # with more, pairs of moving surfaces are ignored
 _TOLERATED = 0.05
 
 
 class _Kind(NamedTuple):
-    """Surfaces that are stored alike; `never`: they do not bounce by themselves."""
+    """Surfaces with the same stored value; `never`: they do not bounce by themselves."""
 
     moves: bool
     restitution: float
@@ -44,11 +44,11 @@ class _Kind(NamedTuple):
 
 
 class PairRestitution(StepHelper):
-    """Keeps the stored restitutions right for the surfaces of the world.
+    """Updates the stored restitutions to match the surfaces of the world.
 
     Args:
-        parameters: of the world.
-        misfit: told, once, of a body and the share by which its restitution is off.
+        parameters: solver parameters of the world.
+        misfit: called once, with a body and the relative error of its restitution.
     """
 
     def __init__(self, parameters: WorldParameters,
@@ -90,11 +90,11 @@ class PairRestitution(StepHelper):
         self._changed = self._told = False
 
     def due(self, step: int) -> int:
-        """At once when surfaces have come or gone."""
+        """The next step after surfaces were added or removed, otherwise `FAR`."""
         return step if self._changed else FAR
 
     def before(self, step: int, dt: float, gravity: Vec3) -> None:
-        """Store what suits the surfaces that there are."""
+        """Store the restitutions for the current surfaces, if these have changed."""
         if not self._changed:
             return
         self._changed = False
@@ -109,7 +109,7 @@ class PairRestitution(StepHelper):
                 pybullet.changeDynamics(*node, restitution=value)
 
     def _solved(self) -> Dict[_Kind, float]:
-        """What to store for each kind; 0 for those that are missing."""
+        """Return the value to store for each kind; 0 for missing kinds."""
         members: Dict[_Kind, Set[int]] = {}
         for node, kind in self._kinds.items():
             members.setdefault(kind, set()).add(self._models[node])
@@ -136,7 +136,7 @@ class PairRestitution(StepHelper):
 
     @staticmethod
     def _pairs(kinds: List[_Kind], members: Dict[_Kind, Set[int]]) -> List[Tuple[_Kind, _Kind]]:
-        """The pairs that may meet and bounce."""
+        """Return the pairs of kinds that can collide and bounce."""
         few = len(kinds) <= _MOST_KINDS
         return [(one, other) for one, other in itertools.combinations_with_replacement(kinds, 2)
                 if (one.moves or other.moves) and not (one.never and other.never)

@@ -1,9 +1,9 @@
-"""Reads the states of what may have moved, and of nothing else.
+"""Read the states of bodies that may have moved.
 
 PyBullet has no bulk read; the pose of a body costs about 1.2 us, its twist as much again. A rigid
-body that was found at exactly zero velocity twice running is left alone until it is touched, woken
-or commanded. Whether a moving body touches a resting one is asked of the broad phase, with a
-margin, so that the question is repeated only after the mover has gone that far.
+body with exactly zero velocity at two consecutive reads is not read again until it is touched,
+woken or commanded. A broad-phase query with a margin finds the resting bodies that a moving body
+can touch. It is repeated after the moving body has covered the margin.
 """
 from __future__ import annotations
 
@@ -29,8 +29,8 @@ _YZX, _ZXY = [1, 2, 0], [2, 0, 1]
 _NO_VELOCITY = ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
 _pose_of = pybullet.getBasePositionAndOrientation
 _velocity_of = pybullet.getBaseVelocity
-_MARGIN = 0.05     # m a mover goes before its neighbours are asked for again
-_ROUND_ROBIN = 8   # resting bodies looked at per read-out whatever the neighbours say
+_MARGIN = 0.05     # m: motion of a body until its neighbours are searched again
+_ROUND_ROBIN = 8   # resting bodies read per read-out, regardless of neighbours
 _WORLD_SIZE = 1e9
 
 
@@ -132,23 +132,23 @@ class StateReadout(BodyObserver):
             self._trees[body.uid] = body
 
     def stepped(self) -> None:
-        """The world has moved on: everything awake may be elsewhere."""
+        """Record that a step was made: all awake bodies may have moved."""
         self._stepped = True
 
     def read(self) -> bool:
-        """Bring the tables up to date. Returns False when nothing can have changed since then.
+        """Update the tables. Returns False if they are unchanged since the last call.
 
-        What `update` has found is included.
+        Changes found by `update` in between are included.
         """
         self.update()
         changed, self._changed = self._changed, False
         return changed
 
     def update(self) -> None:
-        """Bring the tables up to date; the next `read` returns whether anything can have changed.
+        """Update the tables; the next `read` returns whether they can have changed.
 
-        Without a step since the last read-out only what was touched is read. Standing still counts
-        only over a step.
+        Without a step since the last read-out, only bodies changed by commands are read. A body
+        counts as at rest only after a step.
         """
         touched, self._touched = self._touched, {}
         rigid, trees = self._awake, self._trees
@@ -167,7 +167,7 @@ class StateReadout(BodyObserver):
         self._stepped = False
 
     def _read_rest(self, trees: Dict[int, Body], offset_rows: List[int]) -> None:
-        """Trees, and what they and the rigid bodies may have woken; all rows to link frames."""
+        """Read trees and bodies that may have been woken; convert all rows to link frames."""
         for body in list(trees.values()):
             self._read_tree(body, offset_rows)
         if self._resting and self._stepped:
@@ -176,9 +176,9 @@ class StateReadout(BodyObserver):
             self._to_link_frames(offset_rows)
 
     def read_poses(self) -> bool:
-        """As `read`, for who only looks: twists of rigid bodies stay those of the last `read`.
+        """Update poses only; twists of rigid bodies stay those of the last `read`.
 
-        What `read` would find, it still finds afterwards.
+        The result of the next `read` does not change.
         """
         if not self._stepped and not self._touched:
             return self._changed
@@ -211,9 +211,9 @@ class StateReadout(BodyObserver):
             todo = woken
 
     def _read_all(self, todo: List[Body], offset_rows: List[int]) -> None:
-        """Read rigid bodies, and those found moving because of them, and so on.
+        """Read rigid bodies, the resting bodies that they touch, and so on.
 
-        One loop and no calls: this is most of what a snapshot of many bodies costs.
+        One loop without calls: it takes most of the time of a snapshot of many bodies.
         """
         pack, table = _ROW.pack_into, self._link_bytes
         offsets, resting = self._offsets, self._resting
@@ -277,7 +277,7 @@ class StateReadout(BodyObserver):
         return woken
 
     def _look_around(self, offset_rows: List[int]) -> None:
-        """What trees may have touched, and a few resting bodies whatever the neighbours say."""
+        """Read bodies that trees may have touched, and a few resting bodies in any case."""
         woken: List[Body] = []
         for uid, tree in self._trees.items():
             for index in [BASE] + [part.index for part in tree.colliders if part.index != BASE]:

@@ -1,7 +1,7 @@
-"""Finds the flat faces of a mesh that are made of rectangles.
+"""Find the flat faces of a mesh that consist of rectangles.
 
-Something that slides over a flat face of triangles meets each inner edge as if it stood free, and
-is stopped and thrown up by it. A box in place of the triangles has no such edges.
+A body that slides over a flat face of triangles collides with each inner edge as if it were free.
+It loses speed and is lifted. A box in place of the triangles has no such edges.
 """
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ class Rectangle(NamedTuple):
         centre: of its middle, m.
         axes: rows: along its first edge, along the second, outward normal.
         size: length of both edges, m.
-        from_both: faces in its plane look to both sides, so that its own tells nothing.
+        from_both: faces in its plane have opposite normals, so that its own is arbitrary.
     """
 
     centre: Array
@@ -47,10 +47,10 @@ class Rectangle(NamedTuple):
 
 @dataclass(frozen=True)
 class FlatFaces:
-    """What a mesh is made of.
+    """The flat faces of a mesh, and the rest of it.
 
     Attributes:
-        rectangles: those that make up its flat faces.
+        rectangles: the rectangles of its flat faces.
         rest: its other triangles; None if there are none.
     """
 
