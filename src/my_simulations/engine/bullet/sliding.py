@@ -3,8 +3,8 @@
 Bullet's solver for articulated bodies computes friction along the world axes. With its pyramid, the
 friction on a body that slides diagonally is up to 1.41 mu N. With its cone, the mobility of the
 link weights the two directions, so that a driven wheel has hardly any friction along its axle. A
-skid-steered base turned at 0.68 to 1.08 rad/s (pyramid) or 0.09 to 0.73 rad/s (cone); Coulomb's law
-gives 0.73 rad/s.
+skid-steered base turned at 0.68 to 1.08 rad/s or at 0.09 to 0.73 rad/s, depending on the solver's
+friction model and the heading; Coulomb's law gives 0.73 rad/s.
 
 So once a link on a joint slides on a static body, Bullet's friction is reduced to a share of 0.001
 along each axis, and Coulomb friction acts as an external force at each contact. If `mu` applies
