@@ -85,6 +85,12 @@ def norm(a: Vec3) -> float:
     return math.sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2])
 
 
+def unit(v: Vec3) -> Vec3:
+    """The direction of a vector, of length 1; a zero vector stays zero."""
+    size = norm(v)
+    return scale(v, 1.0 / size) if size > 0.0 else v
+
+
 def is_finite(*values: float) -> bool:
     """True when no value is NaN or infinite."""
     return all(map(math.isfinite, values))

@@ -20,8 +20,7 @@ def forbidden_character(text: str) -> str:
 
     Positions are counted from 1.
     """
-    found = _FORBIDDEN.search(text)
-    return f"U+{ord(found.group()):04X} at position {found.start() + 1}" if found else ""
+    return _first(_FORBIDDEN, text)
 
 
 def without_forbidden(text: str) -> str:
@@ -57,13 +56,17 @@ def hidden_in(text: str) -> str:
 
     Positions are counted from 1.
     """
-    found = _NOT_SHOWN.search(text)
-    return f"U+{ord(found.group()):04X} at position {found.start() + 1}" if found else ""
+    return _first(_NOT_SHOWN, text)
 
 
 def without_hidden(text: str) -> str:
     """The text with a blank for each character that is not shown."""
     return _NOT_SHOWN.sub(" ", text)
+
+
+def _first(pattern: "re.Pattern[str]", text: str) -> str:
+    found = pattern.search(text)
+    return f"U+{ord(found.group()):04X} at position {found.start() + 1}" if found else ""
 
 
 def check_tree(tree: Any, what: str) -> None:

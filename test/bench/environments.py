@@ -19,6 +19,9 @@ from typing import Callable, TextIO, Tuple
 import numpy as np
 import pybullet
 
+sys.path.insert(0, __file__.rsplit("/", 1)[0])
+from server import children, processor
+
 ROBOT = str(pathlib.Path(__file__).resolve().parents[2] / "urdf" / "robo.urdf")
 INNER, SECONDS, PAIRS = 100, 2.0, 3
 WHEELS = ("left_wheel_joint", "right_wheel_joint")
@@ -66,13 +69,7 @@ class Bare:
 
 def processor_time() -> float:
     """Of this process and of its children that run, s."""
-    ticks = os.sysconf("SC_CLK_TCK")
-    total = time.process_time()
-    for line in pathlib.Path(f"/proc/{os.getpid()}/task").glob("*/children"):
-        for child in line.read_text().split():
-            fields = pathlib.Path(f"/proc/{child}/stat").read_text().rsplit(")", 1)[1].split()
-            total += (int(fields[11]) + int(fields[12])) / ticks
-    return total
+    return processor([os.getpid(), *children(os.getpid())])
 
 
 def measured(step: Callable[[np.ndarray], object], count: int) -> Tuple[float, float]:

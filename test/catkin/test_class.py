@@ -8,12 +8,13 @@ import signal
 import socket
 import subprocess
 import sys
-import time
 from pathlib import Path
 from urllib.error import HTTPError, URLError
 from urllib.request import urlopen
 
 import pytest
+from free_ports import free_ports
+from waiting import wait_for
 
 from my_simulations.classroom.class_file import read_class
 from my_simulations.classroom.class_plan import FIRST_USER
@@ -25,29 +26,6 @@ from my_simulations.grading.box_support import isolation
 REPOSITORY = Path(__file__).resolve().parents[2]
 CLASS = [sys.executable, str(REPOSITORY / "scripts" / "class")]
 SECONDS = 600.0
-
-
-def wait_for(condition, what):
-    until = time.monotonic() + SECONDS
-    while True:
-        found = condition()
-        if found:
-            return found
-        assert time.monotonic() < until, f"{what} did not come"
-        time.sleep(0.1)
-
-
-def free_ports(count):
-    """The first of some free ports in a row."""
-    for first in range(20000 + os.getpid() % 10000, 60000, count):
-        with contextlib.ExitStack() as held:
-            try:
-                for port in range(first, first + count):
-                    held.enter_context(socket.create_server(("127.0.0.1", port)))
-            except OSError:
-                continue
-            return first
-    raise AssertionError("no free ports")
 
 
 def written(folder, more=""):
@@ -101,7 +79,7 @@ def test_each_student_has_a_world_and_an_editor_of_its_own(tmp_path):
     with running(file) as (process, links):
         found = wait_for(lambda: (lambda now: now if now and all(
             one["state"] == "running" for one in now.values()) else None)(tiles(file)),
-            "two running worlds")
+            "two running worlds", SECONDS)
         assert {one["world"] for one in found.values()} == {"default"}
         assert all(one["memory_mb"] > 10.0 for one in found.values())
         base, _, token = links["anna"].partition("?")
@@ -124,8 +102,8 @@ def test_a_world_without_browsers_sleeps_and_a_browser_wakes_it(tmp_path):
     file = written(tmp_path / "course", "idle_minutes: 0.02\n")
     with running(file) as (_, links):
         wait_for(lambda: tiles(file).get("anna", {}).get("reason") == "no browser was connected",
-                 "the end of an unused world")
-        wait_for(lambda: code_of(links["anna"]) == 200, "the world that a browser woke")
+                 "the end of an unused world", SECONDS)
+        wait_for(lambda: code_of(links["anna"]) == 200, "the world that a browser woke", SECONDS)
 
 
 ATTEMPTS = """
@@ -222,7 +200,7 @@ def test_a_student_reaches_no_files_processes_and_tokens_of_others(class_of_two)
             "processes": [os.getpid(), other.pid], "user": ben.user}
         world.start()
         held.callback(world.stop, "the test ended")
-        wait_for(lambda: world.look() or world.state == ENDED, "the end of the attempts")
+        wait_for(lambda: world.look() or world.state == ENDED, "the end of the attempts", SECONDS)
     said = Path(log_file(plan, anna)).read_text()
     reached = json.loads(said.partition("REACHED ")[2].splitlines()[0])
     assert reached == [], said

@@ -9,10 +9,10 @@ import os
 import signal
 import subprocess
 import sys
-import time
 from pathlib import Path
 
 import pytest
+from waiting import wait_for
 
 from my_simulations.grading import box, cell
 from my_simulations.grading.box_support import isolation
@@ -132,16 +132,6 @@ def grade(folder, text, programs, *words, name="go.py"):
     return rows, folder / "marks" / "students"
 
 
-def wait_for(condition, what):
-    until = time.monotonic() + SECONDS
-    while True:
-        found = condition()
-        if found:
-            return found
-        assert time.monotonic() < until, f"{what} did not come"
-        time.sleep(0.05)
-
-
 def programs_below(pid):
     """The processes below one that run a submission."""
     found = []
@@ -230,11 +220,11 @@ def test_an_interrupt_ends_all_programs(tmp_path):
     program.write_text(HOSTILE["loop"])
     process = subprocess.Popen([*GRADE, "lab.yaml", "loop"], cwd=tmp_path,
                                stderr=subprocess.PIPE, text=True)
-    pids = wait_for(lambda: programs_below(process.pid), "the program")
+    pids = wait_for(lambda: programs_below(process.pid), "the program", SECONDS)
     process.send_signal(signal.SIGINT)
     assert process.wait(SECONDS) == 130, process.stderr.read()
     process.stderr.close()
-    wait_for(lambda: not any(Path(f"/proc/{pid}").exists() for pid in pids), "its end")
+    wait_for(lambda: not any(Path(f"/proc/{pid}").exists() for pid in pids), "its end", SECONDS)
 
 
 def test_launch_files_and_rostests_are_run(tmp_path):

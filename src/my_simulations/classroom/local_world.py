@@ -12,13 +12,14 @@ import time
 from typing import Any, Dict, List
 
 from ..child_process import child_environment, wait_or_kill
+from ..editor.transport.access_guard import COOKIE
 from ..grading.box import descendants
 from ..grading.program import workspace_paths
+from ..simulator.watchdog import process_time
 from . import relay, student_box
 from .class_plan import ClassPlan, Student, launch_text
 
 STARTING, RUNNING, STOPPED, ENDED = "starting", "running", "stopped", "ended"
-_COOKIE = "my_simulations_editor"   # before the port (editor/transport/access_guard.py)
 _RELAY_USER = 62999
 _END_S = 30.0
 _MEASURE_S = 3.0
@@ -94,7 +95,7 @@ class LocalWorld:
             "bytes": int(limits.file_mb * 1e6), "memory_bytes": None, "processor_seconds": None,
             "processes": limits.processes,
             "relay": [sys.executable, "-I", relay.__file__, str(student.port),
-                      f"{_COOKIE}_{student.port}", *map(str, passed)],
+                      f"{COOKIE}_{student.port}", *map(str, passed)],
             "relay_user": _RELAY_USER, "descriptors": passed}
 
     def _environment(self, home: str) -> Dict[str, str]:
@@ -151,7 +152,7 @@ class LocalWorld:
         self._measured = time.monotonic()
         found = descendants(process)
         self.memory_mb = sum(map(_own_memory, found)) / 1e6
-        self.processor_s = sum(map(_processor_time, found))
+        self.processor_s = sum(used for used, _ in filter(None, map(process_time, found)))
 
 
 def processors_of(number: int, count: int) -> List[int]:
@@ -186,12 +187,3 @@ def _own_memory(pid: int) -> int:
     except OSError:
         return 0
     return (int(words[1]) - int(words[2])) * os.sysconf("SC_PAGE_SIZE")
-
-
-def _processor_time(pid: int) -> float:
-    try:
-        with open(f"/proc/{pid}/stat", encoding="utf-8", errors="replace") as stat:
-            rest = stat.read().rpartition(")")[2].split()
-    except OSError:
-        return 0.0
-    return (int(rest[11]) + int(rest[12])) / os.sysconf("SC_CLK_TCK")

@@ -133,29 +133,20 @@ def _prepare(spec: Dict[str, Any], box: Any, cell: Any) -> None:
     cell.hide_folders([], needed, box)
     for folder in ("/tmp", "/var/tmp"):
         if os.path.isdir(folder):
-            _replace(folder, needed, spec["bytes"], box)
-    _replace(class_folder, [home], 1 << 20, box)
+            _replace(folder, needed, spec["bytes"], box, cell)
+    _replace(class_folder, [home], 1 << 20, box, cell)
     box.mount("proc", "/proc", "proc", box.MS_NOSUID | box.MS_NODEV)
     if not box.switch_loopback_on():
         raise OSError("the loopback interface cannot be switched on")
 
 
-def _replace(folder: str, kept: List[str], size: int, box: Any) -> None:
+def _replace(folder: str, kept: List[str], size: int, box: Any, cell: Any) -> None:
     """Put an empty folder of a size in bytes in the place of another; it holds `kept` only."""
     below = sorted(path for path in kept if path.startswith(folder.rstrip("/") + "/"))
     tops = [path for path in below if not any(path.startswith(other + "/") for other in below)]
     held = {path: os.open(path, os.O_PATH | os.O_NOFOLLOW) for path in tops}
     box.tmpfs(folder, size)
-    for path, descriptor in held.items():
-        source = f"/proc/self/fd/{descriptor}"
-        if os.path.isdir(source):
-            os.makedirs(path, exist_ok=True)
-        else:
-            os.makedirs(os.path.dirname(path), exist_ok=True)
-            with open(path, "wb"):
-                pass
-        box.mount(source, path, "", box.MS_BIND | box.MS_REC)
-        os.close(descriptor)
+    cell.show_held(held, box)
 
 
 if __name__ == "__main__":

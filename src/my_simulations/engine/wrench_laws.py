@@ -23,6 +23,8 @@ from ..geometry import (
     scale,
     subtract,
     transform,
+    twist_at,
+    unit,
 )
 
 Wrench = Tuple[Vec3, Vec3]
@@ -114,7 +116,7 @@ class Wing:
     def wrench(self, pose: Pose, twist: Twist, com: Vec3) -> Wrench:
         """See `WrenchLaw`."""
         lever = rotate(pose.orientation, self.centre)
-        force = self._force(pose, add(twist.linear, cross(twist.angular, lever)))
+        force = self._force(pose, twist_at(twist, lever).linear)
         arm = subtract(add(pose.position, lever), transform(pose, com))
         return force, cross(arm, force)
 
@@ -145,9 +147,3 @@ class Wing:
         """A coefficient that grows with alpha by the first slope, past the stall by the second."""
         most = max(-self.stall, min(self.stall, alpha))
         return (slopes[0] * most + slopes[1] * (alpha - most)) * sweep
-
-
-def unit(vector: Vec3) -> Vec3:
-    """The direction of a vector; a zero vector stays zero."""
-    size = norm(vector)
-    return scale(vector, 1.0 / size) if size > 0.0 else vector

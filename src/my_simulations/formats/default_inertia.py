@@ -78,6 +78,18 @@ def of_shapes(inertial: Inertial, collisions: List[Collision]) -> Optional[Inert
     Returns:
         None if no collision is a box, sphere or cylinder.
     """
+    total = solid_inertial(inertial.mass, collisions)
+    if total is not None:
+        total.pose = inertial.pose._replace(orientation=total.pose.orientation)
+    return total
+
+
+def solid_inertial(mass: float, collisions: List[Collision]) -> Optional[Inertial]:
+    """The inertial of the collision shapes at uniform density with a mass (kg) in all.
+
+    Returns:
+        None if no collision is a box, sphere or cylinder.
+    """
     solids = [(collision, solid) for collision in collisions
               for solid in [solid_moments(collision.geometry)] if solid is not None]
     volume = sum(solid[0] for _, solid in solids)
@@ -85,11 +97,9 @@ def of_shapes(inertial: Inertial, collisions: List[Collision]) -> Optional[Inert
         return None
     total: Optional[Inertial] = None
     for collision, (own, (x, y, z)) in solids:
-        mass = inertial.mass * own / volume
-        part = Inertial(mass, ixx=mass * x, iyy=mass * y, izz=mass * z)
+        share = mass * own / volume
+        part = Inertial(share, ixx=share * x, iyy=share * y, izz=share * z)
         total = combined_inertia(total, part, collision.pose)
-    assert total is not None
-    total.pose = inertial.pose._replace(orientation=total.pose.orientation)
     return total
 
 

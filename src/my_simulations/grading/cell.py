@@ -120,16 +120,26 @@ def _open_ways(needed: List[str], box: Any) -> None:
             inside[path] = os.open(path, os.O_PATH)
     for gate, paths in closed.items():
         box.tmpfs(gate, 1 << 20)
-        for path, held in paths.items():
-            source = f"/proc/self/fd/{held}"
-            if os.path.isdir(source):
-                os.makedirs(path, exist_ok=True)
-            else:
-                os.makedirs(os.path.dirname(path), exist_ok=True)
-                with open(path, "wb"):
-                    pass
-            box.mount(source, path, "", box.MS_BIND | box.MS_REC)
-            os.close(held)
+        show_held(paths, box)
+
+
+def show_held(held: Dict[str, int], box: Any) -> None:
+    """Show files and folders at their paths again, which a mount hides.
+
+    Args:
+        held: descriptors by path, opened before the mount; they are closed.
+        box: the module of that name.
+    """
+    for path, descriptor in held.items():
+        source = f"/proc/self/fd/{descriptor}"
+        if os.path.isdir(source):
+            os.makedirs(path, exist_ok=True)
+        else:
+            os.makedirs(os.path.dirname(path), exist_ok=True)
+            with open(path, "wb"):
+                pass
+        box.mount(source, path, "", box.MS_BIND | box.MS_REC)
+        os.close(descriptor)
 
 
 def _closed_folder(path: str) -> str:

@@ -3,12 +3,12 @@ from __future__ import annotations
 
 import os
 from dataclasses import dataclass
-from typing import Any, Sequence, Tuple
+from typing import Any, Tuple
 
 import gymnasium
 import numpy as np
 
-from ..geometry import Pose
+from ..geometry import Pose, rotate
 from ..python_api import OpenWorld
 from ..resources.package_files import own_directory
 
@@ -48,8 +48,9 @@ def read_arm(world: OpenWorld) -> ArmState:
     first = joints.position.names.index("arm::turn")
     axes, fingers = slice(first, first + 6), slice(first + 6, first + 8)
     hand = world.links().pose["arm::hand"]
+    tool = hand[:3] + rotate(tuple(hand[3:].tolist()), TOOL)
     return ArmState(joints.position.array[axes], joints.rate.array[axes],
-                    joints.position.array[fingers], hand[:3] + rotated(hand[3:], TOOL))
+                    joints.position.array[fingers], tool)
 
 
 def drive_axes(world: OpenWorld, rates: np.ndarray) -> None:
@@ -63,20 +64,18 @@ def drive_fingers(world: OpenWorld, close: bool) -> None:
     world.robot("arm").drive({finger: rate for finger in FINGERS}, effort=_GRIP)
 
 
-def camera_space() -> gymnasium.spaces.Box:
-    """The space of the camera's pictures."""
-    return gymnasium.spaces.Box(0, 255, (PIXELS, PIXELS, 3), np.uint8)
+def observation_space(numbers: gymnasium.spaces.Box, camera: bool) -> "gymnasium.Space[Any]":
+    """The space of `observation`."""
+    if not camera:
+        return numbers
+    return gymnasium.spaces.Dict({
+        "state": numbers, "camera": gymnasium.spaces.Box(0, 255, (PIXELS, PIXELS, 3), np.uint8)})
 
 
-def camera_picture(world: OpenWorld) -> np.ndarray:
-    """What the camera beside the gripper sees now: red, green and blue."""
+def observation(world: OpenWorld, numbers: np.ndarray, camera: bool) -> Any:
+    """The numbers; with `camera` a dictionary of them and what the camera of the hand sees now."""
+    if not camera:
+        return numbers
     rgb = world.render(_CAMERA, frame="arm::hand", width=PIXELS, height=PIXELS, hfov=1.2).rgb
     assert rgb is not None, "rgb is the default output"
-    return rgb
-
-
-def rotated(quaternion: Any, vector: Sequence[float]) -> np.ndarray:
-    """Return a vector turned by a quaternion x, y, z, w."""
-    axis, w = np.asarray(quaternion[:3], float), float(quaternion[3])
-    once = 2.0 * np.cross(axis, vector)
-    return np.asarray(vector, float) + w * once + np.cross(axis, once)
+    return {"state": numbers, "camera": rgb}

@@ -64,10 +64,7 @@ class PickAndPlace:
             ("mark", disc("mark", NEAR, "0.1 0.7 0.2 1"), Pose())))
         self.action_space = gymnasium.spaces.Box(-1.0, 1.0, (4,), np.float32)
         self._numbers = within(17 * [_FAR])
-        self.observation_space: "gymnasium.Space[Any]" = self._numbers
-        if camera:
-            self.observation_space = gymnasium.spaces.Dict(
-                {"state": self._numbers, "camera": arm_scene.camera_space()})
+        self.observation_space = arm_scene.observation_space(self._numbers, camera)
         self._camera = camera
         self._mark = np.zeros(3)
         self._scene: Optional[_Scene] = None
@@ -101,9 +98,7 @@ class PickAndPlace:
         numbers = seen(self._numbers, [
             *scene.arm.tool, *scene.arm.fingers, *scene.cube, *scene.mark,
             *(scene.cube - scene.arm.tool), *(scene.mark - scene.cube)])
-        if not self._camera:
-            return numbers
-        return {"state": numbers, "camera": arm_scene.camera_picture(world)}
+        return arm_scene.observation(world, numbers, self._camera)
 
     def judge(self, world: OpenWorld, action: Any) -> Judgement:
         """See the class."""

@@ -35,10 +35,7 @@ class Reach:
             arm_scene.document(), ("target", ball("target", 0.02, "0.9 0.1 0.1 1"), Pose())))
         self.action_space = gymnasium.spaces.Box(-1.0, 1.0, (6,), np.float32)
         self._numbers = within([*6 * [_FAR], *6 * [_FAST], *6 * [_FAR]])
-        self.observation_space: "gymnasium.Space[Any]" = self._numbers
-        if camera:
-            self.observation_space = gymnasium.spaces.Dict(
-                {"state": self._numbers, "camera": arm_scene.camera_space()})
+        self.observation_space = arm_scene.observation_space(self._numbers, camera)
         self._camera = camera
         self._target = np.zeros(3)
         self._left: Optional[float] = None
@@ -65,9 +62,7 @@ class Reach:
         left = math.dist(arm.tool, self._target)
         self._before, self._left = left if self._left is None else self._left, left
         numbers = seen(self._numbers, [*arm.positions, *arm.rates, *arm.tool, *self._target])
-        if not self._camera:
-            return numbers
-        return {"state": numbers, "camera": arm_scene.camera_picture(world)}
+        return arm_scene.observation(world, numbers, self._camera)
 
     def judge(self, world: OpenWorld, action: Any) -> Judgement:
         """See the class."""

@@ -77,7 +77,7 @@ class WorldEnv(gymnasium.Env[Any, Any]):
         task: what it is about.
         render_mode: "rgb_array", or None.
         robots: which plugins of the world's robots run.
-        randomisation: what is drawn anew for each episode, from the seed of `reset`.
+        randomisation: properties drawn for each episode, from the seed of `reset`.
     """
 
     metadata: Dict[str, Any] = {"render_modes": ["rgb_array"], "render_fps": 10}

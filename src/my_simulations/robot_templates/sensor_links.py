@@ -42,8 +42,10 @@ def namespace(values: Values) -> str:
 def camera_link(values: Values, at: sdf.Triple) -> str:
     """`camera_link`, which looks along its x axis; `at` is its place in the model, m."""
     width, height = int(values["image_width"]), int(values["image_height"])
-    sensor = (f'<sensor name="camera" type="camera"><update_rate>{values["camera_rate"]:g}'
-              "</update_rate><camera>"
+    # The camera looks from the front of its box, which it would see from inside otherwise.
+    front = sdf.pose((0.025, 0.0, 0.0))
+    sensor = (f'<sensor name="camera" type="camera">{front}<update_rate>'
+              f'{values["camera_rate"]:g}</update_rate><camera>'
               f'<horizontal_fov>{math.radians(values["field_of_view"]):.6g}</horizontal_fov>'
               f"<image><width>{width}</width><height>{height}</height><format>R8G8B8</format>"
               "</image><clip><near>0.02</near><far>100</far></clip></camera>"
@@ -53,10 +55,8 @@ def camera_link(values: Values, at: sdf.Triple) -> str:
               + "</sensor>")
     lens = sdf.visual("lens", sdf.cylinder(0.012, 0.01), "glass",
                       sdf.pose((CAMERA_SIZE[0] / 2.0, 0.0, 0.0), (0.0, math.pi / 2.0, 0.0)))
-    # The camera looks from the front of its box, which it would see from inside otherwise.
-    placed = sensor.replace("<update_rate>", sdf.pose((0.025, 0.0, 0.0)) + "<update_rate>", 1)
     return sdf.link("camera_link", sdf.pose(at), sdf.box_inertial(0.05, CAMERA_SIZE),
-                    sdf.visual("case", sdf.box(CAMERA_SIZE), "dark"), lens, placed)
+                    sdf.visual("case", sdf.box(CAMERA_SIZE), "dark"), lens, sensor)
 
 
 def laser_link(values: Values, at: sdf.Triple) -> str:

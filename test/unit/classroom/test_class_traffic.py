@@ -8,6 +8,7 @@ from urllib.error import HTTPError
 from urllib.request import Request, urlopen
 
 import pytest
+from free_ports import free_port
 
 from my_simulations.classroom.class_file import read_class
 from my_simulations.classroom.monitor import Monitor
@@ -106,12 +107,6 @@ class Control:
 
     async def stop_world(self, name):
         self.calls.append(("stop", name))
-
-
-def free_port():
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        return probe.getsockname()[1]
 
 
 def test_the_tutors_page_needs_the_token_of_the_tutor(tmp_path):

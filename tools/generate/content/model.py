@@ -9,9 +9,8 @@ import numpy as np
 
 from my_simulations.description.model import Inertial
 from my_simulations.description.shapes import Box, Collision, Cylinder, Geometry, Sphere
-from my_simulations.formats.combined_inertia import combined_inertia
-from my_simulations.formats.default_inertia import solid_moments
-from my_simulations.geometry import IDENTITY, Pose, pose_from_xyzrpy, rpy_from_quat
+from my_simulations.formats.default_inertia import solid_inertial
+from my_simulations.geometry import Pose, pose_from_xyzrpy, rpy_from_quat
 
 from .collada import Color, collada
 from .meshes import Mesh, block, joined, lathe
@@ -204,19 +203,9 @@ class Model:
     def inertial(self) -> Inertial:
         """Mass properties of the collision shapes at one density."""
         assert self.mass is not None
-        moments = [solid_moments(collision.geometry) for collision in self.collisions]
-        volume = sum(found[0] for found in moments if found)
-        total: Optional[Inertial] = None
-        for collision, found in zip(self.collisions, moments):
-            assert found is not None
-            share, (x, y, z) = self.mass * found[0] / volume, found[1]
-            total = combined_inertia(
-                total,
-                Inertial(share, IDENTITY, ixx=share * x, iyy=share * y, izz=share * z),
-                collision.pose,
-            )
-        assert total is not None
-        return total
+        found = solid_inertial(self.mass, self.collisions)
+        assert found is not None, f"{self.name} has no solid shape"
+        return found
 
 
 def _inertial(i: Inertial) -> str:

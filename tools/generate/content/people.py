@@ -52,7 +52,7 @@ def head(model: Model, at: Vec3, skin: str, hair: str = "hair") -> None:
         ball(1.0, sides=16).scaled(0.095, 0.08, 0.12).moved(x + 0.008, y, z),
         limb((x - 0.015, y, z - 0.2), (x - 0.008, y, z - 0.08), 0.05, 0.045),
         ball(0.016, (x + 0.105, y, z - 0.012), 8),
-        both(ball(0.02, (x - 0.005, 0.078, z - 0.01), 8).moved()).moved(y=y),
+        both(ball(0.02, (x - 0.005, 0.078, z - 0.01), 8)).moved(y=y),
     )
     model.look(hair, ball(1.0, sides=16).scaled(0.1, 0.088, 0.1).moved(x - 0.014, y, z + 0.038))
     model.look("black", both(ball(0.011, (x + 0.093, 0.033, z + 0.012), 6)).moved(y=y))

@@ -8,7 +8,7 @@ from __future__ import annotations
 from typing import List, Optional
 
 from ...engine.wrench_laws import ForceAtPoint
-from ...geometry import Vec3, add, norm, scale
+from ...geometry import Vec3, add, scale, unit
 from ..base import Plugin
 from ..context import Ending, PluginError, Publication
 from ..frames import stamped
@@ -28,9 +28,9 @@ class RotorsWind(Plugin):
         if p.flag("useCustomStaticWindField", False):
             context.warn("<useCustomStaticWindField> is not supported; the wind has the speed"
                          " <windSpeedMean> everywhere")
-        way = _unit(p.vector("windDirection", (1.0, 0.0, 0.0)))
+        way = unit(p.vector("windDirection", (1.0, 0.0, 0.0)))
         self._steady = scale(way, p.number("windForceMean", 0.0))
-        self._gust = scale(_unit(p.vector("windGustDirection", (0.0, 1.0, 0.0))),
+        self._gust = scale(unit(p.vector("windGustDirection", (0.0, 1.0, 0.0))),
                            p.number("windGustForceMean", 0.0))
         self._velocity = scale(way, p.number("windSpeedMean", 0.0))
         start = p.number("windGustStart", 10.0)
@@ -82,8 +82,3 @@ class RotorsWind(Plugin):
         message = stamped(self.context, "rotors_comm/WindSpeed", self._frame)
         message.velocity.x, message.velocity.y, message.velocity.z = self._velocity
         self._speed.publish(message)
-
-
-def _unit(vector: Vec3) -> Vec3:
-    size = norm(vector)
-    return scale(vector, 1.0 / size) if size > 0.0 else vector

@@ -12,7 +12,8 @@ import math
 from dataclasses import replace
 from typing import Optional
 
-from ...engine.wrench_laws import Wing, unit
+from ...engine.wrench_laws import Wing
+from ...geometry import unit
 from ..base import Plugin
 from ..context import Joint, PluginError
 

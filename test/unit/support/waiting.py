@@ -1,0 +1,21 @@
+"""Waits for what a test has started."""
+from __future__ import annotations
+
+import time
+from typing import Callable, TypeVar
+
+T = TypeVar("T")
+
+def wait_for(condition: Callable[[], T], what: str, seconds: float) -> T:
+    """Return the first true value of a condition.
+
+    Raises:
+        AssertionError: it was not true for some seconds of wall time; `what` names what is missing.
+    """
+    until = time.monotonic() + seconds
+    while True:
+        found = condition()
+        if found:
+            return found
+        assert time.monotonic() < until, f"{what} did not come"
+        time.sleep(0.05)
