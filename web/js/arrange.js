@@ -26,6 +26,9 @@ export function clearSpacing(boxes) {
   }));
 }
 
+/** The number of copies of an array, without the original. @param {number[]} counts  cells along x, y and z */
+export const copiesIn = (counts) => counts.reduce((product, count) => product * count, 1) - 1;
+
 /**
  * Where the copies of an array are, relative to the original, which is the first of its cells.
  * @param {number[]} counts   cells along x, y and z

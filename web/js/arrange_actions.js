@@ -1,5 +1,5 @@
 /** Several of a kind, equal gaps, and what is hidden or locked in this browser. */
-import {arrayOffsets, clearSpacing, distributeMoves, MOST_COPIES} from './arrange.js';
+import {arrayOffsets, clearSpacing, copiesIn, distributeMoves, MOST_COPIES} from './arrange.js';
 import {NOTHING} from './nothing.js';
 import {add, orientation, position} from './pose.js';
 /** @import {ActionParts, Outcome} from './actions.js' */
@@ -60,9 +60,9 @@ export function arrangeActions({store, ask, edit, dialog, note, view}) {
      */
     array(counts, spacing) {
       const names = copied();
-      const total = counts.reduce((product, count) => product * count, 1);
-      if (total - 1 > MOST_COPIES) throw new RangeError(`An array has at most ${MOST_COPIES} copies.`);
-      return copies(names, arrayOffsets(counts, spacing), `Array of ${total} ${names.join(', ')}`);
+      const added = copiesIn(counts);
+      if (added > MOST_COPIES) throw new RangeError(`An array has at most ${MOST_COPIES} copies.`);
+      return copies(names, arrayOffsets(counts, spacing), `Array of ${added + 1} ${names.join(', ')}`);
     },
     /** Equal gaps between the selected models. @param {'x'|'y'|'z'} axis @returns {Promise<Outcome>} */
     async distribute(axis) {

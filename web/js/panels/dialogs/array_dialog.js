@@ -1,5 +1,5 @@
 /** How many copies of the selection, and how far apart. */
-import {arrayOffsets, MOST_COPIES} from '../../arrange.js';
+import {copiesIn, MOST_COPIES} from '../../arrange.js';
 import {Dialog} from '../dialog.js';
 import {h} from '../dom.js';
 /** @import {Page} from '../panels.js' */
@@ -22,13 +22,12 @@ export function arrayDialog({actions}) {
     const {counts: cells, spacing: gaps} = numbers();
     if (!cells.every((count) => Number.isInteger(count) && count >= 1)) return 'Each count must be a whole number, 1 or more.';
     if (!gaps.every(Number.isFinite)) return 'Each spacing must be a number of metres.';
-    const copies = cells.reduce((product, count) => product * count, 1) - 1;
+    const copies = copiesIn(cells);
     if (copies < 1) return 'Enter a count of 2 or more for one axis.';
     return copies > MOST_COPIES ? `An array has at most ${MOST_COPIES} copies.` : '';
   };
   const update = () => {
-    const {counts: cells, spacing: gaps} = numbers();
-    total.textContent = fault() || `${arrayOffsets(cells, gaps).length} copies are added.`;
+    total.textContent = fault() || `${copiesIn(numbers().counts)} copies are added.`;
   };
   for (const input of [...counts, ...spacing]) input.addEventListener('input', update);
   update();
