@@ -77,17 +77,17 @@ export function mountPalette(element, {session, importPlan}) {
     h('button', {type: 'button', dataset: {act: id}, onclick: run}, glyph(glyphName), title);
   fill(element,
     h('label', {class: 'building-name'}, h('span', {text: 'Model Name'}), name),
-    ...tools.flatMap(([title, entries]) => [h('h3', {text: title}), h('div', {class: 'tools'},
+    ...tools.flatMap(([title, entries]) => [h('h2', {text: title}), h('div', {class: 'tools'},
       ...entries.map(([id, text, make, hint]) =>
         toggle(id, {dataset: {tool: id}, title: hint ?? text}, make, glyph(id), text)))]),
-    h('h3', {text: 'Add Color'}),
+    h('h2', {text: 'Add Color'}),
     h('div', {class: 'swatches'}, ...SWATCHES.map((color) => toggle(color,
       {class: 'swatch', title: color, 'aria-label': `Color ${color}`, style: `background: ${color}`},
       () => new PaintTool(session, {color, texture: ''}))), more),
-    h('h3', {text: 'Add Texture'}),
+    h('h2', {text: 'Add Texture'}),
     h('div', {class: 'tools'}, ...TEXTURES.map(([text, texture]) => toggle(texture,
       {dataset: {texture}}, () => new PaintTool(session, {texture}), text))),
-    h('h3', {text: 'Building'}),
+    h('h2', {text: 'Building'}),
     h('div', {class: 'tools'}, act('roof', 'Roof', 'roof', () => inspectRoof(session)),
       act('import', 'Import', 'image', importPlan)));
 

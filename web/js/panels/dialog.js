@@ -71,8 +71,8 @@ export class Dialog {
       h('div', {class: 'dialog-buttons'}, ...this.#buttons),
     );
     const head = h(
-      'header',
-      {},
+      'div',
+      {class: 'dialog-head'},
       h('h2', {id, text: title}),
       h(
         'button',

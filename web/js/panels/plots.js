@@ -221,14 +221,13 @@ export class Plots {
         .filter((variable) => !word || variable.toLowerCase().includes(word))
         .map((variable) => ({owner, variable})),
     );
-    let owner = '';
+    const shown = found.slice(0, SHOWN);
     fill(
       this.#list,
-      ...found.slice(0, SHOWN).flatMap((one) => {
-        const head = one.owner !== owner && h('h3', {text: one.owner});
-        owner = one.owner;
-        return [head, this.#option(one.variable)];
-      }),
+      ...[...new Set(shown.map(({owner}) => owner))].map((owner) =>
+        h('div', {role: 'group', 'aria-label': owner},
+          h('h3', {role: 'presentation', text: owner}),
+          ...shown.filter((one) => one.owner === owner).map(({variable}) => this.#option(variable)))),
       found.length > SHOWN &&
         h('p', {class: 'empty', text: `${found.length - SHOWN} more: refine the search`}),
     );

@@ -31,7 +31,7 @@ export function hotkeyDialog(hotkeys) {
   return new Dialog({
     title: 'Hotkeys',
     name: 'hotkeys',
-    content: [h('div', {class: 'hotkey-columns'}, ...columns)],
+    content: [h('div', {class: 'hotkey-columns', role: 'group', 'aria-label': 'Hotkeys', tabindex: 0}, ...columns)],
     buttons: [{title: 'Close', primary: true, value: true}],
   }).open();
 }

@@ -139,7 +139,7 @@ class FolderList {
       row.addEventListener('focus', () => this.handlers.onFile(file.name));
       rows.push(row);
     }
-    if (!rows.length) rows.push(h('p', {class: 'empty', text: 'This folder is empty.'}));
+    if (!rows.length) rows.push(h('p', {class: 'empty', role: 'option', 'aria-disabled': 'true', text: 'This folder is empty.'}));
     fill(this.list, ...rows);
     this.#rove.settle();
   }
