@@ -9,7 +9,7 @@ import pybullet
 from ...geometry import ZERO3, Pose, Vec3, multiply, rotate, scale, transform
 from ..body_plan import BASE
 from .bodies import Body
-from .link_motion import State
+from .link_states import Motion
 
 Acting = Dict[int, List[Tuple[Vec3, Vec3, Vec3]]]
 """Force, point of action and torque by PyBullet's link index; N, m, N m, world axes."""
@@ -41,7 +41,7 @@ def note_contacts(found: Acting, body: Body) -> None:
             note(found, owners.get(contact[4], contact[4]), scale(force, -1.0), contact[6])
 
 
-def note_constraints(found: Acting, body: Body, links: Mapping[int, State]) -> None:
+def note_constraints(found: Acting, body: Body, links: Mapping[int, Motion]) -> None:
     """Add the forces of loop and tie constraints on the links of a body."""
     for n in range(pybullet.getNumConstraints()):
         number = pybullet.getConstraintUniqueId(n)
@@ -52,17 +52,17 @@ def note_constraints(found: Acting, body: Body, links: Mapping[int, State]) -> N
         for uid, index, pivot, sign in ((info[0], info[1], info[6], -1.0),
                                         (info[2], info[3], info[7], 1.0)):
             if uid == body.uid and index in links:
-                at = Pose(links[index].position, links[index].turn)
+                at = Pose(links[index].position, links[index].orientation)
                 note(found, index, scale(force, sign), transform(at, pivot), scale(torque, sign))
 
 
-def constraint_forces(number: int, body: Body, index: int, link: State
+def constraint_forces(number: int, body: Body, index: int, link: Motion
                       ) -> Tuple[Vec3, Vec3, Vec3]:
     """Force, where it acts, and torque of a constraint on a link that it holds; world axes."""
     info = pybullet.getConstraintInfo(number)
     force, torque = _on_the_second(info, pybullet.getConstraintState(number))
     sign, pivot = (1.0, info[7]) if (info[2], info[3]) == (body.uid, index) else (-1.0, info[6])
-    return (scale(force, sign), transform(Pose(link.position, link.turn), pivot),
+    return (scale(force, sign), transform(Pose(link.position, link.orientation), pivot),
             scale(torque, sign))
 
 

@@ -6,8 +6,10 @@ from typing import Optional, Tuple
 
 import pybullet
 
-from ...geometry import Vec3, add, cross, dot, norm, subtract
+from ...geometry import Vec3, add, dot, norm
+from ..body_plan import BASE
 from .bodies import Body
+from .link_states import motion
 
 _SAME = 1e-9  # m/s, or share: rounding errors of a velocity
 
@@ -24,15 +26,8 @@ def extent(body: Body) -> Tuple[Vec3, Vec3]:
 
 def approach(uid: int, other: Optional[int], place: Vec3, normal: Vec3) -> float:
     """Return the approach speed of two bodies at a point, m/s; `other` None: a static one."""
-    speed = -dot(_velocity_at(uid, place), normal)
-    return speed if other is None else speed + dot(_velocity_at(other, place), normal)
-
-
-def _velocity_at(uid: int, place: Vec3) -> Vec3:
-    """Return the velocity of a point of a body, m/s, without joint rates."""
-    linear, angular = pybullet.getBaseVelocity(uid)
-    lever = subtract(place, pybullet.getBasePositionAndOrientation(uid)[0])
-    return add(linear, cross(angular, lever))
+    speed = -dot(motion(uid, BASE).velocity_at(place), normal)
+    return speed if other is None else speed + dot(motion(other, BASE).velocity_at(place), normal)
 
 
 def speed_of(uid: int) -> float:

@@ -61,8 +61,7 @@ class BulletBackend:
         self._rows: Dict[int, Tuple[Body, Part]] = {}
         self._axes: Dict[int, Tuple[Body, bodies.Axis]] = {}
         self._helpers = HelperSet(self._models, self._bodies, self._rows, self._axes)
-        self._loop, self._readout = self._helpers.loop, self._helpers.readout
-        self._waker, self._forces = self._helpers.waker, self._helpers.forces
+        self._readout, self._waker = self._helpers.readout, self._helpers.waker
         self._mover, self._notices = self._helpers.mover, self._helpers.notices
         self._row_reader = self._helpers.row_reader
         self._starts = InitialStateCache(self._readout)
@@ -83,12 +82,12 @@ class BulletBackend:
             SetPlanarVelocities: lambda command: self._helpers.planar.set(command.velocities),
             ReadContacts: lambda command: read_contacts(
                 self._bodies, command.limit, self._helpers.sliding.load,
-                self._helpers.sliding.friction, self._forces.slip.friction),
+                self._helpers.sliding.friction, self._helpers.forces.slip.friction),
             SetWheelSlips: self._set_wheel_slips,
-            ReadJointWrenches: self._helpers.wrenches.read,
-            SetServos: lambda command: self._forces.servos.set(
+            ReadJointWrenches: lambda command: self._helpers.wrenches.read(command),
+            SetServos: lambda command: self._helpers.forces.servos.set(
                 command.servos, self._helpers.settings.step_size),
-            ReadEfforts: lambda command: self._forces.servos.efforts(command.rows),
+            ReadEfforts: lambda command: self._helpers.forces.servos.efforts(command.rows),
             AddTimedForces: self._add_timed_forces,
             ClearTimedForces: self._clear_timed_forces,
             ReadRunState: run_states.read,
@@ -102,13 +101,13 @@ class BulletBackend:
         """Carry out a command; raises `CommandRefusedError`."""
         if not isinstance(command, (Restart, Clear)):
             self._settle()
-        self._loop.changed()
+        self._helpers.loop.changed()
         return self._appliers[type(command)](command)
 
     def configure(self, settings: PhysicsSettings) -> None:
         """Use other settings from the next step on; a changed gravity wakes everything."""
         self._settle()
-        self._loop.changed()
+        self._helpers.loop.changed()
         before = self._helpers.settings
         if settings.gravity != before.gravity:
             self._waker.everything()  # first: Bullet sets a new gravity for awake bodies only
@@ -124,18 +123,18 @@ class BulletBackend:
         self._is_fresh = False
         self._readout.stepped()
         self._helpers.restored_sleep.stepped()
-        run, wrenches = self._loop.run, self._helpers.wrenches
+        run, wrenches = self._helpers.loop.run, self._helpers.wrenches
         dt, gravity = self._helpers.settings.step_size, self._helpers.settings.gravity
         if wrenches.idle:
             run(first, count, dt, gravity)
             return
         if count > 1:
             run(first, count - 1, dt, gravity)
-        self._loop.changed()
+        self._helpers.loop.changed()
         wrenches.before(count)
         run(first + count - 1, 1, dt, gravity)
         wrenches.after(dt, gravity)
-        self._loop.changed()
+        self._helpers.loop.changed()
 
     def read(self) -> bool:
         """Bring the tables up to date."""
@@ -341,7 +340,7 @@ class BulletBackend:
             if wheel.row not in self._rows or wheel.joint_row not in self._axes:
                 raise CommandRefusedError("the link or joint of the wheel does not exist")
             self._helpers.sliding.leave(*self._rows[wheel.row])
-        self._forces.slip.set_wheels(command.wheels)
+        self._helpers.forces.slip.set_wheels(command.wheels)
 
     def _hold(self, command: PinModels) -> None:
         self._helpers.holds.set(body for number in command.model_ids
@@ -350,9 +349,9 @@ class BulletBackend:
     # -- timed forces ----------------------------------------------------------------------------
 
     def _add_timed_forces(self, command: AddTimedForces) -> None:
-        refusal = self._forces.add(command.forces)
+        refusal = self._helpers.forces.queue(command.forces)
         if refusal:
             raise CommandRefusedError(refusal)
 
     def _clear_timed_forces(self, command: ClearTimedForces) -> None:
-        self._forces.drop(command.force_ids)
+        self._helpers.forces.drop(command.force_ids)

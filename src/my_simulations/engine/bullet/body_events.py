@@ -44,11 +44,11 @@ class BodyObserver:
 
     events: ClassVar[FrozenSet[BodyEvent]] = frozenset()
 
+    def add(self, body: Body) -> None:
+        """Store what is needed of a new body."""
+
     def handle_event(self, event: BodyEvent, body: Body) -> None:
         """Update what is stored about a body after one of `events`."""
 
     def forget(self, body: Body) -> None:
         """Drop what is stored about a removed body."""
-
-    def clear(self) -> None:
-        """Drop what is stored about all bodies."""

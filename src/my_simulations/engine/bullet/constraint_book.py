@@ -59,7 +59,3 @@ class ConstraintBook:
             pybullet.removeConstraint(one.uid)
         for one in lifted:
             one.make()
-
-    def clear(self) -> None:
-        """Discard all entries after a reset of the world."""
-        self._entries.clear()

@@ -132,15 +132,6 @@ class ContactSettling(StepHelper):
             self._leaning = False
             self._parameters.request_accuracy(USUAL_ACCURACY)
 
-    def clear(self) -> None:
-        """Discard the data of all bodies."""
-        self._trees.clear()
-        self._arrived.clear()
-        self._moving.clear()
-        self._rigid.clear()
-        self._leaning = False
-        self._new, self._until = False, None
-
     def handle_event(self, event: BodyEvent, body: Body) -> None:
         """Release a body that a command changed: it can move, or must not sleep."""
         if body.rigid and body.moves:

@@ -92,11 +92,6 @@ class DivergenceStop(StepHelper):
         for table in (self._bodies, self._starts, self._stops, self._new):
             table.pop(body.uid, None)
 
-    def clear(self) -> None:
-        """Forget all bodies."""
-        for table in (self._bodies, self._starts, self._stops, self._new):
-            table.clear()
-
     def due(self, step: int) -> int:
         """Each step while a body is stopped or new, else each period."""
         if self._stops or self._new:

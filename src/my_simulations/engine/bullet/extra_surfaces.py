@@ -26,15 +26,19 @@ _SEEN = 2e-4           # m; a rigid body that its weight presses less deep may b
 _WEIGHT = 9.8          # N/kg
 
 
-def store(body: Body, part: Part, link: Link, dt: float) -> None:
-    """Give one link what its surface has besides friction and bounces. `dt`: step size, s.
+def store(body: Body, dt: float) -> None:
+    """Give links what their surfaces have besides friction and bounces. `dt`: step size, s.
 
     Directions of friction (mu2, fdir1), softness (kp, kd, max_vel) and torsional friction; of the
     collision whose coefficient holds (SDF 1.7, collision/surface; Gazebo has one each).
     """
-    collision = counting_collision(link)
-    if collision is None:
-        return
+    for part in body.colliders:
+        collision = counting_collision(part.link)
+        if collision is not None:
+            _store(body, part, collision, dt)
+
+
+def _store(body: Body, part: Part, collision: Collision, dt: float) -> None:
     surface = collision.surface
     settings: Dict[str, Any] = {}
     if directed(surface):

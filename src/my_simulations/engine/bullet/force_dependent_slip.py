@@ -33,10 +33,10 @@ from ...geometry import (
     scale,
     subtract,
 )
-from ..body_plan import BASE
 from ..drive_commands import WheelSlip
 from .bodies import Axis, Body, Part
 from .extra_surfaces import anisotropy
+from .link_states import Motion, motion
 from .surface_coefficients import directed, of_link
 
 _STIFF = 0.02           # of h: a smaller slip counts as none
@@ -101,9 +101,15 @@ class ForceDependentSlip:
         """True if no link has a slip."""
         return not self._slides
 
-    def add(self, body: Body, part: Part, link: Link) -> None:
-        """Register a link of a body with the surface that decides (`counting_collision`)."""
-        collision = counting_collision(link)
+    def add(self, body: Body) -> None:
+        """Register the links of a body, each with the surface that decides."""
+        for axis in body.axes:
+            self._axes[axis.row] = (body, axis)
+        for part in body.colliders:
+            self._add(body, part)
+
+    def _add(self, body: Body, part: Part) -> None:
+        collision = counting_collision(part.link)
         surface = Surface() if collision is None else collision.surface
         slips, first = (surface.slip1, surface.slip2), None
         if collision is not None and any(surface.fdir1):
@@ -114,8 +120,6 @@ class ForceDependentSlip:
             slips = (surface.slip1, surface.slip1)
         known = _Slippery(part, body.moves, slips, first, (
             surface.mu, surface.mu2 if directed(surface) else surface.mu))
-        for axis in body.axes:
-            self._axes[axis.row] = (body, axis)
         for uid in body.uids:
             key = (uid, part.index)
             self._links[key] = known
@@ -135,12 +139,6 @@ class ForceDependentSlip:
         for pair in [pair for pair in self._pairs
                      if pair[0][0] in body.uids or pair[1][0] in body.uids]:
             del self._pairs[pair]
-
-    def clear(self) -> None:
-        """Discard the data of all bodies."""
-        for table in (self._links, self._rows, self._axes, self._slides, self._pairs,
-                      self._wheels):
-            table.clear()
 
     def set_wheels(self, wheels: Iterable[WheelSlip]) -> None:
         """Set slips of wheels that depend on their speed; wheels of removed links are ignored."""
@@ -203,12 +201,12 @@ class ForceDependentSlip:
              dt: float) -> List[bool]:
         """Compute and apply the friction of two links; return the directions that have a slip."""
         one, two = self._links[key], self._links[other]
-        mine, theirs = _state(key), _state(other)
+        mine, theirs = motion(*key), motion(*other)
         carried = sum(contact[9] for contact in contacts)
         normal = scale(contacts[0][7], 1.0 / norm(contacts[0][7]))
         along = _along(one, mine, normal) or _along(two, theirs, normal) or _any_across(normal)
         across = cross(normal, along)
-        velocities = [subtract(_velocity(mine, contact[5]), _velocity(theirs, contact[5]))
+        velocities = [subtract(mine.velocity_at(contact[5]), theirs.velocity_at(contact[5]))
                       for contact in contacts]
         slip = ZERO3
         for contact, velocity in zip(contacts, velocities):
@@ -254,26 +252,11 @@ def _take(key: Key, link: _Slippery, ours: Tuple[bool, bool]) -> None:
         *key, anisotropicFriction=anisotropy(link.mus, link.first or ZERO3, left))
 
 
-_State = Tuple[Vec3, Any, Vec3, Vec3]   # position, orientation, velocities
-
-
-def _state(key: Key) -> _State:
-    uid, index = key
-    if index == BASE:
-        return (*pybullet.getBasePositionAndOrientation(uid), *pybullet.getBaseVelocity(uid))
-    found = pybullet.getLinkState(uid, index, computeLinkVelocity=1, computeForwardKinematics=1)
-    return (found[0], found[1], found[6], found[7])
-
-
-def _velocity(state: _State, at: Vec3) -> Vec3:
-    return add(state[2], cross(state[3], subtract(at, state[0])))
-
-
-def _along(link: _Slippery, state: _State, normal: Vec3) -> Optional[Vec3]:
+def _along(link: _Slippery, state: Motion, normal: Vec3) -> Optional[Vec3]:
     """Return the first direction in the contact plane, or None."""
     if link.first is None:
         return None
-    first = rotate(state[1], link.first)
+    first = rotate(state.orientation, link.first)
     flat = subtract(first, scale(normal, dot(first, normal)))
     size = norm(flat)
     return scale(flat, 1.0 / size) if size > 1e-6 else None
@@ -285,9 +268,9 @@ def _any_across(normal: Vec3) -> Vec3:
     return scale(found, 1.0 / norm(found))
 
 
-def _ease(link: _Slippery, state: _State, contacts: Contacts) -> float:
+def _ease(link: _Slippery, state: Motion, contacts: Contacts) -> float:
     """Return an upper bound of the acceleration of a link per force at a contact, 1/kg."""
     if not link.moves or link.part.mass <= 0.0:
         return 0.0
-    arm = max(norm(subtract(contact[5], state[0])) for contact in contacts)
+    arm = max(norm(subtract(contact[5], state.position)) for contact in contacts)
     return 1.0 / link.part.mass + arm * arm / max(_LEAST_MOMENT, min(link.part.moments))

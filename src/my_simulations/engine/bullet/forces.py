@@ -76,8 +76,9 @@ class Forces(StepHelper):
         self.servos = JointServos(self._axes, wake, release)
         self.slip = ForceDependentSlip()
 
-    def add_body(self, body: Body) -> None:
+    def add(self, body: Body) -> None:
         """Register the rows of a new body."""
+        self.slip.add(body)
         for part in body.parts:
             self._parts[part.row] = (body, part)
             if not part.gravity and body.moves:
@@ -135,7 +136,7 @@ class Forces(StepHelper):
             self._axes.pop(axis.row, None)
             self._limits.pop(axis.row, None)
 
-    def add(self, forces: Sequence[TimedForce]) -> str:
+    def queue(self, forces: Sequence[TimedForce]) -> str:
         """Queue timed forces; return the reason of a refusal, or ""."""
         for force in forces:
             if force.row not in (self._parts if isinstance(force, TimedWrench) else self._axes):
@@ -162,18 +163,6 @@ class Forces(StepHelper):
         rows = {self._acting[number].row for number in self._loops if number in self._acting}
         self.servos.yield_to(rows)
         self._loops_changed(rows)
-
-    def clear(self) -> None:
-        """Discard all bodies and all timed forces."""
-        ended = bool(self._loops)
-        for table in (self._timed, self._acting, self._by_law, self._loops, self._resumed,
-                      self._parts, self._axes, self._weightless, self._implicit, self._resting,
-                      self._limits):
-            table.clear()
-        self.slip.clear()
-        self.servos.clear()
-        if ended:
-            self._tell_loops()
 
     def loop_memories(self) -> Tuple[Tuple[int, LoopMemory], ...]:
         """The states of the PID loops by force id, for `resume_loops`."""

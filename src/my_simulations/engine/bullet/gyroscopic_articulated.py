@@ -58,11 +58,6 @@ class GyroscopicArticulated:
         """Discard the recorded state of a body whose pose or velocity was set."""
         self._then.pop(body.uid, None)
 
-    def clear(self) -> None:
-        """Discard the data of all bodies."""
-        self._bodies.clear()
-        self._then.clear()
-
     @property
     def idle(self) -> bool:
         """True if no body can need a correction."""

@@ -75,15 +75,6 @@ class GyroscopicRigid(StepHelper):
             self._fast.remove(body.uid)
         self._trees.forget(body)
 
-    def clear(self) -> None:
-        """Discard the data of all bodies."""
-        self._moments.clear()
-        self._bodies.clear()
-        self._damped.clear()
-        self._fast.clear()
-        self._flights.clear()
-        self._trees.clear()
-
     def handle_event(self, event: BodyEvent, body: Body) -> None:
         """Discard the state of a body that was recorded before a command."""
         self._flights.pop(body.uid, None)

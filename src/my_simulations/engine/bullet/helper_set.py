@@ -14,12 +14,11 @@ from .body_events import BodyEvent
 from .constraint_book import ConstraintBook
 from .contact_settling import ContactSettling
 from .divergence_stop import DivergenceStop
-from .force_dependent_slip import slips
 from .forces import Forces
 from .gyroscopic_rigid import GyroscopicRigid
 from .inter_model_joints import InterModelJoints
 from .joint_motors import JointMotors
-from .joint_wrenches import JointWrenches
+from .joint_wrenches import JointKey, JointWrenches
 from .landing_contacts import LandingContacts
 from .level_seams import LevelSeams
 from .notices import Notices
@@ -69,9 +68,19 @@ class HelperSet:
                  rows: Dict[int, Tuple[Body, Part]],
                  axes: Dict[int, Tuple[Body, bodies.Axis]]) -> None:
         self.settings = PhysicsSettings()
+        self._models, self._bodies, self._axes = models, bodies_by_uid, axes
         self.notices = Notices(models, bodies_by_uid)
-        self._parameters = WorldParameters()
         self.readout = StateReadout(self._on_diverged, self._on_raced)
+        self.row_reader = RowReader(self.readout, rows, axes)
+        self.waker = WakeUp(bodies_by_uid, self._on_activated)
+        self.mover = StateSetter(rows, axes, self.readout, self.row_reader, self.waker,
+                                 self._notify)
+        self._measured_joints: Dict[JointKey, int] = {}
+        self._create()
+
+    def _create(self) -> None:
+        """Create all helpers that store nothing but data of bodies."""
+        self._parameters = WorldParameters()
         self._residual = ResidualFriction(lambda uid: self._rolling.rolls(uid))
         self._rolling = RollingContacts(lambda links, step: self._landing.see_rolling(links, step),
                                         lambda: self.forces.loaded_bodies,
@@ -80,16 +89,11 @@ class HelperSet:
         self._seams = SeamContacts(self._rolling, self._parameters)
         self._level = LevelSeams(lambda: self._residual.fast, self._parameters)
         self.sliding = Sliding()
-        self.waker = WakeUp(bodies_by_uid, self._on_activated)
-
-        def waker_for(event: BodyEvent) -> Callable[[List[Body]], None]:
-            return WakeUp(bodies_by_uid, partial(self._notify, event)).around
-
-        self.forces = Forces(waker_for(BodyEvent.FORCE_APPLIED),
+        self.forces = Forces(self._waker_for(BodyEvent.FORCE_APPLIED),
                              lambda rows: self.motors.yield_to(rows),
                              lambda body, axis: self.motors.restore(body, axis),
                              lambda row: self.motors.driven(row),
-                             lambda rows: self.row_reader.read_links(rows))
+                             self.row_reader.read_links)
         self._friction = FrictionBalance(self.notices.misfit)
         self._bounces = PairRestitution(self._parameters, self.notices.odd_bounce)
         self._spin = GyroscopicRigid(lambda: self.forces.wrenched_links)
@@ -106,55 +110,40 @@ class HelperSet:
         self._stop = SurfaceStop()
         self.divergence = DivergenceStop(self.notices.stopped, lambda: self.forces.loaded_bodies,
                                           self.readout.mark_changed)
-        self.row_reader = RowReader(self.readout, rows, axes)
-        self.mover = StateSetter(rows, axes, self.readout, self.row_reader, self.waker,
-                                 self._notify)
-        self.motors = JointMotors(axes, waker_for(BodyEvent.MOTOR_TARGET_CHANGED))
-        self.planar = PlanarMotion(models, self.mover.present_model_pose,
-                                   waker_for(BodyEvent.PLANAR_VELOCITY_CHANGED))
-        self.wrenches = JointWrenches(models, self.forces, self.sliding)
+        self.motors = JointMotors(self._axes, self._waker_for(BodyEvent.MOTOR_TARGET_CHANGED))
+        self.planar = PlanarMotion(self._models, self.mover.present_model_pose,
+                                   self._waker_for(BodyEvent.PLANAR_VELOCITY_CHANGED))
+        self.wrenches = JointWrenches(self._models, self.forces, self.sliding,
+                                      self._measured_joints)
         # The step helpers, in the order in which they act.
         helpers = (self._friction, self._bounces, self.settling, self._decay, self.forces,
                    self.planar, self._rolling, self._spin, self._residual, self.sliding,
                    self.holds, self._stop, self._landing, self._level, self._seams,
                    self.divergence, self.restored_sleep)
         self.loop = StepLoop(helpers, pybullet.stepSimulation, self._parameters.apply)
-        # Everything that remembers bodies one by one.
-        self._keepers = (*helpers, self.ties, self.motors, self.wrenches, self.readout, self.loop)
-        self._handlers = {event: tuple(keeper.handle_event for keeper in self._keepers
-                                       if event in keeper.events) for event in BodyEvent}
+        # All that store data of single bodies.
+        self._observers = (*helpers, self.ties, self.motors, self.wrenches, self.readout, self.loop)
+        self._handlers = {event: tuple(observer.handle_event for observer in self._observers
+                                       if event in observer.events) for event in BodyEvent}
+
+    def _waker_for(self, event: BodyEvent) -> Callable[[List[Body]], None]:
+        """Return a function that wakes bodies and their contact islands, and sends them `event`."""
+        return WakeUp(self._bodies, partial(self._notify, event)).around
 
     def configure(self, settings: PhysicsSettings) -> None:
         """Use these settings from the next step on, and have Bullet use them."""
         self.settings = settings
         self._parameters.configure(settings)
         self.settling.configure(settings.step_size)
+        self._decay.configure(settings.step_size)
         self.sliding.configure(settings.cone)
         self.divergence.configure(settings.step_size)
 
     def add(self, body: Body, model: Model) -> None:
-        """A body of a model is there."""
-        self.loop.add(body)
-        self.forces.add_body(body)
-        self._friction.add(body)
-        self._bounces.add(body)
-        self._spin.add(body)
-        self._residual.add(body)
-        self.settling.add(body)
-        self._stop.add(body)
-        self.divergence.add(body)
-        self.readout.add(body)
-        dt = self.settings.step_size
-        self._decay.add(body, dt)
-        for part in body.parts:
-            self._rolling.add(body, part, part.link)
-            self._level.add(body, part, part.link)
-            if not slips(part.link):
-                self.sliding.add(body, part, part.link)
-        for part in body.colliders:
-            self._landing.add(body, part, part.link)
-            extra_surfaces.store(body, part, part.link, dt)
-            self.forces.slip.add(body, part, part.link)
+        """Register a new body of a model."""
+        for observer in self._observers:
+            observer.add(body)
+        extra_surfaces.store(body, self.settings.step_size)
         self.set_up_axes(body, model)
 
     def set_up_axes(self, body: Body, model: Model) -> None:
@@ -167,20 +156,18 @@ class HelperSet:
     def use_step_size(self, body: Body, model: Model) -> None:
         """Recompute all values of a body that depend on the step size."""
         self.set_up_axes(body, model)
-        self._decay.add(body, self.settings.step_size)
+        self._decay.add(body)
 
     def forget(self, body: Body) -> None:
         """Discard the data of a removed body."""
-        for keeper in self._keepers:
-            keeper.forget(body)
+        for observer in self._observers:
+            observer.forget(body)
 
     def clear(self) -> None:
-        """Discard the data of all bodies."""
+        """Discard the data of all bodies; `configure` must follow."""
         self.notices.forget_all()
-        for keeper in self._keepers:
-            keeper.clear()
-        self.book.clear()
-        self._parameters.clear()
+        self.readout.clear()
+        self._create()
 
     def _notify(self, event: BodyEvent, body: Body) -> None:
         """Pass an event to those that handle it, in the order of the helpers."""

@@ -107,11 +107,6 @@ class InterModelJoints(BodyObserver):
             if not tied.ties:
                 set_sleep(tied)
 
-    def clear(self) -> None:
-        """Discard the data of all bodies."""
-        self._ties.clear()
-        self._anchor = None
-
 
 def _let_collide(one: _Tie, collide: bool) -> None:
     if len(one.ends) < 2:

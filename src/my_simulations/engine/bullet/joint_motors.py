@@ -77,12 +77,6 @@ class JointMotors(BodyObserver):
             self._specs.pop(axis.row, None)
             self._driven.pop(axis.row, None)
 
-    def clear(self) -> None:
-        """Discard the data of all bodies."""
-        self._motors.clear()
-        self._specs.clear()
-        self._driven.clear()
-
     def restore(self, body: Body, axis: Axis) -> None:
         """Enable the motor of an axis, or its friction if it has no motor."""
         motor = self._motors.get(axis.row)

@@ -171,13 +171,6 @@ class JointServos:
         for axis in body.axes:
             self._laws.pop(axis.row, None)
 
-    def clear(self) -> None:
-        """Discard the data of all bodies."""
-        self._laws.clear()
-        self._busy.clear()
-        self._yielding.clear()
-        self._step = -1
-
     def act(self, efforts: Dict[int, float], shared: AbstractSet[int], step: int) -> None:
         """Apply the servos in the step that begins at count `step`.
 

@@ -40,14 +40,16 @@ from .acting_forces import Acting, constraint_forces, note, note_constraints, no
 from .bodies import Body, Part
 from .body_events import BodyObserver
 from .forces import Forces
-from .link_motion import Chain, Motion, State, accelerations, inertial_wrench, look, states
+from .link_motion import Acceleration, Chain, accelerations, inertial_wrench
+from .link_states import Motion, link_motions
 from .sliding import Sliding
 from .state_restore import Entry
 
 FORGOTTEN = 100_000
 """Steps without a reading after which a joint is no longer measured."""
 
-Key = Tuple[int, str]
+JointKey = Tuple[int, str]
+"""The number of a model, and the name of one of its joints."""
 
 
 @dataclass(frozen=True)
@@ -82,7 +84,7 @@ class _Seen:
 
     def __init__(self, body: Body, chain: Chain, outside: Acting) -> None:
         self.body = body
-        self.before = look(body)
+        self.before = link_motions(body)
         self.after = self.before
         self.outside = outside
         self._chain = chain
@@ -91,28 +93,29 @@ class _Seen:
     def worked_out(self, dt: float) -> "_WorkedOut":
         """Return the states of its links, their accelerations, and the forces on them."""
         if self._answer is None:
-            before = states(self.body, self.before)
             note_contacts(self.outside, self.body)
-            note_constraints(self.outside, self.body, before)
-            after = states(self.body, self.after)
-            self._answer = (before, accelerations(self._chain, before, after, dt), self.outside)
+            note_constraints(self.outside, self.body, self.before)
+            self._answer = (self.before,
+                            accelerations(self._chain, self.before, self.after, dt), self.outside)
         return self._answer
 
 
-_WorkedOut = Tuple[Dict[int, State], Dict[int, Motion], Acting]
+_WorkedOut = Tuple[Dict[int, Motion], Dict[int, Acceleration], Acting]
 
 
 class JointWrenches(BodyObserver):
     """Measures the joints whose wrenches are read."""
 
-    def __init__(self, models: Mapping[int, Entry], forces: Forces, sliding: Sliding) -> None:
+    def __init__(self, models: Mapping[int, Entry], forces: Forces, sliding: Sliding,
+                 wanted: Dict[JointKey, int]) -> None:
+        """`wanted`: the measured joints, and for how many more steps; kept by a reset."""
         self._models = models
         self._forces = forces
         self._sliding = sliding
-        self._cuts: Dict[Key, _Cut] = {}
-        self._wanted: Dict[Key, int] = {}      # steps until its measurement ends
+        self._cuts: Dict[JointKey, _Cut] = {}
+        self._wanted = wanted
         self._seen: Dict[int, _Seen] = {}
-        self._found: Dict[Key, Optional[JointWrench]] = {}
+        self._found: Dict[JointKey, Optional[JointWrench]] = {}
         self._dt = 0.0
         self._gravity = ZERO3
 
@@ -139,11 +142,6 @@ class JointWrenches(BodyObserver):
                 del table[key]
         self._seen.pop(body.uid, None)
 
-    def clear(self) -> None:
-        """Discard the data of all bodies; joints of models with the same numbers stay measured."""
-        for table in (self._cuts, self._seen, self._found):
-            table.clear()
-
     # -- a step ------------------------------------------------------------------------------------
 
     def before(self, steps: int) -> None:
@@ -167,13 +165,13 @@ class JointWrenches(BodyObserver):
         """Record the states after that step, after all helpers have acted."""
         self._dt, self._gravity = dt, gravity
         for seen in self._seen.values():
-            seen.after = look(seen.body)
+            seen.after = link_motions(seen.body)
             owners = seen.body.owners
             for index, force, at in self._forces.slip.forces_on(seen.body.uid):
                 note(seen.outside, owners.get(index, index), force, at)
             for part in seen.body.parts if self._forces.wrenched_links else ():
                 force, torque = self._forces.acting_on(part.row)
-                at = states(seen.body, seen.before)[part.index].position
+                at = seen.before[part.index].position
                 note(seen.outside, part.index, force, at, torque)
 
     def _sliding_friction(self, body: Body) -> Acting:
@@ -212,7 +210,7 @@ class JointWrenches(BodyObserver):
 
     # -- joints ------------------------------------------------------------------------------------
 
-    def _cut(self, key: Key) -> Optional[_Cut]:
+    def _cut(self, key: JointKey) -> Optional[_Cut]:
         entry = self._models.get(key[0])
         if entry is None:
             return None
@@ -252,7 +250,7 @@ def _without_a_cut(entry: Entry, name: str) -> Optional[JointWrench]:
 def _closing_wrench(entry: Entry, joint: Joint, constraints: Sequence[int]) -> JointWrench:
     """Return the wrench of a loop-closing joint from its constraints."""
     ends = [entry.constraints.end(joint.child), entry.constraints.end(joint.parent)]
-    poses = [IDENTITY if end is None else _link_pose(end[1], states(end[0], look(end[0])))
+    poses = [IDENTITY if end is None else _link_pose(end[1], link_motions(end[0]))
              for end in ends]
     held, sign = (ends[0], 1.0) if ends[0] is not None else (ends[1], -1.0)
     assert held is not None
@@ -263,7 +261,7 @@ def _closing_wrench(entry: Entry, joint: Joint, constraints: Sequence[int]) -> J
     force, torque = ZERO3, ZERO3
     for number in constraints:
         one, at, moment = constraint_forces(number, held[0], held[1].index,
-                                            states(held[0], look(held[0]))[held[1].index])
+                                            link_motions(held[0])[held[1].index])
         force = add(force, one)
         torque = add(torque, add(moment, cross(subtract(at, anchor), one)))
     back = conjugate(poses[0].orientation)
@@ -272,9 +270,9 @@ def _closing_wrench(entry: Entry, joint: Joint, constraints: Sequence[int]) -> J
                        else multiply(conjugate(poses[1].orientation), poses[0].orientation))
 
 
-def _link_pose(part: Optional[Part], found: Dict[int, State]) -> Pose:
+def _link_pose(part: Optional[Part], found: Dict[int, Motion]) -> Pose:
     """Return the pose of a link frame; the world frame for None."""
     if part is None:
         return IDENTITY
     state = found[part.index]
-    return compose(Pose(state.position, state.turn), inverse(part.link_from_com))
+    return compose(Pose(state.position, state.orientation), inverse(part.link_from_com))

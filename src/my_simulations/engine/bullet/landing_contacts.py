@@ -22,7 +22,6 @@ from typing import AbstractSet, Callable, Dict, List, Optional, Set, Tuple
 
 import pybullet
 
-from ...description.model import Link
 from ...description.shapes import Box, Cylinder, Empty, Plane, Sphere
 from ...geometry import (
     Quat,
@@ -109,22 +108,23 @@ class LandingContacts(StepHelper):
         self._flights: Dict[int, _Flight] = {}
         self._next = FAR                    # the step of the first due check
 
-    def add(self, body: Body, part: Part, link: Link) -> None:
-        """Register one link of a body; only bodies that can tilt as they land matter."""
+    def add(self, body: Body) -> None:
+        """Register a new body; only bodies that can tilt as they land matter."""
         known = (Box, Sphere, Empty) if body.moves else (Box, Sphere, Empty, Plane)
-        if not all(isinstance(collision.geometry, known) for collision in link.collisions):
+        if not all(isinstance(collision.geometry, known) for part in body.colliders
+                   for collision in part.link.collisions):
             self._uneven[body.uid] = None
         if body.moves:
             self._moving.add(body.uid)
             if not body.is_ball and body.base is not None:
                 self._bodies[body.uid] = body
-                axes = _axes_of(body, part, link)
+                axes = _axes_of(body.parts[0]) if body.rigid else ()
                 if axes:
                     self._alone[body.uid] = axes
                 self._flights[body.uid] = _Flight(body)
                 self._next = 0
-                self._meets.setdefault(body.uid, []).append(
-                    (part.index, collision_groups.moving(link)))
+                self._meets[body.uid] = [(part.index, collision_groups.moving(part.link))
+                                         for part in body.colliders]
         self._order = None
 
     def forget(self, body: Body) -> None:
@@ -134,15 +134,6 @@ class LandingContacts(StepHelper):
             table.pop(body.uid, None)
         self._moving.discard(body.uid)
         self._order = None
-
-    def clear(self) -> None:
-        """Discard the data of all bodies."""
-        for table in (self._bodies, self._meets, self._alone, self._uneven, self._asleep,
-                      self._flights):
-            table.clear()
-        self._moving.clear()
-        self._order = None
-        self._next = FAR
 
     def handle_event(self, event: BodyEvent, body: Body) -> None:
         """Check a body that a command changed: it may fly from the next step on."""
@@ -320,12 +311,13 @@ class LandingContacts(StepHelper):
         return other in flight.through
 
 
-def _axes_of(body: Body, part: Part, link: Link) -> Tuple[Vec3, ...]:
+def _axes_of(part: Part) -> Tuple[Vec3, ...]:
     """Return the face normals of a rigid box or cylinder, in the frame of its principal axes."""
-    if not body.rigid or len(link.collisions) != 1:
+    if len(part.link.collisions) != 1:
         return ()
-    shape = link.collisions[0].geometry
-    own = multiply(conjugate(part.link_from_com.orientation), link.collisions[0].pose.orientation)
+    only = part.link.collisions[0]
+    shape = only.geometry
+    own = multiply(conjugate(part.link_from_com.orientation), only.pose.orientation)
     if isinstance(shape, Cylinder):
         return (rotate(own, (0.0, 0.0, 1.0)),)
     if isinstance(shape, Box):

@@ -20,12 +20,11 @@ from typing import Callable, Collection, Dict, List, Set, Tuple
 
 import pybullet
 
-from ...description.model import Link
 from ...description.shapes import Cylinder, Plane
 from ...geometry import Vec3, conjugate, norm, rotate
 from ..body_plan import BASE
 from . import collision_groups
-from .bodies import Body, Part
+from .bodies import Body
 from .rolling_contacts import axis_of
 from .step_helper import FAR, StepHelper, next_multiple
 from .world_parameters import WorldParameters
@@ -59,14 +58,15 @@ class LevelSeams(StepHelper):
         self._level: Dict[int, Set[int]] = {}  # bodies near a seam, and level floors there
         self._before: Dict[int, _Velocity] = {}
 
-    def add(self, body: Body, part: Part, link: Link) -> None:
-        """Register one link of a body."""
-        shapes = [collision.geometry for collision in link.collisions]
+    def add(self, body: Body) -> None:
+        """Register a new body; of moving ones, upright cylinders without joints."""
+        part = body.parts[0]
+        shapes = [collision.geometry for each in body.parts for collision in each.link.collisions]
         if body.moves:
-            axis = axis_of(link)
+            axis = axis_of(part.link)
             if body.rigid and axis is not None and any(
                     isinstance(each, Cylinder) for each in shapes):
-                self._bodies[body.uid] = (collision_groups.moving(link), rotate(
+                self._bodies[body.uid] = (collision_groups.moving(part.link), rotate(
                     conjugate(part.link_from_com.orientation), axis))
             return
         self._static.update(body.uids)
@@ -79,13 +79,6 @@ class LevelSeams(StepHelper):
             table.pop(body.uid, None)
         self._static.difference_update(body.uids)
         self._floors.difference_update(body.uids)
-
-    def clear(self) -> None:
-        """Discard the data of all bodies."""
-        for table in (self._bodies, self._sliding, self._level, self._before):
-            table.clear()
-        for group in (self._static, self._floors):
-            group.clear()
 
     def due(self, step: int) -> int:
         """Each step while a body is near a seam, otherwise the step of the next check."""

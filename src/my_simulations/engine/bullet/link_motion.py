@@ -9,13 +9,10 @@ its velocity relative to its parent, in the parent's axes.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, Dict, List, Mapping, NamedTuple, Optional, Sequence, Tuple
-
-import pybullet
+from typing import Dict, List, Mapping, NamedTuple, Optional, Sequence, Tuple
 
 from ...geometry import (
     ZERO3,
-    Quat,
     Vec3,
     add,
     conjugate,
@@ -27,19 +24,11 @@ from ...geometry import (
     transform,
 )
 from ..body_plan import BASE, NO_LINK, TreeLink
-from .bodies import Body, Part
+from .bodies import Part
+from .link_states import Motion
 
 
-class State(NamedTuple):
-    """Centre of mass, orientation of the principal axes, and velocities; world axes."""
-
-    position: Vec3
-    turn: Quat
-    linear: Vec3
-    angular: Vec3
-
-
-class Motion(NamedTuple):
+class Acceleration(NamedTuple):
     """Accelerations of the centre of mass, m/s^2, and angular, rad/s^2; world axes."""
 
     linear: Vec3
@@ -72,79 +61,61 @@ class Chain:
         return cls(tuple(found))
 
 
-Look = Tuple[Any, Any, Sequence[Any]]
-"""PyBullet's states of a body: pose and velocity of the base, states of the other links."""
-
-
-def look(body: Body) -> Look:
-    """Read the states of all links of a body; `states` converts them."""
-    indices = [part.index for part in body.parts if part.index != BASE]
-    return (pybullet.getBasePositionAndOrientation(body.uid), pybullet.getBaseVelocity(body.uid),
-            pybullet.getLinkStates(body.uid, indices, computeLinkVelocity=1,
-                                   computeForwardKinematics=1) if indices else ())
-
-
-def states(body: Body, seen: Look) -> Dict[int, State]:
-    """Convert the result of `look` to states by PyBullet's link index."""
-    found: Dict[int, State] = {}
-    if body.base is not None:
-        found[BASE] = State(*seen[0], *seen[1])
-    for index, state in zip((part.index for part in body.parts if part.index != BASE), seen[2]):
-        found[index] = State(state[0], state[1], state[6], state[7])
-    return found
-
-
-def accelerations(chain: Chain, before: Mapping[int, State], after: Mapping[int, State],
-                  dt: float) -> Dict[int, Motion]:
+def accelerations(chain: Chain, before: Mapping[int, Motion], after: Mapping[int, Motion],
+                  dt: float) -> Dict[int, Acceleration]:
     """Return the accelerations of all links at the start of a step of `dt` s, by index."""
-    found: Dict[int, Motion] = {}
+    found: Dict[int, Acceleration] = {}
     for part, parent, joint in chain.links:
         state, later = before[part.index], after[part.index]
         if parent is None and part.index == BASE:
-            found[BASE] = Motion(scale(subtract(later.linear, state.linear), 1.0 / dt),
-                                 scale(subtract(later.angular, state.angular), 1.0 / dt))
+            found[BASE] = Acceleration(scale(subtract(later.linear, state.linear), 1.0 / dt),
+                                       scale(subtract(later.angular, state.angular), 1.0 / dt))
             continue
         over = _FIXED if parent is None else before[parent.index]
         over_later = _FIXED if parent is None else after[parent.index]
         above = _STILL if parent is None else found[parent.index]
         sliding, turning = _against(over, state, joint)
         sliding_later, turning_later = _against(over_later, later, joint)
-        gain = rotate(over.turn, scale(subtract(sliding_later, sliding), 1.0 / dt))
-        twist = rotate(over.turn, scale(subtract(turning_later, turning), 1.0 / dt))
-        arm = rotate(state.turn, joint)          # from the centre of mass to the joint
+        gain = rotate(over.orientation, scale(subtract(sliding_later, sliding), 1.0 / dt))
+        twist = rotate(over.orientation, scale(subtract(turning_later, turning), 1.0 / dt))
+        arm = rotate(state.orientation, joint)          # from the centre of mass to the joint
         reach = subtract(add(state.position, arm), over.position)
         angular = add(above.angular, add(twist, cross(over.angular,
                                                       subtract(state.angular, over.angular))))
         linear = add(above.linear, _about(above.angular, over.angular, reach))
-        linear = add(linear, add(gain, scale(cross(over.angular, rotate(over.turn, sliding)), 2.0)))
-        found[part.index] = Motion(subtract(linear, _about(angular, state.angular, arm)), angular)
+        drift = rotate(over.orientation, sliding)
+        linear = add(linear, add(gain, scale(cross(over.angular, drift), 2.0)))
+        linear = subtract(linear, _about(angular, state.angular, arm))
+        found[part.index] = Acceleration(linear, angular)
     return found
 
 
-def inertial_wrench(part: Part, state: State, motion: Motion, gravity: Vec3) -> Tuple[Vec3, Vec3]:
+def inertial_wrench(part: Part, state: Motion, acceleration: Acceleration,
+                    gravity: Vec3) -> Tuple[Vec3, Vec3]:
     """Return the wrench, without gravity, that gives a link its acceleration.
 
     Force, N, and torque about the centre of mass, N m, world axes.
     """
-    back = conjugate(state.turn)
-    spin, gain = rotate(back, state.angular), rotate(back, motion.angular)
+    back = conjugate(state.orientation)
+    spin, gain = rotate(back, state.angular), rotate(back, acceleration.angular)
     a, b, c = part.moments
     momentum = (a * spin[0], b * spin[1], c * spin[2])
     torque = add((a * gain[0], b * gain[1], c * gain[2]), cross(spin, momentum))
-    return (scale(subtract(motion.linear, gravity), part.mass), rotate(state.turn, torque))
+    return (scale(subtract(acceleration.linear, gravity), part.mass),
+            rotate(state.orientation, torque))
 
 
-_FIXED = State(ZERO3, (0.0, 0.0, 0.0, 1.0), ZERO3, ZERO3)
-_STILL = Motion(ZERO3, ZERO3)
+_FIXED = Motion(ZERO3, (0.0, 0.0, 0.0, 1.0), ZERO3, ZERO3)
+_STILL = Acceleration(ZERO3, ZERO3)
 
 
-def _against(over: State, state: State, joint: Vec3) -> Tuple[Vec3, Vec3]:
+def _against(over: Motion, state: Motion, joint: Vec3) -> Tuple[Vec3, Vec3]:
     """Return the linear and angular velocity of a joint relative to the parent, in its axes."""
-    arm = rotate(state.turn, joint)
+    arm = rotate(state.orientation, joint)
     reach = subtract(add(state.position, arm), over.position)
     sliding = subtract(add(state.linear, cross(state.angular, arm)),
                        add(over.linear, cross(over.angular, reach)))
-    back = conjugate(over.turn)
+    back = conjugate(over.orientation)
     return rotate(back, sliding), rotate(back, subtract(state.angular, over.angular))
 
 

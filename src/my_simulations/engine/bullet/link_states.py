@@ -6,12 +6,13 @@ a result depends only on the state of the world.
 """
 from __future__ import annotations
 
-from typing import Any, List, NamedTuple, Sequence, Tuple
+from typing import Any, Dict, List, NamedTuple, Sequence, Tuple
 
 import pybullet
 
-from ...geometry import Quat, Vec3
+from ...geometry import Quat, Vec3, add, cross, subtract
 from ..body_plan import BASE
+from .bodies import Body
 
 
 class Motion(NamedTuple):
@@ -21,6 +22,10 @@ class Motion(NamedTuple):
     orientation: Quat
     linear: Vec3
     angular: Vec3
+
+    def velocity_at(self, point: Vec3) -> Vec3:
+        """Return the velocity of a point that moves with the link, m/s; world axes."""
+        return add(self.linear, cross(self.angular, subtract(point, self.position)))
 
 
 def hung_states(uid: int, indices: Sequence[int], velocities: int = 1) -> Sequence[Tuple[Any, ...]]:
@@ -42,6 +47,14 @@ def motion(uid: int, index: int) -> Motion:
     if index == BASE:
         return Motion(*pybullet.getBasePositionAndOrientation(uid), *pybullet.getBaseVelocity(uid))
     return motions(uid, (index,))[0]
+
+
+def link_motions(body: Body) -> Dict[int, Motion]:
+    """Return the motions of all links of a body, by PyBullet's index."""
+    hung = [part.index for part in body.parts if part.index != BASE]
+    found = {} if body.base is None else {BASE: motion(body.uid, BASE)}
+    found.update(zip(hung, motions(body.uid, hung)))
+    return found
 
 
 def place(uid: int, index: int) -> Tuple[Vec3, Quat]:

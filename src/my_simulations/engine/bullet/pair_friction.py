@@ -92,17 +92,6 @@ class FrictionBalance(StepHelper):
                               self._soon):
                     table.pop(node, None)
 
-    def clear(self) -> None:
-        """Discard the data of all bodies."""
-        for table in (self._mu, self._fixed, self._free, self._touching, self._wait, self._soon,
-                      self._pairs):
-            table.clear()
-        for slot in self._slots:
-            slot.clear()
-        self._rigid.clear()
-        self._told = False
-        self._ring = 0
-
     def handle_event(self, event: BodyEvent, body: Body) -> None:
         """Check the contacts of a moved or activated body soon."""
         for part in body.colliders:

@@ -83,12 +83,6 @@ class PairRestitution(StepHelper):
                 for table in (self._kinds, self._stored, self._thresholds, self._models):
                     self._changed |= table.pop((uid, part.index), None) is not None
 
-    def clear(self) -> None:
-        """Discard the data of all bodies."""
-        for table in (self._kinds, self._stored, self._thresholds, self._models):
-            table.clear()
-        self._changed = self._told = False
-
     def due(self, step: int) -> int:
         """The next step after surfaces were added or removed, otherwise `FAR`."""
         return step if self._changed else FAR

@@ -46,11 +46,6 @@ class PinnedBodies(StepHelper):
         self._bodies.pop(body.uid, None)
         self._poses.pop(body.uid, None)
 
-    def clear(self) -> None:
-        """Discard the data of all bodies."""
-        self._bodies.clear()
-        self._poses.clear()
-
     def due(self, step: int) -> int:
         """Each step while a body is held, otherwise `FAR`."""
         return step if self._poses else FAR

@@ -45,10 +45,6 @@ class PlanarMotion(StepHelper):
         """Discard the data of a removed body and its model."""
         self._velocities.pop(body.model_id, None)
 
-    def clear(self) -> None:
-        """Discard the data of all bodies."""
-        self._velocities.clear()
-
     def due(self, step: int) -> int:
         """Each step while a model has a commanded velocity, otherwise `FAR`."""
         return step if self._velocities else FAR

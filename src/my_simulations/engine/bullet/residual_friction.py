@@ -21,11 +21,12 @@ from typing import Any, Callable, Dict, List, Optional, Sequence, Set, Tuple
 
 import pybullet
 
-from ...geometry import Vec3, add, conjugate, cross, dot, norm, rotate, scale
+from ...geometry import Vec3, add, conjugate, cross, dot, norm, rotate, scale, subtract
 from ..body_plan import BASE
 from . import collision_groups
 from .bodies import Body
 from .body_events import COMMANDED, BodyEvent
+from .link_states import Motion, motion
 from .step_helper import FAR, StepHelper, looks_until_turn, turn_of
 from .surface_coefficients import directed, of_link
 
@@ -109,15 +110,6 @@ class ResidualFriction(StepHelper):
         for part in body.colliders:
             for uid in body.uids:
                 self._mu.pop((uid, part.index), None)
-        self._rounds = None
-
-    def clear(self) -> None:
-        """Discard the data of all bodies."""
-        for table in (self._bodies, self._watched, self._fast, self._mended, self._clear):
-            table.clear()
-        self._mu.clear()
-        for group in (self._moving, self._trees, self._asleep, self._planes):
-            group.clear()
         self._rounds = None
 
     def handle_event(self, event: BodyEvent, body: Body) -> None:
@@ -284,41 +276,30 @@ class ResidualFriction(StepHelper):
         seen.add(uid)
         return _MENDED if left else _SLIDES if contacts else _FLIES
 
-    def _take_back(self, uid: int, other: int, contact: Tuple[Any, ...], dt: float) -> None:
+    def _take_back(self, uid: int, other: int, contact: Contact, dt: float) -> None:
         """Undo the friction impulses of one contact; the first direction opposes the slip."""
-        ours = self._motion(uid, contact[5])
-        theirs = self._motion(other, contact[6])
         along: Vec3 = contact[11]
-        slip = sum((a - b) * d for a, b, d in zip(ours[1], theirs[1], along))
-        sign = dt if (slip > 0.0) == (contact[10] > 0.0) else -dt
+        ours = motion(uid, BASE)
+        theirs = motion(other, BASE) if other in self._bodies else None
+        velocity = ours.velocity_at(contact[5])
+        if theirs is not None:
+            velocity = subtract(velocity, theirs.velocity_at(contact[6]))
+        sign = dt if (dot(velocity, along) > 0.0) == (contact[10] > 0.0) else -dt
         impulse = add(scale(along, sign * contact[10]), scale(contact[13], sign * contact[12]))
-        self._push(uid, impulse, ours[0])
-        self._push(other, (-impulse[0], -impulse[1], -impulse[2]), theirs[0])
+        _push(self._bodies[uid], ours, impulse, contact[5])
+        if theirs is not None:
+            _push(self._bodies[other], theirs, scale(impulse, -1.0), contact[6])
 
-    def _motion(self, uid: int, at: Vec3) -> Tuple[Vec3, Vec3]:
-        """Return the arm from a body's centre of mass to a point, and the velocity of the point."""
-        if uid not in self._bodies:
-            return _NONE, _NONE
-        centre = pybullet.getBasePositionAndOrientation(uid)[0]
-        (vx, vy, vz), angular = pybullet.getBaseVelocity(uid)
-        arm = (at[0] - centre[0], at[1] - centre[1], at[2] - centre[2])
-        turn = cross(angular, arm)
-        return arm, (vx + turn[0], vy + turn[1], vz + turn[2])
 
-    def _push(self, uid: int, impulse: Vec3, arm: Vec3) -> None:
-        """Apply an impulse, N s, to a body at the offset `arm` from its centre of mass."""
-        body = self._bodies.get(uid)
-        if body is None:
-            return
-        part = body.parts[0]
-        (vx, vy, vz), (wx, wy, wz) = pybullet.getBaseVelocity(uid)
-        turn = pybullet.getBasePositionAndOrientation(uid)[1]
-        own = rotate(conjugate(turn), cross(arm, impulse))
-        ax, ay, az = rotate(turn, (own[0] / part.moments[0], own[1] / part.moments[1],
-                                   own[2] / part.moments[2]))
-        pybullet.resetBaseVelocity(
-            uid, (vx + impulse[0] / part.mass, vy + impulse[1] / part.mass,
-                  vz + impulse[2] / part.mass), (wx + ax, wy + ay, wz + az))
+def _push(body: Body, before: Motion, impulse: Vec3, at: Vec3) -> None:
+    """Apply an impulse, N s, to a rigid body at a point."""
+    part = body.parts[0]
+    own = rotate(conjugate(before.orientation), cross(subtract(at, before.position), impulse))
+    gained = rotate(before.orientation, (own[0] / part.moments[0], own[1] / part.moments[1],
+                                         own[2] / part.moments[2]))
+    pybullet.resetBaseVelocity(body.uid, (
+        before.linear[0] + impulse[0] / part.mass, before.linear[1] + impulse[1] / part.mass,
+        before.linear[2] + impulse[2] / part.mass), add(before.angular, gained))
 
 
 def _is_left(contact: Contact) -> bool:

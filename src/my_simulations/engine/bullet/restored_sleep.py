@@ -77,11 +77,6 @@ class RestoredSleep(StepHelper):
         """Discard the data of a removed body."""
         self._rests.pop(body.uid, None)
 
-    def clear(self) -> None:
-        """Discard the data of all bodies."""
-        self._rests.clear()
-        self._commanded.clear()
-
     def due(self, step: int) -> int:
         """The next step, and the one in which they fall asleep."""
         if not self._rests:

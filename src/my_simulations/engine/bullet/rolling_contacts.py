@@ -125,18 +125,20 @@ class RollingContacts(StepHelper):
         self._moving: Set[int] = set()
         self._seams: Set[int] = set()   # floors of triangles
 
-    def add(self, body: Body, part: Part, link: Link) -> None:
-        """Register a link of a body; only moving ones that are cylinders about one axis matter."""
+    def add(self, body: Body) -> None:
+        """Register a new body; only moving links that are cylinders about one axis matter."""
         if body.moves:
             self._moving.add(body.uid)
-        elif any(isinstance(each.geometry, (Heightmap, Mesh)) for each in link.collisions):
+        elif any(isinstance(each.geometry, (Heightmap, Mesh)) for part in body.parts
+                 for each in part.link.collisions):
             self._seams.update(set(body.uids) - body.faces)
-        axis = axis_of(link)
-        if axis is not None and body.moves:
-            own = rotate(conjugate(part.link_from_com.orientation), axis)
-            self._rollers[body.uid, part.index] = _Roller(body, part, own,
-                                                          collision_groups.moving(link),
-                                                          link.collisions[0].surface.kp >= SOFT)
+        for part in body.parts if body.moves else ():
+            axis = axis_of(part.link)
+            if axis is not None:
+                self._rollers[body.uid, part.index] = _Roller(
+                    body, part, rotate(conjugate(part.link_from_com.orientation), axis),
+                    collision_groups.moving(part.link),
+                    part.link.collisions[0].surface.kp >= SOFT)
 
     def forget(self, body: Body) -> None:
         """Discard the data of a removed body."""
@@ -146,15 +148,6 @@ class RollingContacts(StepHelper):
         for part in body.parts:
             for table in (self._rollers, self._rolling, self.on_seams):
                 table.pop((body.uid, part.index), None)
-
-    def clear(self) -> None:
-        """Discard the data of all bodies."""
-        self.on_seams.clear()
-        self._rollers.clear()
-        self._rolling.clear()
-        self._standing.clear()
-        self._moving.clear()
-        self._seams.clear()
 
     def handle_event(self, event: BodyEvent, body: Body) -> None:
         """Treat a rigid body as rolling after a command changed its pose or velocity.

@@ -56,11 +56,6 @@ class SeamContacts(StepHelper):
         for key in [key for key in self._pushes if key[0] == body.uid]:
             del self._pushes[key]
 
-    def clear(self) -> None:
-        """Discard the data of all bodies."""
-        self._at.clear()
-        self._pushes.clear()
-
     def handle_event(self, event: BodyEvent, body: Body) -> None:
         """Discard the forces on a body that a command changed."""
         self.forget(body)

@@ -25,12 +25,13 @@ from typing import Any, Dict, List, Optional, Set, Tuple
 import pybullet
 
 from ...description.link_surface import counting_collision
-from ...description.model import Link
+from ...description.shapes import Collision
 from ...geometry import Quat, Vec3, dot, norm, rotate, scale
 from .bodies import Body, Part
 from .body_events import BodyEvent
 from .edge_loads import Loads, axle_of, carrying, shared
 from .extra_surfaces import anisotropy, first_direction
+from .force_dependent_slip import slips
 from .link_states import Motion, motion, motions
 from .step_helper import FAR, StepHelper, next_multiple
 from .surface_coefficients import directed
@@ -123,11 +124,14 @@ class Sliding(StepHelper):
             for key in list(self._slides):
                 self._give_back(key)
 
-    def add(self, body: Body, part: Part, link: Link) -> None:
-        """Register a link of a body. Bullet's friction stays on floors with two coefficients."""
-        collision = counting_collision(link)
-        if collision is None:
-            return
+    def add(self, body: Body) -> None:
+        """Register a new body. Bullet's friction stays on floors with two coefficients."""
+        for part in body.parts:
+            collision = counting_collision(part.link)
+            if collision is not None and not slips(part.link):
+                self._add(body, part, collision)
+
+    def _add(self, body: Body, part: Part, collision: Collision) -> None:
         surface = collision.surface
         if not body.moves:
             if not directed(surface):
@@ -156,12 +160,6 @@ class Sliding(StepHelper):
         for part in body.parts:
             self._slides.pop((body.uid, part.index), None)
             self._directions.pop((body.uid, part.index), None)
-
-    def clear(self) -> None:
-        """Discard the data of all bodies."""
-        for table in (self._static, self._parts, self._mass, self._slides, self._directions):
-            table.clear()
-        self._fixed.clear()
 
     def handle_event(self, event: BodyEvent, body: Body) -> None:
         """Restore Bullet's friction for the links of a body."""

@@ -69,11 +69,6 @@ class StepLoop(BodyObserver):
         self.changed()
         self._moving.discard(body.uid)
 
-    def clear(self) -> None:
-        """Discard the data of all bodies."""
-        self.changed()
-        self._moving.clear()
-
     def handle_event(self, event: BodyEvent, body: Body) -> None:
         """Compute again, before the next step, when each helper is due."""
         self._notified = True

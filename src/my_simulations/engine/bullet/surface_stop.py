@@ -17,15 +17,17 @@ from __future__ import annotations
 
 from heapq import heappop, heappush
 from math import dist, inf
-from typing import Dict, List, NamedTuple, Set, Tuple
+from typing import Dict, List, Set, Tuple
 
 import pybullet
 
 from ...description.shapes import Plane
-from ...geometry import Vec3, add, cross, dot, norm, scale, subtract
+from ...geometry import Vec3, add, dot, norm, scale, subtract
+from ..body_plan import BASE
 from .approach import extent
 from .bodies import Body
 from .body_events import COMMANDED, BodyEvent
+from .link_states import Motion, motion
 from .step_helper import FAR, StepHelper
 from .surface_coefficients import of_link, restitution
 from .world_parameters import LEAST_BOUNCE
@@ -38,34 +40,7 @@ _AHEAD = 16      # the same in steps, at most
 _SELDOM = 256    # steps between two checks of a slow body, at most
 
 
-class _Motion(NamedTuple):
-    """Centre of mass (m), velocity (m/s) and angular velocity (rad/s) of a body."""
-
-    centre: Vec3
-    linear: Vec3
-    angular: Vec3
-
-    @classmethod
-    def of(cls, uid: int) -> "_Motion":
-        return cls(pybullet.getBasePositionAndOrientation(uid)[0], *pybullet.getBaseVelocity(uid))
-
-    def radius(self, low: Vec3, high: Vec3) -> float:
-        """Return the largest distance of a point in a box from the centre, m."""
-        x, y, z = self.centre
-        return norm((max(high[0] - x, x - low[0]), max(high[1] - y, y - low[1]),
-                     max(high[2] - z, z - low[2])))
-
-    def nearing(self, other: "_Motion", radius: float) -> float:
-        """Return an upper bound, m/s, of the approach speed of points within `radius`, m."""
-        return norm(subtract(self.linear, other.linear)) + norm(self.angular) * radius + (
-            norm(other.angular) * (dist(self.centre, other.centre) + radius))
-
-    def at(self, place: Vec3) -> Vec3:
-        """Return the velocity of a point, m/s, without joint rates."""
-        return add(self.linear, cross(self.angular, subtract(place, self.centre)))
-
-
-_STILL = _Motion((0.0, 0.0, 0.0), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
+_STILL = Motion((0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 1.0), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
 
 
 class SurfaceStop(StepHelper):
@@ -80,7 +55,7 @@ class SurfaceStop(StepHelper):
         self._radii: Dict[int, float] = {}        # of bounding spheres of rigid bodies, m
         self._floors: Set[int] = set()            # boxes below planes
         self._next: Dict[int, int] = {}           # the step of the next check, by body
-        self._seen: Dict[int, _Motion] = {}       # motions of other bodies in this step
+        self._seen: Dict[int, Motion] = {}       # motions of other bodies in this step
         self._looks: List[Tuple[int, int]] = []   # a heap of (step, body), valid if in `_next`
 
     def add(self, body: Body) -> None:
@@ -108,14 +83,6 @@ class SurfaceStop(StepHelper):
         self._moving.discard(body.uid)
         self._bouncing.discard(body.uid)
         self._floors.difference_update(body.uids)
-
-    def clear(self) -> None:
-        """Discard the data of all bodies."""
-        for table in (self._bodies, self._next, self._radii):
-            table.clear()
-        for group in (self._moving, self._bouncing, self._floors):
-            group.clear()
-        self._looks.clear()
 
     def handle_event(self, event: BodyEvent, body: Body) -> None:
         """Check a body that a command changed: it may be fast from the next step on."""
@@ -158,21 +125,20 @@ class SurfaceStop(StepHelper):
         ahead = max(1, min(_AHEAD, round(_AHEAD_S / dt)))
         if speed + fall < fast:
             return min(_SELDOM, max(ahead, int((fast - speed) / max(fall, 1e-9))))
-        here = _Motion(pybullet.getBasePositionAndOrientation(body.uid)[0], linear, angular)
+        here = motion(body.uid, BASE)
         ahead, late = self._way(body, here, ahead, deep, dt, gravity)
         if late > 0.0 or bounces and late > -1.0:
-            at, turn = pybullet.getBasePositionAndOrientation(body.uid)
-            end = add(at, scale(add(linear, scale(gravity, dt)), (1.0 - late) * dt))
+            end = add(here.position, scale(add(linear, scale(gravity, dt)), (1.0 - late) * dt))
             if bounces:
                 # Restitution of an articulated body includes what gravity adds in the next step.
                 linear = subtract(linear, scale(gravity, late * dt + (0.0 if body.rigid else dt)))
             start = subtract(end, scale(add(linear, scale(gravity, dt)), dt))
-            pybullet.resetBasePositionAndOrientation(body.uid, start, turn)
+            pybullet.resetBasePositionAndOrientation(body.uid, start, here.orientation)
             pybullet.resetBaseVelocity(body.uid, linear, angular)  # setting the pose resets it
             self._seen.pop(body.uid, None)
         return ahead
 
-    def _way(self, body: Body, here: _Motion, ahead: int, deep: float, dt: float, gravity: Vec3,
+    def _way(self, body: Body, here: Motion, ahead: int, deep: float, dt: float, gravity: Vec3,
              ) -> Tuple[int, float]:
         """Return the steps (at most `ahead`) until contact, and the share of this step to undo.
 
@@ -182,22 +148,22 @@ class SurfaceStop(StepHelper):
         uid, late, fall = body.uid, -inf, norm(gravity) * dt
         speed = norm(here.linear) + ahead * fall   # largest speed until then
         reach, radius = speed * dt * (ahead + 2), self._radii.get(uid, 0.0)
-        (x, y, z), around = here.centre, radius + reach
+        (x, y, z), around = here.position, radius + reach
         low, high = (x - around, y - around, z - around), (x + around, y + around, z + around)
         if not body.is_ball:
             low, high = extent(body)
-            radius = here.radius(low, high)
+            radius = _radius(here.position, low, high)
             low = (low[0] - reach, low[1] - reach, low[2] - reach)
             high = (high[0] + reach, high[1] + reach, high[2] + reach)
         near = pybullet.getOverlappingObjects(low, high) or ()
         for other in sorted({pair[0] for pair in near} - {uid} - self._floors):
             there = self._motion(other) if other in self._moving else _STILL
-            nearing = (here.nearing(there, radius) + fall) * dt
+            nearing = (_nearing(here, there, radius) + fall) * dt
             # Bodies that move together do not collide, and their closest points are expensive.
             if nearing <= deep:
                 continue
             towards = speed + norm(there.linear)
-            apart = dist(here.centre, there.centre) - radius - self._radii.get(other, inf)
+            apart = dist(here.position, there.position) - radius - self._radii.get(other, inf)
             if apart > nearing:   # not in this step: a lower bound of the time is enough
                 ahead = min(ahead, max(1, int(apart / (towards * dt))))
                 continue
@@ -208,7 +174,8 @@ class SurfaceStop(StepHelper):
             gap, normal = nearest[8], nearest[7]
             if gap <= 0.0 or gap > ahead * towards * dt:
                 continue
-            inward = dot(subtract(there.at(nearest[5]), here.at(nearest[5])), normal)
+            at = nearest[5]
+            inward = dot(subtract(there.velocity_at(at), here.velocity_at(at)), normal)
             if there is _STILL or other not in self._bodies:
                 inward -= dot(gravity, normal) * dt
             if inward * dt > deep:
@@ -217,12 +184,24 @@ class SurfaceStop(StepHelper):
                     late = max(late, 1.0 - (gap + deep) / (inward * dt))
         return ahead, late
 
-    def _motion(self, uid: int) -> _Motion:
+    def _motion(self, uid: int) -> Motion:
         """Return the motion of a body in this step."""
         found = self._seen.get(uid)
         if found is None:
-            found = self._seen[uid] = _Motion.of(uid)
+            found = self._seen[uid] = motion(uid, BASE)
         return found
+
+
+def _radius(centre: Vec3, low: Vec3, high: Vec3) -> float:
+    """Return the largest distance of a point in a box from a point in it, m."""
+    x, y, z = (max(b - c, c - a) for a, b, c in zip(low, high, centre))
+    return norm((x, y, z))
+
+
+def _nearing(one: Motion, other: Motion, radius: float) -> float:
+    """Return an upper bound, m/s, of the approach speed of points within `radius`, m."""
+    return norm(subtract(one.linear, other.linear)) + norm(one.angular) * radius + (
+        norm(other.angular) * (dist(one.position, other.position) + radius))
 
 
 def _depth(point: Tuple[float, ...]) -> float:

@@ -24,15 +24,20 @@ class VelocityDecay(StepHelper):
     """Slows links down in every step, before anything else acts on them."""
 
     def __init__(self) -> None:
+        self._dt = 0.0
         self._links: Dict[int, Tuple[Body, Part, float, float]] = {}
 
-    def add(self, body: Body, dt: float) -> None:
-        """Register a body, or update it after a change of the step size; `dt`: step size, s."""
+    def configure(self, step_size: float) -> None:
+        """Use another step size, s, for bodies that are added from now on."""
+        self._dt = step_size
+
+    def add(self, body: Body) -> None:
+        """Register a body, or update it after a change of the step size."""
         for part in body.parts if body.moves else ():
             link = part.link
             linear, angular = min(1.0, link.linear_decay), min(1.0, link.angular_decay)
             if body.rigid and (linear or angular):
-                linear, angular = _damp(body, linear, angular, dt)
+                linear, angular = _damp(body, linear, angular, self._dt)
             self._links.pop(part.row, None)
             if linear or angular:
                 self._links[part.row] = (body, part, linear, angular)
@@ -41,10 +46,6 @@ class VelocityDecay(StepHelper):
         """Discard the data of a removed body."""
         for part in body.parts:
             self._links.pop(part.row, None)
-
-    def clear(self) -> None:
-        """Discard the data of all bodies."""
-        self._links.clear()
 
     def due(self, step: int) -> int:
         """Each step, when a link is slowed down."""

@@ -79,11 +79,6 @@ class WorldParameters:
         self._is_changed = True
         self.apply()
 
-    def clear(self) -> None:
-        """Drop all requests; `configure` must follow."""
-        self._accuracy = self._step_accuracy = USUAL_ACCURACY
-        self._spacing, self._splits, self._slowest_bounce = 0.0, False, LEAST_BOUNCE
-
     def request_accuracy(self, accuracy: Accuracy) -> None:
         """Solve this exactly from the next step on, until the next request."""
         if accuracy != self._accuracy:
