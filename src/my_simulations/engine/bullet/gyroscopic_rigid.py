@@ -20,7 +20,6 @@ from ...geometry import Quat, Vec3, conjugate, norm, normalised, rotate, scale
 from .approach import flies
 from .bodies import Body
 from .body_events import COMMANDED, BodyEvent
-from .gyroscopic_articulated import GyroscopicArticulated
 from .step_helper import FAR, StepHelper, next_multiple
 
 _EVERY = 16        # steps between two checks for fast bodies
@@ -28,7 +27,6 @@ _FAST = 1.0        # rad/s
 _ROUND = 0.02      # relative difference below which moments count as equal
 _SPAN = 8.1e-3     # s of free flight after which an attitude is corrected
 _ANGLE = 0.05      # rad of a step of Runge-Kutta
-_STATE_EVENTS = frozenset((BodyEvent.STATE_SET, BodyEvent.STATE_REPAIRED))
 
 
 class _Flight(NamedTuple):
@@ -40,9 +38,9 @@ class _Flight(NamedTuple):
 
 
 class GyroscopicRigid(StepHelper):
-    """Corrects free, fast bodies after each step: asymmetric rigid ones, and articulated ones."""
+    """Corrects free, fast, asymmetric rigid bodies."""
 
-    events = COMMANDED | _STATE_EVENTS
+    events = COMMANDED | {BodyEvent.STATE_SET, BodyEvent.STATE_REPAIRED}
 
     def __init__(self, loaded: Callable[[], Set[int]]) -> None:
         """`loaded` returns the rows of the links on which a timed force acts in this step."""
@@ -53,7 +51,6 @@ class GyroscopicRigid(StepHelper):
         self._bodies: Dict[int, Body] = {}
         self._damped: Set[int] = set()
         self._fast: List[int] = []
-        self._trees = GyroscopicArticulated()
 
     def add(self, body: Body) -> None:
         """Register a body; only rigid, moving ones with different moments matter."""
@@ -63,7 +60,6 @@ class GyroscopicRigid(StepHelper):
             self._bodies[body.uid] = body
             if body.parts[0].link.linear_decay or body.parts[0].link.angular_decay:
                 self._damped.add(body.uid)
-        self._trees.add(body)
 
     def forget(self, body: Body) -> None:
         """Discard the data of a removed body."""
@@ -73,21 +69,17 @@ class GyroscopicRigid(StepHelper):
         self._damped.discard(body.uid)
         if body.uid in self._fast:
             self._fast.remove(body.uid)
-        self._trees.forget(body)
 
     def handle_event(self, event: BodyEvent, body: Body) -> None:
         """Discard the state of a body that was recorded before a command."""
         self._flights.pop(body.uid, None)
-        if event in _STATE_EVENTS:
-            self._trees.moved(body)
 
     def due(self, step: int) -> int:
-        """Each step for damped or articulated bodies, otherwise the start and end of 8 ms."""
-        look = FAR if not self._moments and self._trees.idle else next_multiple(step, _EVERY)
-        if self._trees.busy or not self._damped.isdisjoint(self._fast):
+        """Each step for damped bodies, otherwise the start and end of 8 ms."""
+        if not self._damped.isdisjoint(self._fast):
             return step
         if not self._fast:
-            return look
+            return next_multiple(step, _EVERY) if self._moments else FAR
         return min(next_multiple(step, self._steps), next_multiple(step + 1, self._steps) - 1)
 
     def before(self, step: int, dt: float, gravity: Vec3) -> None:
@@ -95,7 +87,6 @@ class GyroscopicRigid(StepHelper):
         if step % _EVERY == 0:
             self._steps = next((n for n in (8, 4, 2) if n * dt <= _SPAN), 1)
             self._fast = [uid for uid in self._moments if _is_fast(uid)]
-            self._trees.mend(dt)
         begins = step % self._steps == 0
         loaded = self._loaded() if self._fast else ()
         for uid in self._fast:
@@ -105,8 +96,6 @@ class GyroscopicRigid(StepHelper):
 
     def after(self, step: int, dt: float, gravity: Vec3) -> None:
         """Set attitude and velocity of freely flying bodies to match their angular momentum."""
-        if self._trees.busy:
-            self._trees.after(self._loaded())
         ends = (step + 1) % self._steps == 0
         for uid, flight in list(self._flights.items()):
             body = self._bodies[uid]
