@@ -253,7 +253,7 @@ def test_loads_end_with_their_model(lab: Lab):
         AddTimedForces((TimedWrench(1, lab.rows[model, "link"], 0, FOREVER, force=(1, 0, 0)),))
     )
     lab.remove(model)
-    assert not lab.backend._forces._timed
+    assert not lab.backend._helpers.forces._timed
     lab.steps(5)
 
 
