@@ -75,18 +75,22 @@ def code_of(url):
 
 def test_each_student_has_a_world_and_an_editor_of_its_own(tmp_path):
     assert isolation() == ""
-    file = written(tmp_path / "course")
+    world = REPOSITORY / "world" / "exercises.world"
+    file = written(tmp_path / "course", f"args: {{world: '{world}'}}\n")
     with running(file) as (process, links):
         found = wait_for(lambda: (lambda now: now if now and all(
             one["state"] == "running" for one in now.values()) else None)(tiles(file)),
             "two running worlds", SECONDS)
         assert {one["world"] for one in found.values()} == {"default"}
         assert all(one["memory_mb"] > 10.0 for one in found.values())
+        page, _, tutor = links["tutor"].partition("?")
+        with urlopen(f"{page}students/anna/picture.svg?{tutor}", timeout=SECONDS) as answer:
+            assert b"<polygon" in answer.read()
         base, _, token = links["anna"].partition("?")
         assert [code_of(links["anna"]), code_of(links["ben"])] == [200, 200]
         other = links["ben"].partition("?")[2]
         assert [code_of(base), code_of(f"{base}?{other}"),
-                code_of(f"{links['tutor'].partition('?')[0]}?{token}")] == [403, 403, 403]
+                code_of(f"{page}?{token}")] == [403, 403, 403]
         assert call("start", file)[0] == 1   # it runs already
         pids = descendants(process.pid)
         assert call("stop", file, "ben")[0] == 0

@@ -34,6 +34,7 @@ function makeTile(name) {
       return [label, value];
     }));
   const error = element('p', '', 'error');
+  const picture = element('img');
   const link = element('a', 'Join');
   link.target = '_blank';
   link.rel = 'noopener noreferrer';
@@ -41,9 +42,14 @@ function makeTile(name) {
   const stop = element('button', 'Stop');
   start.addEventListener('click', () => act(name, 'start'));
   stop.addEventListener('click', () => act(name, 'stop'));
-  tile.append(element('h2', name), list, error, link, start, stop);
+  tile.append(element('h2', name), picture, list, error, link, start, stop);
   const set = (student) => {
     const runs = student.state === 'running';
+    picture.alt = runs ? `World of ${name}` : '';
+    // Tiles outside of the window load no pictures.
+    const {top, bottom} = tile.getBoundingClientRect();
+    if (!runs) picture.removeAttribute('src');
+    else if (bottom > 0 && top < innerHeight) picture.src = `students/${encodeURIComponent(name)}/picture.svg?at=${Date.now()}`;
     tile.className = student.error ? `${student.state} fault` : student.state;
     values.State.textContent = runs && student.paused ? 'paused' : student.state;
     values.World.textContent = student.world ? `${student.world}, ${student.models} models` : '–';

@@ -155,6 +155,10 @@ class ClassManager:
         """What the page shows of each student."""
         return [_tile(place, self.link(place.world.student)) for place in self._places.values()]
 
+    def picture(self, name: str) -> str:
+        """A picture of the world of a student, SVG. Raises CommandError: no such student."""
+        return self._place(name).monitor.picture.svg()
+
     async def start_world(self, name: str) -> None:
         """Start the world of a student if it does not run. Raises CommandError: no such student."""
         place = self._place(name)

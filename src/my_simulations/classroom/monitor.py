@@ -2,16 +2,23 @@
 from __future__ import annotations
 
 import asyncio
+import contextlib
 import json
-from typing import Any, Dict
+import struct
+from typing import Any, Dict, Union
 
 import aiohttp
+
+from .world_picture import WorldPicture
 
 _RETRY_S = 1.0
 _SILENCE_S = 30.0
 _LONGEST = 64 << 20      # bytes of a message: a world
 _LONGEST_TEXT = 300      # characters of an error
 _VERSION_KEY = "version"
+_INVALID = (ArithmeticError, AttributeError, LookupError, RecursionError, TypeError, ValueError,
+            struct.error)
+"""Raised by messages that the editor of this package does not send, but a student may."""
 
 
 class Monitor:
@@ -29,11 +36,13 @@ class Monitor:
         is_paused: whether sim time stands still.
         error: the last error that pages showed; "" for none.
         people: number of browsers.
+        picture: of the world.
     """
 
     def __init__(self, version: int) -> None:
         self._version = version
         self.error = ""
+        self.picture = WorldPicture()
         self._forget()
 
     def _forget(self) -> None:
@@ -41,6 +50,7 @@ class Monitor:
         self.world = ""
         self.models = self.people = 0
         self.factor = self.time = 0.0
+        self.picture.forget()
 
     async def follow(self, port: int, token: str) -> None:
         """Follow the editor at a port of this machine until the task is cancelled."""
@@ -64,27 +74,32 @@ class Monitor:
         await socket.send_str(json.dumps({"type": "hello", "id": 1, _VERSION_KEY: self._version,
                                           "name": "tutor"}))
         async for message in socket:
-            if message.type == aiohttp.WSMsgType.TEXT:
-                self.take(json.loads(message.data))
+            if message.type in (aiohttp.WSMsgType.TEXT, aiohttp.WSMsgType.BINARY):
+                self.take(message.data)
 
-    def take(self, message: Dict[str, Any]) -> None:
-        """Take a message of the editor; it comes from a student's processes."""
-        if not isinstance(message, dict):
-            return
+    def take(self, data: Union[str, bytes]) -> None:
+        """Take a message of the editor; an invalid one changes a part of what is shown at most."""
+        with contextlib.suppress(*_INVALID):   # it comes from a student's processes
+            if isinstance(data, bytes):
+                self.picture.take_poses(data)
+            else:
+                self._take(json.loads(data))
+
+    def _take(self, message: Dict[str, Any]) -> None:
         kind = message.get("type")
-        try:
-            if kind == "world":
-                document = message["document"]
-                self.world, self.models = str(document["name"])[:100], len(document["models"])
-                self.is_connected = True
-            elif kind == "stats":
-                self.factor, self.time = float(message["factor"]), float(message["sim_ns"]) * 1e-9
-                self.is_paused = bool(message["paused"])
-            elif kind == "change":
-                self.models = len(message["order"]) if message.get("order") else self.models
-            elif kind == "people":
-                self.people = max(0, len(message["people"]) - 1)
-            elif kind == "issue" and message["issue"]["severity"] == "error":
-                self.error = str(message["issue"]["message"])[:_LONGEST_TEXT]
-        except (KeyError, TypeError, ValueError):
-            pass   # not the editor of this package: the tile keeps what it shows
+        if kind == "world":
+            document = message["document"]
+            self.world, self.models = str(document["name"])[:100], len(document["models"])
+            self.is_connected = True
+            self.picture.forget()
+            self.picture.take_models({one["name"]: one for one in document["models"]})
+        elif kind == "stats":
+            self.factor, self.time = float(message["factor"]), float(message["sim_ns"]) * 1e-9
+            self.is_paused = bool(message["paused"])
+        elif kind == "change":
+            self.models = len(message["order"]) if message.get("order") else self.models
+            self.picture.take_models(message.get("models") or {})
+        elif kind == "people":
+            self.people = max(0, len(message["people"]) - 1)
+        elif kind == "issue" and message["issue"]["severity"] == "error":
+            self.error = str(message["issue"]["message"])[:_LONGEST_TEXT]

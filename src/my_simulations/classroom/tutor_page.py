@@ -16,7 +16,8 @@ _HEADERS = {
     "X-Content-Type-Options": "nosniff", "Referrer-Policy": "no-referrer",
     "X-Frame-Options": "DENY", "Cache-Control": "no-store",
     "Content-Security-Policy": "default-src 'none'; style-src 'self'; script-src 'self';"
-                               " connect-src 'self'; frame-ancestors 'none'; base-uri 'none'"}
+                               " connect-src 'self'; img-src 'self'; frame-ancestors 'none';"
+                               " base-uri 'none'"}
 _FILES = {"/tutor.js": "text/javascript", "/tutor.css": "text/css"}
 
 Handler = Callable[[web.Request], Awaitable[web.StreamResponse]]
@@ -27,6 +28,9 @@ class ClassControl(Protocol):
 
     def tiles(self) -> List[Dict[str, Any]]:
         """What the page shows of each student."""
+
+    def picture(self, name: str) -> str:
+        """A picture of the world of a student, SVG. Raises CommandError: no such student."""
 
     async def start_world(self, name: str) -> None:
         """Start the world of a student. Raises CommandError: no such student."""
@@ -50,6 +54,7 @@ class TutorPage:
         application.add_routes([
             web.get("/", self._file), *(web.get(path, self._file) for path in _FILES),
             web.get("/status.json", self._status),
+            web.get("/students/{name}/picture.svg", self._picture),
             web.post("/students/{name}/{action}", self._act)])
         self._runner = web.AppRunner(application, access_log=None)
 
@@ -97,6 +102,13 @@ class TutorPage:
 
     async def _status(self, _request: web.Request) -> web.StreamResponse:
         return web.json_response({"class": self._plan.name, "students": self._control.tiles()})
+
+    async def _picture(self, request: web.Request) -> web.StreamResponse:
+        try:
+            return web.Response(text=self._control.picture(request.match_info["name"]),
+                                content_type="image/svg+xml")
+        except CommandError as fault:
+            return web.Response(status=404, text=f"{fault}\n")
 
     async def _act(self, request: web.Request) -> web.StreamResponse:
         actions = {"start": self._control.start_world, "stop": self._control.stop_world}

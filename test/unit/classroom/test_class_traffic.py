@@ -77,17 +77,26 @@ def test_a_monitor_shows_what_the_editor_says():
             {"type": "people", "people": [{}, {}]},
             {"type": "issue", "issue": {"severity": "warning", "message": "harmless"}},
             {"type": "issue", "issue": {"severity": "error", "message": "x" * 1000}}):
-        monitor.take(message)
+        monitor.take(json.dumps(message))
     assert (monitor.world, monitor.models, monitor.factor, monitor.time) == ("lab", 2, 0.5, 2.0)
     assert monitor.is_connected and monitor.people == 1 and len(monitor.error) == 300
 
 
 @pytest.mark.parametrize("message", [
     [], {"type": "world"}, {"type": "world", "document": 3}, {"type": "stats", "factor": "much"},
-    {"type": "issue", "issue": None}, {"type": "people", "people": 1}])
+    {"type": "issue", "issue": None}, {"type": "people", "people": 1},
+    {"type": "stats", "factor": 10 ** 400}, {"type": "change", "models": []},
+    {"type": "change", "models": {"a": {"pose": 1}}}])
 def test_a_monitor_survives_what_is_no_message_of_the_editor(message):
     monitor = Monitor(1)
-    monitor.take(message)
+    monitor.take(json.dumps(message))
+    assert not monitor.is_connected
+
+
+@pytest.mark.parametrize("data", ["no JSON", "[" * 100000, b"", b"\1\0\0\0" + b"x" * 77])
+def test_a_monitor_survives_what_is_no_message_at_all(data):
+    monitor = Monitor(1)
+    monitor.take(data)
     assert not monitor.is_connected
 
 
@@ -99,6 +108,11 @@ class Control:
 
     def tiles(self):
         return [{"name": "anna", "link": "http://127.0.0.1:1/?token=secret"}]
+
+    def picture(self, name):
+        if name != "anna":
+            raise CommandError(f"there is no student {name!r}")
+        return "<svg/>"
 
     async def start_world(self, name):
         if name != "anna":
@@ -127,13 +141,16 @@ def test_the_tutors_page_needs_the_token_of_the_tutor(tmp_path):
     def attempts():
         cookie = {"Cookie": f"my_simulations_class_{port}=right"}
         found = [ask("status.json")[0], ask("?token=wrong")[0], ask("students/anna/stop", b"")[0],
+                 ask("students/anna/picture.svg")[0],
                  ask("status.json", Cookie="my_simulations_class_1=right")[0],
                  ask("status.json", **cookie, Origin="http://127.0.0.1:1")[0],
                  ask("students/anna/stop", b"", **cookie, **{"Sec-Fetch-Site": "same-site"})[0]]
-        assert found == [403] * 6 and control.calls == []
+        assert found == [403] * 7 and control.calls == []
         assert ask("?token=right")[1].startswith("<!doctype html>")
         assert json.loads(ask("status.json", **cookie)[1])["students"][0]["name"] == "anna"
         assert [ask(path, **cookie)[0] for path in ("tutor.js", "tutor.css")] == [200, 200]
+        assert ask("students/anna/picture.svg", **cookie) == (200, "<svg/>")
+        assert ask("students/carl/picture.svg", **cookie)[0] == 404
         assert [ask(f"students/{name}", b"", **cookie)[0] for name in (
             "anna/start", "anna/stop", "carl/start", "anna/remove")] == [200, 200, 404, 404]
         assert control.calls == [("start", "anna"), ("stop", "anna")]
