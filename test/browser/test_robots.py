@@ -125,3 +125,24 @@ def test_the_topics_panel_shows_text_rates_and_tf_on_request(editor):
     panel.get_by_label("Show /tf", exact=True).uncheck()
     editor.page.keyboard.press("Alt+t")
     panel.wait_for(state="hidden")
+
+
+def test_any_number_of_a_topic_is_plotted(editor):
+    editor.page.keyboard.press("Control+p")
+    search = editor.page.get_by_label("Find a variable")
+    search.fill("odom")
+    editor.page.get_by_role("option", name="/odom", exact=True).click()
+    search.fill("odom.pose.pose.position.x")
+    editor.page.get_by_role("option", name="/odom.pose.pose.position.x").click()
+    search.fill("/scan.ranges[45]")
+    editor.page.get_by_role("option", name="/scan.ranges[45]").press("Enter")
+    wait_for(lambda: heard(editor) == 1, "one node that hears the scan")
+    editor.get("window.plotted = {}; void editor.store.listen('watch', ({detail: {topic, value}})"
+               " => { if (Number.isFinite(value)) window.plotted[topic] = value; })")
+    x = forward(editor)
+    editor.until("'plot:/odom.pose.pose.position.x' in plotted", "the odometry")
+    editor.until(f"Math.abs(plotted['plot:/scan.ranges[45]'] - {1.9 - x}) < 0.1", "the middle beam")
+    for variable in ("/odom.pose.pose.position.x", "/scan.ranges[45]"):
+        editor.button(f"Remove {variable}").click()
+    wait_for(lambda: heard(editor) == 0, "nobody who hears the scan")
+    editor.button("Close plots").click()

@@ -571,6 +571,8 @@ export const FRAME_RECORD_BYTES = 32;
  *    reply: {topics: string[]}},
  *  topics: {fields: {},
  *    reply: {available: boolean, topics: Topic[]}},
+ *  topic_fields: {fields: {topic: string},
+ *    reply: {fields: string[]}},
  *  drive: {fields: {model: string, linear: vec3, angular: vec3},
  *    reply: {topic: string}},
  *  log_start: {fields: {name?: string|null},

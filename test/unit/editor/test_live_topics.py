@@ -121,6 +121,34 @@ def test_a_page_that_is_slow_gets_the_newest_message_when_it_has_shown_the_last(
     made.browse(look)
 
 
+def test_a_number_of_a_topic_is_plotted_until_no_page_wants_it(case):
+    source = Source([SCAN])
+
+    async def look(browser):
+        source.message = lambda kind: {"sensor_msgs/LaserScan": LaserScan}[kind]()
+        fields = (await browser.ask("topic_fields", topic="/scan"))["fields"]
+        assert {"header.stamp", "range_min", "ranges[0]"} <= set(fields)
+        assert "header.frame_id" not in fields
+        with pytest.raises(Refused, match="unknown topic"):
+            await browser.ask("topic_fields", topic="/none")
+        for wrong in ("plot:/", "plot:/scan", "plot:/scan."):
+            with pytest.raises(Refused, match="unknown topic"):
+                await browser.ask("watch", topics=[wrong])
+        watched = ["plot:/scan.ranges[1]", "plot:/scan.angle", "plot:/scan.ranges[9]"]
+        await browser.ask("watch", topics=watched)
+        await until(lambda: "/scan" in source.heard)
+        source.heard["/scan"](scan(1.0, 2.5))
+        # A world that stands still pushes once for each request.
+        await browser.ask("watch", topics=watched)
+        await browser.until(lambda: any(one.get("value") == 2.5 for one in browser.pushes))
+        assert any("no field 'angle'" in one.get("problem", "") for one in browser.pushes)
+        assert not browser.views
+        await browser.ask("watch", topics=[])
+        await until(lambda: source.heard == {})
+
+    case(topics=source).browse(look)
+
+
 def test_a_topic_that_nobody_publishes_yet_is_found_later(case):
     source = Source([])
 

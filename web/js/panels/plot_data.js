@@ -1,7 +1,7 @@
 /**
  * Curves of numbers over sim time: kept samples, divisions of the axes, export. Pure functions.
  */
-/** @import {World} from '../protocol.js' */
+/** @import {Topic, World} from '../protocol.js' */
 
 /** The most samples of a curve that are kept; the oldest half goes when there are more. */
 export const KEPT = 20000;
@@ -176,3 +176,16 @@ export function variablesOf(document) {
   }
   return groups;
 }
+
+/**
+ * The published ROS topics, each followed by the variables of its numbers if these are known.
+ *
+ * @param {Topic[]} topics
+ * @param {Map<string, string[]>} fields by topic
+ */
+export const topicVariables = (topics, fields) =>
+  topics.filter(({publishers}) => publishers > 0).flatMap(({name}) => [
+    name, ...(fields.get(name) ?? []).map((field) => `${name}.${field}`)]);
+
+/** Whether a variable is a number of a ROS topic; a topic's name alone is not. @param {string} variable */
+export const isTopicField = (variable) => /^\/[^.]+\.\w/.test(variable);

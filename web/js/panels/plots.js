@@ -3,10 +3,10 @@
  * of canvases, any number of curves on each, drawn as the values come.
  */
 import {saveBlob} from '../actions.js';
-import {fill, h, onActivate, onceAFrame, roving} from './dom.js';
+import {elementsOf, fill, h, onActivate, onceAFrame, roving} from './dom.js';
 import {icon} from './icons.js';
 import {CURVE_COLORS, drawPlot} from './plot_canvas.js';
-import {csvOf, Series, take, variablesOf} from './plot_data.js';
+import {csvOf, isTopicField, Series, take, topicVariables, variablesOf} from './plot_data.js';
 /** @import {Curve} from './plot_canvas.js' */
 /** @import {WatchPush} from '../protocol.js' */
 
@@ -98,6 +98,7 @@ export class Plots {
     });
     for (const event of /** @type {const} */ (['document', 'entity', 'selection']))
       page.store.listen(event, palette);
+    page.topics.listen('list', palette);
     new ResizeObserver(this.#draw).observe(this.#canvases);
     this.addCanvas();
     this.#showPalette();
@@ -113,6 +114,11 @@ export class Plots {
   #series = new Map();
   /** @type {Plot|null} */
   #current = null;
+  /** Of the topics that are opened in the palette. @type {Map<string, string[]>} */
+  #fields = new Map();
+  /** @type {(() => void)|undefined} */
+  #unread;
+  #signature = '';
 
   addCanvas() {
     const plot = new Plot(this);
@@ -121,6 +127,13 @@ export class Plots {
     this.choose(plot);
     this.#draw();
     return plot;
+  }
+
+  /** A closed window asks for no topics. @param {boolean} shown */
+  show(shown) {
+    this.#unread?.();
+    this.#unread = shown ? this.page.topics.read() : undefined;
+    this.#draw();
   }
 
   /** Variables that are double-clicked go to this canvas. @param {Plot} plot */
@@ -211,17 +224,26 @@ export class Plots {
   }
 
   #showPalette() {
-    const word = this.#search.value.trim().toLowerCase();
+    const typed = this.#search.value.trim();
+    const word = typed.toLowerCase();
     const chosen = new Set(this.page.store.selection.map((name) => this.page.store.split(name)[0]?.name));
     const groups = variablesOf(this.page.store.document).sort(
       (a, b) => Number(chosen.has(b.owner)) - Number(chosen.has(a.owner)),
     );
+    const {topics} = this.page;
+    groups.push({owner: 'Topics', variables: topicVariables(topics.list, this.#fields)});
     const found = groups.flatMap(({owner, variables}) =>
       variables
         .filter((variable) => !word || variable.toLowerCase().includes(word))
         .map((variable) => ({owner, variable})),
     );
+    // An item of a long list, which the palette does not show.
+    if (!found.length && isTopicField(typed)) found.push({owner: 'Topics', variable: typed});
     const shown = found.slice(0, SHOWN);
+    const signature = JSON.stringify([found, [...this.#series.keys()], [...this.#fields.keys()]]);
+    if (signature === this.#signature) return;
+    this.#signature = signature;
+    const focused = this.#list.contains(document.activeElement) && document.activeElement?.textContent;
     fill(
       this.#list,
       ...[...new Set(shown.map(({owner}) => owner))].map((owner) =>
@@ -231,13 +253,33 @@ export class Plots {
       found.length > SHOWN &&
         h('p', {class: 'empty', text: `${found.length - SHOWN} more: refine the search`}),
     );
-    if (!this.#list.querySelector('[tabindex="0"]')) {
-      this.#list.querySelector('[role=option]')?.setAttribute('tabindex', '0');
+    const options = elementsOf(this.#list, '[role=option]');
+    const kept = options.find(({textContent}) => textContent === focused);
+    (kept ?? options[0])?.setAttribute('tabindex', '0');
+    kept?.focus();
+  }
+
+  /** Shows or hides the numbers of a topic. @param {string} topic */
+  async #open(topic) {
+    if (!this.#fields.delete(topic)) {
+      this.#fields.set(topic, (await this.page.request('topic_fields', {topic})).fields);
     }
+    this.#showPalette();
+  }
+
+  /** @param {string} topic */
+  #topic(topic) {
+    const option = h('div', {
+      class: 'plot-variable', role: 'option', tabindex: -1, text: topic, 'aria-selected': 'false',
+      title: 'Click to list the numbers of its messages',
+    });
+    onActivate(option, () => this.#open(topic).catch((fault) => this.page.notices.fault(fault)));
+    return option;
   }
 
   /** @param {string} variable */
   #option(variable) {
+    if (variable.startsWith('/') && !isTopicField(variable)) return this.#topic(variable);
     const option = h('div', {
       class: 'plot-variable',
       role: 'option',

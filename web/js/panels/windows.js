@@ -154,10 +154,8 @@ export class Windows {
     const {panel, bar} = this.#plots;
     dock.hidden = !dock.hidden;
     bar.hidden = dock.hidden;
-    if (!dock.hidden) {
-      panel.redraw();
-      dock.querySelector('input')?.focus();
-    }
+    panel.show(!dock.hidden);
+    if (!dock.hidden) dock.querySelector('input')?.focus();
   }
 
   /** Opens or closes a panel at the right. @param {'joints'|'topics'} name */

@@ -15,6 +15,7 @@ from ..topic_source import Subscription, TopicSource
 from ..transport.browser_client import Client, encoded
 from ..transport.hub import Hub
 from ..transport.watch_requests import PREFIX
+from .message_fields import number_at
 from .message_views import Viewer
 from .topic_frame import frame_of
 
@@ -29,6 +30,7 @@ class LiveTopic:
         self.name = name
         self.clients: Dict[int, int] = {}
         self.unshown: Set[int] = set()
+        self.plotters: Set[int] = set()
         self.viewer: Optional[Viewer] = None
         self.subscription: Optional[Subscription] = None
         self.opening = self.closed = False
@@ -82,27 +84,53 @@ class LiveTopics:
         self._topics: Dict[str, LiveTopic] = {}
         self._period = 1.0 / hub.protocol.limits["view_hz"]
 
-    def want(self, client: Client, names: Set[str]) -> None:
-        """These topics are what a page looks at from now on. Raises CommandError without ROS."""
-        if names and self._source is None:
+    def want(self, client: Client, names: Set[str], plotted: Set[str]) -> None:
+        """Subscribe a page to the views of topics, and to numbers of topics.
+
+        Replaces what the page wanted before. Raises CommandError without ROS.
+        """
+        if (names or plotted) and self._source is None:
             raise CommandError("there are no ROS topics: the simulator runs without ROS")
+        for name in plotted:
+            self._topic(name).plotters.add(client.number)
         for name in names:
-            topic = self._topics.get(name)
-            if topic is None:
-                topic = self._topics[name] = LiveTopic(name, self._rung)
-                self._open(topic)
+            topic = self._topic(name)
             if client.number not in topic.clients:
                 topic.clients[client.number] = 0
                 if topic.problem:
                     self._tell_problem(topic, [client])
                 self._serve(topic)
         for topic in list(self._topics.values()):
+            if topic.name not in plotted:
+                topic.plotters.discard(client.number)
             if topic.name not in names:
                 self._unwant(topic, client)
+
+    def newest(self, name: str) -> Any:
+        """The newest message of a topic that a page wants; None before the first. Of any thread.
+
+        Raises CommandError if none can be received.
+        """
+        topic = self._topics.get(name)
+        if topic is None:
+            return None
+        if topic.problem:
+            raise CommandError(topic.problem)
+        return topic.viewer.newest if topic.viewer is not None else None
+
+    def number_of(self, variable: str) -> Optional[float]:
+        """The number that `/TOPIC.FIELD` has now; None before the first message. Of any thread.
+
+        Raises CommandError: there is no such number.
+        """
+        name, _, field = variable.partition(".")
+        message = self.newest(name)
+        return None if message is None else number_at(message, field)
 
     def leave(self, client: Client) -> None:
         """A page has gone."""
         for topic in list(self._topics.values()):
+            topic.plotters.discard(client.number)
             self._unwant(topic, client)
 
     def viewed(self, client: Client, name: str) -> None:
@@ -129,7 +157,7 @@ class LiveTopics:
     def _unwant(self, topic: LiveTopic, client: Client) -> None:
         topic.clients.pop(client.number, None)
         topic.unshown.discard(client.number)
-        if not topic.clients:
+        if not topic.clients and not topic.plotters:
             self._drop(topic)
 
     def _drop(self, topic: LiveTopic) -> None:
@@ -138,8 +166,12 @@ class LiveTopics:
         if topic.subscription is not None:
             self._pool.submit(topic.subscription.close)
 
-    def _open(self, topic: LiveTopic) -> None:
-        asyncio.ensure_future(self._subscribe(topic))
+    def _topic(self, name: str) -> LiveTopic:
+        topic = self._topics.get(name)
+        if topic is None:
+            topic = self._topics[name] = LiveTopic(name, self._rung)
+            asyncio.ensure_future(self._subscribe(topic))
+        return topic
 
     async def _subscribe(self, topic: LiveTopic) -> None:
         """Look for the topic's type until it is known, then hear it."""
@@ -153,7 +185,7 @@ class LiveTopics:
                 return
             else:
                 if found is not None:
-                    topic.subscription = found
+                    topic.subscription, topic.problem = found, ""
                     if topic.closed:
                         self._pool.submit(found.close)
                     return

@@ -28,24 +28,27 @@ class Viewer:
     Args:
         kind: the topic's type.
         now: sim time, s.
+
+    Attributes:
+        newest: the newest message; None before the first.
     """
 
     def __init__(self, kind: str, now: Callable[[], float]) -> None:
         self._make = VIEWS.get(kind, _text)
         self._kept = ACCUMULATED[kind](now) if kind in ACCUMULATED else None
-        self._newest: Any = None
+        self.newest: Any = None
 
     def take(self, message: Any) -> None:
         """A message has come."""
         if self._kept is not None:
             self._kept.take(message)
-        self._newest = message
+        self.newest = message
 
     def view(self) -> Tuple[str, float, View]:
         """Frame, stamp in s, view. Raises SimulationError for what cannot be shown."""
         import numpy as np
 
-        message = self._newest
+        message = self.newest
         try:
             if self._kept is not None:
                 return "", 0.0, (self._kept.fields(), b"")

@@ -9,7 +9,7 @@ from ...errors import CommandError
 from .browser_client import Client, encoded
 from .hub import Hub
 from .pose_messages import Poses
-from .watched_values import MOST_TOPICS, Watches, check_topic
+from .watched_values import MOST_TOPICS, PLOT, Watches, check_topic
 from .web_socket import Route
 
 PREFIX = "ros:"
@@ -19,8 +19,11 @@ PREFIX = "ros:"
 class RosTopics(Protocol):
     """What of ROS pages watch (`editor.topics`)."""
 
-    def want(self, client: Client, names: Set[str]) -> None:
-        """These topics are what a page watches from now on. Raises CommandError."""
+    def want(self, client: Client, names: Set[str], plotted: Set[str]) -> None:
+        """Subscribe a page to views and to numbers of topics. Raises CommandError."""
+
+    def number_of(self, variable: str) -> Optional[float]:
+        """The number of a field now; None before the first message. Raises CommandError."""
 
 
 class Watching:
@@ -31,7 +34,7 @@ class Watching:
 
     def __init__(self, hub: Hub, live: RosTopics) -> None:
         self._hub, self._live = hub, live
-        self._watches = Watches(hub.simulator, hub.clock)
+        self._watches = Watches(hub.simulator, hub.clock, live.number_of)
         self._thread = ThreadPoolExecutor(1, "editor watches")
         self._due = 0.0
         self._task: "Optional[asyncio.Future[None]]" = None
@@ -51,7 +54,9 @@ class Watching:
         for topic in topics:
             if topic not in of_ros:
                 check_topic(topic)
-        self._live.want(client, {topic[len(PREFIX):] for topic in of_ros})
+        plotted = {topic[len(PLOT):].partition(".")[0] for topic in topics
+                   if topic.startswith(f"{PLOT}/")}
+        self._live.want(client, {topic[len(PREFIX):] for topic in of_ros}, plotted)
         client.topics = set(topics) - of_ros
         self._fresh = True
         self._hub.nudge()

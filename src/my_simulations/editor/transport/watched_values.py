@@ -1,7 +1,7 @@
 """What a page watches besides poses: contacts, joints, and values for plots."""
 from __future__ import annotations
 
-from typing import Any, Dict, Iterable, List, Optional, Sequence, Tuple
+from typing import Any, Callable, Dict, Iterable, List, Optional, Sequence, Tuple
 
 from ...description.scoped_names import split_scoped
 from ...engine.ring import Snapshot
@@ -15,6 +15,8 @@ from ...simulator.wrenches import Effort
 from .clock_statistics import RealTime
 
 MOST_TOPICS = 200
+PLOT = "plot:"
+"""Begins what a page plots: a variable of the world, or `/TOPIC.FIELD` of ROS."""
 
 _POSE = {"x": 0, "y": 1, "z": 2, "roll": 3, "pitch": 4, "yaw": 5}
 _TWIST = {"vx": 0, "vy": 1, "vz": 2, "wx": 3, "wy": 4, "wz": 5}
@@ -33,16 +35,28 @@ def check_topic(topic: str) -> None:
         return
     if kind == "plot" and colon:
         owner, _, field = rest.rpartition(".")
+        name, dot, path = rest.partition(".")
+        if rest.startswith("/") and name != "/" and dot and path:
+            return
         if rest in _WORLD or (owner and field in {**_POSE, **_TWIST, **_JOINT}):
             return
     raise CommandError(f"unknown topic {topic!r}; known: contacts, joints:MODEL,"
-                       " plot:sim_time, plot:NAME.x and the like, ros:/NAME")
+                       " plot:sim_time, plot:NAME.x and the like, plot:/TOPIC.FIELD,"
+                       " ros:/NAME")
 
 
 class Watches:
-    """Makes the pushes of topics, of one moment each. For one thread at a time."""
+    """Makes the pushes of topics, of one moment each. For one thread at a time.
 
-    def __init__(self, simulator: Simulator, clock: RealTime) -> None:
+    Args:
+        simulator: the world.
+        clock: real time.
+        ros_number: the number of `/TOPIC.FIELD` now, or None. Raises CommandError.
+    """
+
+    def __init__(self, simulator: Simulator, clock: RealTime,
+                 ros_number: Callable[[str], Optional[float]]) -> None:
+        self._ros_number = ros_number
         self._world = simulator
         self._clock = clock
         self._step, self._time = 0, 0.0
@@ -74,7 +88,8 @@ class Watches:
             return {"contacts": self._contacts()}
         if kind == "joints":
             return {"joints": self._driven_joints(_owner(names, rest), snapshot)}
-        return {"value": self._value(rest, names, snapshot)}
+        value = self._value(rest, names, snapshot)
+        return {} if value is None else {"value": value}
 
     def _driven_joints(self, entity: Entity, snapshot: Snapshot) -> List[Dict[str, Any]]:
         found = list(_joints(entity, snapshot))
@@ -103,7 +118,10 @@ class Watches:
                  "depth": one.depth, "force": one.force} for a, b,
                 one in self._world.states.contacts()]
 
-    def _value(self, variable: str, names: Dict[str, Entity], snapshot: Snapshot) -> float:
+    def _value(self, variable: str, names: Dict[str, Entity],
+               snapshot: Snapshot) -> Optional[float]:
+        if variable.startswith("/"):
+            return self._ros_number(variable)
         if variable in _WORLD:
             known = {"sim_time": lambda: self._time,
                      "real_time": lambda: self._clock.real_ns * 1e-9,
