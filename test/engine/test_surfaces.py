@@ -65,11 +65,16 @@ def _sled(front: float, back: float) -> Model:
             Joint("axle", "revolute", "link", "rider", axis=JointAxis())])
 
 
+@pytest.mark.parametrize("jointed", [True, False])
 @pytest.mark.parametrize("front, back", [(0.0, 0.8), (0.8, 0.0), (0.2, 0.6), (0.6, 0.2)])
-def test_each_collision_of_a_link_of_a_tree_has_its_own_friction(lab: Lab, laws: Laws,
-                                                                 front: float, back: float):
+def test_each_collision_of_a_link_has_its_own_friction(lab: Lab, laws: Laws, front: float,
+                                                       back: float, jointed: bool):
     lab.load(ground(1.0))
-    sled = lab.load(_sled(front, back), (0, 0, 0.1))
+    model = _sled(front, back)
+    if not jointed:
+        model.joints, model.links[1:] = [], []
+        model.links[0].inertial = inertial_of_box(6.0, 0.6, 0.4, 0.1)
+    sled = lab.load(model, (0, 0, 0.1))
     lab.steps(300)
     start = lab.pose(sled).position[0]
     lab.push(sled, (1, 0, 0))

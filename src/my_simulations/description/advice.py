@@ -33,11 +33,11 @@ def advice(models: Sequence[Model], only: str = "") -> Iterator[Fault]:
             continue
         odd: List[Fault] = []
         shared: List[Fault] = []
-        jointed = _jointed(model)
+        divided = _divided(model)
         for name, link, _pose, static in links_of(model):
             for collision in link.collisions:
                 yield from _thin(collision, name)
-            if name not in jointed:
+            if name not in divided:
                 shared += _shared_friction(link, name)
             if not static:
                 odd += _odd_inertia(link, name)
@@ -63,20 +63,19 @@ def links_of(model: Model, above: Pose = IDENTITY, scope: str = "",
         yield from links_of(inner, base, name, static)
 
 
-def _jointed(model: Model, scope: str = "", static: bool = False) -> Set[str]:
-    """Scoped names of the links of trees: each of their collisions keeps its own friction.
+def _divided(model: Model, scope: str = "", static: bool = False) -> Set[str]:
+    """Scoped names of the links of which each collision keeps its own friction.
 
-    Not in static models, which have no trees, nor where links of a model collide with each other.
+    Not in static models, nor where links of a model collide with each other.
     """
     name, static = f"{scope}{model.name}::", static or model.static
     found: Set[str] = set()
     if self_collides(model):
         return found
     if not static:
-        found = {name + end for joint in model.joints for end in (joint.parent, joint.child)
-                 if joint.type != "gearbox"}
+        found = {name + link.name for link in model.links if not link.kinematic}
     for inner in model.models:
-        found |= _jointed(inner, name, static)
+        found |= _divided(inner, name, static)
     return found
 
 

@@ -37,6 +37,11 @@ def in_pieces(plan: BodyPlan, model: Model) -> BodyPlan:
     return replace(plan, links=depth_first(links))
 
 
+def differs_in_friction(link: Link, model: Model) -> bool:
+    """Whether a link is divided, so that it needs a tree even without joints."""
+    return len(by_friction(link)) > 1 and not self_collides(model)
+
+
 def by_friction(link: Link) -> List[Carried]:
     """The positions of the collisions of a link, those with the same friction together."""
     groups: Dict[float, List[int]] = {}

@@ -15,7 +15,7 @@ from ..body_plan import BASE, NO_LINK, BodyPlan, TreeLink, plan_bodies
 from ..commands import LoadModel
 from ..principal_inertia import principal
 from ..ring_rows import AXES, axis_rows, row_name
-from ..surface_pieces import carried_by, in_pieces
+from ..surface_pieces import carried_by, differs_in_friction, in_pieces
 from . import collision_groups, surface_coefficients
 from .bodies import (
     Axis,
@@ -30,7 +30,7 @@ from .bodies import (
     sweep,
 )
 from .collision_shapes import MAX_SHAPES, Recipe, ShapeFactory
-from .extra_surfaces import gives_way
+from .extra_surfaces import is_soft
 from .implicit_axes import mobility
 from .mass_matrix import MassMatrix
 from .rims import with_ends, with_rims
@@ -92,8 +92,9 @@ class Builder:
         self.model_id = command.model_id
         self._meets = SelfCollision(command.model)
         self._first_row = command.first_link_row
-        self._articulated = command.articulated or (
-            not command.model.static and any(map(gives_way, command.model.links)))
+        self._articulated = command.articulated or not command.model.static and any(
+            is_soft(link) or differs_in_friction(link, command.model)
+            for link in command.model.links)
         self._shapes = shapes
         self._axis_rows = {row.name: command.first_joint_row + n
                            for n, row in enumerate(axis_rows(command.model))}

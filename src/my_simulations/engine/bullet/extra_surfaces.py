@@ -55,11 +55,11 @@ def _store(body: Body, part: Part, collision: Collision, dt: float) -> None:
         pybullet.changeDynamics(uid, part.index, **settings)
 
 
-def gives_way(link: Link) -> bool:
-    """A joint-free link on springs so soft that one sees it: it must be an articulated body.
+def is_soft(link: Link) -> bool:
+    """Whether a link without joints rests visibly deep in a soft contact.
 
-    Contacts of rigid bodies part overlaps without forces (`contact_settling`), so they cannot be
-    springs. In an articulated one each surface with a friction of its own counts.
+    It must be an articulated body: contacts of rigid bodies part overlaps without forces
+    (`contact_settling`), so they cannot be springs.
     """
     return any(link.collisions[group[0]].surface.kp * _SEEN < _WEIGHT * link.inertial.mass
                for group in by_friction(link))
