@@ -137,10 +137,24 @@ class CallWatch:
                 raise ThreadAbandoned(mine.why) from None
             raise CallOverdue(f"{mine.why}{mine.where}") from None
 
+    def run_inside(self, call: Callable[[], None]) -> None:
+        """Call a function that may use `run`, inside a call that waits for another process.
+
+        Raises ThreadAbandoned if `call` does.
+        """
+        with self._lock:
+            waiting, self._call = self._call, None
+        call()
+        with self._lock:
+            if waiting is not None:
+                waiting.looked = False   # the time that `call` has taken does not count
+            self._call = waiting
+
     def _finish(self, mine: _Call) -> None:
         """End the watch of a call that has returned. Raises ThreadAbandoned."""
         if not mine.looked:  # a check comes long before an interruption: most calls need no lock
-            self._call = None
+            if self._call is mine:
+                self._call = None
             return
         with self._lock:
             if self._call is mine:

@@ -24,6 +24,7 @@ from .found_plugins import Found
 from .graph import Graph, TopicUse
 from .isolated.isolated_plugin import IsolatedPlugin
 from .isolated.plugin_process import PluginProcesses
+from .meanwhile import Meanwhile
 from .observations import Observation, Observations, StepView
 from .order_sender import send_orders
 from .outgoing import Outgoing
@@ -99,10 +100,18 @@ class PluginHost:
         self._processes = PluginProcesses() if isolate else None
         self._guard = PluginGuard(log, patience, self._touch, self._go_on_without)
         self._overdue: Deque[Tuple[Running, str]] = deque()
+        self._turns = 0
+        self._meanwhile = self._new_meanwhile()
         self._thread = self._new_thread()
 
     def _new_thread(self) -> threading.Thread:
         return threading.Thread(target=self._run, name="plugins", daemon=True)
+
+    def _new_meanwhile(self) -> Meanwhile:
+        return Meanwhile(
+            lambda: self._guard.run_inside(self._guarded_turn), self._sync.wait,
+            lambda: self._simulator.clock.by_hand,
+            lambda running: running.context in self._running, self._resume)
 
     def start(self) -> None:
         """Begin; returns when the plugins of all present models are loaded."""
@@ -156,7 +165,7 @@ class PluginHost:
     def unheard(self) -> bool:
         """Whether a received message or request is not applied yet."""
         return self._delivering or self._observations.changed or any(
-            running.context.inbox for running in self._models.all())
+            running.context.inbox for running in self._models.all() if not running.is_busy)
 
     def _deliver_all(self) -> None:
         """Wait until all received messages and requests are handed over and applied."""
@@ -215,7 +224,8 @@ class PluginHost:
     def _go_on_without(self, running: Running, why: str) -> None:
         """Abandon a thread that does not return from a plugin; called by the watch."""
         running.plugin = None
-        self._overdue.append((running, why))
+        self._overdue += [(one, why) for one in (running, *self._meanwhile.busy)]
+        self._meanwhile = self._new_meanwhile()
         self._thread = self._new_thread()
         self._thread.start()
 
@@ -234,21 +244,17 @@ class PluginHost:
         settings, moment = self._sync.settings, self._sync.now()
         if self._settings is None and not self._sync.waits_at(moment):
             return   # until the engine has stopped, for the first time
-        self._records.hand_over(self._hand_over)
-        if settings != self._settings:
-            self._sync.finish_changes()
-        self._follow_models()
-        self._schedule.set_moment(moment)
-        self._notice_resets(moment)
-        while self._rung:
-            self._delivering = True
-            self._deliver(self._rung.popleft())
-        if self._sync.waits_at(moment):
-            self._serve()
+        turn = self._turns = self._turns + 1
+        for act in (self._take_records, self._finish_changes, self._notice_resets,
+                    self._deliver_rung, self._serve):
+            act(settings, moment)
+            if self._turns != turn:   # turns inside a call (`meanwhile.py`): these values are old
+                self.wake()
+                return
         self._scene.send()
         if self._touched:
             self._give_orders()
-        self._go_on(settings, moment)
+        self._go_on(settings)
         self._end_deliveries(settled=True)
         if self._touched:
             self._publish()
@@ -256,28 +262,54 @@ class PluginHost:
     def _end_deliveries(self, settled: bool) -> None:
         with self._settled:
             self._delivering = False
-            if settled:
+            if settled and not self._meanwhile.busy:
                 self._revision = self._models.revision
             self._settled.notify_all()
 
+    def _take_records(self, _settings: int, _moment: Moment) -> None:
+        self._records.hand_over(self._hand_over)
+
     def _hand_over(self, observation: Observation) -> None:
         running = self._running.get(observation.owner)
-        if running is not None and running.plugin is not None:
+        if running is not None and running.is_callable:
             self._guard.call(running, observation.call)
+
+    def _finish_changes(self, settings: int, _moment: Moment) -> None:
+        if settings != self._settings:
+            self._sync.finish_changes()
+        self._follow_models()
 
     def _at_work(self) -> List[Running]:
         return [one for one in self._models.all() if one.plugin is not None]
 
-    def _serve(self) -> None:
+    def _serve(self, _settings: int, moment: Moment) -> None:
         """Make the calls that are due."""
+        if not self._sync.waits_at(moment):
+            return
         self._due += self._schedule.take_due()
         while self._due:
             scheduled = self._due.popleft()
             running = self._running.get(scheduled.owner)
-            if running is not None and running.plugin is not None and not scheduled.ended:
-                if scheduled.single:
-                    scheduled.end()
+            if running is None or running.plugin is None or scheduled.ended:
+                continue
+            if scheduled.single:
+                scheduled.end()
+                self._call_now_or_later(running, scheduled.call)
+            elif not running.is_busy:
                 self._guard.call(running, scheduled.call)
+
+    def _call_now_or_later(self, running: Running, call: Callable[[], None]) -> None:
+        """Call a function of a plugin; if the plugin is busy, after its present call."""
+        if running.is_busy:
+            running.context.inbox.append(call)
+        else:
+            self._guard.call(running, call)
+
+    def _resume(self, running: Running) -> None:
+        """Have the inbox of a plugin and its orders processed after the call that is under way."""
+        self._touch(running)
+        if running.context.inbox:
+            self._rung.append(running)   # without a notice, which would end the next wait
 
     def _give_orders(self) -> None:
         """Send the commands of plugins for the present models to the engine, in one command."""
@@ -285,22 +317,17 @@ class PluginHost:
                 self._simulator, list(self._touched), self._models.revision):
             self._follow_models()
 
-    def _go_on(self, settings: int, moment: Moment) -> None:
+    def _go_on(self, settings: int) -> None:
         """Let the engine run to the next step at which a plugin acts."""
         if self._settings is None:
-            self._schedule.make_anew(self._was_set_back(moment))
+            self._schedule.make_anew(was_set_back=False)
         if settings != self._settings or self._observations.changed:
             rules = self._observations.new_rules(self._graph.transforms_wanted,
                                                  settings != self._settings)
             if rules is not None:
                 self._sync.set_rules(rules)
         self._sync.allow(settings, self._schedule.next_step)
-        self._moment, self._settings = moment, settings
-
-    def _was_set_back(self, moment: Moment) -> bool:
-        before = self._moment
-        return (before is not None and moment.clock_sets != before.clock_sets
-                and moment.sim_ns < before.sim_ns)
+        self._settings = settings
 
     def _publish(self) -> None:
         touched, self._touched = self._touched, {}
@@ -321,16 +348,22 @@ class PluginHost:
             self._ring(running)
         return fail
 
+    def _deliver_rung(self, _settings: int, _moment: Moment) -> None:
+        while self._rung:
+            self._delivering = True
+            self._deliver(self._rung.popleft())
+
     def _deliver(self, running: Running) -> None:
         inbox = running.context.inbox
-        while inbox:
+        while inbox and not running.is_busy:
             call = inbox.popleft()
             if running.plugin is not None:   # else it was switched off: nothing waits for this
                 self._guard.call(running, call)
 
-    def _notice_resets(self, moment: Moment) -> None:
+    def _notice_resets(self, _settings: int, moment: Moment) -> None:
         """Notify plugins of resets and of sim time that was set back."""
-        before = self._moment
+        self._schedule.set_moment(moment)
+        before, self._moment = self._moment, moment
         resets = self._simulator.resets
         calls: List[str] = []
         if before is not None and moment.clock_sets != before.clock_sets:
@@ -348,7 +381,7 @@ class PluginHost:
         for call in calls:
             for running in self._at_work():
                 if running.plugin is not None:
-                    self._guard.call(running, getattr(running.plugin, call))
+                    self._call_now_or_later(running, getattr(running.plugin, call))
 
     # -- models ------------------------------------------------------------------------------------
 
@@ -393,7 +426,8 @@ class PluginHost:
             return plugin_class(where)(running.context)
         process = self._processes.start()
         running.end = process.end
-        return IsolatedPlugin(running.context, where, process, self._patience)
+        return IsolatedPlugin(running.context, where, process, self._patience,
+                              lambda waited: self._meanwhile.take_turn(running, waited))
 
     def _tell_unknown(self, found: Found, entity: Entity, text: str) -> Issue:
         issue = warning("plugin-unknown", f"{text}; '{found.spec.name}' of model"
@@ -410,7 +444,7 @@ class PluginHost:
         leaving = self._models.leaving
         while leaving:
             running = leaving.popleft()
-            if running.plugin is not None:
+            if running.plugin is not None and not running.is_busy:
                 self._guard.call(running, running.plugin.close)
             context = running.context
             context.close()

@@ -5,6 +5,7 @@ from typing import Any, Callable, Optional
 
 from ..errors import CommandError, Issue, Severity, warning
 from .call_watch import CallOverdue, CallWatch, Patience, ThreadAbandoned
+from .meanwhile import PluginRemovedError
 from .plugin_faults import describe_fault
 from .registry import library_name
 from .running import Running
@@ -31,6 +32,10 @@ class PluginGuard:
         """Stop watching calls."""
         self._watch.stop()
 
+    def run_inside(self, turn: Callable[[], None]) -> None:
+        """Make a turn with further calls inside the wait for the process of a plugin."""
+        self._watch.run_inside(turn)
+
     def call(self, running: Running, call: Callable[..., None], *arguments: Any,
              patience: Optional[Patience] = None) -> bool:
         """Call a function of a plugin; returns whether the plugin still works.
@@ -51,6 +56,8 @@ class PluginGuard:
             return True
         except ThreadAbandoned:
             raise
+        except PluginRemovedError:   # it was ended with its model
+            pass
         except CallOverdue as overdue:
             self.switch_off(running, str(overdue))
         except BaseException as fault:  # sys.exit() of a plugin, too: the others continue

@@ -39,7 +39,10 @@ class RecordHandover:
                     if self._record is None:
                         break
                     self._parts.extend(self._record.parts())
-                self._hand_over(self._record, call)
+                record = self._record
+                self._hand_over(record, call)
+                if self._record is not record:
+                    break   # a turn inside a call has taken the rest (`meanwhile.py`)
                 self._record = None
                 records.release()
         finally:

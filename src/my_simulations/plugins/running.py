@@ -27,6 +27,7 @@ class Running:
         plugin: None for one that is unknown or was switched off.
         fault: why it is unknown or was switched off.
         end: ends the process of the plugin, if it has one.
+        is_busy: a call is under way in its process, and the world continues meanwhile.
     """
 
     found: Found
@@ -34,6 +35,12 @@ class Running:
     plugin: Optional[Plugin]
     fault: Optional[Issue] = None
     end: Callable[[], None] = do_nothing
+    is_busy: bool = False
+
+    @property
+    def is_callable(self) -> bool:
+        """Whether the plugin can be called now."""
+        return self.plugin is not None and not self.is_busy
 
 
 class ModelPlugins:

@@ -4,6 +4,7 @@ from __future__ import annotations
 import subprocess
 import sys
 import threading
+import time
 
 import pytest
 from plugin_case import until
@@ -85,3 +86,26 @@ def test_a_call_that_returns_while_its_thread_is_abandoned_ends_the_thread(fault
 
     thread_of_call = []
     assert in_a_thread(CallWatch(abandon), call) == [ThreadAbandoned]
+
+
+def test_a_call_that_waits_is_not_charged_for_calls_inside_its_wait_and_is_watched_again():
+    watch = CallWatch(lambda subject, why: None)
+    inside = []
+
+    def compute(until_s):
+        while time.thread_time() < until_s:
+            pass
+
+    def turn():
+        inside.append("begun")
+        watch.run("other", Patience(60.0, 60.0), compute, time.thread_time() + 0.6)
+        compute(time.thread_time() + 0.3)   # no call of a plugin
+        inside.append("ended")
+
+    def wait():
+        watch.run_inside(turn)
+        while True:
+            pass
+
+    assert in_a_thread(watch, wait) == [CallOverdue]
+    assert inside == ["begun", "ended"]

@@ -3,12 +3,13 @@ from __future__ import annotations
 
 import os
 import signal
+import threading
 from concurrent.futures import Future
 
 import numpy as np
 import pytest
 from plugin_case import kept, until
-from test_plugin_faults import GOOD, HEAD, LOAD, Case
+from test_plugin_faults import GOOD, HEAD, LOAD, Case, model
 
 from my_simulations.plugins.call_watch import Patience
 from my_simulations.plugins.context import Context
@@ -271,3 +272,83 @@ def test_the_context_of_a_process_has_all_that_a_context_has():
              "sensor_joint"}
     assert wanted - given == set()
     assert {name for name in ORDERS | set(HANDLES) if name not in vars(RemoteContext)} == set()
+
+
+SLOW = LOAD + """        context = self.context
+        self.said = context.publish("said", "std_msgs/Float64")
+        self.calls = []
+        context.serve("ask", "std_srvs/Trigger", self.answer)
+        context.every(100.0, self.call)
+        context.once(context.now_ns + 300_000_000, lambda: self.calls.append("once"))
+
+    def reset(self):
+        self.calls.append("reset")
+
+    def call(self):
+        if not self.calls:
+            self.calls.append("slow")
+            while not {gate}:
+                pass
+        self.said.publish(self.context.message("std_msgs/Float64"))
+
+    def answer(self, request, response):
+        response.message = list(self.calls)
+"""
+
+
+def runs(one, count=20):
+    """The world makes steps by itself, and the plugin that works is called on the way."""
+    before, step = len(one.graph.on("works/alive")), one.sim.clock.step
+    until(lambda: len(one.graph.on("works/alive")) >= before + count)
+    assert one.sim.clock.step > step
+
+
+@pytest.mark.parametrize(("when", "statement"), [
+    ("import", "__import__('time').sleep(1000)"),
+    ("load", "while True: pass"),
+    ("call", "__import__('time').sleep(1000)"),
+])
+def test_the_world_continues_while_a_plugin_hangs(case, when, statement):
+    one = case(patience=Patience(1000.0, 1000.0))
+    one.sim.clock.unpause()
+    source = {"import": "{}\n", "load": LOAD + "        {}\n", "call": CALL + "        {}\n"}
+    one.file.write_text(source[when].format(statement))
+    one.sim.models.spawn(model("bad", "libbad.so"))
+    one.host.wake()
+    until(lambda: any(running.is_busy for running in one.host._running.values()))
+    runs(one)
+    assert one.failed() == []
+    one.sim.models.delete("bad")   # which ends the call
+    until(lambda: not any(running.is_busy for running in one.host._running.values()))
+    runs(one)
+    assert one.host.settle() and one.failed() == []
+
+
+def test_a_plugin_that_hangs_in_a_running_world_is_named_and_the_next_one_is_loaded(case):
+    one = case(patience=Patience(0.75, 1000.0))
+    one.sim.clock.unpause()
+    one.spawn(LOAD + "        while True: pass\n")   # returns when it is known
+    (issue,) = one.failed()
+    assert "s of processor time" in issue.message and f"{one.file}:6)" in issue.message
+    runs(one)
+    one.sim.models.delete("bad")
+    one.spawn(MOVES)
+    assert len(one.failed()) == 1 and one.ask("ask", data="good").message
+
+
+def test_a_slow_call_ends_and_what_came_meanwhile_follows(case, tmp_path):
+    one = case(patience=Patience(1000.0, 1000.0))
+    gate = tmp_path / "gate"
+    one.sim.clock.unpause()
+    one.spawn(SLOW.format(gate=f"__import__('os').path.exists({str(gate)!r})"))
+    until(lambda: any(running.is_busy for running in one.host._running.values()))
+    asked = Future()
+    threading.Thread(target=lambda: asked.set_result(one.ask("ask").message)).start()
+    runs(one, 100)
+    one.sim.resets.reset_world()
+    runs(one)
+    assert not asked.done() and one.graph.on("said") == []
+    gate.touch()
+    assert asked.result(60.0)[0] == "slow"
+    until(lambda: len(one.graph.on("said")) > 10)
+    assert sorted(one.ask("ask").message) == ["once", "reset", "slow"] and one.failed() == []

@@ -44,17 +44,19 @@ class IsolatedPlugin(Plugin):
         where: the class as `package.module:Class`.
         process: newly started.
         patience: how long a call may take.
+        meanwhile: called during the wait for the process, see `PluginProcess.receive`.
     """
 
     def __init__(self, context: SimulatedContext, where: str, process: PluginProcess,
-                 patience: Patience) -> None:
+                 patience: Patience, meanwhile: Callable[[float], bool]) -> None:
         super().__init__(context)
         self._simulated, self._process, self._patience = context, process, patience
+        self._meanwhile = meanwhile
         self._handles: Dict[int, Tuple[str, Any]] = {CONTEXT: ("context", context)}
         self._shown: Dict[int, Tuple[str, Any]] = {}   # those of the handles that have a state
         self._made = CONTEXT
         process.send(list(sys.path))
-        process.receive(patience.longer())
+        process.receive(patience.longer(), meanwhile)
         process.send(Start(where, context.spec, context.sensor, context.sensor_link,
                            context.sensor_joint))
         self._call("construct", patience=patience.longer())
@@ -84,7 +86,7 @@ class IsolatedPlugin(Plugin):
         process, patience = self._process, patience or self._patience
         process.send(Call(function, arguments, self._readings()))
         while True:
-            message = process.receive(patience)
+            message = process.receive(patience, self._meanwhile)
             for order in message.orders:
                 self._obey(order)
             if isinstance(message, Done):

@@ -14,7 +14,7 @@ import time
 import traceback
 from collections import deque
 from concurrent.futures import Future, ThreadPoolExecutor
-from typing import Any, Deque, List, Optional
+from typing import Any, Callable, Deque, List, Optional
 
 from ...child_process import child_command, child_environment, signal_name
 from ...engine.message_pipe import Wire
@@ -108,17 +108,24 @@ class PluginProcess:
         except OSError:
             raise self._lost() from None
 
-    def receive(self, patience: Patience) -> Any:
+    def receive(self, patience: Patience, meanwhile: Callable[[float], bool]) -> Any:
         """The next message; waits for it.
+
+        Args:
+            patience: how long the process may take.
+            meanwhile: called at each look with the time waited, s; returns whether it has waited.
 
         Raises ProcessEndedError if the process has ended, or takes too long and so was ended.
         """
         begun: Optional[float] = None
+        look_s = _LOOK_S
         while not self._received:
-            if not self._poll.poll(1000.0 * _LOOK_S):
+            if not self._poll.poll(1000.0 * look_s):
                 if begun is None:   # from the first look on, as all calls that are watched
                     begun, used_before = time.monotonic(), self._used()
-                self._check(patience, time.monotonic() - begun, self._used() - used_before)
+                waited = time.monotonic() - begun
+                self._check(patience, waited, self._used() - used_before)
+                look_s = 0.0 if meanwhile(waited) else _LOOK_S
                 continue
             try:
                 self._received += self._wire.receive(0.0)
