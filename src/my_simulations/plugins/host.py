@@ -44,7 +44,7 @@ from .simulated_context import Shared, SimulatedContext
 from .step_readings import StepReadings
 
 _LOOK_S = 0.5      # between two looks while nothing rings
-_SETTLE_S = 60.0   # how long a caller waits for plugins to be loaded
+_SETTLE_S = 120.0   # how long a caller waits for plugins to be loaded
 _END_S = 2.0
 
 
