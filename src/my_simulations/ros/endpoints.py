@@ -5,13 +5,14 @@ import socket
 import struct
 import traceback
 from dataclasses import dataclass
-from typing import Any, Callable
+from operator import attrgetter
+from typing import Any, Callable, Iterator
 
 import rospy
 from rospy.exceptions import TransportException, TransportTerminated
 
 from ..errors import CommandError, InputError
-from ..xml_characters import check_characters
+from ..xml_characters import check_characters, check_tree
 
 
 @dataclass(frozen=True)
@@ -42,6 +43,7 @@ def answering(endpoint: Endpoint) -> Callable[[Any], Any]:
     """
     response_class = endpoint.response or endpoint.type._response_class
     has_status = "status_message" in response_class.__slots__
+    check_texts = TextCheck(endpoint.type._request_class)
 
     def answer(request: Any) -> Any:
         response = response_class()
@@ -65,23 +67,36 @@ def answering(endpoint: Endpoint) -> Callable[[Any], Any]:
     return answer
 
 
-def check_texts(message: Any, path: str = "") -> None:
-    """Refuse texts of a request that no world file could hold: names stay in the world.
+class TextCheck:
+    """Refuses texts of a request that no world file could hold: names stay in the world.
 
     Documents are left to their reader, which knows the line.
 
-    Raises:
-        CommandError: with field and character.
+    Args:
+        kind: class of the requests.
     """
+
+    def __init__(self, kind: Any) -> None:
+        self._fields = [(path, attrgetter(path)) for path in _text_paths(kind(), "")]
+
+    def __call__(self, request: Any) -> None:
+        """Raises CommandError with field and character."""
+        for path, read in self._fields:
+            value = read(request)
+            if isinstance(value, str):
+                check_characters(value, path)
+            else:
+                check_tree(value, path)
+
+
+def _text_paths(message: Any, path: str) -> Iterator[str]:
+    """The fields of a message and of the messages in it that are texts or lists of texts."""
     for name, kind in zip(message.__slots__, message._slot_types):
-        value, field = getattr(message, name), f"{path}{name}"
-        if kind == "string" and not name.endswith("_xml"):
-            check_characters(value, field)
-        elif kind.startswith("string["):
-            for n, text in enumerate(value):
-                check_characters(text, f"{field}[{n}]")
+        if kind.startswith("string"):
+            if not name.endswith("_xml"):
+                yield f"{path}{name}"
         elif "/" in kind and not kind.endswith("]"):
-            check_texts(value, f"{field}.")
+            yield from _text_paths(getattr(message, name), f"{path}{name}.")
 
 
 class LastingService(rospy.Service):

@@ -36,7 +36,7 @@ def pose_from_message(message: Any, field: str = "pose") -> Pose:
     within(position, LENGTH, "m", f"{field}.position")
     if not is_finite(*orientation):
         raise CommandError(f"{field}.orientation contains NaN or infinity: {orientation}")
-    largest = max(abs(number) for number in orientation)
+    largest = max(map(abs, orientation))
     if largest > LENGTH:   # its square would not be a number
         orientation = (q.x / largest, q.y / largest, q.z / largest, q.w / largest)
     return Pose(position, normalised(orientation))
@@ -64,11 +64,12 @@ def within(values: Vec3, limit: float, unit: str, field: str) -> Vec3:
     Raises:
         CommandError: a number is NaN, infinite or beyond the limit.
     """
-    if not is_finite(*values):
+    x, y, z = values
+    if -limit <= x <= limit and -limit <= y <= limit and -limit <= z <= limit:   # not for NaN
+        return values
+    if not is_finite(x, y, z):
         raise CommandError(f"{field} contains NaN or infinity: {values}")
-    if any(abs(value) > limit for value in values):
-        raise CommandError(f"{field} contains a value beyond {limit:g} {unit}: {values}")
-    return values
+    raise CommandError(f"{field} contains a value beyond {limit:g} {unit}: {values}")
 
 
 def between(value: float, low: float, high: float, field: str, unit: str = "") -> float:

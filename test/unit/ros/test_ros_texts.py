@@ -12,7 +12,7 @@ from gazebo_msgs.srv import (
 )
 
 from my_simulations.errors import CommandError
-from my_simulations.ros.endpoints import Endpoint, answering, check_texts
+from my_simulations.ros.endpoints import Endpoint, TextCheck, answering
 
 
 @pytest.mark.parametrize("field", ["model_name", "robot_namespace", "reference_frame"])
@@ -30,10 +30,11 @@ def test_a_request_is_refused_with_field_and_character(field):
 
 def test_nested_messages_and_lists_are_looked_at_and_documents_are_not():
     with pytest.raises(CommandError, match="model_state.model_name contains .*U[+]FFFE"):
-        check_texts(SetModelStateRequest(ModelState(model_name="\ufffe")))
+        TextCheck(SetModelStateRequest)(SetModelStateRequest(ModelState(model_name="\ufffe")))
     with pytest.raises(CommandError, match=r"joint_names\[1\] contains .*U[+]D800"):
-        check_texts(SetModelConfigurationRequest(joint_names=["fine", "\ud800"]))
-    check_texts(SpawnModelRequest(model_name="fine", model_xml="<sdf>\x01</sdf>"))
+        TextCheck(SetModelConfigurationRequest)(
+            SetModelConfigurationRequest(joint_names=["fine", "\ud800"]))
+    TextCheck(SpawnModelRequest)(SpawnModelRequest(model_name="fine", model_xml="<sdf>\x01</sdf>"))
 
 
 def test_every_fitting_text_passes():
