@@ -128,6 +128,28 @@ def test_a_submission_that_is_too_large_is_told_so(folder):
         folder / "marks" / "students" / "large" / "index.html").read_text()
 
 
+def test_names_and_sizes_of_files_harm_no_other_mark(folder):
+    submit(folder, "good", ("ball", 0, 3))
+    for name in ("a\n,\"<b>", os.fsdecode(b"\xff")):
+        submit(folder, name, ("ball", 0, 3))
+        (folder / name / os.fsdecode(b"\xfe\n,.txt")).write_text("a")
+    submit(folder, "many", ("ball", 0, 3))
+    for number in range(1000):
+        (folder / "many" / f"{number:0200}").write_text("")
+    submit(folder, "endless", ("ball", 0, 3))
+    with open(folder / "endless" / "sparse", "wb") as stream:
+        stream.truncate(1 << 42)
+    names = [path.name for path in folder.iterdir() if path.is_dir()]
+    assert len(names) == 5
+    status, rows = grade(folder, *names, "--jobs", "2")
+    assert (status, points(rows.pop("endless"))) == (0, [0, 0, 0, 0, 0])
+    assert [points(row) for row in rows.values()] == [[1, 4, 4, 1, 0]] * 4
+    assert "a\n,\"<b>" in rows
+    page = (folder / "marks" / "index.html").read_text()
+    assert "students/%FF/index.html" in page
+    assert "<b>" not in page.replace('<td class="number"><b>', "")
+
+
 def test_an_invalid_assignment_or_command_line_ends_with_2(folder, capsys):
     (folder / "bad.yaml").write_text("checks:\n  - {points: x}\n")
     assert main(["grade", "bad.yaml", "anna"]) == 2

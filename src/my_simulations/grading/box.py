@@ -1,6 +1,6 @@
 """Runs a command in a box: namespaces and file systems of its own, as far as the system permits.
 
-    python3 -I box.py SPECIFICATION
+    python3 -I box.py < SPECIFICATION
 
 SPECIFICATION is JSON:
     parent    process id of the process that started this one; the box ends with it
@@ -49,9 +49,9 @@ _SIOCGIFFLAGS, _SIOCSIFFLAGS, _IFF_UP = 0x8913, 0x8914, 1
 LIBC = ctypes.CDLL(None, use_errno=True)
 
 
-def main(words: List[str]) -> int:
-    """Run a specification; returns the exit status."""
-    spec: Dict[str, Any] = json.loads(words[1])
+def main() -> int:
+    """Run the specification of the standard input; returns the exit status."""
+    spec: Dict[str, Any] = json.load(sys.stdin)
     LIBC.prctl(_PR_SET_PDEATHSIG, signal.SIGKILL, 0, 0, 0)
     if os.getppid() != spec["parent"]:  # it ended before this was asked for
         return 128 + signal.SIGKILL
@@ -218,7 +218,7 @@ def tmpfs(path: str, size: int) -> None:
 
 def mount(source: str, target: str, kind: str, flags: int, data: str = "") -> None:
     """Mount a file system. Raises OSError."""
-    if LIBC.mount(source.encode(), target.encode(), kind.encode(), ctypes.c_ulong(flags),
+    if LIBC.mount(os.fsencode(source), os.fsencode(target), kind.encode(), ctypes.c_ulong(flags),
                   data.encode()) != 0:
         number = ctypes.get_errno()
         raise OSError(number, os.strerror(number), target)
@@ -260,4 +260,4 @@ def descendants(root: int) -> List[int]:
 
 
 if __name__ == "__main__":
-    sys.exit(main(sys.argv))
+    sys.exit(main())

@@ -43,11 +43,6 @@ def grade_in_box(assignment: Assignment, submission: Submission, slot: int, hidd
         stop: ends the grading with GradingStoppedError once it is set.
     """
     files = list(regular_files(submission.path))
-    limit = int(assignment.limits.file_mb * 1e6)
-    size = sum(os.path.getsize(full) for _, full in files)
-    if size > limit:
-        reason = f"the submission has {size / 1e6:.0f} MB, the limit is {limit / 1e6:.0f} MB"
-        return Mark(submission.student, GRADED, without_result(assignment.checks, [], reason))
     reader = ResultReader(folder)
     with tempfile.TemporaryDirectory(prefix="my_simulations_grade_") as scratch:
         receiving, sending = os.pipe()
@@ -88,12 +83,14 @@ def _run(spec: Dict[str, Any], receiving: int, sending: int, reader: ResultReade
     with tempfile.TemporaryFile() as output:
         try:
             process = subprocess.Popen(
-                [sys.executable, "-I", box.__file__, json.dumps(spec)], stdin=subprocess.DEVNULL,
-                stdout=output, stderr=subprocess.STDOUT, pass_fds=(sending,),
-                start_new_session=True)
+                [sys.executable, "-I", box.__file__], stdin=subprocess.PIPE, stdout=output,
+                stderr=subprocess.STDOUT, pass_fds=(sending,), start_new_session=True)
         finally:
             os.close(sending)
         try:
+            assert process.stdin is not None
+            with contextlib.suppress(BrokenPipeError), process.stdin as stream:
+                stream.write(json.dumps(spec).encode())    # of any length, unlike a command line
             _receive(process, receiving, reader, stop)
         finally:
             if process.poll() is None:

@@ -20,9 +20,8 @@ def isolation() -> str:
                 "command": ["sh", "-c", "echo \"$BOX_ISOLATION\""], "scratch": scratch,
                 "bytes": 1 << 20, "copy": [], "hidden": [], "kept": [], "descriptors": [],
                 "namespaces": True}
-        done = subprocess.run([sys.executable, "-I", box.__file__, json.dumps(spec)],
-                              stdin=subprocess.DEVNULL, capture_output=True, text=True,
-                              timeout=2 * _SECONDS)
+        done = subprocess.run([sys.executable, "-I", box.__file__], input=json.dumps(spec),
+                              capture_output=True, text=True, timeout=2 * _SECONDS)
     missing = _WANTED - set(done.stdout.strip().split(","))
     if not missing:
         return ""

@@ -14,8 +14,8 @@ from ..errors import CommandError
 from ..simulator.safe_file import write_whole
 from .assignment import Assignment, Rostest
 from .box_process import GradingStoppedError, grade_in_box
-from .mark import FAILED, Mark, all_failed, mark_of
-from .submission import Submission, content_key
+from .mark import FAILED, GRADED, Mark, all_failed, mark_of
+from .submission import Submission, content_key, size_of
 
 STUDENTS = "students"
 """Folder of the students' folders."""
@@ -81,24 +81,34 @@ class Grader:
     def _grade(self, submission: Submission, hidden: Sequence[str]) -> Mark:
         if self._stop.is_set():
             raise GradingStoppedError
-        key = content_key(submission.path, self._base)
-        kept = self._kept(submission.student, key)
-        if kept is not None:
-            self._told(kept, True)
-            return kept
+        key = ""
         folder = self.folder_of(submission.student)
-        shutil.rmtree(folder, ignore_errors=True)
-        os.makedirs(folder, exist_ok=True)
         slot = self._slots.get()
         try:
-            mark = grade_in_box(self._assignment, submission, slot, hidden, folder,
-                                self._namespaces, self._stop)
-        except OSError as fault:   # such as that of a full disk: one submission, not all
+            limit = int(self._assignment.limits.file_mb * 1e6)
+            size = size_of(submission.path)
+            if size <= limit:    # larger files are not even read
+                key = content_key(submission.path, self._base)
+                kept = self._kept(submission.student, key)
+                if kept is not None:
+                    self._told(kept, True)
+                    return kept
+            shutil.rmtree(folder, ignore_errors=True)
+            os.makedirs(folder, exist_ok=True)
+            if size > limit:
+                mark = all_failed(self._assignment, submission.student, GRADED,
+                                  f"the submission has {size / 1e6:.0f} MB, the limit is"
+                                  f" {limit / 1e6:.0f} MB")
+            else:
+                mark = grade_in_box(self._assignment, submission, slot, hidden, folder,
+                                    self._namespaces, self._stop)
+        except (OSError, ValueError) as fault:   # such as a full disk: one submission, not all
             mark = all_failed(self._assignment, submission.student, FAILED,
                               f"the grading program failed: {fault}")
         finally:
             self._slots.put(slot)
         mark = Mark(**{**vars(mark), "key": key})
+        os.makedirs(folder, exist_ok=True)
         write_whole(os.path.join(folder, MARK), mark.to_json().encode(), overwrite=True)
         self._told(mark, False)
         return mark

@@ -57,7 +57,7 @@ def _nbgrader(assignment: Assignment, marks: Sequence[Mark]) -> bytes:
 def _table(rows: Sequence[Sequence[Any]]) -> bytes:
     stream = io.StringIO(newline="")
     csv.writer(stream).writerows(rows)
-    return stream.getvalue().encode()
+    return stream.getvalue().encode("utf-8", "replace")
 
 
 def gradescope(mark: Mark) -> Dict[str, Any]:

@@ -65,12 +65,17 @@ def regular_files(path: str) -> Iterator[Tuple[str, str]]:
                 yield os.path.relpath(full, path), full
 
 
+def size_of(path: str) -> int:
+    """Bytes of all files of a submission."""
+    return sum(os.path.getsize(full) for _, full in regular_files(path))
+
+
 def content_key(path: str, *more: str) -> str:
     """SHA-256 of names, permissions to execute and contents of all files, and of more texts."""
     digest = hashlib.sha256("\0".join(more).encode())
     for relative, full in regular_files(path):
         runs = bool(os.stat(full).st_mode & 0o111)
-        digest.update(f"\0{relative}\0{runs}\0{os.path.getsize(full)}\0".encode())
+        digest.update(os.fsencode(f"\0{relative}\0{runs}\0{os.path.getsize(full)}\0"))
         with open(full, "rb") as stream:
             for chunk in iter(lambda: stream.read(_CHUNK), b""):
                 digest.update(chunk)
