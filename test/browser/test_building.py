@@ -73,7 +73,6 @@ def draw_two_rooms(sheet):
     sheet.tool("wall")
     # Near to where they shall be: angles, lengths and ends are snapped to.
     sheet.click((-3.0, -2.0), (2.9, -1.95), (2.8, 1.8), (-3.05, 1.9), (-2.9, -1.9))
-    sheet.page.keyboard.press("Escape")
     sheet.click((0.0, -2.0), (0.03, 1.7))
     sheet.page.mouse.click(*sheet.pixel((1.0, 1.0)), button="right")
     sheet.page.keyboard.press("Escape")

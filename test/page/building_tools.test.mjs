@@ -47,7 +47,6 @@ function withRoom() {
   const session = opened();
   session.tool = new WallTool(session);
   click(session, [0, 0], [3.9, 0.05], [3.9, 2.9], [0.05, 2.9], [0.02, 0.1]);
-  session.tool.cancel();
   session.endTool();
   return session;
 }

@@ -21,12 +21,14 @@ export class WallTool extends Tool {
   #aim = 0;
   /** @type {Point|null} */
   #from = null;
+  /** The first corner of the chain of walls. @type {Point|null} */
+  #first = null;
 
   /** @param {Mouse} mouse */
   press(mouse) {
     const {session} = this;
     if (!this.#from) {
-      this.#from = snapStart(mouse.point, {walls: session.level.walls, free: mouse.shift});
+      this.#first = this.#from = snapStart(mouse.point, {walls: session.level.walls, free: mouse.shift});
       this.#say();
     } else {
       this.#put(this.#from, this.#end(this.#from, mouse).point);
@@ -83,6 +85,10 @@ export class WallTool extends Tool {
     }
     const {plan} = add(session.history.plan, session.at, 'walls', {start: from, end});
     session.commit(plan, 'add wall');
+    if (this.#first && same(end, this.#first)) {
+      this.cancel();
+      return;
+    }
     this.#from = end;
     session.draft = {};
     this.#say();
@@ -90,7 +96,7 @@ export class WallTool extends Tool {
 
   #say() {
     this.session.say('Click to end the wall and start the next one, or type a length and press '
-      + 'Enter. Double-click, right-click or press Esc to finish.');
+      + 'Enter. Click the first corner, double-click, right-click or press Esc to finish.');
   }
 }
 
