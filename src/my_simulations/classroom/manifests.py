@@ -36,7 +36,7 @@ def compose(plan: ClassPlan, tokens: Mapping[str, str]) -> str:
             "volumes": [f"{student.name}:/home/student/{plan.submission}"]}
     names = [student.name for student in plan.students]
     # No container reaches another one: each has a network of its own.
-    return _text({"name": plan.name, "services": services,
+    return _text({"name": _label(plan.name), "services": services,
                   "networks": {name: {} for name in names},
                   "volumes": {name: {} for name in names}})
 

@@ -58,7 +58,7 @@ def _student(assignment: Assignment, mark: Mark) -> str:
     if REPLAY in mark.files:
         body += [f'<h2>Replay</h2><p><a href="{REPLAY}">in a window of its own</a></p>',
                  f'<iframe src="{REPLAY}" title="Replay" loading="lazy"></iframe>']
-    body += [f'<p><a href="{quote(os.fsencode(name))}">{escape(name)}</a></p>' for name in mark.files
+    body += [f'<p><a href="{quote(name)}">{escape(name)}</a></p>' for name in mark.files
              if name != REPLAY]
     return _page(f"{assignment.lab}: {mark.student}", body)
 
