@@ -17,6 +17,7 @@ from free_ports import free_ports
 from waiting import wait_for
 
 from my_simulations.classroom.class_file import read_class
+from my_simulations.classroom.class_marks import mark_shown
 from my_simulations.classroom.class_plan import FIRST_USER
 from my_simulations.classroom.class_state import ClassState
 from my_simulations.classroom.local_world import ENDED, LocalWorld, log_file, make_home
@@ -223,6 +224,13 @@ class Attacker(LocalWorld):
         return {**found, "command": ["/usr/bin/python3", "-c", ATTEMPTS, json.dumps(self.given)]}
 
 
+def written_assignment(folder):
+    file = folder / "lab.yaml"
+    file.write_text("submission: {world: a.world}\nchecks:\n"
+                    "  - {points: 2, name: valid, check_model: strict}\n")
+    return file
+
+
 def test_files_are_sent_and_collected_without_following_links(class_of_two, tmp_path):
     plan, _, secret, outside = class_of_two
     home = Path(plan.home(plan.students[0]))
@@ -239,6 +247,16 @@ def test_files_are_sent_and_collected_without_following_links(class_of_two, tmp_
         0, "anna: 1 files\nben: 0 files\n")
     found = [path for path in (tmp_path / "out").rglob("*") if not path.is_dir()]
     assert found == [tmp_path / "out" / "anna" / "pkg" / "go.py"] and os.access(found[0], os.X_OK)
+    hostile = home / "submission" / os.fsdecode(b"\xff\n,<b>" + 100 * b"\xfe")
+    hostile.write_text("pass")
+    (home / "submission" / "pkg" / "go.py").rename(home / "submission" / "go.py")
+    status, said, _ = call("collect", plan.file, "--out", tmp_path / "out", "--grade",
+                           written_assignment(tmp_path))
+    assert status == 0 and said.startswith("anna: 2 files\n")
+    found = {path.name for path in (tmp_path / "out" / "anna").rglob("*") if path.is_file()}
+    assert found == {"go.py", hostile.name}
+    assert mark_shown(plan, "anna") == {"points": 0.0, "most": 2.0, "status": "graded"}
+    assert mark_shown(plan, "ben") is None
     sheet = tmp_path / "sheet.txt"
     sheet.write_text("task 1")
     target = tmp_path / "target"
@@ -253,3 +271,5 @@ def test_files_are_sent_and_collected_without_following_links(class_of_two, tmp_
     (home / "received").unlink()
     assert call("broadcast", plan.file, sheet, "--to", "anna")[0] == 0
     assert call("broadcast", plan.file, sheet, "--to", "carl")[0] == 1
+    status, said, fault = call("broadcast", plan.file, tmp_path / "missing.txt")
+    assert (status, said, fault.count("missing.txt")) == (1, "", 1)    # it is read once

@@ -27,7 +27,7 @@ function join(link) {
 function makeTile(name) {
   const tile = element('article');
   const list = element('dl');
-  const values = Object.fromEntries(['State', 'World', 'Sim time', 'Real time factor', 'Browsers', 'Memory']
+  const values = Object.fromEntries(['State', 'World', 'Sim time', 'Real time factor', 'Browsers', 'Memory', 'Mark']
     .map((label) => {
       const value = element('dd');
       list.append(element('dt', label), value);
@@ -57,6 +57,9 @@ function makeTile(name) {
     values['Real time factor'].textContent = runs && !student.paused ? student.factor.toFixed(2) : '–';
     values.Browsers.textContent = String(student.people);
     values.Memory.textContent = `${Math.round(student.memory_mb)} MB`;
+    const mark = element('a', student.mark ? `${student.mark.points} of ${student.mark.most}` : '–');
+    if (student.mark) mark.href = `marks/students/${encodeURIComponent(name)}/index.html`;
+    values.Mark.replaceChildren(mark);
     error.textContent = student.error || student.reason;
     link.href = join(student.link);
     start.disabled = runs || student.state === 'starting';

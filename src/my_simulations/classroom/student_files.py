@@ -10,6 +10,7 @@ import os
 import secrets
 import stat
 import struct
+import tempfile
 from typing import Callable, Iterator, Tuple
 
 from ..errors import CommandError
@@ -24,18 +25,12 @@ _CHUNK = 1 << 16
 _MOST_FILES = 20000
 
 
-def send_file(plan: ClassPlan, student: Student, path: str) -> str:
-    """Copy a file into a home; returns its path there, from the home.
+def send_file(plan: ClassPlan, student: Student, name: str, content: bytes) -> str:
+    """Write a file into a home; returns its path there, from the home.
 
     Raises:
-        CommandError: it cannot be read or written.
+        CommandError: it cannot be written.
     """
-    try:
-        with open(path, "rb") as stream:
-            content = stream.read()
-    except OSError as fault:
-        raise CommandError(f"{path} cannot be read: {fault.strerror}") from None
-    name = os.path.basename(path)
     _as_student(plan, student, lambda home, _: _write(home, name, content), lambda _: None)
     return os.path.join(RECEIVED, name)
 
@@ -43,7 +38,8 @@ def send_file(plan: ClassPlan, student: Student, path: str) -> str:
 def collect(plan: ClassPlan, student: Student, out: str) -> int:
     """Copy the submission of a student to OUT/NAME; returns the number of files.
 
-    Links, and files beyond the limits of the class, are left out.
+    What was collected there before is replaced. Links, and files beyond the limits of the class,
+    are left out.
 
     Raises:
         CommandError: the files cannot be read or written.
@@ -51,15 +47,26 @@ def collect(plan: ClassPlan, student: Student, out: str) -> int:
     folder = os.path.join(out, student.name)
     limit = int(plan.limits.file_mb * 1e6)
     count = [0]
+    try:
+        os.makedirs(out, exist_ok=True)
+        with tempfile.TemporaryDirectory(prefix=".collect_", dir=out) as temporary:
+            made = os.path.join(temporary, student.name)
+            os.mkdir(made)
 
-    def receive(reading: int) -> None:
-        with os.fdopen(os.dup(reading), "rb") as stream:
-            for name, mode, content in _received(stream.read, limit):
-                _store(folder, name, mode, content)
-                count[0] += 1
+            def receive(reading: int) -> None:
+                with os.fdopen(os.dup(reading), "rb") as stream:
+                    for name, mode, content in _received(stream.read, limit):
+                        _store(made, name, mode, content)
+                        count[0] += 1
 
-    _as_student(plan, student,
-                lambda home, writing: _send_all(home, plan.submission, limit, writing), receive)
+            _as_student(plan, student, lambda home, writing: _send_all(
+                home, plan.submission, limit, writing), receive)
+            if os.path.isdir(folder):
+                os.rename(folder, os.path.join(temporary, "before"))
+            if count[0]:
+                os.rename(made, folder)
+    except OSError as fault:
+        raise CommandError(f"files of {student.name}: {fault.strerror}") from None
     return count[0]
 
 
@@ -135,7 +142,7 @@ def _send_all(home: int, inside: str, limit: int, writing: int) -> None:
                 with os.fdopen(found, "rb") as source:
                     status = os.fstat(source.fileno())
                     content = source.read(left + 1)
-                relative = os.path.normpath(os.path.join(path, name)).encode()
+                relative = os.fsencode(os.path.normpath(os.path.join(path, name)))
                 files += 1
                 if len(content) > left or files > _MOST_FILES or len(relative) > 4000:
                     return
@@ -169,7 +176,7 @@ def _received(read: Callable[[int], bytes], limit: int) -> Iterator[Tuple[str, i
         if size > left:
             return
         left -= size
-        name = read(length).decode("utf-8", "replace")
+        name = os.fsdecode(read(length))
         content = read(size)
         if len(content) < size:
             return

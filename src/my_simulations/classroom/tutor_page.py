@@ -9,6 +9,7 @@ from aiohttp import web
 
 from ..editor.transport.page_files import PageFiles
 from ..errors import CommandError
+from .class_marks import mark_shown, marks_file
 from .class_plan import ClassPlan
 
 _COOKIE = "my_simulations_class"
@@ -55,6 +56,7 @@ class TutorPage:
             web.get("/", self._file), *(web.get(path, self._file) for path in _FILES),
             web.get("/status.json", self._status),
             web.get("/students/{name}/picture.svg", self._picture),
+            web.get("/marks/{inside:.*}", self._marks),
             web.post("/students/{name}/{action}", self._act)])
         self._runner = web.AppRunner(application, access_log=None)
 
@@ -85,7 +87,8 @@ class TutorPage:
             return web.Response(status=403, text="the token is missing or wrong\n",
                                 headers=_HEADERS)
         response = await handler(request)
-        response.headers.update(_HEADERS)
+        for name, value in _HEADERS.items():
+            response.headers.setdefault(name, value)
         if request.query.get("token"):
             response.set_cookie(self._cookie, self._token, httponly=True, samesite="Strict")
         return response
@@ -101,7 +104,9 @@ class TutorPage:
                                 content_type=_FILES.get(request.path, "text/html"))
 
     async def _status(self, _request: web.Request) -> web.StreamResponse:
-        return web.json_response({"class": self._plan.name, "students": self._control.tiles()})
+        students = [{**tile, "mark": mark_shown(self._plan, tile["name"])}
+                    for tile in self._control.tiles()]
+        return web.json_response({"class": self._plan.name, "students": students})
 
     async def _picture(self, request: web.Request) -> web.StreamResponse:
         try:
@@ -109,6 +114,15 @@ class TutorPage:
                                 content_type="image/svg+xml")
         except CommandError as fault:
             return web.Response(status=404, text=f"{fault}\n")
+
+    async def _marks(self, request: web.Request) -> web.StreamResponse:
+        found = marks_file(self._plan, request.match_info["inside"] or "index.html")
+        if found is None:
+            return web.Response(status=404, text="there is no such file\n")
+        path, kind, policy = found
+        return web.FileResponse(path, headers={
+            "Content-Type": kind, "Content-Security-Policy": policy,
+            "X-Frame-Options": "SAMEORIGIN"})
 
     async def _act(self, request: web.Request) -> web.StreamResponse:
         actions = {"start": self._control.start_world, "stop": self._control.stop_world}

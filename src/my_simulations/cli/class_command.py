@@ -13,6 +13,7 @@ from urllib.error import URLError
 from urllib.parse import urlsplit
 
 from ..classroom.class_file import read_class
+from ..classroom.class_marks import marks_folder
 from ..classroom.class_plan import ClassPlan, Student
 from ..classroom.class_state import ClassState
 from ..classroom.manifests import compose, kubernetes
@@ -50,6 +51,10 @@ def parser() -> argparse.ArgumentParser:
     collected = add("collect", "copy the submissions of all students, to be graded")
     collected.add_argument("--out", default="submissions", metavar="FOLDER",
                            help="folder of the submissions (default: %(default)s)")
+    collected.add_argument("--grade", default="", metavar="ASSIGNMENT", help="then grade them, as"
+                           " the command grade; the tutor's page shows the marks")
+    collected.add_argument("--jobs", type=int, default=0, metavar="N",
+                           help="submissions that are graded at a time")
     send = add("broadcast", "copy a file into the folder `received` of each home")
     send.add_argument("data", metavar="FILE")
     send.add_argument("--to", nargs="+", default=[], metavar="STUDENT",
@@ -128,13 +133,31 @@ def _stop(plan: ClassPlan, options: argparse.Namespace) -> int:
 
 
 def _collect(plan: ClassPlan, options: argparse.Namespace) -> int:
-    return _for_each(plan.students, lambda student: (
+    status = _for_each(plan.students, lambda student: (
         f"{student.name}: {collect(plan, student, options.out)} files"))
+    if not options.grade:
+        return status
+    from .grade_command import main as grade
+
+    folders = [os.path.join(options.out, student.name) for student in plan.students]
+    handed_in = [folder for folder in folders if os.path.isdir(folder)]
+    if not handed_in:
+        raise CommandError("no student has handed in anything")
+    words = [options.grade, *handed_in, "--out", marks_folder(plan)]
+    if options.jobs:
+        words += ["--jobs", str(options.jobs)]
+    return grade(["grade", *words]) or status
 
 
 def _broadcast(plan: ClassPlan, options: argparse.Namespace) -> int:
+    try:
+        with open(options.data, "rb") as stream:
+            content = stream.read()
+    except OSError as fault:
+        raise CommandError(f"{options.data} cannot be read: {fault.strerror}") from None
+    name = os.path.basename(options.data)
     return _for_each(_chosen(plan, options.to) or list(plan.students), lambda student: (
-        f"{student.name}: {send_file(plan, student, options.data)}"))
+        f"{student.name}: {send_file(plan, student, name, content)}"))
 
 
 def _for_each(students: Sequence[Student], work: Callable[[Student], str]) -> int:

@@ -15,6 +15,7 @@ from my_simulations.classroom.monitor import Monitor
 from my_simulations.classroom.relay import Relay, own_head
 from my_simulations.classroom.tutor_page import TutorPage
 from my_simulations.errors import CommandError
+from my_simulations.grading.mark import GRADED, CheckResult, Mark
 
 HEAD = (b"GET / HTTP/1.1\r\nHost: h:1\r\nCookie: a=1; my_simulations_editor_5=mine; x=2\r\n"
         b"Connection: keep-alive\r\n\r\n")
@@ -151,6 +152,25 @@ def test_the_tutors_page_needs_the_token_of_the_tutor(tmp_path):
         assert [ask(path, **cookie)[0] for path in ("tutor.js", "tutor.css")] == [200, 200]
         assert ask("students/anna/picture.svg", **cookie) == (200, "<svg/>")
         assert ask("students/carl/picture.svg", **cookie)[0] == 404
+        assert [ask(f"marks/{path}", **cookie)[0] for path in (
+            "", "students/anna/index.html", "../tokens.json", "%2e%2e/tokens.json", "link.html")
+            ] == [404] * 5
+        folder = tmp_path / "class" / "class" / "marks" / "students" / "anna"
+        folder.mkdir(parents=True)
+        (folder.parents[2] / "tokens.json").write_text("secret")
+        (folder.parents[1] / "link.html").symlink_to(folder.parents[2] / "tokens.json")
+        (folder / "mark.json").write_text(Mark("anna", GRADED, [
+            CheckResult("a", 4.0, 3.0)]).to_json())
+        (folder / "index.html").write_text("<b>page</b>")
+        (folder / "replay.html").write_text("<script></script>")
+        assert json.loads(ask("status.json", **cookie)[1])["students"][0]["mark"] == {
+            "points": 3.0, "most": 4.0, "status": "graded"}
+        assert [ask(f"marks/{path}", **cookie)[0] for path in (
+            "students/anna/index.html", "../tokens.json", "%2e%2e/tokens.json", "link.html")
+            ] == [200, 404, 404, 404]
+        assert ask("marks/students/anna/index.html")[0] == 403
+        with urlopen(Request(base + "marks/students/anna/replay.html", None, cookie)) as answer:
+            assert answer.headers["Content-Security-Policy"].startswith("sandbox allow-scripts;")
         assert [ask(f"students/{name}", b"", **cookie)[0] for name in (
             "anna/start", "anna/stop", "carl/start", "anna/remove")] == [200, 200, 404, 404]
         assert control.calls == [("start", "anna"), ("stop", "anna")]
