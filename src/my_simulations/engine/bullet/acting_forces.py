@@ -6,9 +6,23 @@ from typing import Any, Dict, Iterable, List, Mapping, Sequence, Tuple
 import numpy as np
 import pybullet
 
-from ...geometry import ZERO3, Pose, Vec3, multiply, rotate, scale, transform
+from ...geometry import ZERO3, Pose, Vec3, add, multiply, rotate, scale, transform
 from ..body_plan import BASE
 from .bodies import Body
+from .contact_points import (
+    BODY,
+    DISTANCE,
+    FRICTION,
+    FRICTION_2,
+    LINK,
+    LOAD,
+    NORMAL,
+    OTHER_BODY,
+    OTHER_LINK,
+    OTHER_PLACE,
+    PLACE,
+    friction_force,
+)
 from .link_states import Motion
 
 Acting = Dict[int, List[Tuple[Vec3, Vec3, Vec3]]]
@@ -30,15 +44,15 @@ def note_contacts(found: Acting, body: Body) -> None:
     # directions of friction (measured, 3.2.7).
     owners = body.owners
     for contact in pybullet.getContactPoints() if any(
-            contact[10] or contact[12] for contact in mine) else mine:
-        if contact[8] > 0.0 or body.uid not in contact[1:3]:   # apart: of an older step
+            contact[FRICTION] or contact[FRICTION_2] for contact in mine) else mine:
+        if contact[DISTANCE] > 0.0 or body.uid not in contact[1:3]:   # apart: of an older step
             continue
-        force = _vector(contact[7][n] * contact[9] + contact[11][n] * contact[10]
-                        + contact[13][n] * contact[12] for n in range(3))
-        if contact[1] == body.uid:
-            note(found, owners.get(contact[3], contact[3]), force, contact[5])
-        if contact[2] == body.uid:
-            note(found, owners.get(contact[4], contact[4]), scale(force, -1.0), contact[6])
+        force = add(scale(contact[NORMAL], contact[LOAD]), friction_force(contact))
+        if contact[BODY] == body.uid:
+            note(found, owners.get(contact[LINK], contact[LINK]), force, contact[PLACE])
+        if contact[OTHER_BODY] == body.uid:
+            note(found, owners.get(contact[OTHER_LINK], contact[OTHER_LINK]), scale(force, -1.0),
+                 contact[OTHER_PLACE])
 
 
 def note_constraints(found: Acting, body: Body, links: Mapping[int, Motion]) -> None:

@@ -9,6 +9,18 @@ from ...geometry import Vec3, add, scale
 from ..body_plan import BASE
 from ..commands import Contact
 from .bodies import Body
+from .contact_points import (
+    BODY,
+    DISTANCE,
+    LINK,
+    LOAD,
+    NORMAL,
+    OTHER_BODY,
+    OTHER_LINK,
+    OTHER_PLACE,
+    PLACE,
+    friction_force,
+)
 
 
 def read_contacts(bodies: Dict[int, Body], limit: int,
@@ -24,25 +36,27 @@ def read_contacts(bodies: Dict[int, Body], limit: int,
     found: List[Contact] = []
     for contact in pybullet.getContactPoints():
         rows = []
-        for uid, index in ((contact[1], contact[3]), (contact[2], contact[4])):
+        places = ((contact[BODY], contact[LINK], contact[PLACE]),
+                  (contact[OTHER_BODY], contact[OTHER_LINK], contact[OTHER_PLACE]))
+        for uid, index, _ in places:
             body = bodies.get(uid)
             rows += [] if body is None else [
                 part.row for part in body.colliders
                 if part.index == index or (body.rigid and part.index == BASE)][:1]
         if len(rows) == 2:
             # Bullet does not solve points of separated surfaces: their forces are of an older step.
-            force = contact[9] if contact[8] <= 0.0 else 0.0
-            for place in (contact[1], contact[3], contact[5]), (contact[2], contact[4], contact[6]):
+            force = contact[LOAD] if contact[DISTANCE] <= 0.0 else 0.0
+            for place in places:
                 told = load(*place)
                 force = force if told is None else told
-            if force <= 0.0 and contact[8] > 0.0:
+            if force <= 0.0 and contact[DISTANCE] > 0.0:
                 continue
-            friction = add(scale(contact[11], contact[10]), scale(contact[13], contact[12]))
+            friction = friction_force(contact)
             for more in more_friction:
-                friction = add(friction, more(contact[1], contact[3], contact[5]))
-                friction = add(friction, scale(more(contact[2], contact[4], contact[6]), -1))
-            found.append(Contact(rows[0], rows[1], contact[6], contact[7], -contact[8], force,
-                                 friction))
+                friction = add(friction, more(*places[0]))
+                friction = add(friction, scale(more(*places[1]), -1))
+            found.append(Contact(rows[0], rows[1], contact[OTHER_PLACE], contact[NORMAL],
+                                 -contact[DISTANCE], force, friction))
         if len(found) >= limit:
             break
     return tuple(found)

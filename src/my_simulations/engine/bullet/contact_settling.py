@@ -35,6 +35,7 @@ from ...geometry import Vec3
 from ..run_state import PARTING_NOT_BEGUN, RestPlace
 from .bodies import Body
 from .body_events import COMMANDED, BodyEvent
+from .contact_points import DISTANCE, FRICTION, FRICTION_2, LOAD, OTHER_BODY
 from .rest_place import put_at_rest, read_place
 from .step_helper import FAR, StepHelper, next_multiple
 from .world_parameters import USUAL_ACCURACY, Accuracy, WorldParameters
@@ -214,7 +215,7 @@ class ContactSettling(StepHelper):
         assert self._until is not None
         if step < self._until - self._parting_steps + self._least_steps:
             return False
-        return all(contact[8] > -_SHALLOW for contact in pybullet.getContactPoints())
+        return all(contact[DISTANCE] > -_SHALLOW for contact in pybullet.getContactPoints())
 
     def _stands(self, tree: _Tree, states: JointStates) -> bool:
         """Whether an articulated body is slow, touches something, and is not held."""
@@ -233,7 +234,7 @@ class ContactSettling(StepHelper):
             tree.looks, tree.clear = 0, _CLEAR if body.base is None else 0
             return False
         alone = not (body.ties or body.balls or body.uid in self._loaded()
-                     or any(contact[2] in self._moving for contact in contacts))
+                     or any(contact[OTHER_BODY] in self._moving for contact in contacts))
         if held is not None:
             if alone and speed < _PUSHED and fastest < _PUSHED_JOINT:
                 tree.held = held
@@ -286,9 +287,9 @@ def _creeps(body: Body) -> bool:
         return True
     normal = along = across = 0.0
     for contact in pybullet.getContactPoints(bodyA=uid):
-        normal += contact[9]
-        along += abs(contact[10])
-        across += abs(contact[12])
+        normal += contact[LOAD]
+        along += abs(contact[FRICTION])
+        across += abs(contact[FRICTION_2])
     return max(along, across) > _LEANS * normal
 
 

@@ -10,16 +10,16 @@ this load, and Coulomb's law at each edge, the Husky turns at 1.36 rad/s.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, List, Optional, Sequence, Tuple
+from typing import List, Optional, Sequence, Tuple
 
 from ...description.model import Link
 from ...description.shapes import Cylinder
 from ...geometry import Vec3, conjugate, cross, dot, norm, rotate, scale
 from .bodies import Part
+from .contact_points import DISTANCE, LOAD, NORMAL, PLACE, ContactPoint
 from .link_states import Motion
 
-Contact = Tuple[Any, ...]  # as PyBullet returns them
-Loads = Tuple[List[Contact], List[float]]
+Loads = Tuple[List[ContactPoint], List[float]]
 _Plane = Tuple[Vec3, Vec3, Vec3, float]  # two directions in it, its normal, its height along it
 
 _NEAR = 1e-4   # m: an edge closer to the floor carries a load
@@ -33,7 +33,7 @@ class _Edge:
     """Contacts of one edge of a wheel, and their mean position in the floor plane, m."""
 
     wheel: int
-    contacts: List[Contact]
+    contacts: List[ContactPoint]
     x: float
     y: float
 
@@ -46,13 +46,13 @@ def axle_of(part: Part, link: Link) -> Optional[Vec3]:
     return rotate(conjugate(part.link_from_com.orientation), along)
 
 
-def carrying(contacts: Sequence[Contact]) -> Loads:
+def carrying(contacts: Sequence[ContactPoint]) -> Loads:
     """Return the contacts of a link that carry a load, and their loads, N."""
-    kept = [contact for contact in contacts if contact[9] > 0.0 and contact[8] <= 0.0]
-    return kept, [contact[9] for contact in kept]
+    kept = [contact for contact in contacts if contact[LOAD] > 0.0 and contact[DISTANCE] <= 0.0]
+    return kept, [contact[LOAD] for contact in kept]
 
 
-def shared(wheels: Sequence[Tuple[Motion, Vec3, Sequence[Contact]]]) -> List[Loads]:
+def shared(wheels: Sequence[Tuple[Motion, Vec3, Sequence[ContactPoint]]]) -> List[Loads]:
     """Return the loaded contacts of each wheel of a body, with loads for equally stiff edges.
 
     Args:
@@ -64,10 +64,10 @@ def shared(wheels: Sequence[Tuple[Motion, Vec3, Sequence[Contact]]]) -> List[Loa
     first = next((contacts[0] for contacts, _ in found if contacts), None)
     if first is None:
         return found
-    normal = first[7]
+    normal = first[NORMAL]
     along = cross(normal, (0.0, 0.0, 1.0) if abs(normal[2]) < 0.9 else (0.0, 1.0, 0.0))
     along = scale(along, 1.0 / norm(along))
-    plane = (along, cross(normal, along), normal, dot(first[5], normal))
+    plane = (along, cross(normal, along), normal, dot(first[PLACE], normal))
     edges: List[_Edge] = []
     moments = [0.0, 0.0, 0.0]
     for n, (motion, axle, contacts) in enumerate(wheels):
@@ -89,23 +89,23 @@ def shared(wheels: Sequence[Tuple[Motion, Vec3, Sequence[Contact]]]) -> List[Loa
     return made
 
 
-def _edges(wheel: int, centre: Vec3, axis: Vec3, contacts: Sequence[Contact], plane: _Plane,
+def _edges(wheel: int, centre: Vec3, axis: Vec3, contacts: Sequence[ContactPoint], plane: _Plane,
            moments: List[float]) -> Optional[List[_Edge]]:
     """Return the edges of a wheel, or None off the plane; add its loads to `moments`."""
     (tx, ty, tz), (sx, sy, sz), (nx, ny, nz), height = plane
     u, v, w = centre
     a, b, c = axis
-    sides: Tuple[List[Contact], List[Contact]] = ([], [])
+    sides: Tuple[List[ContactPoint], List[ContactPoint]] = ([], [])
     places = [[0.0, 0.0], [0.0, 0.0]]
     for contact in contacts:
-        if contact[8] >= _NEAR:
+        if contact[DISTANCE] >= _NEAR:
             continue
-        (x, y, z), (p, q, r) = contact[5], contact[7]
+        (x, y, z), (p, q, r) = contact[PLACE], contact[NORMAL]
         if abs(x * nx + y * ny + z * nz - height) > _LEVEL or p * nx + q * ny + r * nz < _ALIKE:
             return None
         side = (x - u) * a + (y - v) * b + (z - w) * c > 0.0
         sides[side].append(contact)
-        along, aside, load = x * tx + y * ty + z * tz, x * sx + y * sy + z * sz, contact[9]
+        along, aside, load = x * tx + y * ty + z * tz, x * sx + y * sy + z * sz, contact[LOAD]
         places[side][0] += along
         places[side][1] += aside
         moments[0] += load

@@ -14,7 +14,7 @@ counts as no slip, and Bullet's friction acts.
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Any, Dict, Iterable, Iterator, List, Optional, Tuple
+from typing import Dict, Iterable, Iterator, List, Optional, Tuple
 
 import pybullet
 
@@ -35,6 +35,17 @@ from ...geometry import (
 )
 from ..drive_commands import WheelSlip
 from .bodies import Axis, Body, Part
+from .contact_points import (
+    DISTANCE,
+    LINK,
+    LOAD,
+    NORMAL,
+    OTHER_BODY,
+    OTHER_LINK,
+    PLACE,
+    ContactPoint,
+    LinkKey,
+)
 from .extra_surfaces import anisotropy
 from .link_states import Motion, motion
 from .surface_coefficients import directed, of_link
@@ -44,8 +55,7 @@ _LEFT = 1e-3            # share of Bullet's friction that stays where this modul
 _NEAR = 0.05            # m: a contact point that moved further in one step is a different one
 _LEAST_MOMENT = 1e-9    # kg m^2
 
-Key = Tuple[int, int]   # body uid, link index
-Contacts = List[Tuple[Any, ...]]  # as PyBullet returns them
+Contacts = List[ContactPoint]
 
 
 @dataclass
@@ -89,11 +99,11 @@ class ForceDependentSlip:
     """Applies friction with force-dependent slip to links."""
 
     def __init__(self) -> None:
-        self._links: Dict[Key, _Slippery] = {}
-        self._rows: Dict[int, List[Key]] = {}
+        self._links: Dict[LinkKey, _Slippery] = {}
+        self._rows: Dict[int, List[LinkKey]] = {}
         self._axes: Dict[int, Tuple[Body, Axis]] = {}
-        self._slides: Dict[Key, _Slippery] = {}
-        self._pairs: Dict[Tuple[Key, Key], _Pair] = {}
+        self._slides: Dict[LinkKey, _Slippery] = {}
+        self._pairs: Dict[Tuple[LinkKey, LinkKey], _Pair] = {}
         self._wheels: Dict[int, WheelSlip] = {}
 
     @property
@@ -172,10 +182,10 @@ class ForceDependentSlip:
             self._turn(wheel)
         before, self._pairs = self._pairs, {}
         for key, link in self._slides.items():
-            found: Dict[Key, Contacts] = {}
+            found: Dict[LinkKey, Contacts] = {}
             for contact in pybullet.getContactPoints(bodyA=key[0]):
-                if contact[3] == key[1] and contact[9] > 0.0 and contact[8] <= 0.0:
-                    found.setdefault((contact[2], contact[4]), []).append(contact)
+                if contact[LINK] == key[1] and contact[LOAD] > 0.0 and contact[DISTANCE] <= 0.0:
+                    found.setdefault((contact[OTHER_BODY], contact[OTHER_LINK]), []).append(contact)
             ours = [False, False]
             for other, contacts in found.items():
                 if other in self._links and not (other in self._slides and other < key):
@@ -197,20 +207,20 @@ class ForceDependentSlip:
 
     # -- pairs -------------------------------------------------------------------------------------
 
-    def _rub(self, key: Key, other: Key, contacts: Contacts, pair: _Pair,
+    def _rub(self, key: LinkKey, other: LinkKey, contacts: Contacts, pair: _Pair,
              dt: float) -> List[bool]:
         """Compute and apply the friction of two links; return the directions that have a slip."""
         one, two = self._links[key], self._links[other]
         mine, theirs = motion(*key), motion(*other)
-        carried = sum(contact[9] for contact in contacts)
-        normal = scale(contacts[0][7], 1.0 / norm(contacts[0][7]))
+        carried = sum(contact[LOAD] for contact in contacts)
+        normal = scale(contacts[0][NORMAL], 1.0 / norm(contacts[0][NORMAL]))
         along = _along(one, mine, normal) or _along(two, theirs, normal) or _any_across(normal)
         across = cross(normal, along)
-        velocities = [subtract(mine.velocity_at(contact[5]), theirs.velocity_at(contact[5]))
+        velocities = [subtract(mine.velocity_at(contact[PLACE]), theirs.velocity_at(contact[PLACE]))
                       for contact in contacts]
         slip = ZERO3
         for contact, velocity in zip(contacts, velocities):
-            slip = add(slip, scale(velocity, contact[9] / carried))
+            slip = add(slip, scale(velocity, contact[LOAD] / carried))
         gain = dt * (_ease(one, mine, contacts) + _ease(two, theirs, contacts))
         soft = [one.slips[n] + two.slips[n] for n in (0, 1)]
         slides = [each > _STIFF * gain for each in soft]
@@ -227,22 +237,22 @@ class ForceDependentSlip:
         force = add(scale(along, forces[0]), scale(across, forces[1]))
         pair.points = {}
         for contact, velocity in zip(contacts, velocities):
-            share = scale(force, contact[9] / carried)
+            share = scale(force, contact[LOAD] / carried)
             turning = subtract(velocity, slip)
             for n, axis in enumerate((along, across)):
                 if slides[n]:   # slip from rotation about the centre of the contact
                     share = add(share, scale(axis, -dot(turning, axis)
                                              / (len(contacts) * (soft[n] + gain))))
-            pair.points[contact[5]] = share
+            pair.points[contact[PLACE]] = share
             if one.moves:
-                pybullet.applyExternalForce(*key, share, contact[5], pybullet.WORLD_FRAME)
+                pybullet.applyExternalForce(*key, share, contact[PLACE], pybullet.WORLD_FRAME)
             if two.moves:
-                pybullet.applyExternalForce(*other, scale(share, -1.0), contact[5],
+                pybullet.applyExternalForce(*other, scale(share, -1.0), contact[PLACE],
                                             pybullet.WORLD_FRAME)
         return slides
 
 
-def _take(key: Key, link: _Slippery, ours: Tuple[bool, bool]) -> None:
+def _take(key: LinkKey, link: _Slippery, ours: Tuple[bool, bool]) -> None:
     """Reduce Bullet's friction in the directions in which this module applies friction."""
     if ours == link.ours:
         return
@@ -272,5 +282,5 @@ def _ease(link: _Slippery, state: Motion, contacts: Contacts) -> float:
     """Return an upper bound of the acceleration of a link per force at a contact, 1/kg."""
     if not link.moves or link.part.mass <= 0.0:
         return 0.0
-    arm = max(norm(subtract(contact[5], state.position)) for contact in contacts)
+    arm = max(norm(subtract(contact[PLACE], state.position)) for contact in contacts)
     return 1.0 / link.part.mass + arm * arm / max(_LEAST_MOMENT, min(link.part.moments))

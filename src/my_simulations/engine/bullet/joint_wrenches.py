@@ -39,6 +39,7 @@ from ..commands import JointWrench, ReadJointWrenches
 from .acting_forces import Acting, constraint_forces, note, note_constraints, note_contacts
 from .bodies import Body, Part
 from .body_events import BodyObserver
+from .contact_points import LINK, PLACE
 from .forces import Forces
 from .link_motion import Acceleration, Chain, accelerations, inertial_wrench
 from .link_states import Motion, link_motions
@@ -179,8 +180,8 @@ class JointWrenches(BodyObserver):
         found: Acting = {}
         if self._sliding.busy:
             for contact in pybullet.getContactPoints(bodyA=body.uid):
-                force = self._sliding.friction(body.uid, contact[3], contact[5])
-                note(found, contact[3], force, contact[5])
+                force = self._sliding.friction(body.uid, contact[LINK], contact[PLACE])
+                note(found, contact[LINK], force, contact[PLACE])
         return found
 
     def _wrench(self, cut: _Cut, seen: _Seen) -> Optional[JointWrench]:

@@ -39,6 +39,7 @@ from . import collision_groups
 from .approach import approach, extent, flies, speed_of
 from .bodies import Body, Part
 from .body_events import COMMANDED, BodyEvent
+from .contact_points import DISTANCE, LOAD, NORMAL, OTHER_PLACE, PLACE
 from .landing_points import MOST_TILT, Filters, LandingPoints, Touch, extents_across
 from .step_helper import FAR, StepHelper, looks_until_turn, turn_of
 from .world_parameters import Accuracy, WorldParameters
@@ -212,7 +213,7 @@ class LandingContacts(StepHelper):
     def _is_on_ground(self, flight: _Flight, step: int, linear: Vec3) -> bool:
         """Whether a body touches something; then its next check is some steps later."""
         uid = flight.body.uid
-        if not any(contact[9] > 0.0 for contact in pybullet.getContactPoints(bodyA=uid)):
+        if not any(contact[LOAD] > 0.0 for contact in pybullet.getContactPoints(bodyA=uid)):
             return False
         flight.on_ground += 1
         if flight.on_ground > _BOUNCES or norm(linear) <= _RESTS:
@@ -259,11 +260,11 @@ class LandingContacts(StepHelper):
             points = pybullet.getClosestPoints(uid, other, way * (_AHEAD + 2))
             if not points or way == 0.0:   # without gravity a body at rest stays there
                 continue
-            nearest = min(points, key=lambda point: point[8])
-            gap: float = nearest[8]
-            normal: Vec3 = nearest[7]
+            nearest = min(points, key=lambda point: point[DISTANCE])
+            gap: float = nearest[DISTANCE]
+            normal: Vec3 = nearest[NORMAL]
             at, turn = pybullet.getBasePositionAndOrientation(uid)
-            speed_in = approach(uid, other if moves else None, nearest[5], normal)
+            speed_in = approach(uid, other if moves else None, nearest[PLACE], normal)
             steps = max(0.0, gap) / max(1e-9, dt * (speed_in + spin + _AHEAD * fall))
             free = int(min(free, steps))
             tilt = self._tilt_beyond_flat(uid, turn, normal)
@@ -277,7 +278,7 @@ class LandingContacts(StepHelper):
                 continue
             if lands and not self._lies_in(flight, other):
                 width, breadth = extents_across(low, high, normal)
-                touches.append(Touch(uid, other, gap, nearest[6], normal, at, turn,
+                touches.append(Touch(uid, other, gap, nearest[OTHER_PLACE], normal, at, turn,
                                       (linear, angular), width, breadth))
         flight.look, flight.arrives = step + max(1, ahead), step + free
         touches.sort(key=lambda touch: touch.gap)

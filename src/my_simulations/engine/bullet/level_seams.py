@@ -25,6 +25,7 @@ from ...geometry import Vec3, conjugate, norm, rotate
 from ..body_plan import BASE
 from . import collision_groups
 from .bodies import Body
+from .contact_points import DISTANCE, LOAD, NORMAL, OTHER_BODY
 from .rolling_contacts import axis_of
 from .step_helper import FAR, StepHelper, next_multiple
 from .world_parameters import WorldParameters
@@ -92,7 +93,8 @@ class LevelSeams(StepHelper):
             self._look(dt, gravity)
         self._before = {uid: pybullet.getBaseVelocity(uid) for uid in self._level}
         for uid in self._level:
-            self._widen(uid, [contact[2] for contact in pybullet.getContactPoints(bodyA=uid)])
+            contacts = pybullet.getContactPoints(bodyA=uid)
+            self._widen(uid, [contact[OTHER_BODY] for contact in contacts])
 
     def after(self, step: int, dt: float, gravity: Vec3) -> None:
         """Restore the velocities of before the step for bodies that a side pushed."""
@@ -131,12 +133,13 @@ class LevelSeams(StepHelper):
         if abs(rotate(turn, self._bodies[uid][1])[2]) < _UP:
             return []
         contacts = pybullet.getContactPoints(bodyA=uid)
-        if any(contact[2] not in self._static for contact in contacts):
+        if any(contact[OTHER_BODY] not in self._static for contact in contacts):
             return []
-        upright = [contact for contact in contacts if contact[7][2] > _UP]
-        floors = {contact[2]: None for contact in sorted(upright, key=lambda each: each[8])}
+        upright = sorted((contact for contact in contacts if contact[NORMAL][2] > _UP),
+                         key=lambda contact: contact[DISTANCE])
+        floors = {contact[OTHER_BODY]: None for contact in upright}
         if floors:   # the floor under it first, the sides that it touches last
-            floors.update((contact[2], None) for contact in contacts)
+            floors.update((contact[OTHER_BODY], None) for contact in contacts)
         return list(floors)
 
     def _see_seam(self, uid: int, floor: int, duration: float) -> None:
@@ -155,9 +158,9 @@ class LevelSeams(StepHelper):
     def _is_caught(uid: int, level: Set[int]) -> bool:
         """Whether the side of a level floor pushes a body that touches only such floors."""
         pushing = [contact for contact in pybullet.getContactPoints(bodyA=uid)
-                   if contact[9] > 0.0 and contact[8] <= 0.0]
-        return (all(contact[2] in level for contact in pushing)
-                and any(contact[7][2] < _UP for contact in pushing))
+                   if contact[LOAD] > 0.0 and contact[DISTANCE] <= 0.0]
+        return (all(contact[OTHER_BODY] in level for contact in pushing)
+                and any(contact[NORMAL][2] < _UP for contact in pushing))
 
 
 def _top(uid: int) -> float:

@@ -22,10 +22,10 @@ import pybullet
 from ...geometry import Vec3
 from .bodies import Body
 from .body_events import COMMANDED, BodyEvent
+from .contact_points import LINK, LOAD, OTHER_BODY, OTHER_LINK, LinkKey
 from .step_helper import FAR, StepHelper
 
-Node = Tuple[int, int]  # body uid, link index
-Pair = FrozenSet[Node]
+Pair = FrozenSet[LinkKey]
 
 EVERY = 4
 """Steps between two checks of the contacts."""
@@ -54,14 +54,14 @@ class FrictionBalance(StepHelper):
     def __init__(self, misfit: Callable[[int, float], None]) -> None:
         self._misfit = misfit
         self._told = False
-        self._mu: Dict[Node, float] = {}
-        self._fixed: Dict[Node, float] = {}
-        self._free: Dict[Node, float] = {}
-        self._touching: Dict[Node, Set[Pair]] = {}
+        self._mu: Dict[LinkKey, float] = {}
+        self._fixed: Dict[LinkKey, float] = {}
+        self._free: Dict[LinkKey, float] = {}
+        self._touching: Dict[LinkKey, Set[Pair]] = {}
         # Surfaces by check, modulo _SLOTS, so that a change of the step count does not matter.
-        self._slots: List[List[Node]] = [[] for _ in range(_SLOTS)]
-        self._wait: Dict[Node, Tuple[int, int]] = {}   # slot, checks between two turns
-        self._soon: Dict[Node, None] = {}              # due at the next check
+        self._slots: List[List[LinkKey]] = [[] for _ in range(_SLOTS)]
+        self._wait: Dict[LinkKey, Tuple[int, int]] = {}   # slot, checks between two turns
+        self._soon: Dict[LinkKey, None] = {}              # due at the next check
         self._rigid: Set[int] = set()
         self._pairs: Dict[Pair, float] = {}
         self._ring = 0
@@ -146,7 +146,7 @@ class FrictionBalance(StepHelper):
             self._slots[at].append(node)
         return changed
 
-    def _solve(self, nodes: List[Node], pairs: List[Pair]) -> None:
+    def _solve(self, nodes: List[LinkKey], pairs: List[Pair]) -> None:
         column = {node: n for n, node in enumerate(nodes)}
         rows, targets = np.zeros((len(pairs), len(nodes))), np.zeros(len(pairs))
         for n, pair in enumerate(pairs):
@@ -174,14 +174,14 @@ class FrictionBalance(StepHelper):
             node = next(node for node in sorted(pairs[worst]) if node in self._free)
             self._misfit(node[0], float(off[worst]))
 
-    def _ask(self, node: Node) -> bool:
+    def _ask(self, node: LinkKey) -> bool:
         """Store the pairs and normal forces, N, of a surface. Returns whether pairs changed."""
         found: Dict[Pair, float] = {}
         uid, index = node
-        contacts = [(each[2], each[4], each[9])
+        contacts = [(each[OTHER_BODY], each[OTHER_LINK], each[LOAD])
                     for each in pybullet.getContactPoints(bodyA=uid, linkIndexA=index)]
         if uid not in self._rigid:  # PyBullet lists a self-contact for one of the two links
-            contacts += [(uid, each[3], each[9]) for each in pybullet.getContactPoints(
+            contacts += [(uid, each[LINK], each[LOAD]) for each in pybullet.getContactPoints(
                 bodyA=uid, bodyB=uid, linkIndexB=index)]
         for other_uid, other_index, force in contacts:
             other = other_uid, other_index

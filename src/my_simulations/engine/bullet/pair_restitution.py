@@ -25,10 +25,9 @@ import pybullet
 from ...geometry import Vec3
 from . import surface_coefficients
 from .bodies import Body
+from .contact_points import LinkKey
 from .step_helper import FAR, StepHelper
 from .world_parameters import WorldParameters
-
-Node = Tuple[int, int]  # body uid, link index
 
 _AMONG_MOVING = 0.05     # weight of a pair of moving surfaces; of one with a static surface: 1
 _MOST_KINDS = 60         # with more, pairs of moving surfaces are ignored
@@ -56,10 +55,10 @@ class PairRestitution(StepHelper):
         self._parameters, self._misfit = parameters, misfit
         self._told = False
         self._changed = False
-        self._kinds: Dict[Node, _Kind] = {}
-        self._stored: Dict[Node, float] = {}
-        self._thresholds: Dict[Node, float] = {}
-        self._models: Dict[Node, int] = {}
+        self._kinds: Dict[LinkKey, _Kind] = {}
+        self._stored: Dict[LinkKey, float] = {}
+        self._thresholds: Dict[LinkKey, float] = {}
+        self._models: Dict[LinkKey, int] = {}
 
     def add(self, body: Body) -> None:
         """Register a new body."""

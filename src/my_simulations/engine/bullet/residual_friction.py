@@ -17,7 +17,7 @@ a pile. The selection depends on the step count and their state only, so runs re
 from __future__ import annotations
 
 from math import inf
-from typing import Any, Callable, Dict, List, Optional, Sequence, Set, Tuple
+from typing import Callable, Dict, List, Optional, Sequence, Set, Tuple
 
 import pybullet
 
@@ -26,12 +26,22 @@ from ..body_plan import BASE
 from . import collision_groups
 from .bodies import Body
 from .body_events import COMMANDED, BodyEvent
+from .contact_points import (
+    DIRECTION,
+    DISTANCE,
+    FRICTION,
+    LOAD,
+    OTHER_BODY,
+    OTHER_LINK,
+    OTHER_PLACE,
+    PLACE,
+    ContactPoint,
+    LinkKey,
+    friction_force,
+)
 from .link_states import Motion, motion
 from .step_helper import FAR, StepHelper, looks_until_turn, turn_of
 from .surface_coefficients import directed, of_link
-
-Contact = Tuple[Any, ...]  # as PyBullet returns it
-Node = Tuple[int, int]  # body uid, link index
 
 EVERY = 8
 """Steps between two checks of the fast bodies."""
@@ -75,7 +85,7 @@ class ResidualFriction(StepHelper):
         self._asleep: Set[int] = set()
         self._clear: Dict[int, int] = {}    # until which check
         self._planes: Set[int] = set()
-        self._mu: Dict[Node, float] = {}    # of surfaces with one coefficient
+        self._mu: Dict[LinkKey, float] = {}    # of surfaces with one coefficient
         self._rounds: Optional[Tuple[List[int], List[int]]] = None
 
     def add(self, body: Body) -> None:
@@ -233,17 +243,16 @@ class ResidualFriction(StepHelper):
         return (len(contacts) <= _MOST_CONTACTS and any(map(_is_left, contacts))
                 and self._is_beyond_mu(uid, contacts))
 
-    def _is_beyond_mu(self, uid: int, contacts: Sequence[Contact]) -> bool:
+    def _is_beyond_mu(self, uid: int, contacts: Sequence[ContactPoint]) -> bool:
         """Whether the friction of any surface on a body exceeds mu N."""
-        loads: Dict[Node, float] = {}
-        frictions: Dict[Node, Vec3] = {}
+        loads: Dict[LinkKey, float] = {}
+        frictions: Dict[LinkKey, Vec3] = {}
         for contact in contacts:
-            if contact[8] > 0.0:
+            if contact[DISTANCE] > 0.0:
                 continue
-            node = (contact[2], contact[4])
-            loads[node] = loads.get(node, 0.0) + contact[9]
-            frictions[node] = add(frictions.get(node, _NONE), add(
-                scale(contact[11], contact[10]), scale(contact[13], contact[12])))
+            node = (contact[OTHER_BODY], contact[OTHER_LINK])
+            loads[node] = loads.get(node, 0.0) + contact[LOAD]
+            frictions[node] = add(frictions.get(node, _NONE), friction_force(contact))
         mu = self._mu.get((uid, BASE), inf)
         return any(norm(frictions[node]) > _BEYOND * load * min(mu, self._mu[node])
                    for node, load in loads.items() if node in self._mu)
@@ -252,10 +261,10 @@ class ResidualFriction(StepHelper):
         """Undo the residual friction at the contacts of a body. Returns the class of the body."""
         contacts = pybullet.getContactPoints(bodyA=uid)
         if len(contacts) > _MOST_CONTACTS:
-            return _PILED if any(each[2] in self._moving for each in contacts) else _SLIDES
+            return _PILED if any(each[OTHER_BODY] in self._moving for each in contacts) else _SLIDES
         neighbour, left = -1, []
         for contact in contacts:
-            other = contact[2]
+            other = contact[OTHER_BODY]
             if other != neighbour and other in self._moving:
                 if neighbour >= 0:
                     return _PILED
@@ -272,23 +281,23 @@ class ResidualFriction(StepHelper):
                     collision_groups.moving(self._bodies[uid].parts[0].link).set(uid, BASE)
                     return _MENDED
         for contact in left:
-            self._take_back(uid, contact[2], contact, dt)
+            self._take_back(uid, contact[OTHER_BODY], contact, dt)
         seen.add(uid)
         return _MENDED if left else _SLIDES if contacts else _FLIES
 
-    def _take_back(self, uid: int, other: int, contact: Contact, dt: float) -> None:
+    def _take_back(self, uid: int, other: int, contact: ContactPoint, dt: float) -> None:
         """Undo the friction impulses of one contact; the first direction opposes the slip."""
-        along: Vec3 = contact[11]
+        along: Vec3 = contact[DIRECTION]
         ours = motion(uid, BASE)
         theirs = motion(other, BASE) if other in self._bodies else None
-        velocity = ours.velocity_at(contact[5])
+        velocity = ours.velocity_at(contact[PLACE])
         if theirs is not None:
-            velocity = subtract(velocity, theirs.velocity_at(contact[6]))
-        sign = dt if (dot(velocity, along) > 0.0) == (contact[10] > 0.0) else -dt
-        impulse = add(scale(along, sign * contact[10]), scale(contact[13], sign * contact[12]))
-        _push(self._bodies[uid], ours, impulse, contact[5])
+            velocity = subtract(velocity, theirs.velocity_at(contact[OTHER_PLACE]))
+        sign = dt if (dot(velocity, along) > 0.0) == (contact[FRICTION] > 0.0) else -dt
+        impulse = scale(friction_force(contact), sign)
+        _push(self._bodies[uid], ours, impulse, contact[PLACE])
         if theirs is not None:
-            _push(self._bodies[other], theirs, scale(impulse, -1.0), contact[6])
+            _push(self._bodies[other], theirs, scale(impulse, -1.0), contact[OTHER_PLACE])
 
 
 def _push(body: Body, before: Motion, impulse: Vec3, at: Vec3) -> None:
@@ -302,12 +311,12 @@ def _push(body: Body, before: Motion, impulse: Vec3, at: Vec3) -> None:
         before.linear[2] + impulse[2] / part.mass), add(before.angular, gained))
 
 
-def _is_left(contact: Contact) -> bool:
+def _is_left(contact: ContactPoint) -> bool:
     """Whether a contact without load has friction.
 
     Contacts of separated surfaces are excluded: their forces are of an older step.
     """
-    return contact[9] <= 0.0 and contact[10] != 0.0 and contact[8] <= 0.0
+    return contact[LOAD] <= 0.0 and contact[FRICTION] != 0.0 and contact[DISTANCE] <= 0.0
 
 
 def _tumbles(angular: Vec3, gravity: Vec3) -> bool:

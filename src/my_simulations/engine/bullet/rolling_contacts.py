@@ -42,6 +42,7 @@ from ..body_plan import BASE
 from . import collision_groups
 from .bodies import Body, Part
 from .body_events import ACTUATED, COMMANDED, BodyEvent
+from .contact_points import DISTANCE, NORMAL, OTHER_BODY, LinkKey
 from .extra_surfaces import SOFT
 from .link_states import place
 from .step_helper import FAR, StepHelper, next_multiple
@@ -68,7 +69,6 @@ _HARD = 1e12        # N/m: so stiff that only the share counts
 _CHANGE = 0.1       # smaller relative changes of the share are not applied
 
 
-Key = Tuple[int, int]  # body uid, link index
 
 
 @dataclass
@@ -112,15 +112,15 @@ class RollingContacts(StepHelper):
 
     events = COMMANDED
 
-    def __init__(self, dropping: Callable[[AbstractSet[Key], int], None],
+    def __init__(self, dropping: Callable[[AbstractSet[LinkKey], int], None],
                  loaded: Callable[[], AbstractSet[int]],
                  flies: Callable[[int, int], bool],
                  find_pairs: Callable[[], None]) -> None:
         self._find_pairs = find_pairs
         self._dropping, self._loaded, self._flies = dropping, loaded, flies
-        self.on_seams: Dict[Key, Vec3] = {}
-        self._rollers: Dict[Key, _Roller] = {}
-        self._rolling: Dict[Key, collision_groups.Filter] = {}
+        self.on_seams: Dict[LinkKey, Vec3] = {}
+        self._rollers: Dict[LinkKey, _Roller] = {}
+        self._rolling: Dict[LinkKey, collision_groups.Filter] = {}
         self._standing: Dict[int, Pose] = {}
         self._moving: Set[int] = set()
         self._seams: Set[int] = set()   # floors of triangles
@@ -212,7 +212,7 @@ class RollingContacts(StepHelper):
                 self._find_pairs()
             self._drop(self.on_seams.keys(), step)
 
-    def _drop(self, keys: AbstractSet[Key], step: int) -> None:
+    def _drop(self, keys: AbstractSet[LinkKey], step: int) -> None:
         """Drop the contact points of links, those of one set in the order of `_rolling`."""
         for key, meets in self._rolling.items():
             if key in keys and not self._flies(key[0], step):
@@ -248,10 +248,10 @@ class RollingContacts(StepHelper):
             self._part(roller, contacts, dt, norm(gravity))
         if not contacts:
             return (uid, index) in self._rolling
-        roller.seamed = any(contact[2] in self._seams for contact in contacts)
-        if any(abs(dot(contact[7], axis)) > _LYING for contact in contacts):
+        roller.seamed = any(contact[OTHER_BODY] in self._seams for contact in contacts)
+        if any(abs(dot(contact[NORMAL], axis)) > _LYING for contact in contacts):
             roller.wait = _PATIENCE if all(
-                abs(dot(contact[7], axis)) > _UPRIGHT for contact in contacts) else 0
+                abs(dot(contact[NORMAL], axis)) > _UPRIGHT for contact in contacts) else 0
             return False
         if roller.body.rigid:
             before = self._standing.pop(uid, None)
@@ -273,9 +273,10 @@ class RollingContacts(StepHelper):
         """
         share = least = min(_MOST, _PARTING * dt)
         key = roller.body.uid, roller.part.index
-        depth = max((-contact[8] for contact in contacts), default=0.0)
+        depth = max((-contact[DISTANCE] for contact in contacts), default=0.0)
         if depth > 0.0 and key in self._rolling and not any(
-                contact[2] in self._moving or (contact[2] in self._seams and not roller.body.rigid)
+                contact[OTHER_BODY] in self._moving
+                or (contact[OTHER_BODY] in self._seams and not roller.body.rigid)
                 for contact in contacts):
             share = min(_MOST, max(least, _PUSH * weight * dt * dt / depth))
         if abs(share - (roller.share or least)) > _CHANGE * share:
@@ -298,8 +299,8 @@ class RollingContacts(StepHelper):
         Points without overlap, as of triangle edges beside it, may be inclined.
         """
         limit = _LEVEL * norm(gravity)
-        return all(contact[2] not in self._moving and (
-            contact[8] > 0.0 or norm(cross(contact[7], gravity)) <= limit)
+        return all(contact[OTHER_BODY] not in self._moving and (
+            contact[DISTANCE] > 0.0 or norm(cross(contact[NORMAL], gravity)) <= limit)
                    for contact in contacts)
 
 

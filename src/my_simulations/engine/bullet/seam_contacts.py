@@ -13,15 +13,16 @@ wheel: at 0.05 m/s a wheel lost or gained up to 80 % of its speed in 10 s. Two c
 from __future__ import annotations
 
 from math import sqrt
-from typing import Any, Dict, List, NamedTuple, Tuple
+from typing import Dict, List, NamedTuple, Tuple
 
 import pybullet
 
 from ...geometry import Vec3, add, cross, dot, norm, rotate, scale, subtract
 from .bodies import Body
 from .body_events import COMMANDED, BodyEvent
+from .contact_points import DISTANCE, LOAD, NORMAL, OTHER_BODY, PLACE, ContactPoint, LinkKey
 from .link_states import place
-from .rolling_contacts import EVERY, Key, RollingContacts
+from .rolling_contacts import EVERY, RollingContacts
 from .step_helper import FAR, StepHelper, next_multiple
 from .world_parameters import WorldParameters
 
@@ -30,7 +31,6 @@ _CHORD = 1.5   # of the half chord in the floor: an edge beyond it is an obstacl
 _SAME = 0.95   # smallest cosine between two normals of one surface
 _NONE = (0.0, 0.0, 0.0)
 
-Contact = Tuple[Any, ...]  # as PyBullet returns it
 
 
 class _Push(NamedTuple):
@@ -48,8 +48,8 @@ class SeamContacts(StepHelper):
 
     def __init__(self, rolling: RollingContacts, parameters: WorldParameters) -> None:
         self._rolling, self._parameters = rolling, parameters
-        self._at: Dict[Key, Tuple[Vec3, Vec3]] = {}   # centre and axis before the step
-        self._pushes: Dict[Key, List[_Push]] = {}
+        self._at: Dict[LinkKey, Tuple[Vec3, Vec3]] = {}   # centre and axis before the step
+        self._pushes: Dict[LinkKey, List[_Push]] = {}
 
     def forget(self, body: Body) -> None:
         """Discard the data of a removed body."""
@@ -85,10 +85,10 @@ class SeamContacts(StepHelper):
         if not self._at:
             return
         for key, (centre, axis) in self._at.items():
-            ends: Dict[bool, List[Contact]] = {}
+            ends: Dict[bool, List[ContactPoint]] = {}
             for contact in pybullet.getContactPoints(bodyA=key[0], linkIndexA=key[1]):
-                if contact[8] <= 0.0 and self._rolling.is_seamed(contact[2]):
-                    end = dot(subtract(contact[5], centre), axis) > 0.0
+                if contact[DISTANCE] <= 0.0 and self._rolling.is_seamed(contact[OTHER_BODY]):
+                    end = dot(subtract(contact[PLACE], centre), axis) > 0.0
                     ends.setdefault(end, []).append(contact)
             pushes = [push for contacts in ends.values() for push in _pushes(
                 contacts, centre, axis)]
@@ -97,22 +97,22 @@ class SeamContacts(StepHelper):
         self._at.clear()
 
 
-def _pushes(contacts: List[Contact], centre: Vec3, axis: Vec3) -> List[_Push]:
+def _pushes(contacts: List[ContactPoint], centre: Vec3, axis: Vec3) -> List[_Push]:
     """Return the compensation for edge forces at one end of a cylinder: none or one push."""
-    deepest = min(contacts, key=lambda contact: contact[8])
-    lever = subtract(deepest[5], centre)
+    deepest = min(contacts, key=lambda contact: contact[DISTANCE])
+    lever = subtract(deepest[PLACE], centre)
     along = dot(lever, axis)
     radius = norm(_across(lever, axis))
-    normal = _across(deepest[7], axis)
-    reach = _CHORD * sqrt(-2.0 * deepest[8] * radius)
+    normal = _across(deepest[NORMAL], axis)
+    reach = _CHORD * sqrt(-2.0 * deepest[DISTANCE] * radius)
     force, torque = _NONE, 0.0
     for contact in contacts:
-        own, load = _across(contact[7], axis), contact[9]
-        way = norm(_across(subtract(contact[5], deepest[5]), axis))
+        own, load = _across(contact[NORMAL], axis), contact[LOAD]
+        way = norm(_across(subtract(contact[PLACE], deepest[PLACE]), axis))
         if load <= 0.0 or way > reach or dot(own, normal) < _SAME:
             continue
         force = add(force, scale(subtract(normal, own), load))
-        torque -= load * dot(axis, cross(subtract(contact[5], centre), own))
+        torque -= load * dot(axis, cross(subtract(contact[PLACE], centre), own))
     if force == _NONE and torque == 0.0:
         return []
     return [_Push(force, add(centre, scale(axis, along)), scale(axis, torque))]

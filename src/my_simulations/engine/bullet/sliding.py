@@ -20,7 +20,7 @@ body.
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Any, Dict, List, Optional, Set, Tuple
+from typing import Dict, List, Optional, Set, Tuple
 
 import pybullet
 
@@ -29,6 +29,7 @@ from ...description.shapes import Collision
 from ...geometry import Quat, Vec3, dot, norm, rotate, scale
 from .bodies import Body, Part
 from .body_events import BodyEvent
+from .contact_points import DISTANCE, LINK, LOAD, NORMAL, OTHER_BODY, PLACE, ContactPoint, LinkKey
 from .edge_loads import Loads, axle_of, carrying, shared
 from .extra_surfaces import anisotropy, first_direction
 from .force_dependent_slip import slips
@@ -50,8 +51,7 @@ _NONE = (0.0, 0.0, 0.0)
 _OURS = (1e-3,) * 3
 _BULLETS = (1.0,) * 3
 
-Key = Tuple[int, int]  # body uid, link index
-Contacts = List[Tuple[Any, ...]]  # as PyBullet returns them
+Contacts = List[ContactPoint]
 
 
 @dataclass(frozen=True)
@@ -110,11 +110,11 @@ class Sliding(StepHelper):
 
     def __init__(self) -> None:
         self._parts: Dict[int, Dict[int, Part]] = {}
-        self._directions: Dict[Key, _Directions] = {}
+        self._directions: Dict[LinkKey, _Directions] = {}
         self._mass: Dict[int, float] = {}
         self._fixed: Set[int] = set()
         self._static: Dict[int, float] = {}
-        self._slides: Dict[Key, _Slide] = {}
+        self._slides: Dict[LinkKey, _Slide] = {}
         self._wanted = True
 
     def configure(self, wanted: bool) -> None:
@@ -212,8 +212,8 @@ class Sliding(StepHelper):
         """Find the links of a body that slide."""
         found: Dict[int, Contacts] = {}
         for contact in pybullet.getContactPoints(bodyA=uid):
-            if contact[3] in parts and contact[9] > 0.0 and contact[8] <= 0.0:
-                found.setdefault(contact[3], []).append(contact)
+            if contact[LINK] in parts and contact[LOAD] > 0.0 and contact[DISTANCE] <= 0.0:
+                found.setdefault(contact[LINK], []).append(contact)
         for index, contacts in found.items():
             if (uid, index) in self._slides or self._touches_moving(contacts):
                 continue
@@ -226,17 +226,17 @@ class Sliding(StepHelper):
                 pybullet.changeDynamics(uid, index, anisotropicFriction=_OURS)
 
     def _touches_moving(self, contacts: Contacts) -> bool:
-        return any(contact[2] not in self._static for contact in contacts)
+        return any(contact[OTHER_BODY] not in self._static for contact in contacts)
 
-    def _loads(self) -> Dict[Key, Tuple[Motion, Loads]]:
+    def _loads(self) -> Dict[LinkKey, Tuple[Motion, Loads]]:
         """Return motion and loads of each sliding link; wheels of a body share their load."""
         bodies: Dict[int, List[int]] = {}
         for uid, index in self._slides:
             bodies.setdefault(uid, []).append(index)
-        found: Dict[Key, Tuple[Motion, Loads]] = {}
+        found: Dict[LinkKey, Tuple[Motion, Loads]] = {}
         for uid, indices in bodies.items():
             wheels: List[Tuple[Motion, Vec3, Contacts]] = []
-            names: List[Tuple[Key, Motion]] = []
+            names: List[Tuple[LinkKey, Motion]] = []
             for index, moves in zip(indices, motions(uid, indices)):
                 slide = self._slides[uid, index]
                 contacts = pybullet.getContactPoints(bodyA=uid, linkIndexA=index)
@@ -250,13 +250,13 @@ class Sliding(StepHelper):
                 found[key] = moves, loads
         return found
 
-    def _go_on(self, key: Key, moves: Motion, carried_by: Loads, step: int, dt: float,
+    def _go_on(self, key: LinkKey, moves: Motion, carried_by: Loads, step: int, dt: float,
                gravity: float) -> None:
         """Compute the friction of the next step, or restore Bullet's friction."""
         slide = self._slides[key]
         contacts, loads = carried_by
         slide.forces = {}
-        slide.loads = {contact[5]: load for contact, load in zip(contacts, loads)}
+        slide.loads = {contact[PLACE]: load for contact, load in zip(contacts, loads)}
         slide.apart = 0 if contacts else slide.apart + 1
         if slide.apart > _LOST or self._touches_moving(contacts):
             self._give_back(key)
@@ -275,15 +275,16 @@ class Sliding(StepHelper):
         soft = _SOFT * dt * max(gravity, sum(loads) / slide.mass)
         slow = False
         for contact, load, velocity in zip(contacts, loads, slips):
-            most = self._static[contact[2]]
+            most = self._static[contact[OTHER_BODY]]
             if slide.directions is None:
                 mu = min(slide.part.mu, most)
                 speed, along = norm(velocity), velocity
             else:
-                mu, speed, along = _weighed(velocity, slide.directions, moves[1], contact[7], most)
+                mu, speed, along = _weighed(velocity, slide.directions, moves.orientation,
+                                            contact[NORMAL], most)
             slow = slow or speed < soft * mu
             if speed > 0.0:
-                slide.forces[contact[5]] = scale(along, -mu * load / max(speed, soft * mu))
+                slide.forces[contact[PLACE]] = scale(along, -mu * load / max(speed, soft * mu))
         # A slip that has grown is the effect of a command.
         turned = dot(slip, before) < 0.0 and norm(slip) < norm(before) + _HELD
         slide.slow = slow
@@ -312,14 +313,14 @@ class Sliding(StepHelper):
             self._give_back(key)
 
     @staticmethod
-    def _try(key: Key, slide: _Slide, trying: bool) -> None:
+    def _try(key: LinkKey, slide: _Slide, trying: bool) -> None:
         """Use Bullet's friction from the next step on, or that of this module again."""
         slide.trying, slide.held = trying, False
         if trying:
             slide.forces = {}
         pybullet.changeDynamics(*key, anisotropicFriction=_bullets(slide) if trying else _OURS)
 
-    def _give_back(self, key: Key) -> None:
+    def _give_back(self, key: LinkKey) -> None:
         pybullet.changeDynamics(*key, anisotropicFriction=_bullets(self._slides.pop(key)))
 
 
@@ -363,7 +364,7 @@ def _slips(moves: Motion, contacts: Contacts, loads: List[float]) -> Tuple[List[
     found: List[Vec3] = []
     mean_x = mean_y = mean_z = carried = 0.0
     for contact, load in zip(contacts, loads):
-        (x, y, z), (a, b, c) = contact[5], contact[7]
+        (x, y, z), (a, b, c) = contact[PLACE], contact[NORMAL]
         x, y, z = x - centre[0], y - centre[1], z - centre[2]
         sx, sy, sz = u + q * z - r * y, v + r * x - p * z, w + p * y - q * x
         away = sx * a + sy * b + sz * c

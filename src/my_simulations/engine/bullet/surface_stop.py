@@ -27,6 +27,7 @@ from ..body_plan import BASE
 from .approach import extent
 from .bodies import Body
 from .body_events import COMMANDED, BodyEvent
+from .contact_points import DISTANCE, NORMAL, PLACE
 from .link_states import Motion, motion
 from .step_helper import FAR, StepHelper
 from .surface_coefficients import of_link, restitution
@@ -171,10 +172,10 @@ class SurfaceStop(StepHelper):
             if not points:
                 continue
             nearest = min(points, key=_depth)
-            gap, normal = nearest[8], nearest[7]
+            gap, normal = nearest[DISTANCE], nearest[NORMAL]
             if gap <= 0.0 or gap > ahead * towards * dt:
                 continue
-            at = nearest[5]
+            at = nearest[PLACE]
             inward = dot(subtract(there.velocity_at(at), here.velocity_at(at)), normal)
             if there is _STILL or other not in self._bodies:
                 inward -= dot(gravity, normal) * dt
@@ -206,4 +207,4 @@ def _nearing(one: Motion, other: Motion, radius: float) -> float:
 
 def _depth(point: Tuple[float, ...]) -> float:
     """Return the distance at a closest point, m, below 0 for an overlap."""
-    return point[8]
+    return point[DISTANCE]
