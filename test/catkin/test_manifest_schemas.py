@@ -16,7 +16,7 @@ from jsonschema import Draft4Validator, Draft7Validator
 from my_simulations.classroom.class_file import read_class
 from my_simulations.classroom.manifests import compose, kubernetes
 
-REPOSITORY = Path(__file__).resolve().parents[3]
+REPOSITORY = Path(__file__).resolve().parents[2]
 KINDS = {"Namespace": "core.v1", "Secret": "core.v1", "PersistentVolumeClaim": "core.v1",
          "Service": "core.v1", "Deployment": "apps.v1", "NetworkPolicy": "networking.v1"}
 CLASS = """class: Robotics 26
