@@ -146,3 +146,21 @@ def test_any_number_of_a_topic_is_plotted(editor):
         editor.button(f"Remove {variable}").click()
     wait_for(lambda: heard(editor) == 0, "nobody who hears the scan")
     editor.button("Close plots").click()
+
+
+def test_parameters_of_a_plugin_are_set_in_fields_and_the_plugin_starts_again(editor):
+    editor.row("rover").click()
+    editor.page.keyboard.press("ArrowRight")
+    editor.row("drive").click()
+    width = editor.field("wheelSeparation")
+    assert width.input_value() == "0.3"
+    width.fill("0.36")
+    width.press("Enter")
+    editor.until("editor.store.model('rover').plugins[0].xml.includes("
+                 "'<wheelSeparation>0.36</wheelSeparation>')", "the new parameter")
+    wait_for(lambda: any(one["name"] == "/cmd_vel" and one["subscribers"]
+                         for one in editor.get("editor.request('topics', {})")["topics"]),
+             "the plugin that listens again")
+    editor.page.keyboard.press("Escape")
+    editor.page.keyboard.press("Control+z")
+    wait_for(lambda: editor.field("wheelSeparation").input_value() == "0.3", "the value of before")

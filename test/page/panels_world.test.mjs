@@ -3,6 +3,7 @@ import test from 'node:test';
 import {layersOf} from '../../web/js/panels/layers_tab.js';
 import {geometryFields, unitGeometry} from '../../web/js/panels/geometry_fields.js';
 import {sectionsOf, valueAt} from '../../web/js/panels/property_sections.js';
+import {pluginFields} from '../../web/js/panels/plugin_fields.js';
 import {modelOf, rowOf, worldRows} from '../../web/js/panels/world_rows.js';
 import {searched} from '../../web/js/panels/insert_tab.js';
 import {drivenJoints} from '../../web/js/panels/joints_panel.js';
@@ -103,6 +104,18 @@ test('a world without a document has no rows', () => {
 });
 
 const row = (rows, id) => rows.find((one) => one.id === id);
+
+test('each element of a plugin that holds only text is a field', () => {
+  const xml = '<plugin name="p"><!-- <a>1</a> --><on>True</on><b><c unit="m"> 0.5 </c></b><d>x &amp; y</d></plugin>';
+  const model = box('a', undefined, {plugins: [{xml: '<plugin name="o"/>'}, {xml}]});
+  const {entity, fields} = pluginFields(model, 1);
+  assert.deepEqual(fields.map(({label, type}) => [label, type]), [['on', 'flag'], ['c', 'number'], ['d', 'text']]);
+  assert.deepEqual(Object.values(entity), [true, 0.5, 'x & y']);
+  /** @param {number} at @param {unknown} value */
+  const text = (at, value) => fields[at].ops(value).ops[0].text.split('\n');
+  assert.deepEqual(text(2, '<z>'), ['<plugin name="o"/>', xml.replace('x &amp; y', '&lt;z&gt;')]);
+  assert.equal(text(1, 2)[1], xml.replace(' 0.5 ', '2'));
+});
 
 test('every field of every row finds a value in the document', () => {
   const model = box('a', undefined, {

@@ -4,6 +4,7 @@
 import * as table from './property_fields.js';
 import {geometryFields} from './geometry_fields.js';
 import {bodySections} from './model_sections.js';
+import {pluginFields} from './plugin_fields.js';
 /** @import {Field, Section} from './property_fields.js' */
 /** @import {Row} from './world_rows.js' */
 /** @import {World} from '../protocol.js' */
@@ -133,8 +134,13 @@ const KINDS = {
     ];
   },
   plugin: (world, row) => {
-    const owner = row.model ? named(world.models, row.model) : world;
-    return owner && [section('', '', owner.plugins[row.index ?? -1], table.PLUGIN)];
+    const model = named(world.models, row.model);
+    const index = row.index ?? -1;
+    const plugin = (model ?? world).plugins[index];
+    if (!model || !plugin) return [section('', '', plugin, table.PLUGIN)];
+    const {entity, fields} = pluginFields(model, index);
+    return [section('', '', plugin, table.PLUGIN.slice(0, 2)), section('Parameters', '', entity, fields),
+      section('Source', '', plugin, table.PLUGIN.slice(2))];
   },
   light: (world, row) => {
     const light = named(world.lights, row.name);
