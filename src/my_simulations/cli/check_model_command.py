@@ -117,6 +117,7 @@ def unknown_plugins(loaded: Loaded) -> List[Issue]:
     if not specs:
         return []
     from ..plugins.registry import PluginRegistry, library_name
+    from ..plugins.without_effect import no_effect_note
     from ..resources.ros_packages import PackageIndex
 
     registry = PluginRegistry(folders=PackageIndex().folders)
@@ -124,7 +125,7 @@ def unknown_plugins(loaded: Loaded) -> List[Issue]:
     for spec in specs:
         library = library_name(spec.filename)
         if library not in unknown and not registry.knows(spec.filename):
-            unknown[library] = Issue(
+            unknown[library] = no_effect_note(spec) or Issue(
                 Severity.NOTE, "not-simulated", f"<plugin {spec.name}> has no effect: there is no"
                 f" plugin for {library or 'a library without a name'}", spec.file, spec.line,
                 hint="a package can bring one: see doc/plugins.md")

@@ -42,6 +42,7 @@ from .running import ModelPlugins, Running
 from .schedule import Schedule, ScheduledCall
 from .simulated_context import Shared, SimulatedContext
 from .step_readings import StepReadings
+from .without_effect import no_effect_note
 
 _LOOK_S = 0.5      # between two looks while nothing rings
 _SETTLE_S = 120.0   # how long a caller waits for plugins to be loaded
@@ -408,7 +409,10 @@ class PluginHost:
         try:
             where = self._registry.locate(found.spec.filename)
         except UnknownPluginError as unknown:
-            running.fault = self._tell_unknown(found, entity, str(unknown))
+            note = no_effect_note(found.spec)
+            if note is None:
+                running.fault = self._unknown(found, entity, str(unknown))
+            self._tell_once(library_name(found.spec.filename), note or running.fault)
             return
 
         made: List[Plugin] = []
@@ -429,16 +433,16 @@ class PluginHost:
         return IsolatedPlugin(running.context, where, process, self._patience,
                               lambda waited: self._meanwhile.take_turn(running, waited))
 
-    def _tell_unknown(self, found: Found, entity: Entity, text: str) -> Issue:
-        issue = warning("plugin-unknown", f"{text}; '{found.spec.name}' of model"
-                        f" '{entity.model.name}' does nothing", file=found.spec.file,
-                        line=found.spec.line,
-                        hint="a package can bring one: see doc/plugins.md")
-        name = library_name(found.spec.filename)
-        if name not in self._told:
-            self._told[name] = True
+    def _unknown(self, found: Found, entity: Entity, text: str) -> Issue:
+        return warning("plugin-unknown", f"{text}; '{found.spec.name}' of model"
+                       f" '{entity.model.name}' does nothing", file=found.spec.file,
+                       line=found.spec.line,
+                       hint="a package can bring one: see doc/plugins.md")
+
+    def _tell_once(self, library: str, issue: Optional[Issue]) -> None:
+        if issue is not None and library not in self._told:
+            self._told[library] = True
             self._log(issue)
-        return issue
 
     def _end_leaving(self) -> None:
         leaving = self._models.leaving

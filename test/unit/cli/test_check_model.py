@@ -256,6 +256,15 @@ def test_plugins_that_nobody_brings_are_named_once(tmp_path):
         (Severity.NOTE, 3, "libmystery.so"), (Severity.NOTE, 2, "libunseen.so")]
 
 
+def test_a_plugin_without_effect_is_noted_with_the_reason(tmp_path):
+    path = tmp_path / "robot.sdf"
+    path.write_text(sdf("<model name='m'><static>1</static><link name='l'/>"
+                        "<plugin name='p' filename='libLedPlugin.so'/></model>"))
+    (issue,) = check(str(path), Resolver())[1]
+    assert (issue.severity, issue.hint) == (Severity.NOTE, "")
+    assert issue.message.endswith("has no effect: the lights stay as the file sets them")
+
+
 PLACES = ("<model name='m'><link name='l'/>{}</model>",
           "<model name='m'><model name='n'><link name='l'/>{}</model></model>",
           "<model name='m'><link name='l'><sensor name='s' type='ray'><ray/>{}</sensor></link>"

@@ -153,6 +153,19 @@ def test_an_unknown_library_is_one_warning_that_names_it(case):
     assert "libmystery.so" in issue.message and issue.line == 12
 
 
+@pytest.mark.parametrize("library, reason", [
+    ("libKeyboardGUIPlugin.so", "Gazebo's own window"),
+    ("libFlashLightPlugin.so", "the lights stay as the file sets them"),
+    ("libCameraPlugin.so", "topics of Gazebo's own transport"),
+])
+def test_a_library_without_an_effect_here_is_one_note_with_its_reason(case, library, reason):
+    one = case(robot("a", "<plugin/>", library), robot("b", "<plugin/>", library))
+    (issue,) = one.issues
+    assert (issue.code, issue.severity) == ("not-simulated", Severity.NOTE)
+    assert library in issue.message and reason in issue.message and issue.line == 12
+    assert one.host.faults("a") == []
+
+
 def test_a_joint_that_is_missing_is_the_users_fault_and_said_without_a_traceback(case):
     one = case(robot(xml="<plugin><leftJoint>nowhere</leftJoint></plugin>"))
     (issue,) = [issue for issue in one.issues if issue.code == "plugin-failed"]
