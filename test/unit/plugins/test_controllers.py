@@ -212,6 +212,23 @@ def test_a_circle_closes_in_the_odometry():
     assert {one[:2] for one in arm.context.transforms} == {("odom", "base_link")}
 
 
+def test_states_of_the_wheels_are_published_if_they_are_asked_for():
+    topic = "drive/wheel_joint_controller_state"
+    plain = base()
+    go(plain, 0.3, 1.0, 0.2)
+    assert not any(name.endswith(topic) for name in plain.context.published)
+    arm = base(publish_wheel_joint_controller_state=True)
+    go(arm, 0.3, 1.0, 0.5)
+    message = arm.published(topic)[-1]
+    assert message.joint_names == ["one", "two"]
+    assert message.desired.velocities == pytest.approx([0.5, 5.5])
+    assert message.actual.velocities == pytest.approx([0.5, 5.5])
+    assert message.desired.positions == pytest.approx([0.25, 2.75], rel=0.05)
+    assert message.error.positions == pytest.approx(
+        [a - b for a, b in zip(message.desired.positions, message.actual.positions)])
+    assert message.actual.accelerations == pytest.approx([0.0, 0.0], abs=1e-9)
+
+
 def test_accelerations_are_limited_and_old_commands_forgotten():
     arm = base(linear={"x": {"has_acceleration_limits": True, "max_acceleration": 1.0,
                              "has_velocity_limits": True, "max_velocity": 0.4}},

@@ -2,7 +2,7 @@
 from __future__ import annotations
 
 import pytest
-from robot_control import Arm, Client, trajectory
+from robot_control import NS, Arm, Client, trajectory
 from test_cameras import RAW, camera
 
 from my_simulations.description.model import Joint, JointAxis, Link
@@ -15,6 +15,7 @@ from my_simulations.plugins.testing import FakeContext, Message
 
 EFFORT = "hardware_interface/EffortJointInterface"
 POSITION = "hardware_interface/PositionJointInterface"
+VELOCITY = "hardware_interface/VelocityJointInterface"
 OPTIONS = (Option("rate", 2.0, 1.0, 50.0, "Hz"), Option("on", True, False, True, ""),
            Option("count", 3, 0, 9, ""))
 VALUES = {"rate": 10.0, "on": False, "count": 4}
@@ -162,3 +163,36 @@ def test_wheels_slip_as_was_set_and_again_on_their_own():
     assert context.slips["rear"][3:] == (5.0, 0.0)
     ask(context, service, doubles=[(name, -1.0)])
     assert context.slips["rear"][3:] == (1.0, 0.0)
+
+
+def test_a_diff_drive_changes_its_lengths_and_its_odometry_while_it_drives():
+    arm = Arm(VELOCITY, axis=JointAxis((0.0, 1.0, 0.0)),
+              drive={"type": "diff_drive_controller/DiffDriveController", "left_wheel": "one",
+                     "right_wheel": "two", "wheel_separation": 0.5, "wheel_radius": 0.1,
+                     "enable_odom_tf": False, "left_wheel_radius_multiplier": 1.1})
+    name = f"{NS}/drive"
+    arm.run("drive")
+    assert ask(arm.context, name) == {
+        "left_wheel_radius_multiplier": 1.1, "right_wheel_radius_multiplier": 1.0,
+        "wheel_separation_multiplier": 1.0, "publish_rate": 50.0, "enable_odom_tf": False}
+
+    def go_on(seconds):
+        for _ in range(round(seconds / 0.1)):
+            arm.hear("drive/cmd_vel", linear={"x": 0.33}, angular={"z": 0.4})
+            arm.context.advance(0.1)
+
+    go_on(0.5)
+    assert arm.context.transforms == []
+    before = arm.published("drive/odom")[-1].pose.pose.position.x
+    ask(arm.context, name, bools=[("enable_odom_tf", True)], doubles=[
+        ("left_wheel_radius_multiplier", 0.75), ("right_wheel_radius_multiplier", 1.5),
+        ("wheel_separation_multiplier", 0.8), ("publish_rate", 100.0)])
+    count = len(arm.published("drive/odom"))
+    go_on(0.5)
+    left, right = (arm.context.joints[wheel].velocity for wheel in ("one", "two"))
+    assert (left, right) == pytest.approx(((0.33 - 0.08) / 0.075, (0.33 + 0.08) / 0.15))
+    after = arm.published("drive/odom")
+    assert len(after) - count == pytest.approx(50, abs=2)
+    assert after[-1].twist.twist.angular.z == pytest.approx(0.4)
+    assert 0.0 <= after[count].pose.pose.position.x - before < 0.02   # no jump
+    assert arm.context.transforms

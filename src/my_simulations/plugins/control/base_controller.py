@@ -46,6 +46,8 @@ class BaseController(Controller):
         open_loop: odometry integrates the commands, else the rotation of the wheels.
         smooths: the published velocity is the mean of the last ones.
         goes_sideways: a command's `linear.y` is used.
+        publish_hz, hertz: how often odometry is published, and commands are applied, Hz.
+        broadcasts: whether the transform is published.
     """
 
     smooths = True
@@ -87,18 +89,18 @@ class BaseController(Controller):
         """Read parameters; take the wheels; offer topics."""
         s = self.settings
         self.load_wheels()
-        self._publish_hz = s.number("publish_rate", 50.0)
+        self.publish_hz = s.number("publish_rate", 50.0)
         self.open_loop = s.flag("open_loop", False)
         self._time_out = TimeOut(self.context, s.number("cmd_vel_timeout", 0.5))
         self.limits = tuple(speed_limits(s, path) for path in ("linear/x", "linear/y", "angular/z"))
-        self._hertz = 1.0 / self.period if self.period else max(_UPDATE_HZ, self._publish_hz)
-        self._change = StepwiseChange(self.context, self._hertz, self._update)
+        self.hertz = 1.0 / self.period if self.period else max(_UPDATE_HZ, self.publish_hz)
+        self._change = StepwiseChange(self.context, self.hertz, self._update)
         self._end: Optional[Ending] = None   # of the last command
-        self._count_hz = self._hertz if self.period else self._publish_hz or _UPDATE_HZ
+        self._count_hz = self.hertz if self.period else self.publish_hz or _UPDATE_HZ
         window = s.number("velocity_rolling_window_size", 10.0) * self._count_hz / _ORIGINAL_HZ
         self.window = max(1, round(window))
         self._frames = (s.text("odom_frame_id", "odom"), s.text("base_frame_id", "base_link"))
-        self._broadcasts = s.flag("enable_odom_tf", True)
+        self.broadcasts = s.flag("enable_odom_tf", True)
         self._covariances = [diagonal(tuple(s.numbers(f"{what}_covariance_diagonal", 6,
                                                       [0.0] * 6))) for what in ("pose", "twist")]
         self._odom = self.publish("odom", "nav_msgs/Odometry", 100)
@@ -116,13 +118,17 @@ class BaseController(Controller):
         self.begin_count()
         self._now_ns = self.context.now_ns
         self.drive(STANDING)
+        self.observe_all()
+
+    def observe_all(self) -> None:
+        """Begin the odometry and what the controller publishes."""
         topics = [self._odom, *self.more_topics()]
-        self.observe(self._count_hz, self._count, topics, transforms=self._broadcasts,
+        self.observe(self._count_hz, self._count, topics, transforms=self.broadcasts,
                      remembers=True)
         if self._limited is not None:
-            self.observe(self._hertz, self._tell_command, [self._limited])
-        if self._publish_hz > 0.0:
-            self.observe(self._publish_hz, self._tell, topics, transforms=self._broadcasts)
+            self.observe(self.hertz, self._tell_command, [self._limited])
+        if self.publish_hz > 0.0:
+            self.observe(self.publish_hz, self._tell, topics, transforms=self.broadcasts)
 
     def stop(self) -> None:
         """Stop the base."""
@@ -195,7 +201,7 @@ class BaseController(Controller):
 
     def _tell(self) -> None:
         pose = planar(*self._pose)
-        if self._broadcasts:
+        if self.broadcasts:
             self.context.transform(*self._frames, pose)
         self.tell_more()
         if self._odom.wanted:

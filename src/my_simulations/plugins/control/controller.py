@@ -107,6 +107,12 @@ class Controller:
         """Call a reading function at a rate while the controller runs; see `Context.observe`."""
         self._timers.append(self.context.observe(hertz, call, topics, **reads))
 
+    def end_calls(self) -> None:
+        """End the calls of `every` and `observe`."""
+        for timer in self._timers:
+            timer.end()
+        self._timers = []
+
     # -- for the manager ---------------------------------------------------------------------------
 
     def switch_on(self) -> None:
@@ -119,9 +125,7 @@ class Controller:
 
     def switch_off(self) -> None:
         """Stop the controller and release its joints."""
-        for timer in self._timers:
-            timer.end()
-        self._timers = []
+        self.end_calls()
         self.stop()
         self.state = STOPPED
         for names in self.claimed.values():

@@ -1,16 +1,55 @@
 """diff_drive_controller: wheels on two sides, odometry of their turning."""
 from __future__ import annotations
 
-from typing import List, Tuple
+from typing import Dict, List, Optional, Tuple
 
 from ...geometry import norm, subtract
 from ..context import PluginError
+from ..reconfigure import Option, Reconfigure, Value
 from .base_controller import BaseController, Planar
+from .controller import RUNNING
 from .hardware import VELOCITY, HardwareJoint
+from .wheel_states import WheelStates
+
+_MULTIPLIERS = tuple(f"{name}_multiplier" for name in (
+    "left_wheel_radius", "right_wheel_radius", "wheel_separation"))
+_OPTIONS = (
+    *(Option(name, 1.0, 0.5, 1.5, "factor on the length of the file") for name in _MULTIPLIERS),
+    Option("publish_rate", 50.0, 0.0, 2000.0, "Hz of the odometry"),
+    Option("enable_odom_tf", True, False, True, "publish the transform from odom to the base"),
+)
 
 
 class DiffDriveController(BaseController):
     """Wheels `left_wheel` and `right_wheel`: a joint each, or several."""
+
+    def load(self) -> None:
+        """Read parameters; take the wheels; offer topics, and values to dynamic_reconfigure."""
+        super().load()
+        values: Dict[str, Value] = dict(zip(_MULTIPLIERS, self._multipliers))
+        self.keep(Reconfigure(self.context, self.name, _OPTIONS, {
+            **values, "publish_rate": self.publish_hz, "enable_odom_tf": self.broadcasts},
+            self._reconfigure))
+
+    def _reconfigure(self, values: Dict[str, Value]) -> None:
+        left, right, wide = (float(values[name]) for name in _MULTIPLIERS)
+        self._multipliers = left, right, wide
+        self.publish_hz, self.broadcasts = (float(values["publish_rate"]),
+                                            bool(values["enable_odom_tf"]))
+        if self.state == RUNNING:
+            self.drive(self.last)
+            self.end_calls()
+            self.observe_all()
+
+    def observe_all(self) -> None:
+        """Begin the odometry and what the controller publishes."""
+        super().observe_all()
+        if self._states is not None:
+            self.observe(self.hertz, self._publish_states, [self._states.publication])
+
+    def _publish_states(self) -> None:
+        assert self._states is not None
+        self._states.publish(self._rates(self.command))
 
     def load_wheels(self) -> None:
         """Two sides with as many wheels."""
@@ -21,6 +60,10 @@ class DiffDriveController(BaseController):
                               " wheels")
         self._sides = [[self.take(VELOCITY, name) for name in side] for side in names]
         self._read_geometry(names[0][0], names[1][0])
+        self._states: Optional[WheelStates] = None
+        if s.flag("publish_wheel_joint_controller_state", False):
+            self._states = WheelStates(self.context, self._sides, self.publish(
+                "wheel_joint_controller_state", "control_msgs/JointTrajectoryControllerState", 100))
 
     def _read_geometry(self, left: str, right: str) -> None:
         s = self.settings
@@ -30,34 +73,47 @@ class DiffDriveController(BaseController):
             separation = norm(subtract(self.place(joints[0]), self.place(joints[1])))
         if s.get("wheel_radius") is None:
             radius = self.radius_of(joints[0])
-        both = s.number("wheel_radius_multiplier", 0.0)
-        self._separation = separation * s.number("wheel_separation_multiplier", 1.0)
-        self._radii = tuple(radius * (both if s.get("wheel_radius_multiplier") is not None else
-                                      s.number(f"{side}_wheel_radius_multiplier", 1.0))
-                            for side in ("left", "right"))
+        factors = [s.number(name, 1.0) for name in _MULTIPLIERS]
+        if s.get("wheel_radius_multiplier") is not None:
+            factors[:2] = [s.number("wheel_radius_multiplier", 0.0)] * 2
+        self._multipliers = factors[0], factors[1], factors[2]
+        self._lengths = radius, radius, separation
         self.positive(wheel_separation=self._separation, wheel_radius=min(self._radii))
+
+    @property
+    def _separation(self) -> float:
+        """Between the wheels, m."""
+        return self._lengths[2] * self._multipliers[2]
+
+    @property
+    def _radii(self) -> Tuple[float, float]:
+        """Of the left and right wheels, m."""
+        return self._lengths[0] * self._multipliers[0], self._lengths[1] * self._multipliers[1]
+
+    def _rates(self, velocity: Planar) -> Tuple[float, float]:
+        """The rates of the left and right wheels that roll without slip, rad/s."""
+        x, _, yaw = velocity
+        left, right = self._radii
+        half = yaw * self._separation / 2.0
+        return (x - half) / left, (x + half) / right
 
     def drive(self, velocity: Planar) -> None:
         """Drive each wheel so that it rolls without slip."""
-        x, _, yaw = velocity
-        for side, radius, sign in zip(self._sides, self._radii, (-1.0, 1.0)):
+        for side, rate in zip(self._sides, self._rates(velocity)):
             for wheel in side:
-                wheel.command((x + sign * yaw * self._separation / 2.0) / radius)
+                wheel.command(rate)
 
     def begin_count(self) -> None:
         """Store the present joint positions as the start of the odometry."""
-        self._turned = self._wheel_ways()
-
-    def _wheel_ways(self) -> Tuple[float, float]:
-        left, right = (radius * _mean(side) for side, radius in zip(self._sides, self._radii))
-        return left, right
+        self._turned = [_mean(side) for side in self._sides]
 
     def way(self, dt: float) -> Planar:
         """Return the motion of the base from the rotation of the wheels."""
         if self.open_loop:
             return self.last[0] * dt, 0.0, self.last[2] * dt
-        before, self._turned = self._turned, self._wheel_ways()
-        left, right = (a - b for a, b in zip(self._turned, before))
+        before, self._turned = self._turned, [_mean(side) for side in self._sides]
+        left, right = (radius * (now - then) for radius, now, then in zip(
+            self._radii, self._turned, before))
         return (left + right) / 2.0, 0.0, (right - left) / self._separation
 
 
