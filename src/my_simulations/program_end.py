@@ -36,7 +36,7 @@ def program(main: Main) -> Main:
         except BrokenPipeError:
             return READER_GONE
         except OSError as fault:
-            if fault.errno not in _NO_ROOM or fault.filename is not None:
+            if not is_disk_full(fault) or fault.filename is not None:
                 raise
             name = os.path.basename(sys.argv[0])
             sys.stderr.write(f"{name}: cannot write the output: {fault.strerror}\n")
@@ -45,6 +45,11 @@ def program(main: Main) -> Main:
             return INTERRUPTED
 
     return cast(Main, guarded)
+
+
+def is_disk_full(fault: OSError) -> bool:
+    """Whether data could not be written because of the disk: no space, a quota, a fault of it."""
+    return fault.errno in _NO_ROOM
 
 
 class ArgumentParser(argparse.ArgumentParser):

@@ -7,6 +7,7 @@ import fcntl
 import json
 import os
 import random
+import shutil
 import signal
 import subprocess
 import sys
@@ -102,6 +103,23 @@ def test_poisoned_cases_do_not_touch_the_others(folder):
         case: found for case, found in bare.items() if case not in {r["case"] for r in crashed}}
 
 
+def test_cases_that_crashed_run_again_on_request(folder, capsys):
+    def crash(case, attempt, world):
+        if case.index == 1:
+            os.kill(world.simulator.engine_pid, signal.SIGSEGV)
+
+    text = "duration: 0.01\nseeds: 3\n"
+    assert run(folder, text, "--slots", "1", hook=crash) == 1
+    assert run(folder, text) == 1                       # a crash is a result
+    assert run(folder, text, "--retry", "failed") == 1  # and not one of this status
+    capsys.readouterr()
+    assert main(["study", "resume", "s", "--retry", "crashed"]) == 0
+    assert "1/1" in capsys.readouterr().err             # that case alone
+    assert [row["status"] for row in table(folder)] == ["ok"] * 3
+    assert "SIGSEGV" not in (folder / "s" / "report.html").read_text()
+    assert len((folder / "s" / "journal.jsonl").read_text().splitlines()) == 5
+
+
 def test_a_driver_killed_at_any_moment_goes_on_to_the_same_table(folder):
     assert run(folder, DROP, "--slots", "2", name="whole") == 0
     (folder / "cut.yaml").write_text(DROP)
@@ -174,9 +192,12 @@ def test_a_full_disk_is_told(folder, capsys, monkeypatch):
         raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
 
     monkeypatch.setattr(Journal, "append", full)
-    assert run(folder, "duration: 0.01\n") == 2
+    assert run(folder, "duration: 0.01\n") == os.EX_IOERR
     told = capsys.readouterr().err
     assert "No space left on device; `study resume` goes on" in told and "Traceback" not in told
+    monkeypatch.undo()
+    monkeypatch.setattr(shutil, "copyfile", full)  # of the study file
+    assert main(["study", "resume", str(folder / "s")]) == os.EX_IOERR
     monkeypatch.undo()
     assert main(["study", "resume", str(folder / "s")]) == 0
 

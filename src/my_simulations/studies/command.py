@@ -13,6 +13,7 @@ from types import FrameType
 from typing import Callable, List, Mapping, Optional, Sequence, Set, Tuple
 
 from ..errors import CommandError, InputError, SimulationError
+from ..program_end import is_disk_full
 from . import slurm
 from .case_world import opened, play
 from .cluster_address import SLURM, TlsFiles, scheduler_address
@@ -69,9 +70,9 @@ def main(argv: Optional[Sequence[str]] = None, hook: Optional[Hook] = None,
         return INVALID
     except BrokenPipeError:  # the reader of the output has ended: no fault of the study
         raise
-    except OSError as fault:  # such as that of a full disk; what has finished is in the journal
+    except OSError as fault:  # what has finished is in the journal
         _tell(f"study: {fault}; `study resume` goes on")
-        return INVALID
+        return os.EX_IOERR if is_disk_full(fault) else INVALID
     except KeyboardInterrupt:
         _tell("study: interrupted; `study resume` goes on")
         return INTERRUPTED
@@ -146,7 +147,7 @@ def _work(options: argparse.Namespace, folder: StudyFolder, plan: CasePlan, shar
         "all_cases": len(plan), "shard": [shard.index, shard.of], "versions": plan.versions})
     try:
         folder.keep(plan.study.file)  # not before: the folder may be that of another study
-        finished = _finished(plan, shard, journal.path)
+        finished = _finished(plan, shard, journal.path, options.retry)
         recorder = Recorder(journal, folder.path, folder.stem("trajectories", shard))
         rate = Rate(total - len(finished))
         progress = Progress(rate, sys.stderr, options.json)
@@ -171,9 +172,9 @@ def _work(options: argparse.Namespace, folder: StudyFolder, plan: CasePlan, shar
     return _tell_status(folder, plan, shard, options.json, files)
 
 
-def _finished(plan: CasePlan, shard: Shard, journal: str) -> Set[int]:
-    """The cases of a shard that have a row; rows of former ids are not of the plan any more."""
-    found = finished_cases(journal)
+def _finished(plan: CasePlan, shard: Shard, journal: str, retried: Sequence[str]) -> Set[int]:
+    """The cases of a shard that need not run; rows of former ids are not of the plan any more."""
+    found = finished_cases(journal, retried)
     return {number for number in (number_of(case.id) for case in plan.cases(shard))
             if number in found} if found else found
 

@@ -6,6 +6,7 @@ import re
 
 from ..program_end import ArgumentParser
 from .plan import WHOLE, Shard
+from .row import STATUSES
 
 _SHARDS = 100
 _REPLAYS = 3
@@ -16,7 +17,8 @@ def parser() -> argparse.ArgumentParser:
     made = ArgumentParser(
         prog="study", description="Run worlds many times with varied parameters, and measure them."
         " Needs no ROS.", epilog="Exit code: 0 if all cases are ok, 1 if some are not or are"
-        " missing, 2 for a faulty study or command line, 130 if interrupted.")
+        " missing, 2 for a faulty study or command line, 74 if the disk"
+        " is full, 130 if interrupted.")
     actions = made.add_subparsers(dest="action", metavar="ACTION", required=True)
     run = actions.add_parser("run", help="run a study, or the cases of it that have no result yet")
     run.add_argument("file", metavar="FILE", help="study file (doc/studies.md)")
@@ -41,6 +43,9 @@ def parser() -> argparse.ArgumentParser:
                           help="folder of the results; default: the working directory")
     for each in (run, resume):
         _add_places(each)
+        each.add_argument("--retry", action="append", choices=STATUSES, default=[],
+                          metavar="STATUS", help="run the cases again whose result is STATUS, such"
+                          " as crashed or 'timed out'; may be repeated")
         each.add_argument("--replays", type=int, metavar="N", default=_REPLAYS,
                           help="failed cases of which a replay is kept, one HTML file each;"
                           f" default: {_REPLAYS}")

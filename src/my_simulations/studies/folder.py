@@ -8,6 +8,7 @@ import shutil
 from typing import Any, Callable, Dict, List
 
 from ..errors import CommandError
+from ..program_end import is_disk_full
 from .journal import has_header, header_of, statuses
 from .plan import WHOLE, CasePlan, Shard, number_of
 from .replacing import replaced
@@ -107,15 +108,14 @@ class StudyFolder:
         try:
             os.makedirs(self.path, exist_ok=True)
         except OSError as fault:
+            if is_disk_full(fault):
+                raise
             raise CommandError(f"cannot write to {self.path}: {fault.strerror}") from None
 
     def keep(self, study_file: str) -> None:
         """Copy the study file for the record; the caller has opened a journal of the folder."""
-        try:
-            with replaced(os.path.join(self.path, COPY)) as part:
-                shutil.copyfile(study_file, part)
-        except OSError as fault:
-            raise CommandError(f"cannot write to {self.path}: {fault.strerror}") from None
+        with replaced(os.path.join(self.path, COPY)) as part:
+            shutil.copyfile(study_file, part)
 
     def write_tables(self, plan: CasePlan, say: Callable[[str], None]) -> List[str]:
         """Write the table in all formats; returns the files. Says why one is left out."""

@@ -134,7 +134,7 @@ def rows(path: str) -> Iterator[Row]:
 def statuses(paths: Sequence[str]) -> Dict[int, str]:
     """The status of each case that has a row, by its id as a number, which needs less memory.
 
-    Of two rows of one case the first counts. Raises CommandError for a broken line.
+    Of two rows of one case the last counts. Raises CommandError for a broken line.
     """
     known = {status.encode(): status for status in STATUSES}
     found: Dict[int, str] = {}
@@ -143,16 +143,16 @@ def statuses(paths: Sequence[str]) -> Dict[int, str]:
             at = line.find(b'"case":"') + 8
             try:
                 status = known[line[_STATUS_AT:line.index(b'"', _STATUS_AT)]]
-                found.setdefault(int(line[at:at + 16], 16), status)
+                found[int(line[at:at + 16], 16)] = status
             except (ValueError, KeyError) as fault:
                 raise CommandError(f"{path}: the line at byte {offset} is no row: {fault}"
                                    ) from None
     return found
 
 
-def finished_cases(path: str) -> Set[int]:
-    """The ids of the cases that have a row, as numbers."""
-    return set(statuses([path]))
+def finished_cases(path: str, retried: Sequence[str] = ()) -> Set[int]:
+    """The ids of the cases that have a row whose status is not among `retried`, as numbers."""
+    return {case for case, status in statuses([path]).items() if status not in retried}
 
 
 def _cut_unfinished_line(file: int) -> None:

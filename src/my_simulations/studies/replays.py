@@ -70,7 +70,7 @@ def keep_replays(plan: CasePlan, folder: StudyFolder, most: int, tell: Callable[
             continue
         kept += 1
         path = replay_of(folder.path, row.case)
-        if os.path.exists(path):
+        if os.path.exists(path) and not _is_outdated(path, folder, row):
             continue
         title = f"{plan.study.name}, case {row.case}"
         try:
@@ -89,6 +89,12 @@ def _has_replay(plan: CasePlan, folder: StudyFolder, row: Row) -> bool:
     if plan.study.scenarios:
         return row.status != OK and os.path.isfile(_recording(folder, row))
     return row.status == FAILED
+
+
+def _is_outdated(replay: str, folder: StudyFolder, row: Row) -> bool:
+    """Whether a scenario has run again since its replay was written."""
+    recording = _recording(folder, row)
+    return os.path.isfile(recording) and os.path.getmtime(recording) > os.path.getmtime(replay)
 
 
 def _recording(folder: StudyFolder, row: Row) -> str:

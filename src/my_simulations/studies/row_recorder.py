@@ -3,6 +3,7 @@ from __future__ import annotations
 
 import os
 import re
+import shutil
 import threading
 import time
 from typing import Dict, List, Optional
@@ -72,6 +73,7 @@ class Recorder:
 
     def _write_files(self, case: str, kept: ScenarioFiles) -> None:
         folder = os.path.join(self._folder, SCENARIOS, case)
+        shutil.rmtree(folder, ignore_errors=True)  # of a former run of this case
         os.makedirs(folder, exist_ok=True)
         for name, content in kept.files.items():
             with open(os.path.join(folder, name), "wb") as stream:

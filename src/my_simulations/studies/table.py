@@ -4,6 +4,7 @@ from __future__ import annotations
 import csv
 import importlib
 import importlib.util
+import itertools
 from typing import Any, Dict, Iterator, List, Optional, Sequence, Tuple
 
 from .journal import lines
@@ -23,7 +24,7 @@ def columns_of(study: Study) -> List[str]:
 
 
 def rows_in_order(paths: Sequence[str]) -> Iterator[Row]:
-    """The rows of journals in the order of the plan; of two of one case the first."""
+    """The rows of journals in the order of the plan; of two of one case the last."""
     places: List[Tuple[int, int, int]] = []
     for number, path in enumerate(paths):
         for offset, line in lines(path):
@@ -32,13 +33,13 @@ def rows_in_order(paths: Sequence[str]) -> Iterator[Row]:
     places.sort()
     streams = [open(path, "rb") for path in paths]
     try:
-        before = ""
-        for _, number, offset in places:
-            streams[number].seek(offset)
-            row = row_of(streams[number].readline())
-            if row.case != before:
-                yield row
-            before = row.case
+        for _, same_index in itertools.groupby(places, lambda place: place[0]):
+            found: Dict[str, Row] = {}
+            for _, number, offset in same_index:
+                streams[number].seek(offset)
+                row = row_of(streams[number].readline())
+                found[row.case] = row
+            yield from found.values()
     finally:
         for stream in streams:
             stream.close()

@@ -20,6 +20,7 @@ from my_simulations.studies.journal import (
 from my_simulations.studies.kept import CaseTrajectory
 from my_simulations.studies.row import CRASHED, OK, TIMED_OUT, Row
 from my_simulations.studies.row_recorder import Recorder
+from my_simulations.studies.table import rows_in_order
 
 HEADER = {"study": "s", "cases": 3}
 
@@ -119,13 +120,16 @@ def test_what_is_no_journal_is_told(tmp_path):
         statuses([str(path)])
 
 
-def test_of_two_rows_of_a_case_the_first_counts(tmp_path):
+def test_of_two_rows_of_a_case_the_last_counts(tmp_path):
     paths = [str(tmp_path / name) for name in ("a.jsonl", "b.jsonl")]
     for path, found in zip(paths, ([row(1), row(2, TIMED_OUT)], [row(2), row(3, CRASHED)])):
         journal = Journal(path, HEADER)
         journal.append(found)
         journal.close()
-    assert statuses(paths) == {1: OK, 2: TIMED_OUT, 3: CRASHED}
+    assert statuses(paths) == {1: OK, 2: OK, 3: CRASHED}
+    assert finished_cases(paths[1], [CRASHED]) == {2}
+    assert [(found.index, found.status) for found in rows_in_order(paths)] == [
+        (1, OK), (2, OK), (3, CRASHED)]
 
 
 def test_a_row_is_written_after_the_file_with_its_trajectory(tmp_path):
