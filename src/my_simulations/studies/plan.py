@@ -5,7 +5,8 @@ import os
 from dataclasses import dataclass
 from typing import Dict, Iterator, Optional, Tuple
 
-from .provenance import digest_of, digest_of_file, digest_of_world, versions
+from .launched_files import LaunchedFiles
+from .provenance import digest_of, digest_of_world, versions
 from .scenario_files import SCENARIO, scenario_path
 from .study import Study
 from .variation import Setting, settings_on_grid
@@ -64,6 +65,7 @@ class CasePlan:
             study.trajectory and [study.trajectory.every, study.trajectory.models]])
         self._worlds = {p.name for p in study.parameters if p.target.kind == "world"}
         self._scenarios: Dict[str, str] = {}
+        self._launched: Optional[LaunchedFiles] = None
         self._files: Dict[Tuple[str, Tuple[str, ...]], str] = {}
 
     def __len__(self) -> int:
@@ -109,8 +111,10 @@ class CasePlan:
         return world, objects
 
     def _digest_of_scenario(self, name: str) -> str:
+        if self._launched is None:
+            self._launched = LaunchedFiles()
         if name not in self._scenarios:
-            self._scenarios[name] = digest_of_file(scenario_path(name, self.study.file))
+            self._scenarios[name] = self._launched.digest(scenario_path(name, self.study.file))
         return self._scenarios[name]
 
     def _digest_of_files(self, world: str, objects: Tuple[str, ...]) -> str:

@@ -81,6 +81,38 @@ def test_ids_follow_the_content_of_the_scenario(folder):
     assert before[0] != after[0] and before[1] == after[1]
 
 
+LAUNCH = """<launch><arg name="world" default="room"/>
+<include file="$(find my_lab)/launch/robot.launch"/>
+<arg name="world_name" value="$(find my_lab)/worlds/$(arg world).world"/>
+<test pkg="my_lab" type="check.py" test-name="check"/></launch>"""
+NAMED = {
+    "launch/robot.launch": '<launch><param name="r" command="xacro $(dirname)/../r.xacro"/>'
+                           '<rosparam file="$(find my_lab)/config/gains.yaml"/></launch>',
+    "r.xacro": '<robot><xacro:include filename="wheel.xacro"/></robot>',
+    "wheel.xacro": '<link><mesh filename="package://my_lab/meshes/wheel.stl"/></link>',
+    "meshes/wheel.stl": "solid", "config/gains.yaml": "p: 1",
+    "worlds/room.world": "<sdf version='1.6'><world name='w'><include><uri>file://box.sdf</uri>"
+                         "</include></world></sdf>",
+    "worlds/box.sdf": "<sdf version='1.6'><model name='m'><link name='l'/></model></sdf>",
+    "nodes/check.py": "import my_lab", "src/my_lab/__init__.py": "LIMIT = 1"}
+
+
+@pytest.mark.parametrize("changed", [*NAMED, "README.md"])
+def test_ids_follow_the_files_that_a_scenario_names(folder, monkeypatch, changed):
+    (folder / "package.xml").write_text("<package><name>my_lab</name></package>")
+    monkeypatch.setenv("ROS_PACKAGE_PATH", str(folder))
+    for name, text in {**NAMED, "test/a.test": LAUNCH, "README.md": "a"}.items():
+        (folder / name).parent.mkdir(parents=True, exist_ok=True)
+        (folder / name).write_text(text)
+    study = study_of(folder, "scenarios: test/*.test\n")
+    before = [case.id for case in CasePlan(study).cases()]
+    assert [case.id for case in CasePlan(study).cases()] == before
+    (folder / changed).write_text((folder / changed).read_text() + "\n ")
+    after = [case.id for case in CasePlan(study).cases()]
+    assert (after[0] != before[0]) == (changed != "README.md")
+    assert after[1] == before[1]
+
+
 @pytest.mark.parametrize("text, told", [
     ("scenarios: nothing/*.test\n", "no file is named 'nothing/*.test'"),
     ("scenarios: []\n", "must name roslaunch files"),
