@@ -78,7 +78,8 @@ def _named(convert: Convert, name: str) -> Convert:
             return convert(value)
         except MessageFieldError:
             raise
-        except (TypeError, ValueError, AttributeError, OverflowError, struct.error) as fault:
+        except (TypeError, ValueError, AttributeError, LookupError, OverflowError,
+                struct.error) as fault:
             raise MessageFieldError(f"{name} cannot be {value!r:.60}: {fault}") from fault
     return checked
 
@@ -154,6 +155,8 @@ def _integer(pack: struct.Struct) -> Convert:
 def _seconds(value: Any) -> Tuple[int, int]:
     if isinstance(value, (int, float)):
         return divmod(round(value * 1e9), 10 ** 9)  # type: ignore[return-value]
+    if isinstance(value, Mapping):
+        return operator.index(value["secs"]), operator.index(value["nsecs"])
     return operator.index(value.secs), operator.index(value.nsecs)
 
 

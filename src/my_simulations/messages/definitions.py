@@ -134,11 +134,17 @@ Wrench: Vector3 force; Vector3 torque
 WrenchStamped: Header header; Wrench wrench
 [hector_uav_msgs]
 Altimeter: Header header; float32 altitude; float32 pressure; float32 qnh
+AttitudeCommand: Header header; float32 roll; float32 pitch
 EnableMotorsRequest: bool enable
 EnableMotorsResponse: bool success
+MotorCommand: Header header; float32[] force; float32[] torque; float32[] frequency;
+    float32[] voltage
+MotorPWM: Header header; uint8[] pwm
 MotorStatus: Header header; bool on; bool running; float32[] voltage; float32[] frequency;
     float32[] current
 Supply: Header header; float32[] voltage; float32[] current
+ThrustCommand: Header header; float64 thrust
+YawrateCommand: Header header; float64 turnrate
 [mav_msgs]
 Actuators: Header header; float64[] angles; float64[] angular_velocities; float64[] normalized
 [nav_msgs]

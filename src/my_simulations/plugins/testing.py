@@ -9,7 +9,7 @@ assert context.published["odom"][-1].pose.pose.position.x == 0.5
 """
 from __future__ import annotations
 
-from typing import Any, Callable, Dict, List, Optional, Sequence, Set, Tuple
+from typing import Any, Callable, Dict, List, Optional, Sequence, Tuple
 
 from ..description.model import Joint as JointSpec
 from ..description.model import Model
@@ -23,47 +23,10 @@ from ..engine.wrench_laws import WrenchLaw
 from ..geometry import IDENTITY, STILL, Pose, Twist, Vec3
 from .context import PluginError
 from .parameters import Parameters
+from .testing_graph import FakeGraph, FakeHandle, Message
 from .testing_joints import FakeJoint, FakeLink
 
-
-class Message:
-    """A message of any type; a field is created when it is read."""
-
-    def __init__(self, **fields: Any) -> None:
-        for name, value in fields.items():
-            setattr(self, name, Message(**value) if isinstance(value, dict) else value)
-
-    def __getattr__(self, name: str) -> "Message":
-        if name.startswith("__"):
-            raise AttributeError(name)
-        made = Message()
-        setattr(self, name, made)
-        return made
-
-
-class _Topic:
-    def __init__(self, messages: List[Any], wanted: Callable[[], bool]) -> None:
-        self._messages, self._wanted = messages, wanted
-
-    @property
-    def wanted(self) -> bool:
-        return self._wanted()
-
-    def publish(self, message: Any) -> None:
-        self._messages.append(message)
-
-    def publish_later(self, make: Callable[[], Any]) -> None:
-        self._messages.append(make())
-
-    def close(self) -> None:
-        """Do nothing: a test can still read the published messages."""
-
-
-class FakeHandle:
-    """A handle that calls a function of the test when it is closed."""
-
-    def __init__(self, close: Callable[[], Any] = lambda: None) -> None:
-        self.close = close
+__all__ = ["FakeContext", "FakeHandle", "Message"]
 
 
 class _Call:
@@ -85,21 +48,18 @@ class _Call:
             self._owner.remove(self)
 
 
-class FakeContext:
-    """A `Context` for tests.
+class FakeContext(FakeGraph):
+    """A `Context` for tests; see `FakeGraph` for topics and services.
 
     Attributes:
         links, joints: by name; a requested link is created.
         pose, twist: of the model.
-        published: messages by topic, as named with the namespace.
-        transforms: (parent, child, pose), in order.
         said: the messages to the user.
         pushes: the last wrench of each link; laws are computed after each step.
         level: the last planar velocity.
         returns: the returns of rays; `fans`: (fan, visuals) of the scans.
         pictures: the result of each view; `views`: the views of each call. `late`: none is ready.
         by_hand: the world is stepped manually.
-        unwanted: topics without subscribers.
         model_sensors, labels: the results of `sensors` and `link_names`.
         touching: the contacts.
         wrenches: the wrenches that joints transmit.
@@ -109,13 +69,13 @@ class FakeContext:
         others: descriptions of the models in the world.
         attached: (parent, child) by the name of the joint.
         description: of the model.
-        ros_parameters: what `search_parameter` finds.
     """
 
     def __init__(self, xml: str = "<plugin/>", *, model: str = "robot",
                  joints: Sequence[str] = (), links: Optional[Sequence[str]] = None,
                  sensor: Optional[Sensor] = None, sensor_link: str = "", sensor_joint: str = "",
                  step_size: float = 0.001) -> None:
+        super().__init__()
         self.model, self.sensor = model, sensor
         self.sensor_link, self.sensor_joint = sensor_link, sensor_joint
         self.wrenches: Dict[str, JointWrench] = {}
@@ -132,8 +92,6 @@ class FakeContext:
         self.place_on_earth: Optional[SphericalCoordinates] = None
         self.seed = 0
         self.step_size, self.step = step_size, 0
-        self.published: Dict[str, List[Any]] = {}
-        self.transforms: List[Tuple[str, str, Pose]] = []
         self.pushes: Dict[str, Tuple[Vec3, Vec3]] = {}
         self._laws: Dict[str, WrenchLaw] = {}
         self.level: Optional[Tuple[float, float, float]] = None
@@ -144,18 +102,13 @@ class FakeContext:
         self.others: Dict[str, Model] = {}
         self.attached: Dict[str, Tuple[str, str]] = {}
         self.description = Model(model)
-        self.ros_parameters: Dict[str, Any] = {}
         self.returns: Any = None
         self.fans: List[Any] = []
         self.pictures: List[Any] = []
         self.views: List[Any] = []
         self.late = self.by_hand = False
-        self.unwanted: Set[str] = set()
         self.model_sensors: List[Tuple[str, Sensor]] = []
         self.labels: Dict[int, str] = {}
-        self._namespace = ""
-        self._heard: Dict[str, Callable[[Any], None]] = {}
-        self.services: Dict[str, Callable[[Any, Any], None]] = {}
         self._calls: List[_Call] = []
 
     # -- what a test does --------------------------------------------------------------------------
@@ -171,10 +124,6 @@ class FakeContext:
                 if one in self._calls and one.is_due(self.step, self.now_ns, clock):
                     one.call()
             self._compute_laws()
-
-    def hear(self, topic: str, **fields: Any) -> None:
-        """Deliver a message on a topic; dictionaries become nested messages."""
-        self._heard[topic](Message(**fields))
 
     # -- Context -----------------------------------------------------------------------------------
 
@@ -337,56 +286,6 @@ class FakeContext:
     def contacts(self) -> List[Any]:
         """Return the value set by the test."""
         return self.touching
-
-    def use_namespace(self, namespace: str) -> None:
-        """Set the prefix of names."""
-        self._namespace = namespace.strip("/")
-
-    def _name(self, name: str) -> str:
-        return name if name.startswith("/") or not self._namespace else f"{self._namespace}/{name}"
-
-    def message(self, kind: str) -> Any:
-        """Return a message of any type."""
-        return Message()
-
-    def stamp(self, ns: Optional[int] = None) -> Any:
-        """Return a time in ns."""
-        return self.now_ns if ns is None else ns
-
-    def publish(self, name: str, kind: str, queue: int = 1, latch: bool = False) -> Any:
-        """Advertise a topic."""
-        if not name:
-            return _Topic([], lambda: False)
-        name = self._name(name)
-        return _Topic(self.published.setdefault(name, []), lambda: name not in self.unwanted)
-
-    def subscribe(self, name: str, kind: str, call: Callable[[Any], None],
-                  queue: int = 1) -> "FakeHandle":
-        """Subscribe to a topic."""
-        self._heard[self._name(name)] = call
-        return FakeHandle(lambda: self._heard.pop(self._name(name)))
-
-    def serve(self, name: str, kind: str, call: Callable[[Any, Any], None]) -> "FakeHandle":
-        """Advertise a service."""
-        self.services[self._name(name)] = call
-        return FakeHandle(lambda: self.services.pop(self._name(name)))
-
-    def parameter(self, name: str, default: Any) -> Any:
-        """What a test says, by the name with its namespace, or of parts of dictionaries."""
-        found: Any = self.ros_parameters
-        for part in self._name(name).strip("/").split("/"):
-            if not isinstance(found, dict) or part not in found:
-                return default
-            found = found[part]
-        return found
-
-    def search_parameter(self, name: str, default: Any) -> Any:
-        """Return the value set by the test."""
-        return self.ros_parameters.get(name, default)
-
-    def transform(self, parent: str, child: str, pose: Pose) -> None:
-        """Record the call."""
-        self.transforms.append((parent, child, pose))
 
     def info(self, text: str) -> None:
         """Record the call."""

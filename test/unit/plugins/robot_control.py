@@ -4,23 +4,18 @@ from __future__ import annotations
 from my_simulations.description.model import Joint, JointAxis, Link, Model
 from my_simulations.description.transmission import Transmission, TransmissionJoint
 from my_simulations.geometry import Pose
+from my_simulations.messages import Duration
 from my_simulations.plugins.control.gazebo_ros_control import GazeboRosControl
 from my_simulations.plugins.testing import FakeContext, Message
 
 NS = "robot"
 
 
-class Span:
+class Span(Duration):
     """A time or duration of a message."""
 
     def __init__(self, seconds=0.0):
-        self.seconds = seconds
-
-    def to_sec(self):
-        return self.seconds
-
-    def to_nsec(self):
-        return round(self.seconds * 1e9)
+        super().__init__(*divmod(round(seconds * 1e9), 10 ** 9))
 
 
 def transmission(joint, *interfaces):

@@ -94,7 +94,7 @@ def test_joint_states_come_at_their_rate_and_before_any_other_controller():
     arm.context.joints["two"].put(0.25)
     arm.context.advance(0.1)
     messages = arm.published("joint_states")
-    assert [one.header.stamp for one in messages] == [20e6, 40e6, 60e6, 80e6, 100e6]
+    assert [one.header.stamp.to_nsec() for one in messages] == [20e6, 40e6, 60e6, 80e6, 100e6]
     assert messages[-1].name == ["one", "two", "ghost"]
     assert messages[-1].position == [0.0, 0.25, 0.5]
     assert len(messages[-1].velocity) == len(messages[-1].effort) == 3
@@ -196,7 +196,7 @@ def test_controllers_run_and_joint_states_come_during_the_emergency_stop():
     arm.hear("stop", data=True)
     arm.context.advance(0.1)
     assert arm.states() == {"forward": "running", "states": "running"}
-    assert [one.header.stamp for one in arm.published("joint_states")] == [
+    assert [one.header.stamp.to_nsec() for one in arm.published("joint_states")] == [
         20e6, 40e6, 60e6, 80e6, 100e6]
 
 

@@ -38,7 +38,7 @@ def test_it_tells_what_the_child_does_to_the_parent_in_the_childs_frame():
     assert len(context.published["ft"]) == 5
     message = context.published["ft"][-1]
     assert values(message) == (-1, -2, -3, -4, -5, -6)
-    assert message.header.frame_id == "hand" and message.header.stamp == 100_000_000
+    assert message.header.frame_id == "hand" and message.header.stamp.to_nsec() == 100_000_000
 
 
 def test_nothing_is_published_before_there_is_a_measurement():

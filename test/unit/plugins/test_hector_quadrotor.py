@@ -8,6 +8,7 @@ from robot_control import Arm
 
 from my_simulations.description.model import Inertial
 from my_simulations.geometry import Pose, Twist, quat_from_rpy
+from my_simulations.messages import Time
 from my_simulations.plugins.context import PluginError
 from my_simulations.plugins.flight.filtered_pid import FilteredPid
 from my_simulations.plugins.flight.quadrotor_aerodynamics import QuadrotorAerodynamics
@@ -23,14 +24,6 @@ MASS = 1.5
 MOTOR = {"Psi": 0.0072, "J_M": 2.6e-5, "R_A": 0.2, "k_t": 0.0153, "k_m": 1e-5, "alpha_m": 0.105,
          "beta_m": 0.55, "CT2s": 0.0, "CT1s": -2.5e-4, "CT0s": 1.54e-5, "l_m": 0.275}
 DRAG = {"C_wxy": 0.12, "C_wz": 0.1, "C_mxy": 0.074, "C_mz": 0.051}
-
-
-class Stamp:
-    def __init__(self, ns=0):
-        self._ns = ns
-
-    def to_nsec(self):
-        return self._ns
 
 
 def loaded(cls, inside="", parameters=None, inertial=None):
@@ -151,11 +144,11 @@ def propelled(inside="", **more):
 
 
 def voltages(*values, ns=0):
-    return {"header": {"stamp": Stamp(ns)}, "voltage": list(values)}
+    return {"header": {"stamp": Time.of_ns(ns)}, "voltage": list(values)}
 
 
 def pwm(*values, ns=0):
-    return {"header": {"stamp": Stamp(ns)}, "pwm": list(values)}
+    return {"header": {"stamp": Time.of_ns(ns)}, "pwm": list(values)}
 
 
 def test_rotors_reach_the_speed_at_which_torques_balance():
@@ -302,7 +295,7 @@ def test_tilt_and_yaw_rate_are_limited():
     start(robot)
     for name, value in (("attitude", {"roll": 0.0, "pitch": 2.0}), ("yawrate", {"turnrate": 9.0}),
                         ("thrust", {"thrust": 7.0})):
-        robot.hear(f"command/{name}", header={"stamp": Stamp()}, **value)
+        robot.hear(f"command/{name}", header={"stamp": Time()}, **value)
     robot.context.advance(0.1)
     force, torque = push(robot.context)
     assert force == (0.0, 0.0, 7.0)
@@ -315,7 +308,7 @@ def test_tilt_and_yaw_rate_are_limited():
 def test_a_velocity_ends_position_control_and_standing_still_does_not():
     robot = chain("position", "velocity", "attitude")
     start(robot)
-    robot.hear("command/pose", header={"frame_id": "world", "stamp": Stamp()}, pose={
+    robot.hear("command/pose", header={"frame_id": "world", "stamp": Time()}, pose={
         "position": {"x": 0.0, "y": 0.0, "z": 1.0},
         "orientation": {"x": 0.0, "y": 0.0, "z": 0.0, "w": 1.0}})
     robot.hear("cmd_vel", **command())
@@ -332,7 +325,7 @@ def test_a_velocity_ends_position_control_and_standing_still_does_not():
 def test_commands_in_other_frames_are_ignored():
     robot = chain("position", "velocity", "attitude")
     start(robot)
-    robot.hear("command/pose", header={"frame_id": "map", "stamp": Stamp()}, pose={
+    robot.hear("command/pose", header={"frame_id": "map", "stamp": Time()}, pose={
         "position": {"x": 0.0, "y": 0.0, "z": 1.0},
         "orientation": {"x": 0.0, "y": 0.0, "z": 0.0, "w": 1.0}})
     robot.context.advance(0.1)

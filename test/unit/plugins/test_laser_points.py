@@ -146,7 +146,7 @@ def test_rays_as_points_leave_out_what_is_not_met():
 def test_rays_as_a_scan_and_as_a_range():
     assert of_rays("LaserScan", [1.0, 2.0, 3.0], rows=1).ranges == [1.0, 2.0, 3.0]
     told = of_rays("Range", [1.0, 0.7, 3.0], "<radiationType>infrared</radiationType>", rows=1)
-    assert (told.range, told.radiation_type) == (0.7, 1)
+    assert (told.range, told.radiation_type) == (np.float32(0.7), 1)
     assert told.field_of_view == pytest.approx(1.0)
     assert len(of_rays("PointCloud", [1.0, 2.0]).points) == 2
 

@@ -172,7 +172,7 @@ def test_odometry_comes_late_and_not_in_every_step():
     context = odometry("<measurementDivisor>10</measurementDivisor>", 0.1)
     assert len(context.published["odometry"]) == 10
     context = odometry("<measurementDelay>5</measurementDelay>", 0.02)
-    assert [one.header.stamp for one in context.published["odometry"]] == [
+    assert [one.header.stamp.to_nsec() for one in context.published["odometry"]] == [
         step * 10 ** 6 for step in range(1, 16)]
 
 

@@ -27,7 +27,7 @@ from my_simulations.plugins.sensors.range import Range
 from my_simulations.plugins.state.force import Force
 from my_simulations.plugins.state.joint_state_publisher import JointStatePublisher
 from my_simulations.plugins.state.p3d import P3d
-from my_simulations.plugins.testing import FakeContext, Message
+from my_simulations.plugins.testing import FakeContext
 from my_simulations.sensing.api import RayReturns
 
 
@@ -47,7 +47,7 @@ def test_a_scan_has_the_ranges_of_gazebo():
     assert len(scans) == 2 and scans[0].header.frame_id == "mast"
     assert scans[0].ranges == [-math.inf, 1.0, 2.0, math.inf]
     assert scans[0].angle_increment == pytest.approx(2.0 / 3.0)
-    assert (scans[0].header.stamp, scans[0].range_max) == (100_000_000, 5.0)
+    assert (scans[0].header.stamp.to_nsec(), scans[0].range_max) == (100_000_000, 5.0)
 
 
 def test_a_ray_sees_collisions_and_a_gpu_ray_visuals():
@@ -261,7 +261,6 @@ def test_a_force_holds_until_the_next_one():
     plugin.load()
     context.hear("force", force={"x": 1.0, "y": 0.0, "z": 2.0}, torque={"x": 0, "y": 0, "z": 3.0})
     assert context.pushes["base"] == ((1.0, 0.0, 2.0), (0, 0, 3.0))
-    assert isinstance(context.message("any/Type").whatever, Message)
 
 
 def test_an_imu_that_nobody_listened_to_begins_anew():

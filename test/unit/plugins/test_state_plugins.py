@@ -24,7 +24,7 @@ STILL_FRAME = {"x": 0.0, "y": 0.0, "z": 0.0, "w": 1.0}
 
 
 def stamp(seconds):
-    return Message(secs=int(seconds), nsecs=round((seconds - int(seconds)) * 1e9))
+    return {"secs": int(seconds), "nsecs": round((seconds - int(seconds)) * 1e9)}
 
 
 def point(seconds, *positions):
