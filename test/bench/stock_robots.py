@@ -21,7 +21,7 @@ from server import Server, processor
 
 Row = Tuple[str, str, str, bool]
 TURNS, MEASURE_S = 5, 2.5
-SETTLE_S = 8.0   # until the solver needs few iterations: long after the robot looks at rest
+SETTLE_S = 8.0   # until the solver needs few iterations; the robot's velocity is 0 long before
 MOST_IDLE, MOST_SUBSCRIBED = 1.2, 2.0   # times the processor time of the robot without plugins
 BUSY = 15
 

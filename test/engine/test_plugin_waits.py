@@ -9,12 +9,12 @@ from conftest import ground
 from plugin_case import PluginCase, until
 from wheeled_robots import axle, base, plugin, tricycle, wheel
 
-from my_simulations.description.model import Inertial, Link, Model
+from my_simulations.description.model import Inertial, Joint, JointAxis, Link, Model
 from my_simulations.description.sensor import ContactSensor, Imu, Ray, ScanAngles, Sensor
 from my_simulations.description.shapes import Box, Collision, Sphere, Surface
 from my_simulations.description.world import World
 from my_simulations.engine.bullet.backend import BulletBackend
-from my_simulations.geometry import Pose, quat_from_rpy
+from my_simulations.geometry import Pose, Twist, quat_from_rpy
 
 
 def kobuki():
@@ -58,6 +58,17 @@ def thrown(library, inside):
     return moved(library, f"{inside}<bodyName>link</bodyName><link_name>link</link_name>", 20.0)
 
 
+def with_flap():
+    """A thrown box with a wing, whose flap swings on a spring."""
+    model = thrown("libLiftDragPlugin.so", "<area>0.1</area><cp>-0.05 0 0</cp>"
+                   "<control_joint_name>flap_joint</control_joint_name>")
+    model.links.append(Link("flap", Pose((-0.2, 0.0, 20.0)), Inertial(
+        0.05, Pose((-0.05, 0.0, 0.0)), ixx=1e-4, iyy=1e-4, izz=1e-4)))
+    model.joints.append(Joint("flap_joint", "revolute", "link", "flap", axis=JointAxis(
+        (0.0, 1.0, 0.0), spring_stiffness=0.05, spring_reference=0.3, damping=0.005)))
+    return model
+
+
 ROBOTS = {"kobuki": (kobuki(), "mobile_base/commands/velocity"),
           "tricycle": (tricycle("<steeringSpeed>1</steeringSpeed>"), "tricycle/cmd_vel"),
           "tricycle at once": (tricycle("<wheelAcceleration>2</wheelAcceleration>"),
@@ -70,6 +81,7 @@ ROBOTS = {"kobuki": (kobuki(), "mobile_base/commands/velocity"),
                            "<yaw_velocity_p_gain>1</yaw_velocity_p_gain>"), "cmd_vel"),
           "wing": (thrown("libLiftDragPlugin.so", "<area>0.1</area><cla>4</cla>"
                           "<a0>0.1</a0><cp>-0.05 0 0</cp>"), ""),
+          "rudder": (with_flap(), ""),
           "hull": (thrown("libBuoyancyPlugin.so", "<fluid_density>200</fluid_density>"), "")}
 EXPIRES = ("kobuki", "planar", "forces")
 POLLS = ("hull",)   # looks for another gravity 10 times a second
@@ -165,3 +177,21 @@ def test_a_command_expires_also_if_the_step_size_has_changed(name):
         physics.set(replace(physics.settings, max_step_size=0.002), physics.gravity)
         one.sim.clock.advance(300)
         assert one.speed < 0.05
+
+
+def test_a_wing_follows_its_rudder_also_after_an_edit():
+    """Lift of 4 / rad, 1.2041 kg/m^3, 0.1 m^2 and 10 m/s; the box turns, too, about its mass."""
+    with running("rudder") as one:
+        for happens in (lambda: None, lambda: one.sim.models.set_link_inertial(
+                "box::link", Inertial(2.0, ixx=0.01, iyy=0.01, izz=0.01))):
+            happens()
+            climbs = []
+            for angle in (0.0, 0.2):
+                one.sim.joints.set_positions({"box::flap_joint": angle})
+                one.sim.states.set_model_state(one.model, Pose((0.0, 0.0, 20.0)), Twist(
+                    (10.0, 0.0, 0.0), (0.0, 0.0, 0.0)))
+                one.sim.clock.advance(1)
+                climbs.append(sum(mass * one.sim.states.link_state(f"box::{link}")[1].linear[2]
+                                  for link, mass in (("link", 2.0), ("flap", 0.05))))
+            lift = (climbs[1] - climbs[0]) / 0.001
+            assert lift == pytest.approx(0.2 * 4.0 * 0.5 * 1.2041 * 10.0 ** 2 * 0.1, rel=0.25)

@@ -354,7 +354,7 @@ def test_a_force_by_a_law_acts_until_a_reset_and_no_service_clears_it(start):
     sim = start()
     sim.models.spawn(box("load", 0.5, 4.0), Pose((0.0, 0.0, 50.0)))
     law = VelocityForce((400.0, 400.0, 0.0), 1.0, 0.0, 0.0)
-    sim.wrenches.swap([], [("load::link", ZERO3, ZERO3, law)])
+    sim.wrenches.swap([], [("load::link", ZERO3, ZERO3, law, "")])
     for happens in (lambda: None, lambda: kill(sim), lambda: sim.wrenches.clear_wrenches(
             "load::link"), lambda: sim.models.set_link_inertial(
                 "load::link", Inertial(2.0, Pose((0.1, 0.0, 0.0)), 0.1, 0, 0, 0.1, 0, 0.1))):

@@ -40,6 +40,7 @@ class TimedWrench:
         in_link_axes: force, torque and point are in link axes and turn with the link.
         point: m, from the centre of mass to where the force is applied, same axes as the force.
         law: computes force and torque in every step; the attributes above are not used then.
+        axis_row: joint row that the law follows; -1 for none.
     """
 
     force_id: int
@@ -51,6 +52,7 @@ class TimedWrench:
     in_link_axes: bool = False
     point: Vec3 = (0.0, 0.0, 0.0)
     law: Optional[WrenchLaw] = None
+    axis_row: int = -1
 
     def begun(self, step: int) -> "TimedWrench":
         """The same with its full duration from `step` on, if its start has passed."""

@@ -36,13 +36,14 @@ _SLOWEST = 0.01  # m/s
 class WrenchLaw(Protocol):
     """Computes the wrench that acts in a step. It has no memory, and can be pickled."""
 
-    def wrench(self, pose: Pose, twist: Twist, com: Vec3) -> Wrench:
+    def wrench(self, pose: Pose, twist: Twist, com: Vec3, joint: float = 0.0) -> Wrench:
         """Return the wrench for a state of the link.
 
         Args:
             pose: world pose of the link.
             twist: at its origin.
             com: its centre of mass in its own axes, m.
+            joint: position of the joint that the law follows, rad or m; 0 without one.
         """
 
 
@@ -61,7 +62,7 @@ class VelocityForce:
     y: float
     yaw: float
 
-    def wrench(self, pose: Pose, twist: Twist, com: Vec3) -> Wrench:
+    def wrench(self, pose: Pose, twist: Twist, com: Vec3, joint: float = 0.0) -> Wrench:
         """See `WrenchLaw`."""
         vx, vy, _ = rotate(conjugate(pose.orientation), twist.linear)
         along = (self.gains[0] * (self.x - vx), self.gains[1] * (self.y - vy), 0.0)
@@ -81,7 +82,7 @@ class ForceAtPoint:
     force: Vec3
     point: Vec3
 
-    def wrench(self, pose: Pose, twist: Twist, com: Vec3) -> Wrench:
+    def wrench(self, pose: Pose, twist: Twist, com: Vec3, joint: float = 0.0) -> Wrench:
         """See `WrenchLaw`."""
         arm = subtract(transform(pose, self.point), transform(pose, com))
         return self.force, cross(arm, self.force)
@@ -98,7 +99,7 @@ class Wing:
         centre: of pressure, in link axes, m.
         forward, upward: unit vectors in link axes.
         radial: the wing has the same lift in all directions across `forward`.
-        more_lift: is added to the coefficient of lift.
+        rudder: what a joint that the law follows adds to the coefficient of lift, 1/rad.
     """
 
     density: float
@@ -111,17 +112,20 @@ class Wing:
     forward: Vec3
     upward: Vec3
     radial: bool
-    more_lift: float = 0.0
+    rudder: float = 0.0
 
-    def wrench(self, pose: Pose, twist: Twist, com: Vec3) -> Wrench:
+    def wrench(self, pose: Pose, twist: Twist, com: Vec3, joint: float = 0.0) -> Wrench:
         """See `WrenchLaw`."""
         lever = rotate(pose.orientation, self.centre)
-        force = self._force(pose, twist_at(twist, lever).linear)
+        force = self._force(pose, twist_at(twist, lever).linear, self.rudder * joint)
         arm = subtract(add(pose.position, lever), transform(pose, com))
         return force, cross(arm, force)
 
-    def _force(self, pose: Pose, velocity: Vec3) -> Vec3:
-        """Lift and drag, N, world axes, at a velocity (m/s) of the centre of pressure."""
+    def _force(self, pose: Pose, velocity: Vec3, more_lift: float) -> Vec3:
+        """Lift and drag, N, world axes, at a velocity (m/s) of the centre of pressure.
+
+        `more_lift` is added to the coefficient of lift.
+        """
         if norm(velocity) <= _SLOWEST:
             return ZERO3
         forward, upward = (rotate(pose.orientation, way) for way in (self.forward, self.upward))
@@ -139,7 +143,7 @@ class Wing:
         lift = self._coefficient(self.lift, alpha, sweep)
         if abs(alpha) > self.stall:  # stalled, it never lifts the other way
             lift = max(0.0, lift) if alpha > 0.0 else min(0.0, lift)
-        lift += self.more_lift
+        lift += more_lift
         drag = abs(self._coefficient(self.drag, alpha, sweep))
         return add(scale(lift_way, lift * pressure), scale(unit(plane), -drag * pressure))
 

@@ -256,11 +256,11 @@ class Context(Protocol):
         model by its scoped name.
         """
 
-    def push_by(self, link: str, law: WrenchLaw) -> None:
+    def push_by(self, link: str, law: WrenchLaw, joint: str = "") -> None:
         """As `push`, with the wrench that a law gives for the state of the link in each step.
 
         The engine computes it, so it costs no synchronization. `law` is one of
-        `engine.wrench_laws`.
+        `engine.wrench_laws`; it can follow the position of a joint of the model.
         """
 
     def move(self, pose: Pose, twist: Twist = STILL) -> None:

@@ -268,11 +268,12 @@ class SimulatedContext(GraphUser):
     def push(self, link: str, force: Vec3, torque: Vec3) -> None:
         """Apply a wrench from now on."""
         self.orders.pushes[self._pushed(link)] = (vector(force, "force"),
-                                                  vector(torque, "torque"), None)
+                                                  vector(torque, "torque"), None, "")
 
-    def push_by(self, link: str, law: WrenchLaw) -> None:
+    def push_by(self, link: str, law: WrenchLaw, joint: str = "") -> None:
         """Apply the wrench of a law from now on."""
-        self.orders.pushes[self._pushed(link)] = (ZERO3, ZERO3, law)
+        followed = joint and f"{self.model}::{self._rows.joint(joint).name}"
+        self.orders.pushes[self._pushed(link)] = (ZERO3, ZERO3, law, followed)
 
     def _pushed(self, link: str) -> str:
         return link if "::" in link and not self._rows.has_link(link) else self.scoped(link)

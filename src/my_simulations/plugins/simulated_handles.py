@@ -20,13 +20,14 @@ class Orders:
     Attributes:
         motors, servos: by joint row.
         planar: of the model.
-        pushes: force and torque, or the law of both, by the scoped name of a link.
+        pushes: force and torque, or the law of both and the scoped name of the joint that the law
+            follows, by the scoped name of a link.
     """
 
     motors: Dict[int, JointMotor] = field(default_factory=dict)
     servos: Dict[int, JointServo] = field(default_factory=dict)
     planar: Optional[PlanarVelocity] = None
-    pushes: Dict[str, Tuple[Vec3, Vec3, Optional[WrenchLaw]]] = field(default_factory=dict)
+    pushes: Dict[str, Tuple[Vec3, Vec3, Optional[WrenchLaw], str]] = field(default_factory=dict)
 
 
 class SimulatedLink:

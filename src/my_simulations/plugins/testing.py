@@ -93,7 +93,7 @@ class FakeContext(FakeGraph):
         self.seed = 0
         self.step_size, self.step = step_size, 0
         self.pushes: Dict[str, Tuple[Vec3, Vec3]] = {}
-        self._laws: Dict[str, WrenchLaw] = {}
+        self._laws: Dict[str, Tuple[WrenchLaw, str]] = {}
         self.level: Optional[Tuple[float, float, float]] = None
         self.touching: List[Any] = []
         self.held = False
@@ -191,16 +191,17 @@ class FakeContext(FakeGraph):
         self.pushes[link] = (force, torque)
         self._laws.pop(link, None)
 
-    def push_by(self, link: str, law: WrenchLaw) -> None:
+    def push_by(self, link: str, law: WrenchLaw, joint: str = "") -> None:
         """Record the call."""
-        self._laws[link] = law
+        self._laws[link] = law, joint
         self._compute_laws()
 
     def _compute_laws(self) -> None:
-        for name, law in self._laws.items():
+        for name, (law, joint) in self._laws.items():
             link = self.link(name)
-            self.pushes[name] = law.wrench(link.pose, link.twist,
-                                             link.inertial.pose.position)
+            self.pushes[name] = law.wrench(
+                link.pose, link.twist, link.inertial.pose.position,
+                self.joint(joint).position if joint else 0.0)
 
     def move(self, pose: Pose, twist: Twist = STILL) -> None:
         """Set the model's pose and twist."""

@@ -135,15 +135,15 @@ class Wrenches:
             self._session.call(ClearTimedForces(tuple(force_ids)))
 
     def swap(self, old: Sequence[int],
-             wrenches: Sequence[Tuple[str, Vec3, Vec3, Optional[WrenchLaw]]],
+             wrenches: Sequence[Tuple[str, Vec3, Vec3, Optional[WrenchLaw], str]],
              revision: Optional[int] = None) -> Optional[List[int]]:
         """Clear some by id, and add others until they are cleared, between the same two steps.
 
         Args:
             old: ids; unknown ones have run out.
             wrenches: scoped name of a link, force (N) and torque (N m) in world axes at the centre
-                of mass, or the law by which the engine computes both. Zero ones, and those on a
-                missing link, are left out.
+                of mass, or the law by which the engine computes both; scoped name of the joint that
+                the law follows, or "". Zero ones, and those on a missing link, are left out.
             revision: of the models when they were worked out (`Models.revision`).
 
         Returns:
@@ -156,14 +156,16 @@ class Wrenches:
                 return None
             ids: List[int] = []
             new: List[TimedForce] = []
-            for link, force, torque, law in wrenches:
+            for link, force, torque, law, joint in wrenches:
                 row = session.registry.link_row_or_none(link) \
                     if law is not None or any((*force, *torque)) else None
                 if row is None:
                     ids.append(0)
                     continue
                 ids.append(session.new_id())
-                new.append(TimedWrench(ids[-1], row, 0, FOREVER, force, torque, law=law))
+                new.append(TimedWrench(
+                    ids[-1], row, 0, FOREVER, force, torque, law=law,
+                    axis_row=session.registry.joint_row(joint) if joint else -1))
             commands: List[Command] = [ClearTimedForces(tuple(old))] if old else []
             if new:
                 commands.append(AddTimedForces(tuple(new), whole=True))
@@ -219,7 +221,10 @@ class Wrenches:
         for force in self.pending(self._session.ring.step):
             rows = links if isinstance(force, TimedWrench) else axes
             if force.row in rows:
-                found.append(replace(force, row=rows[force.row]))
+                force = replace(force, row=rows[force.row])
+                if isinstance(force, TimedWrench):
+                    force = replace(force, axis_row=axes.get(force.axis_row, -1))
+                found.append(force)
         return found
 
     def _clear_row(self, kind: type, row: int) -> None:

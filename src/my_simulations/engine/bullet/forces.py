@@ -53,13 +53,15 @@ class Forces(StepHelper):
                  loops_changed: Callable[[Set[int]], None] = lambda rows: None,
                  release: Callable[[Body, Axis], None] = lambda body, axis: None,
                  motor_of: Callable[[int], Motor] = lambda row: None,
-                 read_links: Callable[[Tuple[int, ...]], bytes] = lambda rows: b"") -> None:
+                 read_links: Callable[[Tuple[int, ...]], bytes] = lambda rows: b"",
+                 read_axes: Callable[[Tuple[int, ...]], List[float]] = lambda rows: []) -> None:
         """`loops_changed` receives the axis rows that PID loops drive whenever these change.
 
         `release` restores the motor or friction of an axis that a servo left. `motor_of` returns
-        the motor of the axis of a row. `read_links` returns the current rows of links.
+        the motor of the axis of a row. `read_links` returns the current rows of links,
+        `read_axes` the position and rate of axes.
         """
-        self._motor_of, self._read_links = motor_of, read_links
+        self._motor_of, self._read_links, self._read_axes = motor_of, read_links, read_axes
         self._by_law: Dict[int, Tuple[Vec3, Vec3]] = {}   # of the last step, by force id
         self._wake = wake
         self._loops_changed = loops_changed
@@ -314,7 +316,8 @@ class Forces(StepHelper):
     def _computed(self, wrench: TimedWrench, law: WrenchLaw, com: Vec3) -> Tuple[Vec3, Vec3]:
         """Return force and torque for the state of the link; zero if they are not finite."""
         n = _ROW.unpack(self._read_links((wrench.row,)))
-        force, torque = law.wrench(Pose(n[0:3], n[3:7]), Twist(n[7:10], n[10:13]), com)
+        joint = self._read_axes((wrench.axis_row,))[0] if wrench.axis_row >= 0 else 0.0
+        force, torque = law.wrench(Pose(n[0:3], n[3:7]), Twist(n[7:10], n[10:13]), com, joint)
         found = (force, torque) if is_finite(*force, *torque) else (_NOTHING, _NOTHING)
         self._by_law[wrench.force_id] = found
         return found

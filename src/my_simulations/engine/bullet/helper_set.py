@@ -93,7 +93,7 @@ class HelperSet:
                              lambda rows: self.motors.yield_to(rows),
                              lambda body, axis: self.motors.restore(body, axis),
                              lambda row: self.motors.driven(row),
-                             self.row_reader.read_links)
+                             self.row_reader.read_links, self.row_reader.read_axes)
         self._friction = FrictionBalance(self.notices.misfit)
         self._bounces = PairRestitution(self._parameters, self.notices.odd_bounce)
         self._spin = GyroscopicRigid(lambda: self.forces.wrenched_links)

@@ -20,10 +20,6 @@ class RemoteHandle:
         self._connection, self.number = connection, made.number
         connection.readings.states[made.number] = made.state
 
-    def push_by(self, link: str, law: WrenchLaw) -> None:
-        """Apply the wrench of a law from now on."""
-        self._order("push_by", link, law)
-
     def _order(self, name: str, *arguments: Any) -> None:
         self._connection.order(self.number, name, *arguments)
 
@@ -205,9 +201,9 @@ class RemoteContext:
         """Apply a wrench from now on."""
         self._order("push", link, vector(force, "force"), vector(torque, "torque"))
 
-    def push_by(self, link: str, law: WrenchLaw) -> None:
+    def push_by(self, link: str, law: WrenchLaw, joint: str = "") -> None:
         """Apply the wrench of a law from now on."""
-        self._order("push_by", link, law)
+        self._order("push_by", link, law, joint)
 
     def _order(self, name: str, *arguments: Any) -> None:
         self._connection.order(CONTEXT, name, *arguments)

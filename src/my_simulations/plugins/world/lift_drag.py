@@ -3,19 +3,16 @@
 Parameters, defaults and law are those of Gazebo 11, which is thin-plate theory with a stall:
 https://classic.gazebosim.org/tutorials?tut=aerodynamics. As there, the pitching moment (`cma`) does
 not act. Where it differs: the velocity in the plane of lift and drag is that without its spanwise
-part (the original subtracts the spanwise speed along the flow). The engine computes the force of a
-wing without a control joint.
+part (the original subtracts the spanwise speed along the flow). The engine computes the force.
 """
 from __future__ import annotations
 
 import math
-from dataclasses import replace
-from typing import Optional
 
 from ...engine.wrench_laws import Wing
 from ...geometry import unit
 from ..base import Plugin
-from ..context import Joint, PluginError
+from ..context import PluginError
 
 
 class LiftDrag(Plugin):
@@ -33,31 +30,19 @@ class LiftDrag(Plugin):
             (p.number("cla", 1.0), p.number("cla_stall", 0.0)),
             (p.number("cda", 0.01), p.number("cda_stall", 1.0)), p.vector("cp"),
             unit(p.vector("forward", (1.0, 0.0, 0.0))), unit(p.vector("upward", (0.0, 0.0, 1.0))),
-            p.flag("radial_symmetry", False))
+            p.flag("radial_symmetry", False), p.number("control_joint_rad_to_cl", 4.0))
         self._control = self._control_joint(p.text("control_joint_name"))
-        self._per_rad = p.number("control_joint_rad_to_cl", 4.0)
         self.reset()
-        if self._control is not None:
-            context.every(0.0, self.update)
 
     def reset(self) -> None:
         """Forces ended with the reset."""
-        if self._control is None:
-            self.context.push_by(self._link.name, self._wing)
+        self.context.push_by(self._link.name, self._wing, self._control)
 
-    def _control_joint(self, name: str) -> Optional[Joint]:
-        """Return the control joint; report a missing one and ignore it, as in Gazebo."""
-        if not name:
-            return None
-        try:
-            return self.context.joint(name)
-        except PluginError as fault:
-            self.context.warn(f"{fault}; <control_joint_name> does nothing")
-            return None
-
-    def update(self) -> None:
-        """Before each step, for a wing with a rudder."""
-        assert self._control is not None
-        wing = replace(self._wing, more_lift=self._per_rad * self._control.position)
-        self.context.push(self._link.name, *wing.wrench(
-            self._link.pose, self._link.twist, self._link.inertial.pose.position))
+    def _control_joint(self, name: str) -> str:
+        """Return the control joint, or ""; report a missing one and ignore it, as in Gazebo."""
+        if name:
+            try:
+                return self.context.joint(name).name
+            except PluginError as fault:
+                self.context.warn(f"{fault}; <control_joint_name> does nothing")
+        return ""
