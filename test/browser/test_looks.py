@@ -274,6 +274,24 @@ def test_a_texture_is_repeated_by_its_size_and_upright(node, editor):
     assert seen == ["red", "blue", "red", "blue"]
 
 
+def test_the_colors_of_the_view_are_those_of_cameras_if_the_user_wants(editor):
+    editor.place("Box", (0.0, 0.0, 0.0))
+    editor.page.keyboard.press("Escape")
+
+    def corner_and_box():
+        clip = editor.page.locator("#view").bounding_box()
+        image = Image.open(io.BytesIO(editor.settled_picture(clip))).convert("RGB")
+        width, height = image.size
+        return image.getpixel((width // 3, 4)), image.getpixel((width // 2, height // 2))
+
+    background, box = corner_and_box()
+    assert box[0] > box[2] + 30 and background[2] > background[0] + 2
+    editor.page.get_by_role("menuitem", name="View", exact=True).click()
+    editor.page.get_by_role("menuitemcheckbox", name="Colors as in Cameras").click()
+    for red, green, blue in corner_and_box():
+        assert max(red, green, blue) - min(red, green, blue) < 6
+
+
 def test_a_terrain_whose_texture_is_missing_is_grey(node, editor):
     write_terrain(node, "bare", texture("bare", "gone.png"), {})
     red, green, blue = on_terrain(picture(editor, "bare"), 0, 0)

@@ -11,7 +11,7 @@ import {WorldStore} from './world_store.js';
 
 /** @typedef {'select'|'translate'|'rotate'|'scale'|'snap'|'measure'|'insert'|'connect'} Mode */
 /** @typedef {'grid'|'origin'|'transparent'|'wireframe'|'collisions'|'joints'|'com'|'inertia'|
- *            'contacts'|'frames'|'skeleton'|'hidden'|'locked'} OverlayFlag  hidden: not drawn; locked: the
+ *            'contacts'|'frames'|'skeleton'|'hidden'|'locked'|'cameraColors'} OverlayFlag  hidden: not drawn; locked: the
  *   mouse passes through it */
 
 /**
@@ -80,7 +80,7 @@ import {WorldStore} from './world_store.js';
 /** @type {readonly OverlayFlag[]} */
 const OVERLAY_FLAGS = Object.freeze([
   'grid', 'origin', 'transparent', 'wireframe', 'collisions', 'joints', 'com', 'inertia',
-  'contacts', 'frames', 'skeleton', 'hidden', 'locked',
+  'contacts', 'frames', 'skeleton', 'hidden', 'locked', 'cameraColors',
 ]);
 
 /** What is never mentioned in a world file: how much of it the user wants to see. */

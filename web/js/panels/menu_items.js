@@ -24,11 +24,13 @@ const OVERLAYS = [
   ['contacts', 'Contacts'],
   ['frames', 'Link Frames'],
   ['skeleton', 'Skeletons'],
+  null,
+  ['cameraColors', 'Colors as in Cameras'],
 ];
 
 /** Those of one model: no grid, no origin, no contacts. */
 const OF_A_MODEL = OVERLAYS.flatMap((row) =>
-  row && !['grid', 'origin', 'contacts'].includes(row[0]) ? [row] : [],
+  row && !['grid', 'origin', 'contacts', 'cameraColors'].includes(row[0]) ? [row] : [],
 );
 
 /** What can be shown of the selected models alone. @type {[OverlayFlag, string][]} */

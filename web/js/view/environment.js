@@ -71,7 +71,7 @@ export class Surroundings {
     stage.scene.add(this.#grid.mesh, this.#origin, this.#contact.mesh);
     stage.onShadows = (renderer, scene) => this.#contact.render(renderer, scene);
     store.listen('document', () => this.#apply());
-    store.listen('overlays', () => this.#flags());
+    store.listen('overlays', ({detail: {flag}}) => (flag === 'cameraColors' ? this.#apply() : this.#flags()));
     store.listen('entity', ({detail}) => {
       if (detail.kind === 'world') this.#apply();
       else if (detail.kind === 'model') this.#contact.stand(this.#ground());
@@ -120,7 +120,7 @@ export class Surroundings {
       this.#sky.take(settings.sky);
       scene.add(this.#sky.dome);
       distant = this.#sky.horizon;
-    } else if (leavesBackground(settings)) {
+    } else if (leavesBackground(settings) && !this.#store.overlays.scene.cameraColors) {
       scene.add(this.#gradient.dome);
       distant = this.#gradient.horizon;
       scene.fog = this.#haze = new Fog(distant, HAZE.nearest, 4 * HAZE.nearest);

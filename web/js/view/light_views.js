@@ -138,6 +138,9 @@ export class Lights {
     this.#ambient.position.set(0, 0, 1);
     stage.scene.add(this.#ambient);
     store.listen('document', () => this.#rebuild());
+    store.listen('overlays', ({detail: {flag}}) => {
+      if (flag === 'cameraColors') this.#rebuild();
+    });
     store.listen('entity', ({detail: {kind, value}}) => {
       if (kind === 'light' || (kind === 'world' && value.scene)) this.#rebuild();
     });
@@ -196,7 +199,7 @@ export class Lights {
     const {lights, scene: settings} = this.#store.document;
     this.#ambient.color.copy(lightColorOf(settings.ambient));
     this.#ambient.groundColor.copy(this.#ambient.color).multiplyScalar(0.6);
-    if (leavesAmbient(settings)) {
+    if (leavesAmbient(settings) && !this.#store.overlays.scene.cameraColors) {
       this.#ambient.color.multiply(FROM_ABOVE);
       this.#ambient.groundColor.multiply(FROM_BELOW);
     }

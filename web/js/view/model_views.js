@@ -312,7 +312,9 @@ export class Models {
       linkView.radius = 0;
       this.#moveLink(view, linkView);
     };
-    const parts = visualParts(tinted(view.document, visual, this.#store.modelEditing?.name === name), this.#stock, look);
+    const seen = this.#store.overlays.scene.cameraColors ? visual
+      : tinted(view.document, visual, this.#store.modelEditing?.name === name);
+    const parts = visualParts(seen, this.#stock, look);
     if (!(parts instanceof Promise)) add(parts);
     else {
       parts.then((ready) => {

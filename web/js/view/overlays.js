@@ -194,7 +194,7 @@ export class Overlays {
   /** @param {{flag?: OverlayFlag, model?: string, layer?: number}} options */
   #flagsChanged({flag, model, layer}) {
     const names = model ? [model] : this.#store.document?.models.map(({name}) => name) ?? [];
-    if (layer !== undefined || ['transparent', 'wireframe', 'hidden'].includes(flag ?? '')) {
+    if (layer !== undefined || ['transparent', 'wireframe', 'hidden', 'cameraColors'].includes(flag ?? '')) {
       for (const name of names) this.#models.rebuild(name);
     }
     if (flag && PER_MODEL.includes(flag)) for (const name of names) this.#rebuild(name);
