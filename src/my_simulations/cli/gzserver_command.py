@@ -38,13 +38,15 @@ def main(argv: Optional[List[str]] = None, program: str = "gzserver", gui: bool 
     profile.mark("engine process started")
     from ..ros.lifecycle.server_process import Server
     from .front_ends import FrontEnds
+    from .rostest_replay import rostest_replay
 
     def say(line: str) -> None:
         print(f"{program}: {line}", file=sys.stderr, flush=True)
 
     front_ends = FrontEnds()
-    status = Server(options, words, say, engines, profile, _make_node, front_ends.edit, gui,
-                    front_ends.record, front_ends.await_world).run()
+    with rostest_replay(options, say) as options:
+        status = Server(options, words, say, engines, profile, _make_node, front_ends.edit, gui,
+                        front_ends.record, front_ends.await_world).run()
     ignore()
     return status
 
