@@ -334,6 +334,18 @@ def test_each_episode_draws_other_values_and_a_seed_draws_them_again():
         env.close()
 
 
+def test_a_registered_environment_draws_its_randomisation_from_the_seed(make):
+    def masses(env, seed):
+        env.reset(seed=seed)
+        return env.unwrapped.world.description("box").links[0].inertial.mass
+
+    env = make(PUSH, randomisation=Randomisation(mass=(0.5, 2.0)))
+    first, other = masses(env, 1), masses(env, 2)
+    assert first != other and masses(env, 1) == first
+    plain = make(PUSH)
+    assert masses(plain, 1) == masses(plain, 2)
+
+
 def test_less_light_darkens_the_picture_and_textures_are_for_the_named_models():
     choice = WorldChoice(models=(("box", push_box._BOX, Pose()),))
     random = np.random.default_rng(1)

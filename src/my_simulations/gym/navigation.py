@@ -9,7 +9,7 @@ import gymnasium
 import numpy as np
 
 from ..geometry import Pose, rpy_from_quat
-from ..python_api import OpenWorld, WorldChoice
+from ..python_api import OpenWorld, Randomisation, WorldChoice
 from ..resources.package_files import own_directory
 from .task_models import box, disc
 from .world_env import Judgement, View, WorldEnv, seen
@@ -136,6 +136,7 @@ def _collides(world: OpenWorld) -> bool:
                for pair in world.contact_forces())
 
 
-def make(render_mode: Optional[str] = None) -> WorldEnv:
+def make(render_mode: Optional[str] = None,
+         randomisation: Optional[Randomisation] = None) -> WorldEnv:
     """The environment `my_simulations/Navigate-v0`."""
-    return WorldEnv(Navigate(), render_mode)
+    return WorldEnv(Navigate(), render_mode, randomisation=randomisation)

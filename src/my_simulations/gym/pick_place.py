@@ -9,7 +9,7 @@ import gymnasium
 import numpy as np
 
 from ..geometry import Pose
-from ..python_api import OpenWorld, RobotOptions, WorldChoice
+from ..python_api import OpenWorld, Randomisation, RobotOptions, WorldChoice
 from . import arm_scene
 from .task_models import box, disc
 from .world_env import Judgement, View, WorldEnv, seen, within
@@ -128,6 +128,7 @@ def _held(world: OpenWorld) -> bool:
                for pair in world.contact_forces())
 
 
-def make(render_mode: Optional[str] = None, camera: bool = False) -> WorldEnv:
+def make(render_mode: Optional[str] = None, camera: bool = False,
+         randomisation: Optional[Randomisation] = None) -> WorldEnv:
     """The environment `my_simulations/PickAndPlace-v0`."""
-    return WorldEnv(PickAndPlace(camera), render_mode, RobotOptions(plugins=False))
+    return WorldEnv(PickAndPlace(camera), render_mode, RobotOptions(plugins=False), randomisation)

@@ -9,7 +9,7 @@ import gymnasium
 import numpy as np
 
 from ..geometry import Pose, rpy_from_quat
-from ..python_api import OpenWorld, WorldChoice
+from ..python_api import OpenWorld, Randomisation, WorldChoice
 from ..resources.package_files import own_directory
 from .world_env import Judgement, View, WorldEnv, seen, within
 
@@ -97,6 +97,7 @@ class PushBox:
         return Judgement(reward + arrived, arrived or lost, {"is_success": arrived})
 
 
-def make(render_mode: Optional[str] = None) -> WorldEnv:
+def make(render_mode: Optional[str] = None,
+         randomisation: Optional[Randomisation] = None) -> WorldEnv:
     """The environment `my_simulations/PushBox-v0`."""
-    return WorldEnv(PushBox(), render_mode)
+    return WorldEnv(PushBox(), render_mode, randomisation=randomisation)

@@ -8,7 +8,7 @@ import gymnasium
 import numpy as np
 
 from ..geometry import Pose
-from ..python_api import OpenWorld, RobotOptions, WorldChoice
+from ..python_api import OpenWorld, Randomisation, RobotOptions, WorldChoice
 from . import arm_scene
 from .task_models import ball
 from .world_env import Judgement, View, WorldEnv, seen, within
@@ -71,6 +71,7 @@ class Reach:
         return Judgement(self._before - left + arrived, arrived, {"is_success": arrived})
 
 
-def make(render_mode: Optional[str] = None, camera: bool = False) -> WorldEnv:
+def make(render_mode: Optional[str] = None, camera: bool = False,
+         randomisation: Optional[Randomisation] = None) -> WorldEnv:
     """The environment `my_simulations/Reach-v0`."""
-    return WorldEnv(Reach(camera), render_mode, RobotOptions(plugins=False))
+    return WorldEnv(Reach(camera), render_mode, RobotOptions(plugins=False), randomisation)

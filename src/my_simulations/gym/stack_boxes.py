@@ -10,7 +10,7 @@ import gymnasium
 import numpy as np
 
 from ..geometry import Pose
-from ..python_api import OpenWorld, WorldChoice
+from ..python_api import OpenWorld, Randomisation, WorldChoice
 from ..resources.package_files import own_directory
 from .world_env import Judgement, View, WorldEnv, seen, within
 
@@ -133,6 +133,7 @@ class StackBoxes:
                    for contact in world.contacts())
 
 
-def make(render_mode: Optional[str] = None) -> WorldEnv:
+def make(render_mode: Optional[str] = None,
+         randomisation: Optional[Randomisation] = None) -> WorldEnv:
     """The environment `my_simulations/StackBoxes-v0`."""
-    return WorldEnv(StackBoxes(), render_mode)
+    return WorldEnv(StackBoxes(), render_mode, randomisation=randomisation)
