@@ -406,6 +406,8 @@ _TABLE: Tuple[Tuple[str, Tuple[Tuple[str, str, str, str], ...]], ...] = (
         ("unsaved", ERROR, "The world has unsaved changes.", "Save or discard them first."),
         ("opening", ERROR, "The world cannot be changed while another one is being opened.",
          "Wait until it is open."),
+        ("read-only", ERROR, "The world belongs to a program; the page only shows it.",
+         "Change the world in the program."),
         ("busy", ERROR, "A page has sent more requests than are answered at a time.",
          "Wait for the answers."),
         ("world-file", NOTE, "The path of the world file that was opened.", "None."),

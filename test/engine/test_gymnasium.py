@@ -1,6 +1,7 @@
 """Worlds as environments of gymnasium."""
 from __future__ import annotations
 
+import asyncio
 import math
 import os
 import re
@@ -8,13 +9,17 @@ import runpy
 import signal
 import subprocess
 import sys
+import time
+import urllib.request
 import warnings
 from dataclasses import replace
 from pathlib import Path
 
+import aiohttp
 import gymnasium
 import numpy as np
 import pytest
+from editor_case import Browser, Refused
 from gymnasium.utils.env_checker import check_env
 
 import my_simulations.gym
@@ -359,3 +364,36 @@ def test_less_light_darkens_the_picture_and_textures_are_for_the_named_models():
         with OpenWorld(dim, robots=RobotOptions(plugins=False)) as world:
             means.append(world.render([1, -1, 1], look_at=[0, 0, 0]).rgb.mean())
     assert means[1] > means[0] + 10.0
+
+
+def test_people_watch_an_environment_on_a_page_that_cannot_change_it(make, monkeypatch, capsys):
+    monkeypatch.setenv("MY_SIMULATIONS_NO_BROWSER", "1")
+    env = make(PUSH, render_mode="human")
+    began, steps = time.monotonic(), 5
+    env.reset(seed=1)
+    url = env.unwrapped.viewer.url
+    assert f"the world editor is at {url}" in capsys.readouterr().out
+
+    async def watch():
+        async with aiohttp.ClientSession() as session:
+            page = await Browser.open(session, url)
+            assert page.model("box") is not None
+            before = env.unwrapped.world.states().pose["box"]
+            for kind, fields in (("pause", {}), ("play", {}), ("undo", {}), ("step", {"steps": 1}),
+                                 ("new", {})):
+                with pytest.raises(Refused, match=f"accepts no request '{kind}'"):
+                    await page.ask(kind, **fields)
+            async with session.put(url.partition("?")[0] + "upload/a.stl?" + url.partition("?")[2],
+                                   data=b"x") as answer:
+                assert answer.status == 404
+            assert (env.unwrapped.world.states().pose["box"] == before).all()
+            await page.socket.close()
+
+    asyncio.run(watch())
+    for _ in range(steps):
+        env.step(env.action_space.sample())
+    assert time.monotonic() - began >= steps * 0.1   # not faster than real time
+    assert env.render() is None
+    env.close()
+    with pytest.raises(OSError):
+        urllib.request.urlopen(url)

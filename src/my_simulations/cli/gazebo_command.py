@@ -33,8 +33,8 @@ def _show(words: List[str]) -> None:
     """Show the editor's URL as soon as the node has set it."""
     import time
 
+    from ..editor.web_browser import show
     from ..ros.lifecycle import master_api
-    from .web_browser import show
 
     name, uri = master_api.node_name(words, "gazebo"), master_api.uri(words)
     until = time.monotonic() + 60.0

@@ -6,10 +6,10 @@ import sys
 import threading
 from typing import Any, List, Optional
 
+from ..editor.web_browser import show
 from ..program_end import program
 from ..ros.lifecycle import master_api
 from ..ros.own_server import EDITOR_REQUESTED
-from .web_browser import show
 
 PROGRAM = "gzclient"
 SERVER_SECONDS = 60.0

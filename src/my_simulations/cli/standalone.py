@@ -6,10 +6,10 @@ import sys
 import threading
 from typing import TYPE_CHECKING, Any, Callable, Dict, List, Optional, Tuple
 
+from ..editor.web_browser import show
 from ..errors import CommandError, InputError, Issue, Severity
 from .front_ends import FrontEnds
 from .signals import end_quietly
-from .web_browser import show
 
 if TYPE_CHECKING:
     from ..editor.logs.recorder import Recorder

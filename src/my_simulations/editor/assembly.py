@@ -33,6 +33,14 @@ from .transport.web_socket import Route, Sockets
 from .world_requests import Requests
 
 _AUTOSAVE_S = 1.0
+_READING = ("hello", "presence", "viewed", "watch", "topics", "topic_fields", "library",
+            "templates")
+"""Requests and notices that are accepted if `EditorOptions.read_only` is set."""
+
+
+async def _refuse(_client: Client, message: Dict[str, Any]) -> Any:
+    raise EditRefusedError("read-only", "the world belongs to a program: this page shows it, and"
+                           f" accepts no request '{message['type']}'")
 
 
 class Assembly:
@@ -72,15 +80,22 @@ class Assembly:
             **Watching(self.hub, self._topics.live).routes(), **self._topics.routes(),
             **BuildingRequests(self.hub, library, self._pool, self._files).routes(),
         }
+        if options.read_only:
+            self._autosave.found = None
+            self.routes = {kind: route if kind in _READING else Route(_refuse, None)
+                           for kind, route in self.routes.items()}
         self.sockets = Sockets(self.hub, self.routes, self._leave, options.check_outgoing)
         self.application = web.Application(middlewares=[guard.middleware],
                                            client_max_size=protocol.limits["upload_bytes"])
-        self.application.add_routes([web.get("/ws", self.sockets.serve), *pages.routes()])
+        self.application.add_routes([web.get("/ws", self.sockets.serve), *(
+            route for route in pages.routes() if route.method == "GET" or not options.read_only)])
         self._tasks: "List[asyncio.Future[Any]]" = []
 
     def start(self) -> None:
         """Begin to look after the world."""
-        works: List[Callable[[], Any]] = [self.hub.run, self._keep, self._models.watch]
+        works: List[Callable[[], Any]] = [self.hub.run, self._models.watch]
+        if not self._options.read_only:
+            works.append(self._keep)
         self._tasks = [asyncio.ensure_future(work()) for work in works]
         for task in self._tasks:
             task.add_done_callback(self._ended)
@@ -99,7 +114,8 @@ class Assembly:
         await runner.cleanup()
         self._pool.shutdown(wait=False)
         self._requests.close()
-        self._autosave.keep()
+        if not self._options.read_only:
+            self._autosave.keep()
 
     def tell(self, issue: Issue) -> None:
         """Show an issue on all pages; safe from any thread."""

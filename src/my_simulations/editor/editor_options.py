@@ -41,6 +41,7 @@ class EditorOptions:
         data_dir: keeps state logs.
         more_logs: state logs that lie elsewhere.
         topics: the ROS topics; None in a world without ROS.
+        read_only: accept no request that edits the world, its time or files.
         check_outgoing: hold what is sent to the protocol too (tests).
     """
 
@@ -56,6 +57,7 @@ class EditorOptions:
     data_dir: str = field(default_factory=lambda: os.path.expanduser("~/.gazebo/log"))
     more_logs: Tuple[str, ...] = ()
     topics: Optional[TopicSource] = None
+    read_only: bool = False
     check_outgoing: bool = False
 
 

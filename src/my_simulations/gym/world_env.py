@@ -9,6 +9,7 @@ import numpy as np
 
 from ..errors import EngineLostError
 from ..python_api import OpenWorld, Randomisation, RobotOptions, WorldChoice
+from .viewer import Viewer
 
 
 @dataclass(frozen=True)
@@ -75,18 +76,23 @@ class WorldEnv(gymnasium.Env[Any, Any]):
 
     Args:
         task: what it is about.
-        render_mode: "rgb_array", or None.
+        render_mode: "rgb_array", "human", or None. "human" shows the world in a page of the editor,
+            which cannot change it, and makes the steps in real time.
         robots: which plugins of the world's robots run.
         randomisation: properties drawn for each episode, from the seed of `reset`.
+
+    Attributes:
+        viewer: the page of `render_mode` "human"; else None.
     """
 
-    metadata: Dict[str, Any] = {"render_modes": ["rgb_array"], "render_fps": 10}
+    metadata: Dict[str, Any] = {"render_modes": ["human", "rgb_array"], "render_fps": 10}
 
     def __init__(self, task: Task, render_mode: Optional[str] = None,
                  robots: RobotOptions = RobotOptions(),  # noqa: B008
                  randomisation: Optional[Randomisation] = None) -> None:
-        if render_mode not in (None, "rgb_array"):
-            raise ValueError(f"render_mode is 'rgb_array' or None, not '{render_mode}'")
+        if render_mode not in (None, *self.metadata["render_modes"]):
+            raise ValueError("render_mode is 'human', 'rgb_array' or None, not"
+                             f" '{render_mode}'")
         self.task = task
         self.render_mode = render_mode
         self._robots, self._randomisation = robots, randomisation
@@ -95,6 +101,7 @@ class WorldEnv(gymnasium.Env[Any, Any]):
         self.metadata = {**self.metadata, "render_fps": round(1.0 / task.period)}
         self._world: Optional[OpenWorld] = None
         self._last: Any = None
+        self.viewer = Viewer() if render_mode == "human" else None
 
     @property
     def world(self) -> OpenWorld:
@@ -116,6 +123,8 @@ class WorldEnv(gymnasium.Env[Any, Any]):
             self._world.open(choice)
         else:
             self._world.reset()
+        if self.viewer is not None:
+            self.viewer.show(self._world)
         self.task.begin(self._world, self.np_random, options or {})
         self._last = self.task.observe(self._world)
         return self._last, {}
@@ -126,6 +135,8 @@ class WorldEnv(gymnasium.Env[Any, Any]):
         try:
             self.task.act(world, action)
             world.step(max(1, round(self.task.period / world.step_size)))
+            if self.viewer is not None:
+                self.viewer.keep_pace(self.task.period)
             self._last = self.task.observe(world)
             judged = self.task.judge(world, action)
         except EngineLostError as fault:
@@ -133,15 +144,17 @@ class WorldEnv(gymnasium.Env[Any, Any]):
         return self._last, float(judged.reward), judged.terminated, False, judged.info
 
     def render(self) -> Optional[np.ndarray]:
-        """A picture, uint8 (height, width, 3); None without render_mode."""
-        if self.render_mode is None:
+        """A picture, uint8 (height, width, 3); None if render_mode is not "rgb_array"."""
+        if self.render_mode != "rgb_array":
             return None
         view = self.task.view
         return self.world.render(view.position, look_at=view.target, width=view.width,
                                  height=view.height).rgb
 
     def close(self) -> None:
-        """End the engine."""
+        """End the engine and the page's server."""
+        if self.viewer is not None:
+            self.viewer.close()
         if self._world is not None:
             self._world.close()
             self._world = None

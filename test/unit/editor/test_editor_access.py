@@ -10,7 +10,7 @@ import aiohttp
 import pytest
 from editor_case import Browser, box, cases
 
-from my_simulations.cli import web_browser
+from my_simulations.editor import web_browser
 from my_simulations.editor.editor_options import TOKEN_VARIABLE
 from my_simulations.editor.transport import address_file, connection_limits
 

@@ -10,7 +10,7 @@ import stat
 import sys
 from typing import Mapping, TextIO
 
-from ..editor.transport import address_file
+from .transport import address_file
 
 NO_BROWSER = "MY_SIMULATIONS_NO_BROWSER"
 """Environment variable; if set, no browser is started."""
@@ -39,11 +39,11 @@ def show(url: str, program: str) -> None:
     """
     whole = address_file.whole(url)
     if is_private(sys.stdout):
-        print(f"{program}: the world editor is at {whole}", flush=True)
+        _write(sys.stdout, f"{program}: the world editor is at {whole}")
     else:
-        print(f"{program}: the world editor is at {address_file.without_token(whole)}; others can "
-              "read this output, so run gzclient in a terminal for the address with the token",
-              flush=True)
+        _write(sys.stdout, f"{program}: the world editor is at"
+               f" {address_file.without_token(whole)}; others can read this output, so run"
+               " gzclient in a terminal for the address with the token")
     if not has_display():
         return
     import webbrowser
@@ -54,5 +54,9 @@ def show(url: str, program: str) -> None:
     except webbrowser.Error:
         opened = False
     if not opened:
-        print(f"{program}: cannot start a browser; open the URL yourself",
-              file=sys.stderr, flush=True)
+        _write(sys.stderr, f"{program}: cannot start a browser; open the URL yourself")
+
+
+def _write(stream: TextIO, line: str) -> None:
+    stream.write(line + "\n")
+    stream.flush()
