@@ -11,7 +11,8 @@ from my_simulations.errors import InputError, errors_of
 from my_simulations.formats import reading
 from my_simulations.formats.mesh.loading import collision_meshes
 from my_simulations.formats.reading import parse_document, read_entity, read_world_text
-from my_simulations.formats.sdf import include
+from my_simulations.formats.sdf import include, model
+from my_simulations.formats.sdf.link import LinkReader
 from my_simulations.resources.resolver import Resolver
 
 BOX = "<collision name='c'><geometry><box><size>1 1 1</size></box></geometry></collision>"
@@ -34,6 +35,32 @@ def test_too_many_links_or_pairs_are_refused_with_the_line_of_the_model(links):
     (issue,) = errors(text)
     assert (issue.code, issue.file, issue.line) == ("model-too-large", "a.sdf", 2)
     assert issue.xpath == "/sdf/model"
+
+
+@pytest.mark.parametrize("place", ["{}", "<world name='w'>{}</world>"])
+@pytest.mark.parametrize("depth", [1, 40])
+def test_too_many_nested_models_are_refused_before_they_are_read(monkeypatch, depth, place):
+    read = []
+    monkeypatch.setattr(LinkReader, "read_all", lambda *_: read.append(1) or [])
+    inner = "<model name='i'>" * depth + "<link name='l'/>" + "</model>" * depth
+    text = ("<sdf version='1.7'>\n" + place.format(
+        "<model name='m'><link name='l'/>" + inner * (MODEL_BUDGET.links // depth + 1)
+        + "</model>") + "</sdf>")
+    issues = (errors_of(read_world_text(text, Resolver(), "a.sdf").issues) if "world" in text
+              else errors(text))
+    assert [(one.code, one.file, one.line) for one in issues] == [("model-too-large", "a.sdf", 2)]
+    assert len(read) == 1
+
+
+def test_nested_models_of_a_document_are_limited(monkeypatch):
+    monkeypatch.setattr(model, "MOST_NESTED_OF_ALL", 5)
+    one = "<model name='{}'>" + "<model name='i'><link name='l'/></model>" * 2 + "</model>\n"
+    loaded = read_world_text("<sdf version='1.7'><world name='w'>\n"
+                             + "".join(one.format(name) for name in "abcd") + "</world></sdf>",
+                             Resolver(), "a.sdf")
+    assert [one.name for one in loaded.world.models] == ["a", "b"]
+    assert [(one.code, one.line) for one in errors_of(loaded.issues)] == [
+        ("model-too-large", 4), ("model-too-large", 5)]
 
 
 def test_a_robot_is_limited_too():

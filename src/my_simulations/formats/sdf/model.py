@@ -5,7 +5,7 @@ import enum
 from dataclasses import replace
 from typing import Any, List, Optional, Sequence, Set, Tuple
 
-from ...description.cost_budget import budget_faults, cost_of
+from ...description.cost_budget import MODEL_BUDGET, budget_faults, cost_of
 from ...description.model import WORLD, Link, Model
 from ...description.validate import link_names, own_faults, place_faults
 from ...errors import Issue, Severity
@@ -25,6 +25,10 @@ from .plugin import read_plugin
 ROOT = "__model__"
 DEEPEST = 50
 """Greatest depth of nested models; files of Gazebo and of robots have 2 or 3 levels."""
+MOST_NESTED = MODEL_BUDGET.links
+"""Greatest number of models inside one, at all depths. Each has a link at least."""
+MOST_NESTED_OF_ALL = 10_000
+"""Greatest number of nested models of a document; each takes 0.1 ms of processor time."""
 
 
 def read_model(element: Any, source: Source, changes: Optional[IncludeOverrides] = None,
@@ -84,7 +88,7 @@ class _ModelReader:
         self._force_static_if_needed(model, static)
         for child in found.get("frame", ()):
             self._frame(child)
-        nested = self._within_depth(found.get("model", ()), model)
+        nested = self._within_number(self._within_depth(found.get("model", ()), model), model)
         waiting = self._nested(nested, included, model, static)
         joints = self._read_joints(found.get("joint", ()))
         model.canonical_link = model.canonical_link or first_link(
@@ -136,6 +140,20 @@ class _ModelReader:
         for child in elements:
             self._source.report(FaultLevel.ERROR, "models-too-deep", "models are nested deeper than"
                                 f" {DEEPEST} levels; this one is skipped", child)
+        return ()
+
+    def _within_number(self, elements: Sequence[Any], model: Model) -> Sequence[Any]:
+        """The nested models; none if the model, or the document until here, has too many."""
+        if self._outer or not elements:
+            return elements
+        log, count = self._source.log, sum(1 for _ in self._element.iter("model")) - 1
+        log.nested += count
+        if count <= MOST_NESTED and log.nested <= MOST_NESTED_OF_ALL:
+            return elements
+        why = (f"{count} nested models; {MOST_NESTED} are possible" if count > MOST_NESTED else
+               f"nested models beyond the {MOST_NESTED_OF_ALL} that one document may have")
+        self._source.report(FaultLevel.FATAL, "model-too-large", f"model {model.name!r} has {why}",
+                            self._element, "divide it into several models or files")
         return ()
 
     def _read_includes(self, elements: Sequence[Any], model: Model,

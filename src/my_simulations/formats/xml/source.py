@@ -37,6 +37,7 @@ class IssueCollector:
     Attributes:
         fatal: number of issues that make their entity unusable.
         includes: number of includes followed for the model that is being read.
+        nested: number of nested models of the models that were begun.
         told: kinds of elements that were already reported as not simulated.
         unknown: number of unknown elements and attributes.
     """
@@ -45,6 +46,7 @@ class IssueCollector:
         self.issues: List[Issue] = []
         self.fatal = 0
         self.includes = 0
+        self.nested = 0
         self.told: Set[str] = set()
         self.unknown = 0
         self._seen: Set[Issue] = set()
