@@ -305,7 +305,8 @@ def test_an_instructor_grades_five_submissions_by_a_shipped_assignment(tmp_path)
     submissions = tmp_path / "submissions"
     right = (REPOSITORY / "scripts" / "stop_before_wall.py").read_text()
     for name, program in (("right", right), ("typo", right.replace("while", "whil")),
-                          ("loop", "while True: pass\n"), ("idle", "print('nothing')\n"),
+                          ("loop", "import time\nwhile True: time.sleep(0.1)\n"),
+                          ("idle", "print('nothing')\n"),
                           ("crash", DRIVER)):
         (submissions / name).mkdir(parents=True)
         (submissions / name / "go.py").write_text(program)

@@ -100,8 +100,8 @@ def test_errors_have_their_moments():
     context = FakeContext("<plugin><gaussianNoise>0.5 0.1 0</gaussianNoise><drift>2 0 0</drift>"
                           "<driftFrequency>10</driftFrequency><offset>0 0 3</offset></plugin>")
     errors = SensorErrors(context)
-    apart = 4 * 10 ** 8   # ns: four time constants, after which samples are independent
-    drawn = np.array([errors.apply((1.0, 1.0, 1.0), n * apart) for n in range(1, 4001)])
+    apart = 3 * 10 ** 8   # ns: three time constants, after which samples are independent
+    drawn = np.array([errors.apply((1.0, 1.0, 1.0), n * apart) for n in range(1, 2001)])
     assert drawn.mean(axis=0) == pytest.approx((1.0, 1.0, 4.0), abs=0.12)
     assert drawn.std(axis=0) == pytest.approx((math.hypot(2.0, 0.5), 0.1, 0.0), rel=0.05, abs=1e-9)
     again = SensorErrors(context)

@@ -93,6 +93,8 @@ def overlap_depth(one: Solid, other: Solid) -> float:
     for axis in axes:
         (low_a, high_a), (low_b, high_b) = _extent(one, axis), _extent(other, axis)
         depths.append(min(high_a, high_b) - max(low_a, low_b))
+        if depths[-1] <= 0.0:
+            break
     return float(min(depths))
 
 
