@@ -25,7 +25,6 @@ from ...geometry import (
     ZERO3,
     Vec3,
     add,
-    conjugate,
     cross,
     dot,
     norm,
@@ -46,7 +45,7 @@ from .contact_points import (
     ContactPoint,
     LinkKey,
 )
-from .extra_surfaces import anisotropy
+from .extra_surfaces import anisotropy, first_direction
 from .link_states import Motion, motion
 from .surface_coefficients import directed, of_link
 
@@ -121,13 +120,9 @@ class ForceDependentSlip:
     def _add(self, body: Body, part: Part) -> None:
         collision = counting_collision(part.link)
         surface = Surface() if collision is None else collision.surface
-        slips, first = (surface.slip1, surface.slip2), None
+        slips, first = (surface.slip1, surface.slip1), None
         if collision is not None and any(surface.fdir1):
-            first = rotate(conjugate(part.link_from_com.orientation),
-                           rotate(collision.pose.orientation, surface.fdir1))
-            first = scale(first, 1.0 / norm(first))
-        else:
-            slips = (surface.slip1, surface.slip1)
+            slips, first = (surface.slip1, surface.slip2), first_direction(collision, part)
         known = _Slippery(part, body.moves, slips, first, (
             surface.mu, surface.mu2 if directed(surface) else surface.mu))
         for uid in body.uids:

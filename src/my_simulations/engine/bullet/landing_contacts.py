@@ -161,9 +161,9 @@ class LandingContacts(StepHelper):
         """Record rolling links before their contacts are dropped: their bodies do not fly."""
         if self._next > step:
             return
-        for flight in [self._flights[uid] for uid, _ in links if uid in self._flights]:
-            if flight.look <= step:
-                self._is_on_ground(flight, step, pybullet.getBaseVelocity(flight.body.uid)[0])
+        for uid in dict.fromkeys(uid for uid, _ in links if uid in self._flights):
+            if self._flights[uid].look <= step:
+                self._is_on_ground(self._flights[uid], step, pybullet.getBaseVelocity(uid)[0])
 
     def before(self, step: int, dt: float, gravity: Vec3) -> None:
         """Find flights periodically, and the contact points of those that end in this step."""
@@ -215,16 +215,13 @@ class LandingContacts(StepHelper):
         uid = flight.body.uid
         if not any(contact[LOAD] > 0.0 for contact in pybullet.getContactPoints(bodyA=uid)):
             return False
-        flight.on_ground += 1
-        if flight.on_ground > _BOUNCES or norm(linear) <= _RESTS:
+        if flight.on_ground >= _BOUNCES or norm(linear) <= _RESTS:
             del self._flights[uid]
-        flight.look, flight.arrives = step + _BOUNCE, 0
+        else:
+            self._flights[uid] = _Flight(flight.body, step + _BOUNCE,
+                                         on_ground=flight.on_ground + 1)
         if flight.seen is not None:
             self._look_at_those_beside(uid, step)
-        flight.seen = None
-        flight.beside.clear()
-        flight.through.clear()
-        flight.tried.clear()
         return True
 
     def _look_at_those_beside(self, uid: int, step: int) -> None:

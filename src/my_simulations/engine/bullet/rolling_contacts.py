@@ -206,16 +206,16 @@ class RollingContacts(StepHelper):
             if (linear != _NONE or angular != _NONE) and _slow(linear, angular):
                 pybullet.resetBaseVelocity(uid, _NONE, _NONE)
         self._dropping(self._rolling.keys(), step)
-        self._drop(self._rolling.keys() - self.on_seams.keys(), step)
+        self._drop(False, step)
         if self.on_seams:
             if not self._moving.issubset({uid for uid, _ in self.on_seams}):
                 self._find_pairs()
-            self._drop(self.on_seams.keys(), step)
+            self._drop(True, step)
 
-    def _drop(self, keys: AbstractSet[LinkKey], step: int) -> None:
-        """Drop the contact points of links, those of one set in the order of `_rolling`."""
+    def _drop(self, on_seams: bool, step: int) -> None:
+        """Drop the contact points of links that roll on triangles, or of all others."""
         for key, meets in self._rolling.items():
-            if key in keys and not self._flies(key[0], step):
+            if (key in self.on_seams) is on_seams and not self._flies(key[0], step):
                 pybullet.setCollisionFilterGroupMask(*key, meets.group, meets.mask)
 
     def due(self, step: int) -> int:
