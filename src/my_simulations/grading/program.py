@@ -4,6 +4,7 @@ from __future__ import annotations
 import contextlib
 import json
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -28,6 +29,9 @@ TESTS = "tests"
 _LOOK_S = 0.1
 _END_S = 10.0
 _KEPT_OUTPUT = 200_000
+_LONGEST_ERROR = 300
+_PLACE = re.compile(r'File "([^"\n]+)", line (\d+)')
+_ERROR = re.compile(r"[\w.]+(Error|Exception)\b")
 
 
 @dataclass(frozen=True)
@@ -148,7 +152,8 @@ class Program:
         status = self.status
         if self.excess or status is None:
             return self.excess
-        return f"the program ended with status {status}"
+        error = python_error(self.output().decode("utf-8", "replace")) if status else ""
+        return f"the program ended with status {status}" + (f": {error}" if error else "")
 
     def _watch(self) -> None:
         self.watcher = threading.get_native_id()
@@ -159,6 +164,16 @@ class Program:
                 self.excess = f"the program used more memory than {self._limits.memory_mb:g} MB"
                 self._process.kill()
                 return
+
+
+def python_error(output: str) -> str:
+    """File, line and message of the Python error at the end of an output; "" for none."""
+    last = output.rstrip().rpartition("\n")[2]
+    places = _PLACE.findall(output)
+    if not places or not _ERROR.match(last):
+        return ""
+    file, line = places[-1]
+    return f"{os.path.basename(file)}:{line}: {last}"[:_LONGEST_ERROR]
 
 
 def _environment(account: Account) -> Dict[str, str]:

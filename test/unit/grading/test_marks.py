@@ -13,6 +13,7 @@ from my_simulations.grading.assignment_file import read_assignment
 from my_simulations.grading.lists import write_lists
 from my_simulations.grading.mark import GRADED, TIMED_OUT, CheckResult, Mark, mark_of, result
 from my_simulations.grading.pages import write_pages
+from my_simulations.grading.program import python_error
 from my_simulations.grading.result_stream import ResultReader, ResultWriter
 from my_simulations.grading.submission import (
     content_key,
@@ -127,3 +128,14 @@ def test_links_and_pipes_are_no_files_of_a_submission(tmp_path):
     (tmp_path / "folder").symlink_to("/etc")
     os.mkfifo(tmp_path / "pipe")
     assert [name for name, _ in regular_files(str(tmp_path))] == ["a.txt"]
+
+
+def test_the_error_of_a_program_has_its_file_and_line():
+    output = """  File "/tmp/x/submission/go.py", line 7
+    def on_odometry(message
+                   ^
+SyntaxError: '(' was never closed
+"""
+    assert python_error(output) == "go.py:7: SyntaxError: '(' was never closed"
+    assert python_error("done\n") == python_error("") == python_error("ValueError: x") == ""
+    assert len(python_error(output.replace("closed", 1000 * "x"))) == 300
