@@ -9,7 +9,7 @@ import pytest
 
 from my_simulations.description.shapes import Mesh
 from my_simulations.errors import InputError
-from my_simulations.formats.mesh import loading
+from my_simulations.formats.mesh import collada, loading
 from my_simulations.formats.mesh.declared_size import LARGEST, check_declared_size
 from my_simulations.formats.mesh.loading import load_mesh
 from my_simulations.formats.mesh.obj import read_obj
@@ -136,9 +136,13 @@ def test_collada_of_many_empty_nodes_is_read_elsewhere_and_beyond_a_limit_not_at
     path.write_bytes(nodes(30_000))
     with pytest.raises(InputError, match="has no faces"):
         load_mesh(Mesh("nodes.dae", str(path)))
+    monkeypatch.setattr(collada, "_loaded", lambda text: pytest.fail("read before it is refused"))
     path.write_bytes(nodes(150_000))
     with pytest.raises(InputError, match="more than 100000 nodes"):
         load_mesh(Mesh("nodes.dae", str(path)))
+    with pytest.raises(MeshError, match="more than 100000 nodes"):
+        collada.read_collada(nodes(60_000).replace(
+            b"<node id='a'/>", b"<node><instance_geometry url='#a'/></node>"))
 
 
 @pytest.mark.parametrize("scale, center", [(1.0, False), (1.0, True), (1e300, True)])

@@ -21,6 +21,7 @@ _PRIMITIVES = {"triangles", "trifans", "tristrips", "polylist", "polygons"}
 _NO_INDEX = re.compile(r"[^\s\d+]+")
 _LARGE_INDEX = re.compile(r"0*[1-9]\d{9,}")  # of 1e9 and more
 MOST_COLLADA_NODES = 100_000
+_NODE_TAGS = (b"<node", b"<instance_node", b"<instance_geometry", b"<instance_controller")
 _MOST_TAGS = 1_000_000  # an element takes about 200 bytes
 _NAMESPACE = "http://www.collada.org/2005/11/COLLADASchema"
 
@@ -56,7 +57,7 @@ def parsed(data: bytes) -> Any:
 
     if b"<!ENTITY" in data:
         raise MeshError("it declares entities, which are not read")
-    if data.count(b"<node") > MOST_COLLADA_NODES or data.count(b"<") > _MOST_TAGS:
+    if sum(map(data.count, _NODE_TAGS)) > MOST_COLLADA_NODES or data.count(b"<") > _MOST_TAGS:
         raise MeshError(f"it has more than {MOST_COLLADA_NODES} nodes or {_MOST_TAGS} tags")
     parser = etree.XMLParser(resolve_entities=False, no_network=True, load_dtd=False,
                              huge_tree=True, remove_comments=True, remove_pis=True)
