@@ -1,6 +1,8 @@
 """Rules of WCAG 2.1 AA, tested by axe-core on what a person opens."""
 from __future__ import annotations
 
+import os
+
 import pytest
 from axe_playwright_python.sync_playwright import Axe
 from test_panels import with_box
@@ -55,3 +57,42 @@ def test_the_editors_of_models_and_buildings(editor, keys):
     editor.page.keyboard.press(keys)
     editor.until("editor.store.modelEditing || document.querySelector('.building')", "the editor")
     check(editor)
+
+
+def test_a_world_is_built_run_and_saved_by_the_keyboard_alone(editor, node):
+    press = editor.page.keyboard.press
+
+    def has_focus(what):
+        editor.until("document.activeElement !== document.body", f"the focus after {what}")
+
+    press("Control+k")
+    editor.page.keyboard.type("box")
+    press("Enter")
+    editor.until("editor.store.mode === 'insert'", "the box that is placed")
+    press("Enter")
+    editor.until("editor.store.selection.join() === 'unit_box'", "the box")
+    has_focus("inserting")
+    press("F2")
+    press("Control+a")
+    editor.page.keyboard.type("crate")
+    press("Enter")
+    editor.until("editor.store.selection.join() === 'crate'", "the new name")
+    has_focus("renaming")
+    press("F6")
+    has_focus("F6")
+    press("Control+k")
+    editor.page.keyboard.type("play")
+    press("Enter")
+    editor.until("!editor.store.stats.paused", "the running world")
+    has_focus("a command")
+    press("Control+k")
+    editor.page.keyboard.type("pause")
+    press("Enter")
+    editor.until("editor.store.stats.paused", "the world that stands")
+    press("Control+Shift+s")
+    editor.page.get_by_role("dialog", name="Save World As").wait_for()
+    editor.page.keyboard.type("by_keys.world")
+    press("Enter")
+    editor.until("!editor.store.history.dirty", "the saved world")
+    has_focus("saving")
+    assert os.path.isfile(os.path.join(node.typed, "by_keys.world"))
