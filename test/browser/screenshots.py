@@ -123,6 +123,7 @@ class Film:
         self.editor = editor
         self.frames = []
         self.durations = []
+        self.at = (480.0, 300.0)
         editor.page.evaluate(CURSOR)
 
     def take(self, milliseconds=120):
@@ -134,6 +135,14 @@ class Film:
         for step in range(1, steps + 1):
             self.editor.page.mouse.move(*(a + (b - a) * step / steps for a, b in zip(start, end)))
             self.take()
+        self.at = end
+
+    def press(self, element):
+        """Goes to the middle of an element and clicks."""
+        element.wait_for()
+        box = element.bounding_box()
+        self.go(self.at, (box["x"] + box["width"] / 2, box["y"] + box["height"] / 2), 3)
+        element.click()
 
     def save(self, path):
         first, *others = self.frames
@@ -154,59 +163,84 @@ CURSOR = """(() => {
 
 
 def film(editor, path):
-    """Film three shapes that are placed, one that is lifted, and running physics."""
+    """Film a house that is drawn and furnished, a car that is built and driven out, and saving."""
     without_hints(editor)
-    page, strip = editor.page, Film(editor)
+    strip = Film(editor)
     strip.take(700)
-    at = (480.0, 300.0)
-    for tool, place in (("Box", (-0.6, -0.8, 0)), ("Cylinder", (0.9, 1.0, 0)),
-                        ("Sphere", (1.6, -1.2, 0))):
-        box = editor.button(tool).bounding_box()
-        strip.go(at, (box["x"] + 15, box["y"] + 15), 3)
-        page.mouse.down()
-        page.mouse.up()
-        at = editor.pixel(place)
-        strip.go((box["x"] + 15, box["y"] + 15), at, 4)
-        before = len(editor.names())
-        page.mouse.down()
-        page.mouse.up()
-        wait_for(lambda: len(editor.names()) > before, tool)
-        strip.take(200)
-    lift(editor, strip, at)
-    page.keyboard.press("Escape")
-    page.keyboard.press("Escape")
-    strip.take(300)
-    for _ in range(14):
-        editor.get("editor.actions.step(90)")
-        strip.take(90)
-    strip.take(1200)
+    draw_house(editor, strip)
+    look(editor, (4.6, -2.9, 7.4), (0.9, -0.1, 0.0))
+    strip.take(600)
+    editor.page.get_by_role("tab", name="Insert").click()
+    for card, place in (("Desk", (-1.2, 0.9)), ("Armchair", (-1.2, -0.8)),
+                        ("Potted plant", (0.4, 1.1))):
+        editor.page.get_by_role("searchbox", name="Find a model", exact=True).fill(card)
+        strip.press(editor.page.get_by_role("button", name=card, exact=True))
+        put(editor, strip, place)
+    editor.page.get_by_role("searchbox", name="Find a model", exact=True).fill("")
+    strip.press(editor.page.get_by_role("button", name="Template: Differential drive"))
+    form = editor.page.get_by_role("dialog", name="Differential drive")
+    for label, value in (("Model name", "taxi"), ("Image width", "160"), ("Image height", "120")):
+        form.get_by_label(label).fill(value)
+        strip.take(300)
+    strip.press(form.get_by_role("button", name="Insert"))
+    form.wait_for(state="detached")
+    put(editor, strip, (0.2, 0.0))
+    drive_out(editor, strip)
+    save_world(editor, strip)
     strip.save(path)
 
 
-def lift(editor, strip, at):
-    """The box by its handles: up, then aside."""
-    page = editor.page
-    box = editor.get("editor.view.pixelOf('unit_box')")
-    strip.go(at, box, 3)
-    page.mouse.down()
-    page.mouse.up()
-    page.keyboard.press("t")
-    strip.take(400)
-    page.keyboard.down("z")
-    page.mouse.down()
-    strip.go(box, (box[0], box[1] - 120), 5)
-    page.mouse.up()
-    page.keyboard.up("z")
-    strip.take(150)
-    editor.until("editor.store.worldPose('unit_box')[2] > 1", "the lifted box")
-    here = editor.get("editor.view.pixelOf('unit_box')")
-    height = editor.model("unit_box")["pose"][2]
-    goal = editor.pixel((0.7, 0.9, height))
-    strip.go((box[0], box[1] - 120), here, 1)
-    page.mouse.down()
-    strip.go(here, goal, 5)
-    page.mouse.up()
+def draw_house(editor, strip):
+    """Four walls, a door and a window, saved and kept in the world."""
+    from test_building import Sheet, save_building
+
+    sheet = Sheet(editor)
+    sheet.open()
+    sheet.wheel(-3)
     strip.take(300)
+    for tool, points in (("wall", ((-2, -1.5), (2, -1.5), (2, 1.5), (-2, 1.5), (-2, -1.5))),
+                         ("door", ((2, 0),)), ("window", ((0, -1.5),))):
+        strip.press(editor.page.locator(f"[data-tool={tool}]"))
+        for point in points:
+            strip.go(strip.at, sheet.pixel(point), 3)
+            sheet.click(point)
+        strip.take(300)
+    save_building(sheet, "House")
+    strip.take(600)
+    editor.page.keyboard.press("Control+b")
+    wait_for(lambda: "House" in editor.names(), "the house in the world")
+
+
+def put(editor, strip, place):
+    """Clicks where what follows the mouse is to stand."""
+    before = len(editor.names())
+    editor.until("editor.store.mode === 'insert'", "what follows the mouse")
+    strip.go(strip.at, editor.pixel((*place, 0.0)), 4)
+    editor.click((*place, 0.0))
+    wait_for(lambda: len(editor.names()) > before, "a model")
+    strip.take(300)
+
+
+def drive_out(editor, strip):
+    """Through the door by the arrow keys; the camera's picture shows the way."""
+    editor.page.keyboard.press("Space")
+    editor.until("!editor.store.stats.paused", "the running world")
+    editor.page.keyboard.down("ArrowUp")
+    while editor.model("taxi")["pose"][0] < 3.0:
+        strip.take(90)
+    editor.page.keyboard.up("ArrowUp")
+    editor.page.keyboard.press("Space")
+    strip.take(500)
+
+
+def save_world(editor, strip):
+    editor.page.keyboard.press("Control+s")
+    dialog = editor.page.get_by_role("dialog", name="Save World As")
+    dialog.get_by_role("textbox", name="File name").fill("my_house.world")
+    strip.take(900)
+    strip.press(dialog.get_by_role("button", name="Save", exact=True))
+    editor.until("!editor.store.history.dirty", "the saved world")
+    strip.take(1500)
 
 
 def house(editor):
