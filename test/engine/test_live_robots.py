@@ -272,3 +272,52 @@ def test_another_world_in_the_same_engine_has_its_own_topics(file, world):
     world.open(WorldChoice(file))
     world.step(100)
     assert odometry.count == 5
+
+
+@pytest.mark.parametrize("fault, told", [
+    ("import os; os._exit(3)", "ended with exit status 3"),
+    ("import os, time; os.fork() or time.sleep(1000); os._exit(4)", "ended with exit status 4"),
+    ("while True: pass", "5 s")])
+def test_an_isolated_plugin_that_ends_forks_or_hangs_ends_alone(tmp_path, monkeypatch, fault, told):
+    (tmp_path / "faulty_plugin.py").write_text(f"""
+from my_simulations.plugins.base import Plugin
+
+class Faulty(Plugin):
+    def load(self):
+        self.context.every(10.0, self.fail)
+
+    def fail(self):
+        {fault}
+""")
+    monkeypatch.syspath_prepend(str(tmp_path))
+    monkeypatch.setenv("PYTHONPATH", f"{tmp_path}:{os.environ.get('PYTHONPATH', '')}")
+    model = ('<sdf version="1.6"><model name="m"><link name="l"/><plugin name="p"'
+             ' filename="libfaulty.so"/></model></sdf>')
+    with my_simulations.open_world(plugins={"libfaulty.so": "faulty_plugin:Faulty"},
+                                   isolate=True) as world:
+        world.spawn(model)
+        world.step(500)
+        assert world.time == pytest.approx(0.5)
+        assert any(told in issue.message for issue in world.issues), world.issues
+
+
+def test_an_isolated_plugin_publishes_and_hears(tmp_path, monkeypatch):
+    (tmp_path / "echo_plugin.py").write_text("""
+from my_simulations.plugins.base import Plugin
+
+class Echo(Plugin):
+    def load(self):
+        self.topic = self.context.publish("echo", "geometry_msgs/Twist")
+        self.context.subscribe("cmd_vel", "geometry_msgs/Twist", self.topic.publish)
+""")
+    monkeypatch.setenv("PYTHONPATH", f"{tmp_path}:{os.environ.get('PYTHONPATH', '')}")
+    monkeypatch.syspath_prepend(str(tmp_path))
+    model = ('<sdf version="1.6"><model name="m"><link name="l"/><plugin name="p"'
+             ' filename="libecho.so"/></model></sdf>')
+    with my_simulations.open_world(plugins={"libecho.so": "echo_plugin:Echo"},
+                                   isolate=True) as world:
+        world.spawn(model)
+        echo = world.topics["/echo"]
+        world.publish("/cmd_vel", {"linear": {"x": 0.5}})
+        world.step(10)
+        assert [issue.message for issue in world.issues] == [] and echo.latest.linear.x == 0.5

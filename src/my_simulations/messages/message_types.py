@@ -59,7 +59,20 @@ class Message:
         return all(_equal(getattr(self, one.name), getattr(other, one.name))
                    for one in self.DEFINITION.fields)
 
+    def __reduce__(self) -> Tuple[Any, ...]:
+        """Pickle the type by its definition, because its class is made at run time."""
+        return _restored, (self.DEFINITION, vars(self))
+
     __hash__ = None  # type: ignore[assignment]  # messages can be changed
+
+
+def _restored(definition: Definition, fields: Dict[str, Any]) -> Message:
+    """Return a message that was pickled; its nested messages are complete already."""
+    made = (standard_type(definition.kind) if definition.kind in standard_definitions()
+            else make_type(definition, lambda kind: Message))
+    message = made.__new__(made)
+    vars(message).update(fields)
+    return message
 
 
 def _equal(one: Any, other: Any) -> bool:

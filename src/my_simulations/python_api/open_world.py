@@ -53,7 +53,7 @@ _LOST = ("engine-died", "engine-lost", "engine-stalled")
 
 def open_world(world: FilePath = "worlds/empty.world", *, seed: int = 0, profile: str = "",
                objects: Sequence[str] = (), object_list: FilePath = "",
-               plugins: Plugins = True, sensors: bool = True,
+               plugins: Plugins = True, sensors: bool = True, isolate: bool = False,
                parameters: Parameters = {},  # noqa: B006
                resolver: Optional[Resolver] = None, log: Optional[Log] = None,
                engine: Callable[[], Engine] = ProcessEngine) -> OpenWorld:
@@ -69,6 +69,7 @@ def open_world(world: FilePath = "worlds/empty.world", *, seed: int = 0, profile
         plugins: whether the robots' plugins run; or further classes of plugins by library, as
             `{"libfoo.so": "package.module:Class"}`.
         sensors: whether the plugins of `<sensor>` elements run.
+        isolate: run each plugin that is not of this package in a process of its own.
         parameters: of plugins and controllers by name, as on ROS's parameter server; or the path
             of a YAML file of them.
         resolver: finds what URIs name; None for Gazebo's variables, our models and ROS packages.
@@ -81,7 +82,8 @@ def open_world(world: FilePath = "worlds/empty.world", *, seed: int = 0, profile
     """
     choice = WorldChoice(os.fspath(world), seed, profile, tuple(objects), os.fspath(object_list))
     classes = {} if isinstance(plugins, bool) else dict(plugins)
-    robots = RobotOptions(plugins is not False, sensors, classes, read_parameters(parameters))
+    robots = RobotOptions(plugins is not False, sensors, classes, read_parameters(parameters),
+                          isolate)
     return OpenWorld(choice, resolver=resolver, log=log, engine=engine, robots=robots)
 
 

@@ -30,12 +30,14 @@ class RobotOptions(NamedTuple):
         sensors: whether the plugins of `<sensor>` elements run, too.
         classes: further classes of plugins as `package.module:Class`, by library.
         parameters: of plugins and controllers, as on ROS's parameter server.
+        isolate: run each plugin that is not of this package in a process of its own.
     """
 
     plugins: bool = True
     sensors: bool = True
     classes: Mapping[str, str] = {}
     parameters: Mapping[str, Any] = {}
+    isolate: bool = False
 
 
 class Robots:
@@ -162,5 +164,5 @@ class Robots:
         sensors = self._options.sensors
         return PluginHost(self._simulator, self.graph,
                           PluginRegistry(self._options.classes, PackageIndex().folders),
-                          self._log, scene=self._scene,
+                          self._log, scene=self._scene, isolate=self._options.isolate,
                           is_used=lambda found: sensors or found.sensor is None)
