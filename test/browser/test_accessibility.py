@@ -96,3 +96,13 @@ def test_a_world_is_built_run_and_saved_by_the_keyboard_alone(editor, node):
     editor.until("!editor.store.history.dirty", "the saved world")
     has_focus("saving")
     assert os.path.isfile(os.path.join(node.typed, "by_keys.world"))
+
+
+def test_a_dialog_that_a_menu_opened_gives_the_focus_back(editor):
+    editor.row(with_box(editor)).click(button="right")
+    editor.page.get_by_role("menuitem", name="Apply Force/Torque").click()
+    dialog = editor.page.get_by_role("dialog", name="Apply Force")
+    dialog.wait_for()
+    editor.page.keyboard.press("Escape")
+    dialog.wait_for(state="detached")
+    editor.until("document.activeElement !== document.body", "the focus of before")
