@@ -275,8 +275,12 @@ def test_a_texture_is_repeated_by_its_size_and_upright(node, editor):
 
 
 def test_the_colors_of_the_view_are_those_of_cameras_if_the_user_wants(editor):
-    editor.place("Box", (0.0, 0.0, 0.0))
+    name = editor.place("Box", (0.0, 0.0, 0.0))
     editor.page.keyboard.press("Escape")
+
+    def switch():
+        editor.page.get_by_role("menuitem", name="View", exact=True).click()
+        editor.page.get_by_role("menuitemcheckbox", name="Colors as in Cameras").click()
 
     def corner_and_box():
         clip = editor.page.locator("#view").bounding_box()
@@ -286,10 +290,12 @@ def test_the_colors_of_the_view_are_those_of_cameras_if_the_user_wants(editor):
 
     background, box = corner_and_box()
     assert box[0] > box[2] + 30 and background[2] > background[0] + 2
-    editor.page.get_by_role("menuitem", name="View", exact=True).click()
-    editor.page.get_by_role("menuitemcheckbox", name="Colors as in Cameras").click()
+    switch()
     for red, green, blue in corner_and_box():
         assert max(red, green, blue) - min(red, green, blue) < 6
+    switch()   # the page and its world serve other tests
+    editor.get(f"editor.actions.edit({{kind: 'delete', names: ['{name}']}})")
+    editor.until(f"!editor.store.model('{name}')", "the box is gone")
 
 
 def test_a_terrain_whose_texture_is_missing_is_grey(node, editor):
