@@ -44,7 +44,7 @@ def main(argv: Optional[List[str]] = None, program: str = "gzserver", gui: bool 
         print(f"{program}: {line}", file=sys.stderr, flush=True)
 
     front_ends = FrontEnds()
-    with rostest_replay(options, say) as options:
+    with rostest_replay(options, words, say) as options:
         status = Server(options, words, say, engines, profile, _make_node, front_ends.edit, gui,
                         front_ends.record, front_ends.await_world).run()
     ignore()

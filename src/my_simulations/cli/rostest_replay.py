@@ -10,31 +10,38 @@ import shutil
 import tempfile
 import threading
 import xml.etree.ElementTree as ET
-from typing import Callable, Iterator, List, Set
+from typing import Callable, Iterator, List, Sequence, Set
 
 from ..errors import SimulationError
+from ..ros.lifecycle.launch_info import Launch, command_line
 from ..ros.lifecycle.server_options import Recording, ServerOptions
 
 _LAST_S = 30.0
 _PERIOD_S = 1.0 / 30.0
 _LOOK_S = 0.25
-_FLAG = b"--gtest_output=xml:"
+_FLAG = "--gtest_output=xml:"
 
 
 @contextlib.contextmanager
-def rostest_replay(options: ServerOptions, say: Callable[[str], None]) -> Iterator[ServerOptions]:
+def rostest_replay(options: ServerOptions, words: Sequence[str],
+                   say: Callable[[str], None]) -> Iterator[ServerOptions]:
     """Record the simulation if rostest started this process, and keep a replay if a test fails.
+
+    Args:
+        options: of the server.
+        words: the command line of this process.
+        say: prints a line.
 
     Yields:
         The options of the server, which record a log for the replay if they recorded none.
     """
-    parent = os.getppid()
-    if options.recording.on or not is_rostest(parent):
+    launch = Launch.of(words)
+    if options.recording.on or not launch.is_rostest:
         yield options
         return
     # The log makes the folder: none is left by a process that ends before its world is loaded.
     folder = os.path.join(tempfile.gettempdir(), f"my_simulations_rostest_{secrets.token_hex(8)}")
-    tests = _Tests(parent)
+    tests = _Tests(launch.pid)
     try:
         yield dataclasses.replace(options, recording=Recording(True, path=folder, period=_PERIOD_S))
     finally:
@@ -47,8 +54,8 @@ def rostest_replay(options: ServerOptions, say: Callable[[str], None]) -> Iterat
 class _Tests:
     """Result files of the tests that rostest starts while the simulation runs."""
 
-    def __init__(self, parent: int) -> None:
-        self._parent = parent
+    def __init__(self, rostest: int) -> None:
+        self._rostest = rostest
         self._files: Set[str] = set()
         self._ended = threading.Event()
         self._thread = threading.Thread(target=self._watch, name="rostest", daemon=True)
@@ -56,18 +63,13 @@ class _Tests:
 
     def _watch(self) -> None:
         while not self._ended.wait(_LOOK_S):
-            self._files.update(result_files(self._parent))
+            self._files.update(result_files(self._rostest))
 
     def end(self) -> List[str]:
         """Stop looking; returns the files."""
         self._ended.set()
         self._thread.join()
         return sorted(self._files)
-
-
-def is_rostest(process: int) -> bool:
-    """Whether a process is the program rostest."""
-    return any(os.path.basename(word) == b"rostest" for word in _command_line(process)[:2])
 
 
 def result_files(process: int) -> List[str]:
@@ -78,7 +80,7 @@ def result_files(process: int) -> List[str]:
             with open(path, encoding="ascii") as children:
                 numbers = children.read().split()
             for number in numbers:
-                found += [os.fsdecode(word[len(_FLAG):]) for word in _command_line(int(number))
+                found += [word[len(_FLAG):] for word in command_line(int(number))
                           if word.startswith(_FLAG)]
     return found
 
@@ -93,23 +95,15 @@ def has_failed(file: str) -> bool:
         return True
 
 
-def _command_line(process: int) -> List[bytes]:
-    try:
-        with open(f"/proc/{process}/cmdline", "rb") as words:
-            return words.read().split(b"\0")
-    except OSError:
-        return []
-
-
 def _write(folder: str, failed: List[str], say: Callable[[str], None]) -> None:
     from ..editor.logs.state_log import FILE
     from .replay_command import replay
 
     log = os.path.join(folder, FILE)
+    if not os.path.isfile(log):
+        return
     for file in failed:
         stem = os.path.splitext(file)[0]
-        if not os.path.isfile(log):
-            return
         try:
             replay(log, f"{stem}.html", os.path.basename(stem), last=_LAST_S)
         except SimulationError as fault:

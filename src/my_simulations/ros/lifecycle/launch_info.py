@@ -3,7 +3,7 @@ from __future__ import annotations
 
 import os
 from dataclasses import dataclass
-from typing import Sequence
+from typing import List, Sequence
 
 _LAUNCHERS = ("roslaunch", "rostest")
 _FEW = 4
@@ -37,6 +37,11 @@ class Launch:
         return cls(pid, parent, _folder(pid))
 
     @property
+    def is_rostest(self) -> bool:
+        """Whether it is the program rostest that started this process."""
+        return any(os.path.basename(word) == "rostest" for word in command_line(self.pid)[:2])
+
+    @property
     def alive(self) -> bool:
         """False once the roslaunch that started this node is gone."""
         return self.pid == 0 or os.getppid() == self.parent
@@ -46,8 +51,7 @@ def _launcher(parent: int) -> int:
     """The nearest ancestor that is roslaunch or rostest; else the parent."""
     pid = parent
     for _ in range(_FEW):
-        words = _read(pid, "cmdline").split("\0")[:4]
-        if any(os.path.basename(word) in _LAUNCHERS for word in words):
+        if any(os.path.basename(word) in _LAUNCHERS for word in command_line(pid)[:4]):
             return pid
         fields = _read(pid, "stat").rpartition(")")[2].split()
         if len(fields) < 2 or int(fields[1]) <= 1:
@@ -56,9 +60,14 @@ def _launcher(parent: int) -> int:
     return parent
 
 
+def command_line(pid: int) -> List[str]:
+    """The words of the command line of a process; "" alone if it has ended."""
+    return _read(pid, "cmdline").split("\0")
+
+
 def _read(pid: int, name: str) -> str:
     try:
-        with open(f"/proc/{pid}/{name}", encoding="utf-8", errors="replace") as file:
+        with open(f"/proc/{pid}/{name}", encoding="utf-8", errors="surrogateescape") as file:
             return file.read()
     except OSError:
         return ""  # it is gone, or belongs to another user
