@@ -80,3 +80,9 @@ class TopicSource(Protocol):
 
     def publish(self, name: str, kind: str, queue: int, latch: bool) -> Publisher:
         """Offer a topic. Raises SimulationError: the type's package is not installed."""
+
+
+def type_of(source: TopicSource, name: str) -> str:
+    """The type of a topic; "" if it is unknown. May wait for the master; raises OSError."""
+    kind = next((one.kind for one in source.topics() if one.name == name), "")
+    return "" if kind == "*" else kind

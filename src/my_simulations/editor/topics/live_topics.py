@@ -11,7 +11,7 @@ from concurrent.futures import Executor
 from typing import Any, Callable, Dict, List, Optional, Set
 
 from ...errors import CommandError, SimulationError
-from ..topic_source import Subscription, TopicSource
+from ..topic_source import Subscription, TopicSource, type_of
 from ..transport.browser_client import Client, encoded
 from ..transport.hub import Hub
 from ..transport.watch_requests import PREFIX
@@ -195,8 +195,8 @@ class LiveTopics:
     def _heard(self, topic: LiveTopic) -> Optional[Subscription]:
         """In a thread of the pool."""
         assert self._source is not None
-        kind = next((one.kind for one in self._source.topics() if one.name == topic.name), "")
-        if not kind or kind == "*":
+        kind = type_of(self._source, topic.name)
+        if not kind:
             return None
         topic.viewer = Viewer(kind, self._sim_time)
         return self._source.hear(topic.name, kind, topic.take)

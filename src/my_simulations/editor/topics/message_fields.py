@@ -1,6 +1,7 @@
 """Numbers of a ROS message by the path of their field, such as `pose.position.x` or `ranges[0]`."""
 from __future__ import annotations
 
+import itertools
 import math
 import re
 from typing import Any, Callable, Iterator, List, Optional
@@ -45,12 +46,7 @@ def numeric_fields(message: Any, new_message: Callable[[str], Any]) -> List[str]
         message: of genpy.
         new_message: makes a message of a type.
     """
-    found: List[str] = []
-    for path in _paths(message, new_message, _DEEPEST):
-        found.append(path)
-        if len(found) == _MOST_FIELDS:
-            break
-    return found
+    return list(itertools.islice(_paths(message, new_message, _DEEPEST), _MOST_FIELDS))
 
 
 def _paths(message: Any, new_message: Callable[[str], Any], depth: int) -> Iterator[str]:

@@ -3,10 +3,10 @@ from __future__ import annotations
 
 import asyncio
 from concurrent.futures import ThreadPoolExecutor
-from typing import Any, Dict, List, Optional
+from typing import Any, Callable, Dict, List, Optional, TypeVar
 
 from ...errors import CommandError, SimulationError
-from ..topic_source import ListedTopic, TopicSource
+from ..topic_source import ListedTopic, TopicSource, type_of
 from ..transport.browser_client import Client
 from ..transport.hub import Hub
 from ..transport.web_socket import Route
@@ -14,6 +14,8 @@ from .driving import Driving
 from .live_topics import LiveTopic, LiveTopics
 from .message_fields import numeric_fields
 from .topic_frame import document_of
+
+_Result = TypeVar("_Result")
 
 
 class TopicRequests:
@@ -51,29 +53,26 @@ class TopicRequests:
     async def _topics(self, _client: Client, _message: Dict[str, Any]) -> Dict[str, Any]:
         if self._source is None:
             return {"available": False, "topics": []}
-        loop = asyncio.get_running_loop()
-        try:
-            listed = await loop.run_in_executor(self._pool, self._source.topics)
-        except OSError as fault:
-            raise CommandError(f"the ROS master does not respond: {fault}") from fault
+        listed = await self._in_pool(self._source.topics)
         heard = self.live.traffic()
         return {"available": True,
                 "topics": [_document(one, heard.get(one.name)) for one in _ordered(listed)]}
 
-
     async def _fields(self, _client: Client, message: Dict[str, Any]) -> Dict[str, Any]:
-        loop = asyncio.get_running_loop()
+        return {"fields": await self._in_pool(lambda: self._fields_of(message["topic"]))}
+
+    async def _in_pool(self, call: Callable[[], _Result]) -> _Result:
+        """Call a function that may wait for the master. Raises CommandError without an answer."""
         try:
-            return {"fields": await loop.run_in_executor(self._pool, self._fields_of,
-                                                         message["topic"])}
+            return await asyncio.get_running_loop().run_in_executor(self._pool, call)
         except OSError as fault:
             raise CommandError(f"the ROS master does not respond: {fault}") from fault
 
     def _fields_of(self, name: str) -> List[str]:
         """In a thread of the pool. Raises CommandError for an unknown topic or type."""
         source = self._source
-        kind = next((one.kind for one in source.topics() if one.name == name), "") if source else ""
-        if source is None or kind in ("", "*"):
+        kind = type_of(source, name) if source is not None else ""
+        if source is None or not kind:
             raise CommandError(f"unknown topic {name!r}")
         try:
             return numeric_fields(self.live.newest(name) or source.message(kind), source.message)
