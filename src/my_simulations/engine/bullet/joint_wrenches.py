@@ -255,14 +255,14 @@ def _closing_wrench(entry: Entry, joint: Joint, constraints: Sequence[int]) -> J
              for end in ends]
     held, sign = (ends[0], 1.0) if ends[0] is not None else (ends[1], -1.0)
     assert held is not None
+    link = link_motions(held[0])[held[1].index]
     links = {link.name: link.pose for link in entry.model.links}
     anchor = (transform(poses[0], joint.pose.position) if ends[0] is not None
               else transform(compose(poses[1], inverse(links[joint.parent])),
                              joint.pose.position))
     force, torque = ZERO3, ZERO3
     for number in constraints:
-        one, at, moment = constraint_forces(number, held[0], held[1].index,
-                                            link_motions(held[0])[held[1].index])
+        one, at, moment = constraint_forces(number, held[0], held[1].index, link)
         force = add(force, one)
         torque = add(torque, add(moment, cross(subtract(at, anchor), one)))
     back = conjugate(poses[0].orientation)

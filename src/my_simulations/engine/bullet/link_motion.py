@@ -25,7 +25,7 @@ from ...geometry import (
 )
 from ..body_plan import BASE, NO_LINK, TreeLink
 from .bodies import Part
-from .link_states import Motion
+from .link_states import AT_REST, Motion
 
 
 class Acceleration(NamedTuple):
@@ -71,8 +71,8 @@ def accelerations(chain: Chain, before: Mapping[int, Motion], after: Mapping[int
             found[BASE] = Acceleration(scale(subtract(later.linear, state.linear), 1.0 / dt),
                                        scale(subtract(later.angular, state.angular), 1.0 / dt))
             continue
-        over = _FIXED if parent is None else before[parent.index]
-        over_later = _FIXED if parent is None else after[parent.index]
+        over = AT_REST if parent is None else before[parent.index]
+        over_later = AT_REST if parent is None else after[parent.index]
         above = _STILL if parent is None else found[parent.index]
         sliding, turning = _against(over, state, joint)
         sliding_later, turning_later = _against(over_later, later, joint)
@@ -105,7 +105,6 @@ def inertial_wrench(part: Part, state: Motion, acceleration: Acceleration,
             rotate(state.orientation, torque))
 
 
-_FIXED = Motion(ZERO3, (0.0, 0.0, 0.0, 1.0), ZERO3, ZERO3)
 _STILL = Acceleration(ZERO3, ZERO3)
 
 

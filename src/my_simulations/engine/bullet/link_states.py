@@ -28,6 +28,10 @@ class Motion(NamedTuple):
         return add(self.linear, cross(self.angular, subtract(point, self.position)))
 
 
+AT_REST = Motion((0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 1.0), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
+"""Of the world, and of what does not move."""
+
+
 def hung_states(uid: int, indices: Sequence[int], velocities: int = 1) -> Sequence[Tuple[Any, ...]]:
     """Return PyBullet's states of links other than the base; with `velocities` 0 poses only."""
     if not indices:

@@ -27,6 +27,7 @@ from . import collision_groups
 from .bodies import Body
 from .body_events import COMMANDED, BodyEvent
 from .contact_points import (
+    BODY,
     DIRECTION,
     DISTANCE,
     FRICTION,
@@ -281,12 +282,13 @@ class ResidualFriction(StepHelper):
                     collision_groups.moving(self._bodies[uid].parts[0].link).set(uid, BASE)
                     return _MENDED
         for contact in left:
-            self._take_back(uid, contact[OTHER_BODY], contact, dt)
+            self._take_back(contact, dt)
         seen.add(uid)
         return _MENDED if left else _SLIDES if contacts else _FLIES
 
-    def _take_back(self, uid: int, other: int, contact: ContactPoint, dt: float) -> None:
+    def _take_back(self, contact: ContactPoint, dt: float) -> None:
         """Undo the friction impulses of one contact; the first direction opposes the slip."""
+        uid, other = contact[BODY], contact[OTHER_BODY]
         along: Vec3 = contact[DIRECTION]
         ours = motion(uid, BASE)
         theirs = motion(other, BASE) if other in self._bodies else None

@@ -69,8 +69,6 @@ _HARD = 1e12        # N/m: so stiff that only the share counts
 _CHANGE = 0.1       # smaller relative changes of the share are not applied
 
 
-
-
 @dataclass
 class _Roller:
     """A link that is round about one axis.

@@ -32,7 +32,6 @@ _SAME = 0.95   # smallest cosine between two normals of one surface
 _NONE = (0.0, 0.0, 0.0)
 
 
-
 class _Push(NamedTuple):
     """A force, N, at a point, and a torque, N m, for the next step; world axes."""
 

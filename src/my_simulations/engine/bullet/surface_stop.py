@@ -28,7 +28,7 @@ from .approach import extent
 from .bodies import Body
 from .body_events import COMMANDED, BodyEvent
 from .contact_points import DISTANCE, NORMAL, PLACE
-from .link_states import Motion, motion
+from .link_states import AT_REST, Motion, motion
 from .step_helper import FAR, StepHelper
 from .surface_coefficients import of_link, restitution
 from .world_parameters import LEAST_BOUNCE
@@ -41,7 +41,6 @@ _AHEAD = 16      # the same in steps, at most
 _SELDOM = 256    # steps between two checks of a slow body, at most
 
 
-_STILL = Motion((0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 1.0), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
 
 
 class SurfaceStop(StepHelper):
@@ -56,7 +55,7 @@ class SurfaceStop(StepHelper):
         self._radii: Dict[int, float] = {}        # of bounding spheres of rigid bodies, m
         self._floors: Set[int] = set()            # boxes below planes
         self._next: Dict[int, int] = {}           # the step of the next check, by body
-        self._seen: Dict[int, Motion] = {}       # motions of other bodies in this step
+        self._seen: Dict[int, Motion] = {}        # motions of other bodies in this step
         self._looks: List[Tuple[int, int]] = []   # a heap of (step, body), valid if in `_next`
 
     def add(self, body: Body) -> None:
@@ -158,7 +157,7 @@ class SurfaceStop(StepHelper):
             high = (high[0] + reach, high[1] + reach, high[2] + reach)
         near = pybullet.getOverlappingObjects(low, high) or ()
         for other in sorted({pair[0] for pair in near} - {uid} - self._floors):
-            there = self._motion(other) if other in self._moving else _STILL
+            there = self._motion(other) if other in self._moving else AT_REST
             nearing = (_nearing(here, there, radius) + fall) * dt
             # Bodies that move together do not collide, and their closest points are expensive.
             if nearing <= deep:
@@ -177,7 +176,7 @@ class SurfaceStop(StepHelper):
                 continue
             at = nearest[PLACE]
             inward = dot(subtract(there.velocity_at(at), here.velocity_at(at)), normal)
-            if there is _STILL or other not in self._bodies:
+            if there is AT_REST or other not in self._bodies:
                 inward -= dot(gravity, normal) * dt
             if inward * dt > deep:
                 ahead = min(ahead, max(1, int(gap / (towards * dt))))
