@@ -38,8 +38,7 @@ def send_file(plan: ClassPlan, student: Student, name: str, content: bytes) -> s
 def collect(plan: ClassPlan, student: Student, out: str) -> int:
     """Copy the submission of a student to OUT/NAME; returns the number of files.
 
-    What was collected there before is replaced. Links, and files beyond the limits of the class,
-    are left out.
+    Replaces an earlier collection. Links, and files beyond the limits of the class, are left out.
 
     Raises:
         CommandError: the files cannot be read or written.

@@ -1,13 +1,12 @@
 """Draws a small picture of a student's world from what its editor sends: boxes, seen from above."""
 from __future__ import annotations
 
-import struct
 from dataclasses import dataclass
 from itertools import product
 from math import cos, fabs, radians, sin
 from typing import Any, Dict, Iterator, List, Mapping, Optional, Sequence, Tuple
 
-from ..editor.transport.pose_messages import HEAD_BYTES, LIVE
+from ..editor.transport.pose_messages import HEAD_BYTES, LIVE, RECORD_STRUCT
 from ..geometry import (
     Pose,
     Vec3,
@@ -16,7 +15,6 @@ from ..geometry import (
     norm,
     normalised,
     pose_is_finite,
-    rotate,
     transform,
 )
 
@@ -26,7 +24,6 @@ _CUT_M = 1.0             # height at which static parts are cut: walls hide no r
 _WIDTH, _HEIGHT, _MARGIN = 320.0, 200.0, 8.0
 _UNKNOWN_M = 0.3         # size of a mesh without collisions of a known size
 _GREY = (0.7, 0.7, 0.7)
-_RECORD = struct.Struct("<I7f")
 _TURN, _TILT = radians(-30.0), radians(55.0)     # of the camera, which looks north-east and down
 
 Projected = Tuple[float, float, float]
@@ -81,7 +78,7 @@ class WorldPicture:
         """Take a binary frame of the editor; others than those of poses are ignored."""
         if int.from_bytes(frame[:4], "little") != LIVE:
             return
-        for number, *values in _RECORD.iter_unpack(frame[HEAD_BYTES:]):
+        for number, *values in RECORD_STRUCT.iter_unpack(frame[HEAD_BYTES:]):
             if number in self._poses:
                 self._poses[number] = _pose(values)
 
@@ -177,46 +174,39 @@ def _parts_of(link: Mapping[str, Any], static: bool) -> List[_Part]:
 
 
 def _shape(link: int, shape: Mapping[str, Any], colour: Vec3, static: bool) -> List[_Part]:
-    size = _half_size(shape["geometry"])
-    if size is None:
+    bounds = _bounds(shape["geometry"])
+    if len(bounds) != 3:
         return []
-    pose, half = _pose(shape["pose"]), (float(size[0]), float(size[1]), float(size[2]))
+    (xs, ys, zs), pose = bounds, _pose(shape["pose"])
+    half = ((xs[1] - xs[0]) / 2, (ys[1] - ys[0]) / 2, (zs[1] - zs[0]) / 2)
     if not is_finite(*half) or max(map(fabs, half)) > _MOST_M:
         return []
-    if shape["geometry"]["type"] == "polyline":
-        pose = _raised(pose, half, shape["geometry"])
-    return [_Part(link, pose, half, colour, static)]
+    centre = (xs[0] + half[0], ys[0] + half[1], zs[0] + half[2])
+    return [_Part(link, Pose(transform(pose, centre), pose.orientation), half, colour, static)]
 
 
-def _half_size(geometry: Mapping[str, Any]) -> Optional[Sequence[float]]:
-    """Half the size of a geometry along its axes, m; None if it is unknown or not drawn."""
+def _bounds(geometry: Mapping[str, Any]) -> List[Tuple[float, float]]:
+    """Least and greatest x, y and z of a geometry, m; empty if they are unknown or not drawn."""
+    if geometry["type"] == "polyline":
+        points = [(float(x), float(y)) for loop in geometry["loops"] for x, y in loop]
+        return [*((min(values), max(values)) for values in zip(*points)),
+                (0.0, float(geometry["height"]))]
+    return [(-half, half) for half in _half_size(geometry)]
+
+
+def _half_size(geometry: Mapping[str, Any]) -> List[float]:
+    """Half the size of a geometry about its origin, m; empty if it is unknown or not drawn."""
     kind = geometry["type"]
     if kind == "box":
         return [float(value) / 2 for value in geometry["size"]]
     if kind == "ellipsoid":
         return [float(value) for value in geometry["radii"]]
-    if kind == "polyline":
-        ends = _ends(geometry)
-        return [(high - low) / 2 for low, high in ends]
     if kind not in ("sphere", "cylinder", "capsule", "cone"):
-        return None
+        return []
     radius = float(geometry["radius"])
     length = float(geometry.get("length", 0.0)) / 2
     return [radius, radius, radius if kind == "sphere" else
             length + (radius if kind == "capsule" else 0.0)]
-
-
-def _ends(geometry: Mapping[str, Any]) -> List[Tuple[float, float]]:
-    """Least and greatest x, y and z of a polyline, m."""
-    points = [(float(x), float(y)) for loop in geometry["loops"] for x, y in loop]
-    return [*((min(values), max(values)) for values in zip(*points)),
-            (0.0, float(geometry["height"]))]
-
-
-def _raised(pose: Pose, half: Vec3, geometry: Mapping[str, Any]) -> Pose:
-    (x, _), (y, _), _ = _ends(geometry)
-    offset = rotate(pose.orientation, (x + half[0], y + half[1], half[2]))
-    return compose(Pose(offset, (0.0, 0.0, 0.0, 1.0)), pose)
 
 
 def _pose(values: Sequence[Any]) -> Pose:

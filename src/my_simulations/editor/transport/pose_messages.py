@@ -21,7 +21,8 @@ RECORD = (("id", "u32"), ("px", "f32"), ("py", "f32"), ("pz", "f32"), ("qx", "f3
 _CODES = {"u32": "I", "u64": "Q", "f64": "d", "f32": "f"}
 _HEAD = struct.Struct("<" + "".join(_CODES[kind] for _, kind in HEAD))
 HEAD_BYTES = _HEAD.size
-RECORD_BYTES = struct.calcsize("<" + "".join(_CODES[kind] for _, kind in RECORD))
+RECORD_STRUCT = struct.Struct("<" + "".join(_CODES[kind] for _, kind in RECORD))
+RECORD_BYTES = RECORD_STRUCT.size
 _TOLERANCE = 1e-5
 """m, and of a quaternion's parts: a body that trembles less than that stays where it was sent."""
 
