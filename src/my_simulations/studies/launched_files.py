@@ -5,7 +5,7 @@ import contextlib
 import glob
 import os
 import re
-from typing import Dict, Iterator, List, Set, Tuple
+from typing import Dict, Iterator, List, Tuple
 
 from lxml import etree
 
@@ -39,24 +39,26 @@ class LaunchedFiles:
     def __init__(self) -> None:
         self._find = package_finder()
         self._resolver = Resolver.from_environment()
-        self._digests: Dict[str, str] = {}
+        self._known: Dict[str, Tuple[str, List[str]]] = {}   # digest and named files, by path
 
     def digest(self, scenario: str) -> str:
         """The digest of a scenario, by its path."""
-        found: Set[str] = set()
+        digests: Dict[str, str] = {}
         waiting = [scenario]
         while waiting:
             path = waiting.pop()
-            if path not in found:
-                found.add(path)
-                waiting += self._named_in(path)
-        return digest_of(sorted((os.path.basename(path), self._digest_of(path)) for path in found))
+            if path not in digests:
+                digests[path], named = self._read(path)
+                waiting += named
+        return digest_of(sorted((os.path.basename(path), one) for path, one in digests.items()))
 
-    def _digest_of(self, path: str) -> str:
-        if path not in self._digests:
-            self._digests[path] = digest_of_file(path) if not path.endswith(ENDINGS) else (
+    def _read(self, path: str) -> Tuple[str, List[str]]:
+        """The digest of a file and the files that it names; each file is read once."""
+        if path not in self._known:
+            digest = digest_of_file(path) if not path.endswith(ENDINGS) else (
                 digest_of_world(path, "", (), "", ()))
-        return self._digests[path]
+            self._known[path] = digest, self._named_in(path)
+        return self._known[path]
 
     def _named_in(self, path: str) -> List[str]:
         """The files that a file names."""
