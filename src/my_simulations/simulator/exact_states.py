@@ -77,7 +77,7 @@ class ExactStates:
             state = ExactState(
                 step, clock.sim_ns(step), self._physics.settings, self._physics.gravity,
                 tuple(map(copy, entities)), tuple(entity.saved(snapshot) for entity in entities),
-                self._models.model_links, self._drives.settings, self._wrenches.pending(step), run)
+                self._models.links, self._drives.settings, self._wrenches.pending(step), run)
             self.restore(state)
             return state
 

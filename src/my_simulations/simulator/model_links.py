@@ -1,10 +1,12 @@
 """What connects and pins the models of a world."""
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from typing import List, Tuple
 
-from ..engine.commands import Command, PinModels
+from ..description.model import Joint
+from ..engine.commands import Command, DisconnectModels, PinModels
+from .entity import Entity
 from .inter_model_joints import InterModelJoints
 from .registry import Registry
 
@@ -19,16 +21,69 @@ class ModelLinks:
         pinned, held: names of models, see `Models.pin` and `Models.hold`.
     """
 
-    between: InterModelJoints
-    attached: Tuple[str, ...]
-    pinned: Tuple[str, ...]
-    held: Tuple[str, ...]
+    between: InterModelJoints = field(default_factory=InterModelJoints)
+    attached: Tuple[str, ...] = ()
+    pinned: Tuple[str, ...] = ()
+    held: Tuple[str, ...] = ()
+
+    @property
+    def lasting_joints(self) -> InterModelJoints:
+        """The joints that the world has of its own, without those that `Models.attach` made."""
+        return self.between.removed(self.attached)
+
+    def without(self, model: str) -> "ModelLinks":
+        """After a model was deleted."""
+        return replace(self, between=self.between.without(model),
+                       pinned=_others(self.pinned, model), held=_others(self.held, model))
+
+    def renamed(self, old: str, new: str, registry: Registry) -> "ModelLinks":
+        """After a model was edited, and perhaps renamed."""
+        return ModelLinks(
+            self.between.renamed(old, new, self.attached).present(registry), self.attached,
+            *(tuple(new if name == old else name for name in names)
+              for names in (self.pinned, self.held)))
+
+    def with_joint(self, joints: InterModelJoints, name: str) -> "ModelLinks":
+        """After `Models.attach` made the joint `name`; `joints`: all there are now."""
+        return replace(self, between=joints, attached=(*_others(self.attached, name), name))
+
+    def without_joint(self, name: str) -> "ModelLinks":
+        """After the joint `name` was removed."""
+        return replace(self, between=self.between.removed((name,)),
+                       attached=_others(self.attached, name))
+
+    def detached(self) -> "ModelLinks":
+        """After everything that `Models.attach` joined was detached."""
+        return replace(self, between=self.lasting_joints, attached=())
+
+    def joint(self, name: str) -> List[Joint]:
+        """The joint of this name, if there is one."""
+        return self.between.named(name).joints
+
+    def detach_commands(self) -> List[Command]:
+        """Commands that remove the joints of `Models.attach` from the engine."""
+        return [DisconnectModels(self.attached)] if self.attached else []
+
+    def pin_command(self, registry: Registry) -> PinModels:
+        """The command that pins these models, and releases all others."""
+        return PinModels(tuple(registry.model(name).model_id
+                               for name in dict.fromkeys((*self.pinned, *self.held))
+                               if name in registry))
+
+    def pins_with(self, model: str, entity: Entity, registry: Registry) -> List[PinModels]:
+        """The command that pins `entity` if the model that it is about to replace is pinned."""
+        if model not in (*self.pinned, *self.held):
+            return []
+        others = self.without(model).pin_command(registry)
+        return [PinModels((*others.model_ids, entity.model_id))]
 
     def commands(self, registry: Registry) -> List[Command]:
         """Commands that make the joints and pins in an engine that has loaded the models."""
         commands: List[Command] = list(self.between.commands(registry))
-        pinned = dict.fromkeys((*self.pinned, *self.held))
-        if pinned:
-            commands.append(PinModels(tuple(registry.model(name).model_id for name in pinned
-                                            if name in registry)))
+        if self.pinned or self.held:
+            commands.append(self.pin_command(registry))
         return commands
+
+
+def _others(names: Tuple[str, ...], name: str) -> Tuple[str, ...]:
+    return tuple(one for one in names if one != name)

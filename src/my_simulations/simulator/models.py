@@ -5,30 +5,28 @@ from dataclasses import replace as replaced
 from typing import Dict, List, Optional, Sequence
 
 from ..description.flatten import flattened
-from ..description.model import WORLD, Inertial, Joint, Model
+from ..description.model import Inertial, Model
 from ..description.model_plugins import has_plugins
 from ..description.shapes import MeshTable
 from ..description.world import World
 from ..engine.commands import (
     Batch,
     Command,
-    DisconnectModels,
     LoadModel,
     ModelState,
-    PinModels,
     RemoveModel,
 )
 from ..engine.ring import Snapshot
 from ..engine.timed_forces import AddTimedForces
 from ..errors import CommandError, error
 from ..formats.mesh.loading import without_missing_meshes
-from ..geometry import Pose, compose, inverse, normalised
+from ..geometry import Pose, compose, normalised
+from .connected_models import ConnectedModels
 from .convex_meshes import ConvexParts
 from .drives import Drives
 from .entity import Entity
 from .initial_state import initial_commands
 from .inter_model_joints import DeletedModel, InterModelJoints
-from .known_models import KnownModels
 from .load_groups import small_groups
 from .model_links import ModelLinks
 from .model_preparation import prepare_shapes
@@ -38,7 +36,7 @@ from .session import Session, check_name
 from .wrenches import Wrenches
 
 
-class Models(KnownModels):
+class Models(ConnectedModels):
     """Owns the entities, the joints between models, and which models are pinned.
 
     Changes take the session's structure lock, and the registry lock for the moment in which names
@@ -51,22 +49,10 @@ class Models(KnownModels):
         self._wrenches = wrenches
         self._drives = drives
         self._convex_meshes = convex_meshes
-        self._between = InterModelJoints()
-        self._pinned: List[str] = []
-        self._held: List[str] = []
-        self._attached: List[str] = []
         self._losses: List[str] = []
         self._saved_starts = dict(session.world.initial)
 
     # -- reading -----------------------------------------------------------------------------------
-
-    @property
-    def inter_model_joints(self) -> List[Joint]:
-        """The joints between models in effect; their ends are scoped link names or `world`.
-
-        Without those of `attach`, which belong to the caller that made them.
-        """
-        return [joint for joint in self._between.joints if joint.name not in self._attached]
 
     @property
     def losses(self) -> List[str]:
@@ -105,7 +91,7 @@ class Models(KnownModels):
         with session.structure_lock:
             session.await_posted()
             again = InterModelJoints() if deleted is None else deleted.joints
-            between = self._between.joined(again)
+            between = self._links.between.joined(again)
             with session.registry_lock:
                 old = self._replaceable(model.name, replace)
                 # A joint to a model that is restored later may need it articulated.
@@ -122,16 +108,16 @@ class Models(KnownModels):
                     *initial_commands(entity, entity.start if state is None else None),
                     *again.commands(session.registry, model.name, entity),
                     *([] if old is None else [RemoveModel(old.model_id)]),
-                    *self._pins_with(model.name, entity))))
+                    *self._links.pins_with(model.name, entity, session.registry))))
             except CommandError:
                 self._forget(entity)
                 raise
             with session.registry_lock:
                 session.registry.add(entity, None if deleted is None else deleted.slot)
                 if deleted is not None:
-                    self._between = between.present(session.registry)
+                    self._set_joints(between.present(session.registry))
                 if old is not None:
-                    self._between = self._between.without(model.name)
+                    self._set_joints(self._links.between.without(model.name))
                     self._forget(old)
 
     def delete(self, name: str) -> DeletedModel:
@@ -147,16 +133,14 @@ class Models(KnownModels):
             with session.registry_lock:
                 deleted = DeletedModel(
                     OrderSlot.of(session.registry.names(), name),
-                    self._between.removed(self._attached).of(name),
+                    self._links.lasting_joints.of(name),
                     entity.launched,
                     entity.start,
                     entity.articulated,
                 )
                 session.registry.remove(name)
-                self._between = self._between.without(name)
+                self._links = self._links.without(name)
                 self._forget(entity)
-                self._pinned, self._held = ([one for one in names if one != name]
-                                            for names in (self._pinned, self._held))
                 return deleted
 
     def _replaceable(self, name: str, may_replace: bool = False) -> Optional[Entity]:
@@ -173,6 +157,9 @@ class Models(KnownModels):
         if anchor is None:
             return wanted
         return compose(anchor.newest(self._session.ring)[0], wanted)
+
+    def _set_joints(self, joints: InterModelJoints) -> None:
+        self._links = replaced(self._links, between=joints)
 
     def _forget(self, entity: Entity) -> None:
         """Release the rows, drives and wrenches of an entity that is not in the engine."""
@@ -215,7 +202,7 @@ class Models(KnownModels):
             parts = self._convex_meshes.of(model, {**old.meshes, **(meshes or {})})
             with session.registry_lock:
                 entity = session.new_entity(model, old.initial_pose, parts,
-                                            self._between.slides(model.name))
+                                            self._links.between.slides(model.name))
             entity.pose, entity.articulated = old.pose, old.articulated
             entity.launched, entity.start = old.launched, old.start
             forces = self._wrenches.transferred(old, entity)
@@ -224,21 +211,18 @@ class Models(KnownModels):
                 session.call(Batch((
                     replaced(load_command(entity), inherit=old.model_id),
                     RemoveModel(old.model_id),
-                    *self._between.commands(session.registry, name, entity),
+                    *self._links.between.commands(session.registry, name, entity),
                     *([AddTimedForces(tuple(forces))] if forces else []), *driving,
-                    *self._pins_with(name, entity))))
+                    *self._links.pins_with(name, entity, session.registry))))
             except CommandError:
                 self._forget(entity)
                 raise
             with session.registry_lock:
                 session.registry.swap(old, entity)
-                self._between = self._between.renamed(
-                    name, model.name, self._attached).present(session.registry)
+                self._links = self._links.renamed(name, model.name, session.registry)
                 self._forget(old)
             self._wrenches.keep(forces)
             self._drives.adopt(driving)
-            self._pinned, self._held = ([model.name if one == name else one for one in names]
-                                        for names in (self._pinned, self._held))
 
     def set_link_inertial(self, link: str, inertial: Inertial,
                           gravity: Optional[bool] = None) -> None:
@@ -261,88 +245,6 @@ class Models(KnownModels):
             for entity in self._session.registry.entities():
                 entity.launched = entity.model.name in names
 
-    def pin(self, names: List[str]) -> None:
-        """Pin these models, which then stay at rest where they are set, and release all others.
-
-        Raises UnknownEntityError.
-        """
-        with self._session.structure_lock:
-            with self._session.registry_lock:
-                for name in names:
-                    self._session.registry.model(name)
-            self._session.call(self._pin_command([*names, *self._held]))
-            self._pinned = list(names)
-
-    def hold(self, name: str, held: bool) -> None:
-        """Keep one model at rest where it is put, or release it; besides those that are pinned.
-
-        Raises UnknownEntityError.
-        """
-        with self._session.structure_lock:
-            with self._session.registry_lock:
-                self._session.registry.model(name)
-            wanted = [one for one in self._held if one != name] + ([name] if held else [])
-            self._session.call(self._pin_command([*self._pinned, *wanted]))
-            self._held = wanted
-
-    def _pin_command(self, names: Sequence[str]) -> PinModels:
-        with self._session.registry_lock:
-            registry = self._session.registry
-            return PinModels(tuple(registry.model(name).model_id for name in dict.fromkeys(names)
-                                   if name in registry))
-
-    def _pins_with(self, name: str, entity: Entity) -> List[PinModels]:
-        """The command that pins `entity` if the model `name`, which it replaces, is pinned."""
-        names = [*self._pinned, *self._held]
-        if name not in names:
-            return []
-        others = self._pin_command([one for one in names if one != name])
-        return [PinModels((*others.model_ids, entity.model_id))]
-
-    # -- joints between models ---------------------------------------------------------------------
-
-    def attach(self, name: str, parent: str, child: str) -> None:
-        """Join a link to another one, or to the world, as they are now.
-
-        The joint is fixed, and replaces another between models with the same name. It goes with
-        either model, and with a reset of the world to how it began.
-
-        Args:
-            name: of the joint.
-            parent: scoped name of a link, or `world`.
-            child: scoped name of a link of another model.
-
-        Raises CommandError: a link does not exist, or the engine refused it.
-        """
-        session = self._session
-        if parent == child:
-            raise CommandError(f"cannot attach link '{child}' to itself")
-        with session.structure_lock:
-            session.await_posted()
-            with session.registry_lock:
-                snapshot = session.snapshot()
-                at = snapshot.link(session.link_row(child))[0]
-                if parent != WORLD:
-                    at = compose(inverse(snapshot.link(session.link_row(parent))[0]), at)
-                wanted = self._between.added(session.registry, Joint(name, "fixed", parent, child),
-                                             at)
-                (command,) = [one for one in wanted.commands(session.registry)
-                              if one.joint.name == name]
-            session.call(Batch((DisconnectModels((name,)), command)))
-            self._between = wanted
-            if name not in self._attached:
-                self._attached.append(name)
-
-    def detach(self, name: str) -> bool:
-        """Take away a joint between models; returns whether there was one of that name."""
-        with self._session.structure_lock:
-            if not any(joint.name == name for joint in self._between.joints):
-                return False
-            self._session.call(DisconnectModels((name,)))
-            self._between = self._between.removed((name,))
-            self._attached = [one for one in self._attached if one != name]
-            return True
-
     # -- whole worlds, for the other parts, which hold the structure lock --------------------------
 
     def load_all(self, meshes: Dict[str, MeshTable]) -> None:
@@ -354,20 +256,20 @@ class Models(KnownModels):
         session = self._session
         self._saved_starts = dict(session.world.initial)
         self._losses = list(session.world.losses)
-        self._between = InterModelJoints(session.world.joints)
+        self._set_joints(InterModelJoints(session.world.joints))
         self.divide_meshes(session.world, meshes)
         for group in small_groups(session.world.models):
             if len(group) == 1 or not self._load_together(group, meshes):
                 for model in group:
                     self._load_or_skip(model, meshes.get(model.name))
-        located, issues = self._between.located(session.registry)
+        located, issues = self._links.between.located(session.registry)
         for issue in issues:
             session.log(replaced(issue, file=session.world.file))
-        self._between = InterModelJoints()  # a restarted engine gets those that were made
+        self._set_joints(InterModelJoints())  # a restarted engine gets those that were made
         for command in located.commands(session.registry):
             try:
                 session.call(command)
-                self._between = self._between.joined(located.named(command.joint.name))
+                self._set_joints(self._links.between.joined(located.named(command.joint.name)))
             except CommandError as fault:
                 session.log(error("joint-refused", str(fault), file=session.world.file))
 
@@ -397,7 +299,7 @@ class Models(KnownModels):
                     with session.registry_lock:
                         self._replaceable(model.name)
                         entity = session.new_entity(model, self._world_pose(model, None, ""),
-                                                    parts, self._between.slides(model.name))
+                                                    parts, self._links.between.slides(model.name))
                     entity.start = self._saved_starts.get(model.name)
                     entities.append(entity)
                 session.call(Batch(tuple(
@@ -430,44 +332,13 @@ class Models(KnownModels):
             for entity in session.registry.entities():
                 session.registry.remove(entity.model.name)
                 self._forget(entity)
-        self._pinned, self._held, self._attached = [], [], []
-
-    def commands_after_loading(self, reset: bool = False) -> List[Command]:
-        """Commands to send after all models were loaded: joints between models, and pins.
-
-        With `reset`, without the joints of `attach`.
-        """
-        between = self._between.removed(self._attached) if reset else self._between
-        commands: List[Command] = list(between.commands(self._session.registry))
-        if self._pinned or self._held:
-            commands.append(self._pin_command([*self._pinned, *self._held]))
-        return commands
-
-    def detach_commands(self) -> List[Command]:
-        """Commands that remove the joints of `attach` from the engine."""
-        return [DisconnectModels(tuple(self._attached))] if self._attached else []
-
-    @property
-    def model_links(self) -> ModelLinks:
-        """Joints between models and pins, as they are now."""
-        return ModelLinks(self._between, tuple(self._attached), tuple(self._pinned),
-                          tuple(self._held))
-
-    def adopt_links(self, links: ModelLinks) -> None:
-        """Keep other joints and pins, which the engine has now."""
-        self._between, self._attached = links.between, list(links.attached)
-        self._pinned, self._held = list(links.pinned), list(links.held)
-
-    def forget_attached(self) -> None:
-        """Forget the joints of `attach`, after the engine has removed them."""
-        self._between = self._between.removed(self._attached)
-        self._attached = []
+        self._links = ModelLinks(self._links.between)
 
     def restore_commands(self, snapshot: Snapshot) -> List[Command]:
         """Commands that load every model into a new engine, in the states of a snapshot."""
         entities = self._session.registry.entities()
         return [*(load_command(entity, entity.saved(snapshot)) for entity in entities),
-                *self.commands_after_loading()]
+                *self._links.commands(self._session.registry)]
 
 
 def load_command(entity: Entity, state: Optional[ModelState] = None) -> LoadModel:

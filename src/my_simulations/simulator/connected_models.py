@@ -1,0 +1,107 @@
+"""Pins models, and joins links of different models, in a running world."""
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import List
+
+from ..description.model import WORLD, Joint
+from ..engine.commands import Batch, DisconnectModels
+from ..errors import CommandError
+from ..geometry import compose, inverse
+from .known_models import KnownModels
+from .model_links import ModelLinks
+from .session import Session
+
+
+class ConnectedModels(KnownModels):
+    """The models of a session with the joints between them, and which of them are pinned.
+
+    Changes take the session's structure lock.
+    """
+
+    def __init__(self, session: Session) -> None:
+        super().__init__(session)
+        self._links = ModelLinks()
+
+    @property
+    def inter_model_joints(self) -> List[Joint]:
+        """The joints between models in effect; their ends are scoped link names or `world`.
+
+        Without those of `attach`, which belong to the caller that made them.
+        """
+        return self._links.lasting_joints.joints
+
+    @property
+    def links(self) -> ModelLinks:
+        """Joints between models and pins, as they are now."""
+        return self._links
+
+    def adopt_links(self, links: ModelLinks) -> None:
+        """Keep other joints and pins, which the engine has now."""
+        self._links = links
+
+    def pin(self, names: List[str]) -> None:
+        """Pin these models, which then stay at rest where they are set, and release all others.
+
+        Raises UnknownEntityError.
+        """
+        with self._session.structure_lock:
+            with self._session.registry_lock:
+                for name in names:
+                    self._session.registry.model(name)
+            self._set_pins(replace(self._links, pinned=tuple(names)))
+
+    def hold(self, name: str, held: bool) -> None:
+        """Keep one model at rest where it is put, or release it; besides those that are pinned.
+
+        Raises UnknownEntityError.
+        """
+        with self._session.structure_lock:
+            with self._session.registry_lock:
+                self._session.registry.model(name)
+            others = tuple(one for one in self._links.held if one != name)
+            self._set_pins(replace(self._links, held=(*others, name) if held else others))
+
+    def _set_pins(self, links: ModelLinks) -> None:
+        with self._session.registry_lock:
+            command = links.pin_command(self._session.registry)
+        self._session.call(command)
+        self._links = links
+
+    def attach(self, name: str, parent: str, child: str) -> None:
+        """Join a link to another one, or to the world, as they are now.
+
+        The joint is fixed, and replaces another between models with the same name. It goes with
+        either model, and with a reset of the world to how it began.
+
+        Args:
+            name: of the joint.
+            parent: scoped name of a link, or `world`.
+            child: scoped name of a link of another model.
+
+        Raises CommandError: a link does not exist, or the engine refused it.
+        """
+        session = self._session
+        if parent == child:
+            raise CommandError(f"cannot attach link '{child}' to itself")
+        with session.structure_lock:
+            session.await_posted()
+            with session.registry_lock:
+                snapshot = session.snapshot()
+                at = snapshot.link(session.link_row(child))[0]
+                if parent != WORLD:
+                    at = compose(inverse(snapshot.link(session.link_row(parent))[0]), at)
+                wanted = self._links.between.added(
+                    session.registry, Joint(name, "fixed", parent, child), at)
+                (command,) = wanted.named(name).commands(session.registry)
+            session.call(Batch((DisconnectModels((name,)), command)))
+            self._links = self._links.with_joint(wanted, name)
+
+    def detach(self, name: str) -> bool:
+        """Take away a joint between models; returns whether there was one of that name."""
+        with self._session.structure_lock:
+            if not self._links.joint(name):
+                return False
+            self._session.call(DisconnectModels((name,)))
+            self._links = self._links.without_joint(name)
+            return True
