@@ -98,3 +98,60 @@ def test_a_command_is_found_by_a_part_of_its_name(editor):
     editor.page.keyboard.press("Enter")
     editor.until("editor.store.overlays.scene.grid === false", "the grid's end")
     editor.get("editor.store.setOverlay('grid', true)")
+
+
+def two_grouped_boxes(editor):
+    """Boxes at y = -1.5 and 1.5, grouped by the keyboard, with nothing selected."""
+    for name, y in (("left", -1.5), ("right", 1.5)):
+        editor.get(f"editor.actions.edit({{kind: 'insert', shape: 'box', name: '{name}',"
+                   f" pose: [0, {y}, 0.5, 0, 0, 0, 1]}})")
+    editor.until("['left', 'right'].every((one) => editor.view.bounds(one))", "both boxes drawn")
+    editor.get("editor.store.select(['left', 'right'])")
+    editor.page.keyboard.press("Control+g")
+    editor.until("['left', 'right'].every((one) => editor.store.model(one).group === 'group')",
+                 "the group")
+    editor.page.keyboard.press("Escape")
+    editor.until("editor.store.selection.length === 0", "nothing selected")
+
+
+def test_a_group_is_selected_moved_hidden_and_deleted_together(editor):
+    two_grouped_boxes(editor)
+    editor.click((0.0, -1.5, 0.5))
+    editor.until("editor.store.selection.join() === 'right,left'", "the group under the mouse")
+    editor.page.keyboard.press("t")
+    editor.drag((0.0, -1.5, 0.5), (1.0, -1.5, 0.5))
+    for name, y in (("left", -1.5), ("right", 1.5)):
+        wait_for(lambda: editor.model(name)["pose"][:2] == approx([1.0, y], abs=0.1), f"{name}")
+    editor.page.keyboard.press("h")
+    editor.until("['left', 'right'].every((one) => editor.view.bounds(one) === null)",
+                 "both hidden")
+    editor.page.keyboard.press("Alt+h")
+    editor.row("group (2)").click()
+    editor.until("editor.store.selection.length === 2", "the group from the tree")
+    editor.page.locator("#view").focus()
+    editor.page.keyboard.press("Delete")
+    wait_for(lambda: editor.names() == ["ground_plane"], "both deleted")
+    editor.page.keyboard.press("Control+z")
+    editor.until("editor.store.model('left')?.group === 'group'", "the box in its group again")
+
+
+def test_a_second_click_selects_one_model_of_a_group_and_ungroup_is_undone(editor):
+    two_grouped_boxes(editor)
+    editor.click((0.0, 1.5, 0.5))
+    editor.until("editor.store.selection.length === 2", "the group")
+    editor.click((0.0, 1.5, 0.5))
+    editor.until("editor.store.selection.join() === 'right'", "the model")
+    editor.page.keyboard.press("Control+Shift+g")
+    editor.until("['left', 'right'].every((one) => !editor.store.model(one).group)", "no group")
+    editor.page.keyboard.press("Control+z")
+    editor.until("editor.store.model('right').group === 'group'", "the group again")
+
+
+def test_a_group_survives_save_and_load(editor, node):
+    two_grouped_boxes(editor)
+    editor.get("editor.request('save', {path: 'grouped.world', overwrite: true})")
+    editor.get("editor.request('new', {discard: true})")
+    wait_for(lambda: editor.names() == ["ground_plane"], "an empty world")
+    editor.get("editor.request('open', {path: 'grouped.world', discard: true})")
+    editor.until("editor.store.model('left')?.group === 'group'", "the group of the file")
+    editor.row("right").get_by_text("group").wait_for()

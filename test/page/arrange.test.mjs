@@ -2,6 +2,7 @@ import assert from 'node:assert/strict';
 import {test} from 'node:test';
 import {createActions} from '../../web/js/actions.js';
 import {arrayOffsets, clearSpacing, distributeMoves} from '../../web/js/arrange.js';
+import {groupAround, groupsOf, withGroups} from '../../web/js/model_groups.js';
 import {commandsOf, matching} from '../../web/js/panels/dialogs/command_dialog.js';
 import {Store} from '../../web/js/store.js';
 import {near} from './near.mjs';
@@ -93,4 +94,27 @@ test('the command search knows menus, tools and keys, each once', () => {
   assert.equal(matching(commands, 'spot ins')[0].title, 'Insert spot light');
   assert.equal(matching(commands, 'pl')[0].title, 'Plot');
   assert.deepEqual(matching(commands, 'no such thing'), []);
+});
+
+test('groups name their models, and a name stands for its group', () => {
+  const {store} = page();
+  const models = [['a', 'shelf'], ['b', ''], ['c', 'shelf']].map(([name, group]) => ({...store.model('a'), name, group}));
+  assert.deepEqual([...groupsOf(models)], [['shelf', ['a', 'c']]]);
+  assert.deepEqual(withGroups(models, ['b', 'a', 'lamp']), ['b', 'a', 'c', 'lamp']);
+  assert.deepEqual(groupAround(models, 'a'), ['c', 'a']);
+});
+
+test('grouping asks for a new group, ungrouping for all models of the groups', async () => {
+  const {connection, store, actions} = page();
+  store.select(['a']);
+  await actions.groupSelection();
+  assert.deepEqual(connection.requests, []);
+  store.select(['b', 'a']);
+  await actions.groupSelection();
+  assert.deepEqual(connection.requests.at(-1), ['edit', {op: {kind: 'set_group', names: ['b', 'a']}}]);
+  assert.equal(requestFault(...connection.requests.at(-1)), null);
+  for (const model of store.document.models) model.group = 'shelf';
+  store.select(['a']);
+  await actions.ungroupSelection();
+  assert.deepEqual(connection.requests.at(-1), ['edit', {op: {kind: 'set_group', names: ['a', 'b'], group: ''}}]);
 });

@@ -1,5 +1,6 @@
 /** Several of a kind, equal gaps, and what is hidden or locked in this browser. */
 import {arrayOffsets, clearSpacing, copiesIn, distributeMoves, MOST_COPIES} from './arrange.js';
+import {withGroups} from './model_groups.js';
 import {NOTHING} from './nothing.js';
 import {add, orientation, position} from './pose.js';
 /** @import {ActionParts, Outcome} from './actions.js' */
@@ -91,6 +92,25 @@ export function arrangeActions({store, ask, edit, dialog, note, view}) {
       for (const name of names) store.setOverlay('locked', on, name);
     },
     unlockAll: () => marked('locked').forEach((name) => store.setOverlay('locked', null, name)),
+    /** Puts the selected models into a new group, kept in the world's file. @returns {Promise<Outcome>} */
+    async groupSelection() {
+      const names = chosenModels();
+      if (names.length < 2) {
+        note('Select at least two models to group.');
+        return NOTHING;
+      }
+      const done = await edit({kind: 'set_group', names});
+      if (done.ok) store.select(names);
+      return done;
+    },
+    /** Takes the selected models, and the others of their groups, out of them. @returns {Promise<Outcome>} */
+    async ungroupSelection() {
+      const models = store.document?.models ?? [];
+      const names = withGroups(models, chosenModels()).filter((name) => store.model(name)?.group);
+      if (names.length) return edit({kind: 'set_group', names, group: ''});
+      note('No model of a group is selected.');
+      return NOTHING;
+    },
     /** What a click can select: neither hidden nor locked. */
     selectAll: () => store.select((store.document?.models ?? []).map(({name}) => name)
       .filter((name) => !store.overlay('hidden', name) && !store.overlay('locked', name))),

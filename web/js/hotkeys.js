@@ -23,6 +23,8 @@ export const HOTKEYS = Object.freeze([
   {keys: 'Ctrl+C', title: 'Copy', group: 'Edit', action: 'copy'},
   {keys: 'Ctrl+V', title: 'Paste', group: 'Edit', action: 'paste'},
   {keys: 'Ctrl+D', title: 'Duplicate', group: 'Edit', action: 'duplicate'},
+  {keys: 'Ctrl+G', title: 'Group selected models', group: 'Edit', action: 'groupSelection'},
+  {keys: 'Ctrl+Shift+G', title: 'Ungroup selected models', group: 'Edit', action: 'ungroupSelection'},
   {keys: 'H', title: 'Hide selected models', group: 'Edit', action: 'hide'},
   {keys: 'Alt+H', title: 'Show hidden models', group: 'Edit', action: 'showHidden'},
   {keys: 'L', title: 'Lock or unlock selected models', group: 'Edit', action: 'lock'},

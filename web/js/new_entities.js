@@ -37,7 +37,7 @@ export function shapeModel(shape) {
   return {
     name: `unit_${shape}`, pose: [0, 0, 0.5, 0, 0, 0, 1], static: false, self_collide: false,
     allow_auto_disable: true, enable_wind: false, canonical_link: 'link', joints: [], plugins: [],
-    uri: '', scalable: true,
+    uri: '', scalable: true, group: '',
     links: [{
       id: 0, name: 'link', pose: origin(), gravity: true, kinematic: false, linear_decay: 0,
       angular_decay: 0, collisions: [],

@@ -142,7 +142,7 @@ export const FRAME_RECORD_BYTES = 32;
 /** @typedef {{
  *  name: string, pose: pose, static: boolean, self_collide: boolean,
  *  allow_auto_disable: boolean, enable_wind: boolean, canonical_link: string, links: Link[],
- *  joints: Joint[], plugins: Plugin[], uri: string, scalable: boolean
+ *  joints: Joint[], plugins: Plugin[], uri: string, scalable: boolean, group: string
  *}} Model */
 
 /** @typedef {{
@@ -438,6 +438,8 @@ export const FRAME_RECORD_BYTES = 32;
 
 /** @typedef {{kind: 'set_plugins', model: string, text: string}} SetPluginsOperation */
 
+/** @typedef {{kind: 'set_group', names: string[], group?: string|null}} SetGroupOperation */
+
 /** @typedef {{kind: 'remove_part', target: string}} RemovePartOperation */
 
 /** @typedef {{
@@ -449,8 +451,8 @@ export const FRAME_RECORD_BYTES = 32;
 /** @typedef {InsertOperation|InsertLightOperation|DeleteOperation|MoveOperation|ScaleOperation|
  *  RenameOperation|SetOperation|PasteOperation|WrenchOperation|ResetOperation|JointOperation|
  *  AddLinkOperation|AddShapeOperation|RenameLinkOperation|AddJointOperation|EditJointOperation|
- *  AddModelOperation|SetPluginsOperation|RemovePartOperation|ComputeInertialOperation|
- *  GroupOperation} Operation */
+ *  AddModelOperation|SetPluginsOperation|SetGroupOperation|RemovePartOperation|
+ *  ComputeInertialOperation|GroupOperation} Operation */
 
 /** @typedef {{
  *  type: 'reply', id: number, ok: boolean, value?: unknown|null, issues?: Issue[]|null

@@ -18,6 +18,8 @@ class IncludeOverrides:
         relative_to: name of the frame of `pose`, "" for the parent's.
         static: whether the model is static; None keeps its own value.
         plugins: plugins to add to those of the model.
+        extra: XML of children with a namespace prefix, which SDF ignores, to add to the kept XML
+            of the model.
         placement_frame: frame inside the model that `pose` places, "" for the model frame (SDF
             1.8).
     """
@@ -27,4 +29,5 @@ class IncludeOverrides:
     relative_to: str = ""
     static: Optional[bool] = None
     plugins: List[PluginSpec] = field(default_factory=list)
+    extra: List[str] = field(default_factory=list)
     placement_frame: str = ""

@@ -1,6 +1,7 @@
 """Which models a running world has."""
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import List, Optional, Tuple
 
 from ..description.model import Inertial, Link, Model
@@ -44,6 +45,18 @@ class KnownModels:
         """The flattened description of a model. Raises UnknownEntityError."""
         with self._session.registry_lock:
             return self._session.registry.model(name).model
+
+    def set_extra(self, name: str, extra: List[str]) -> None:
+        """Replace the kept XML of a model, which has no effect on the simulation.
+
+        The model is not built again. Raises UnknownEntityError.
+        """
+        session = self._session
+        with session.structure_lock, session.registry_lock:
+            entity = session.registry.model(name)
+            changed = replace(entity, model=replace(entity.model, extra=extra))
+            changed.pose = entity.pose
+            session.registry.swap(entity, changed)
 
     def link(self, name: str) -> Link:
         """The description of a link, by plain or scoped name. Raises UnknownEntityError."""

@@ -10,6 +10,7 @@ from typing import Any, Callable, Dict, List, Optional, Protocol, Tuple
 
 from ..description.light import Light
 from ..description.model import Joint, Model
+from ..description.model_group import extra_with_group, group_of
 from ..description.scoped_names import split_scoped
 from ..description.shapes import MeshTable
 from ..description.world import Physics
@@ -118,6 +119,20 @@ class EditModel:
         old = world.models.get(self.name)
         world.models.edit(self.name, self.model, self.meshes, self.undone)
         return EditModel(self.model.name, old, undone=True)
+
+
+@dataclass(frozen=True)
+class SetGroups:
+    """Put models into groups of the editor: name of the group by name of the model, "" for none."""
+
+    groups: Dict[str, str]
+
+    def apply(self, world: Simulator) -> Operation:
+        """Set the groups; no model is built again."""
+        models = {name: world.models.get(name) for name in self.groups}
+        for name, model in models.items():
+            world.models.set_extra(name, extra_with_group(model.extra, self.groups[name]))
+        return SetGroups({name: group_of(model) for name, model in models.items()})
 
 
 @dataclass(frozen=True)

@@ -8,6 +8,7 @@ import pytest
 from editor_case import Refused, arm, box, cases, sun
 
 from my_simulations.description.compare import differences
+from my_simulations.description.model_group import group_of
 from my_simulations.engine.timed_forces import JointPid
 from my_simulations.geometry import STILL, Pose
 from my_simulations.simulator.joint_gains import default_gains
@@ -106,6 +107,7 @@ EDITS = {
     "remove a joint": {"kind": "remove_part", "target": "arm::hinge"},
     "remove a visual": {"kind": "remove_part", "target": "a::link::visual:visual"},
     "compute inertia": {"kind": "compute_inertial", "target": "a::link", "density": 500},
+    "group models": {"kind": "set_group", "names": ["a", "arm"]},
     "reset poses": {"kind": "reset", "what": "poses"},
     "reset the world": {"kind": "reset", "what": "world"},
     "several as one": {"kind": "group", "label": "Two things", "ops": [
@@ -444,5 +446,33 @@ def test_the_model_is_meant_where_a_light_has_its_name(case):
         assert (made.sim.models.names(), made.sim.lights.all()) == (["lamp"], [light])
         await browser.edit("rename", name="lamp", to="post")
         assert (made.sim.models.names(), made.sim.lights.all()) == (["post"], [light])
+
+    made.browse(edit)
+
+
+def test_copies_of_a_group_are_a_group_of_their_own(case):
+    made = case(box("a"), box("b"), box("c"))
+
+    def groups():
+        return {name: group_of(made.sim.models.get(name)) for name in made.sim.models.names()}
+
+    async def edit(browser):
+        entity = made.sim.models.entity("a")
+        grouped = await browser.ask("edit", op={"kind": "set_group", "names": ["a", "b"]})
+        assert grouped["name"] == "group"
+        assert made.sim.models.entity("a").model_id == entity.model_id  # not built again
+        named = {"kind": "set_group", "names": ["a", "b"], "group": "a < b"}
+        await browser.ask("edit", op=named)
+        assert browser.last("history")["undo"][0] == "Rename group group to a < b"
+        text = (await browser.ask("copy", names=["a", "b"]))["text"]
+        await browser.ask("edit", op={"kind": "paste", "text": text})
+        text = (await browser.ask("copy", names=["b"]))["text"]
+        await browser.ask("edit", op={"kind": "paste", "text": text, "name": "alone"})
+        assert groups() == {"a": "a < b", "b": "a < b", "c": "", "a_clone": "a < b_0",
+                            "b_clone": "a < b_0", "alone": ""}
+        await browser.until(lambda: [one["group"] for one in browser.document["models"]]
+                            == list(groups().values()))
+        await browser.ask("edit", op={"kind": "set_group", "names": ["a", "b"], "group": ""})
+        assert groups()["a"] == groups()["b"] == ""
 
     made.browse(edit)

@@ -124,7 +124,7 @@ def test_the_protocol_names_all_fields_of_the_description(data, kind, described)
 
 
 @pytest.mark.parametrize("kind, described, more", [
-    ("Model", model.Model, {"enable_wind", "uri", "scalable"}),
+    ("Model", model.Model, {"enable_wind", "uri", "scalable", "group"}),
     ("Link", model.Link, {"id"}), ("Visual", shapes.Visual, {"layer"}),
     ("Collision", shapes.Collision, set()), ("Actor", actor.Actor, {"geometry"}),
     ("Animation", actor.Animation, {"geometry"}), ("World", world.World, set())])

@@ -14,6 +14,7 @@ from my_simulations.description.compare import differences
 from my_simulations.description.flatten import flattened
 from my_simulations.description.light import Light
 from my_simulations.description.model import Inertial, Joint, JointAxis, Link, Model, PluginSpec
+from my_simulations.description.model_group import group_of
 from my_simulations.description.shapes import Box, Collision
 from my_simulations.description.unflatten import unflattened
 from my_simulations.description.world import World
@@ -26,6 +27,7 @@ from my_simulations.geometry import Pose, Twist, quat_from_rpy
 from my_simulations.resources.package_files import own_directory
 from my_simulations.resources.resolver import Resolver
 from my_simulations.simulator import safe_file
+from my_simulations.simulator.operations import SetGroups
 from my_simulations.simulator.saving import allowed_path, default_roots, present_world, save_world
 from my_simulations.simulator.simulator import Simulator
 
@@ -323,6 +325,21 @@ def test_an_unchanged_include_is_one_again(running, tmp_path):
     include = etree.parse(path).getroot().find("world/include")
     assert include.findtext("uri") == "model://box"
     assert include.findtext("pose") == "7 0 0 0 0 0"
+
+
+def test_groups_of_the_editor_survive_in_models_and_includes(running, tmp_path):
+    text = ('<sdf version="1.7"><world name="w"><include><uri>model://box</uri><name>b</name>'
+            "</include></world></sdf>")
+    (tmp_path / "in.world").write_text(text)
+    resolver = Resolver.from_environment()
+    sim = running(world=read_world(str(tmp_path / "in.world"), resolver).world)
+    sim.models.spawn(box("a"))
+    SetGroups({"a": "a & b", "b": "a & b"}).apply(sim)
+    path = save_world(sim, "out.world", roots=[str(tmp_path)], resolver=resolver, inline=False)
+    assert etree.parse(path).getroot().find("world/include") is not None
+    loaded = read_world(path, resolver)
+    assert not loaded.issues
+    assert {one.name: group_of(one) for one in loaded.world.models} == {"a": "a & b", "b": "a & b"}
 
 
 def test_a_world_file_is_not_replaced_by_what_could_be_loaded_of_it(running, tmp_path):

@@ -109,6 +109,9 @@ export function menus(page) {
         LINE,
         ...AXES.map((axis) => item(`Distribute Along ${axis}`, `distribute${axis}`, {enabled: () => store.selection.length > 2})),
         LINE,
+        item('Group', 'groupSelection', {enabled: () => store.selection.length > 1}),
+        item('Ungroup', 'ungroupSelection', {enabled: () => grouped(store, store.selection)}),
+        LINE,
         item('Hide Selection', 'hide', {enabled: () => store.selection.length > 0}),
         item('Show Hidden Models', 'showHidden'),
         item('Lock or Unlock Selection', 'lock', {enabled: () => store.selection.length > 0}),
@@ -237,6 +240,7 @@ export function contextMenu(page, name) {
   const whole = model ?? name;
   const chosen =
     store.selection.includes(name) && store.selection.length > 1 ? store.selection : [whole];
+  const models = [...new Set(chosen.flatMap((one) => store.split(one)[0]?.name ?? []))];
   const view = light
     ? []
     : [
@@ -266,9 +270,12 @@ export function contextMenu(page, name) {
     ...view,
     ...(light ? [] : [LINE]),
     ...(model ? [
-      store.overlay('hidden', model) ? {title: 'Show', run: () => actions.showHidden([model])}
-        : {title: 'Hide', keys: keysOf('hide'), run: () => actions.hide([model])},
-      {title: 'Locked', keys: keysOf('lock'), checked: () => store.overlay('locked', model), run: () => actions.lock([model])},
+      store.overlay('hidden', model) ? {title: 'Show', run: () => actions.showHidden(models)}
+        : {title: 'Hide', keys: keysOf('hide'), run: () => actions.hide(models)},
+      {title: 'Locked', keys: keysOf('lock'), checked: () => store.overlay('locked', model), run: () => actions.lock(models)},
+      ...(models.length > 1 ? [{title: 'Group', keys: keysOf('groupSelection'), run: () => actions.groupSelection()}] : []),
+      ...(grouped(store, models)
+        ? [{title: 'Ungroup', keys: keysOf('ungroupSelection'), run: () => actions.ungroupSelection()}] : []),
       LINE] : []),
     {title: 'Copy', keys: keysOf('copy'), run: () => actions.copy(chosen)},
     {
@@ -284,6 +291,9 @@ export function contextMenu(page, name) {
     },
   ];
 }
+
+/** Whether a model of a group is among them. @param {Store} store @param {string[]} names */
+const grouped = (store, names) => names.some((name) => Boolean(store.split(name)[0]?.group));
 
 /** A ground: nothing of it can be edited by hand. @param {import('../protocol.js').Model|undefined} model */
 const isPlane = (model) => Boolean(model?.links.every((link) =>

@@ -153,6 +153,9 @@ export function sharedSections(models, poseOf) {
   /** @type {Field[]} */
   const fields = [poseField(models, poses, pose, count), flag('static'), flag('self_collide'),
     flag('enable_wind')];
+  fields.push({path: 'group', label: 'group', type: 'text', hint: 'selected and moved together; empty for none',
+    ops: (value) => ({label: `Group ${count}`, ops: [
+      {kind: 'set_group', names: models.map(({name}) => name), group: String(value)}]})});
   if (single.length === models.length) {
     fields.push({path: 'mass', label: 'mass of each', type: 'number', unit: 'kg', above: 0,
       ops: (value) => ({label: `Set mass of ${count} to ${value}`,
@@ -171,6 +174,7 @@ export function sharedSections(models, poseOf) {
     static: common(models.map((model) => model.static)),
     self_collide: common(models.map((model) => model.self_collide)),
     enable_wind: common(models.map((model) => model.enable_wind)),
+    group: common(models.map(({group}) => group ?? '')),
     mass: common(models.map(({links}) => links[0]?.inertial.mass ?? null)),
     mu: common(solids.map(({collision}) => collision.surface.mu)),
     color: common(visuals.map(({material}) => colourOf(material))),

@@ -7,7 +7,7 @@
  * @property {string} icon
  * @property {number} level    1 for the outermost
  * @property {string} kind     gui, scene, spherical, physics, atmosphere, wind, plugins, models,
- *   lights, model, heading, link, joint, plugin, light, road, actor
+ *   lights, model, group, heading, link, joint, plugin, light, road, actor
  * @property {boolean} expandable
  * @property {boolean} open
  * @property {string} [select] what a click selects: a model, `model::link` or a light
@@ -16,6 +16,7 @@
  * @property {number} [index]  of a plugin
  */
 
+import {groupsOf} from '../model_groups.js';
 import {splitScoped} from '../scoped_names.js';
 /** @import {Model, World} from '../protocol.js' */
 
@@ -48,6 +49,11 @@ export function worldRows(document, open, wanted = '') {
     models,
     (model) => modelRows(rows, open, model),
   );
+  const groups = [...groupsOf(document.models)];
+  if (groups.length) {
+    group(rows, open, 'groups', `Groups (${groups.length})`, 'group', groups, ([name, members]) =>
+      rows.push({...leaf(`group:${name}`, `${name} (${members.length})`, 'group', 2, 'group'), name}));
+  }
   const lights = document.lights.filter(fits);
   group(
     rows,

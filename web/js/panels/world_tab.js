@@ -1,5 +1,6 @@
 /** The World tab: a filter, the tree, and the properties of the row that is chosen. */
 import {elementsOf, fill, h, onceAFrame, remembered} from './dom.js';
+import {groupsOf} from '../model_groups.js';
 import {colorOf, doing} from './people_bar.js';
 import {Properties} from './properties_panel.js';
 import {Tree} from './tree_view.js';
@@ -68,7 +69,7 @@ export class WorldTab {
   }
 
   #filter;
-  #open = new Set(['models', 'lights', ...remembered.get('open-rows', [])]);
+  #open = new Set(['models', 'groups', 'lights', ...remembered.get('open-rows', [])]);
   /** The row whose properties are shown. @type {Row|null} */
   #row = null;
   /** Name of a new, selected entity whose row does not exist yet. @type {string|null} */
@@ -100,7 +101,11 @@ export class WorldTab {
   #choose(row, event) {
     if (row.kind === 'heading') return;
     this.#row = row;
-    if (row.select) {
+    if (row.kind === 'group') {
+      this.store.select(groupsOf(this.store.document?.models ?? []).get(row.name ?? '') ?? []);
+      // The selection shows the row of its last model.
+      this.#row = row;
+    } else if (row.select) {
       this.store.select([row.select], {toggle: event.ctrlKey || event.metaKey});
     } else if (this.store.selection.length && !this.#belongs(row, this.store.selection)) {
       this.store.select([]);
@@ -153,6 +158,11 @@ export class WorldTab {
    * @param {number} y
    */
   #menu(row, x, y) {
+    if (row.kind === 'group') {
+      this.#choose(row, {});
+      const name = this.store.selection.at(-1);
+      if (name) this.store.emit('contextmenu', {name, x, y});
+    }
     if (!row.select) return;
     if (!this.store.selection.includes(row.select)) this.#choose(row, {});
     this.store.emit('contextmenu', {name: row.select, x, y});
@@ -168,7 +178,7 @@ export class WorldTab {
     }
     if (row.kind === 'model') {
       const model = this.store.document?.models.find((one) => one.name === row.name);
-      const tags = [model?.static && 'static', ...FLAGS.map((flag) => model && this.store.overlay(flag, model.name) && flag)];
+      const tags = [model?.group, model?.static && 'static', ...FLAGS.map((flag) => model && this.store.overlay(flag, model.name) && flag)];
       return h('span', {class: 'tags'}, ...tags.map((text) => text && h('span', {class: 'tag', text})));
     }
     if (row.kind === 'physics' && this.store.stats.paused) {

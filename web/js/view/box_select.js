@@ -1,5 +1,7 @@
 /** A rectangle drawn with the mouse: what has its middle in it is selected. */
 
+import {withGroups} from '../model_groups.js';
+
 /** @typedef {{x: number, y: number, lastX: number, lastY: number}} Dragged */
 
 export class BoxSelect {
@@ -35,12 +37,13 @@ export class BoxSelect {
   end({x, y, lastX, lastY}) {
     this.cancel();
     const models = this.#store.document?.models ?? [];
-    this.#store.select(models.map(({name}) => name).filter((name) => {
-      if (this.#store.overlay('locked', name)) return false;
+    const free = models.map(({name}) => name).filter((name) => !this.#store.overlay('locked', name));
+    const within = free.filter((name) => {
       const pixel = this.#pixelOf(name);
       return pixel !== null && (pixel[0] - x) * (pixel[0] - lastX) < 0 &&
         (pixel[1] - y) * (pixel[1] - lastY) < 0;
-    }), {add: true});
+    });
+    this.#store.select(withGroups(models, within).filter((name) => free.includes(name)), {add: true});
   }
 
   cancel() {

@@ -1,6 +1,7 @@
 /** Moving, turning and scaling with the mouse: by the handles, or by the body itself. */
 import {alongAxis, rotated, roundness, scaled, translated} from '../drag_math.js';
-import {orientation, position} from '../pose.js';
+import {groupAround} from '../model_groups.js';
+import {compose, inverse, orientation, position} from '../pose.js';
 import {LIMITS} from '../protocol.js';
 import {Gizmo} from './gizmo.js';
 import {axisOf, graspedPoint, isNothing, numbersOf} from './grasp.js';
@@ -138,7 +139,7 @@ export class Manipulator {
     if (handle && name && pose) return this.#take(event, name, handle, position(pose), key);
     const body = pick();
     if (!body) return false;
-    if (!this.#store.selection.includes(body.name)) this.#store.select([body.name]);
+    if (!this.#store.selection.includes(body.name)) this.#store.select(this.#group(body.name));
     if (mode !== 'translate' && !key) return true;
     if (this.target === null) return true;
     return this.#take(event, body.name, null, body.point, key);
@@ -232,6 +233,11 @@ export class Manipulator {
   }
 
   /** @param {string} name */
+  #group(name) {
+    return groupAround(this.#store.document?.models ?? [], name);
+  }
+
+  /** @param {string} name */
   #shown(name) {
     if (this.#grasp?.name === name && this.#result?.poses) return this.#result.poses[name];
     return this.#models.shownPose(name);
@@ -263,9 +269,12 @@ export class Manipulator {
     if (!pose || !isGizmoMode(mode)) return false;
     /** @type {Record<string, Pose7>} */
     const others = {};
-    if (mode === 'translate') {
+    if (mode !== 'scale') {
+      // Of what is selected, all moves along; only the models of its group turn along.
       for (const other of this.#store.selection) {
-        const shown = other !== name && this.#store.model(other) && this.#models.shownPose(other);
+        const along = other !== name && this.#store.model(other) &&
+          (mode === 'translate' || this.#group(name).includes(other));
+        const shown = along && this.#models.shownPose(other);
         if (shown) others[other] = shown;
       }
     }
@@ -319,8 +328,8 @@ export class Manipulator {
     if (!pose) return null;
     const poses = {[grasp.name]: pose};
     for (const [name, start] of Object.entries(grasp.others)) {
-      poses[name] = [...[0, 1, 2].map((i) => start[i] + pose[i] - grasp.first[i]),
-        ...start.slice(3)];
+      poses[name] = grasp.mode === 'rotate' ? compose(pose, compose(inverse(grasp.first), start))
+        : [...[0, 1, 2].map((i) => start[i] + pose[i] - grasp.first[i]), ...start.slice(3)];
     }
     return {poses};
   }

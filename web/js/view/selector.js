@@ -1,5 +1,6 @@
 /** What clicks select, and where the ray under the mouse meets the world. */
 import {Mesh} from 'three';
+import {groupAround} from '../model_groups.js';
 import {rayPlane, WORLD_AXES} from '../drag_math.js';
 import {add, length, scale, subtract} from '../pose.js';
 /** @import {MousePoint} from './pointer.js' */
@@ -95,9 +96,23 @@ export class Selector {
       if (!several) this.#store.select([]);
       return;
     }
-    if (several) this.#store.select([hit.name], {toggle: true});
+    const group = this.#group(hit.name);
+    if (several) this.#store.select(group, this.#store.selection.includes(hit.name) ? {toggle: true} : {add: true});
     else if (this.#wantsLink(hit)) this.#store.select([`${hit.name}::${hit.link}`]);
-    else this.#store.select([hit.name]);
+    else this.#store.select(this.#wantsMember(group) ? [hit.name] : group);
+  }
+
+  /** The models of the group of a model that the mouse reaches, this one last. @param {string} name */
+  #group(name) {
+    return groupAround(this.#store.document?.models ?? [], name)
+      .filter((one) => one === name || !this.#store.overlay('locked', one));
+  }
+
+  /** The second click on a group means one of its models. @param {string[]} group */
+  #wantsMember(group) {
+    const {selection} = this.#store;
+    return group.length > 1 && group.every((name) => selection.includes(name)) ||
+      selection.length === 1 && group.includes(selection[0]);
   }
 
   /** The second click on a model of several links means the link. @param {Under} under */
@@ -113,7 +128,7 @@ export class Selector {
   /** @param {MousePoint} event */
   menu(event) {
     const hit = this.movable(event);
-    if (hit && !this.#store.selection.includes(hit.name)) this.#store.select([hit.name]);
+    if (hit && !this.#store.selection.includes(hit.name)) this.#store.select(this.#group(hit.name));
     this.#store.emit('contextmenu',
       {name: hit?.name ?? null, x: event.clientX, y: event.clientY});
   }

@@ -3,10 +3,11 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from typing import Any, Callable, Dict, List, Optional, Tuple
+from typing import Any, Callable, Dict, List, Optional, Set, Tuple
 
 from ...description.light import Light
 from ...description.model import Model
+from ...description.model_group import group_of
 from ...description.scoped_names import split_scoped
 from ...description.unflatten import unflattened
 from ...engine.timed_forces import JointPid
@@ -28,6 +29,7 @@ from ...simulator.operations import (
     RemoveLight,
     RemoveModel,
     Reset,
+    SetGroups,
     SetPoses,
     pose_of,
 )
@@ -43,6 +45,7 @@ from .inserts import (
     entity_of_text,
     entity_of_uri,
     free_name,
+    regrouped,
     simple_shape,
     taken_names,
     world_of,
@@ -115,7 +118,7 @@ class Edits:
             "insert": self._insert, "insert_light": self._insert_light, "delete": self._delete,
             "move": self._move, "scale": self._scale, "rename": self._rename, "set": self._set,
             "paste": self._paste, "wrench": self._wrench, "reset": self._reset,
-            "joint": self._joint, **self._building.planners(),
+            "joint": self._joint, "set_group": self._set_group, **self._building.planners(),
         }
         return planners[kind](op)
 
@@ -188,6 +191,7 @@ class Edits:
             raise CommandError("the pasted text contains no models or lights")
         taken = set(taken_names(self._world))
         target = _usable(pose_from(op["pose"])) if op.get("pose") else None
+        entities = regrouped(entities, self._taken_groups())
         first = entities[-1].pose
         names, parts = [], []
         for entity in entities:
@@ -241,6 +245,24 @@ class Edits:
         model = split_target(self._world, target)[0] if self._is_of_model(target) else None
         label = history_labels.set_property(target, path, op.get("value"), model)
         return label, operation, {}
+
+    def _set_group(self, op: Dict[str, Any]) -> Planned:
+        """An empty name removes the models from their groups; without a name it is a new group."""
+        names = list(dict.fromkeys(op["names"]))
+        if not names:
+            raise CommandError("no models are selected")
+        groups = [group_of(self._world.models.get(name)) for name in names]
+        group = op.get("group")
+        if group is None:
+            group = free_name("group", self._taken_groups())
+        group = group.strip()
+        label = f"Group {listed(names)}" if group else f"Ungroup {listed(names)}"
+        if group and len(set(groups)) == 1 and groups[0]:
+            label = f"Rename group {groups[0]} to {group}"
+        return label, SetGroups({name: group for name in names}), {"name": group}
+
+    def _taken_groups(self) -> Set[str]:
+        return {group_of(entity.model) for entity in self._world.models.inventory()[1]}
 
     def _is_of_model(self, target: str) -> bool:
         return bool(split_scoped(target, self._world.models.has)[0])

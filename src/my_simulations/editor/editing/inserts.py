@@ -3,12 +3,13 @@ from __future__ import annotations
 
 import os
 from dataclasses import replace
-from typing import Collection, Dict, List, Optional, Tuple, Union
+from typing import Collection, Dict, List, Optional, Sequence, Tuple, Union
 
 from ...description.compare import BUILT_IN
 from ...description.flatten import flattened
 from ...description.light import Light
 from ...description.model import Inertial, Link, Model
+from ...description.model_group import group_of, with_group
 from ...description.shapes import (
     Box,
     Collision,
@@ -118,6 +119,18 @@ def free_name(wanted: str, taken: Collection[str]) -> str:
     while f"{wanted}_{number}" in taken:
         number += 1
     return f"{wanted}_{number}"
+
+
+def regrouped(entities: Sequence[Entity], taken: Collection[str]) -> List[Entity]:
+    """Copies in groups of their own: those of one group in a group with a free name.
+
+    A copy of one model of a group is in none.
+    """
+    groups = [group_of(one) if isinstance(one, Model) else "" for one in entities]
+    names = {group: free_name(group, taken) if groups.count(group) > 1 else ""
+             for group in groups if group}
+    return [with_group(one, names[group]) if group and isinstance(one, Model) else one
+            for one, group in zip(entities, groups)]
 
 
 def world_of(models: List[Model], lights: List[Light]) -> World:

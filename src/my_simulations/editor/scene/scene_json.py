@@ -8,6 +8,7 @@ from ...appearance.mesh_formats import MOVEMENTS, PAGE_FORMATS
 from ...description.actor import Actor
 from ...description.light import Light
 from ...description.model import Joint, Link, Model
+from ...description.model_group import group_of
 from ...description.shapes import (
     Box,
     Capsule,
@@ -85,7 +86,7 @@ class Documents:
             "links": [self._link(link, first_id + n) for n, link in enumerate(model.links)],
             "joints": [_joint(joint) for joint in model.joints],
             "plugins": [plain(plugin) for plugin in model.plugins],
-            "uri": model.uri, "scalable": is_scalable(model),
+            "uri": model.uri, "scalable": is_scalable(model), "group": group_of(model),
         }
 
     @staticmethod

@@ -4,7 +4,7 @@ from __future__ import annotations
 import functools
 import os
 from dataclasses import replace
-from typing import Any, Callable, Optional, Sequence, Union
+from typing import Any, Callable, List, Optional, Sequence, Union
 
 from ...description.actor import Actor
 from ...description.cost_budget import MODEL_BUDGET
@@ -13,7 +13,7 @@ from ...errors import InputError
 from ...geometry import IDENTITY
 from ...resources.resolver import ResourceNotFoundError
 from ..include_overrides import IncludeOverrides
-from ..xml.binding import fill
+from ..xml.binding import fill, has_prefix
 from ..xml.parsing import content, parse
 from ..xml.source import FaultLevel, Source
 from .light import LightPlacement, read_light
@@ -51,7 +51,8 @@ def read_include(element: Any, source: Source, read_model: ModelReader, static: 
         alone: False if joints may refer to links of other models.
     """
     probe = _Include()
-    found = fill(probe, element, INCLUDE, source, [])
+    kept: List[str] = []
+    found = fill(probe, element, INCLUDE, source, kept)
     if not probe.uri:
         say = source.tolerate if outer else functools.partial(source.report, FaultLevel.ERROR)
         say("include-uri-missing", "<include> has no <uri>; it is skipped", element)
@@ -61,6 +62,7 @@ def read_include(element: Any, source: Source, read_model: ModelReader, static: 
     changes = IncludeOverrides(
         probe.name or None, probe.pose, relative_to(found), probe.static,
         [read_plugin(plugin, source) for plugin in found.get("plugin", ())],
+        [xml for xml in kept if has_prefix(xml)],
         next(((e.text or "").strip() for e in found.get("placement_frame", ())), ""),
     )
     read = functools.partial(read_model, static=static, outer=outer, alone=alone and not outer)
@@ -113,12 +115,14 @@ def _read_file(path: str, element: Any, source: Source, changes: IncludeOverride
     if root.tag == "robot":
         model = source.read_robot(root, inner, changes)
         model.uri = uri
+        model.extra += changes.extra
         flags = ModelFlags(static=True if model.static else None)
         return ParsedModel(model, changes.relative_to, flags=flags)
     for child in root:
         if child.tag == "model":
             placement = read(child, inner, changes)
             placement.model.uri = uri
+            placement.model.extra += changes.extra
             return placement
         if child.tag == "light":
             light = read_light(child, inner)

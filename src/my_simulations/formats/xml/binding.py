@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import math
+import re
 from typing import Any, Dict, List, Mapping, Optional, Set, Tuple, Union
 
 from .source import FaultLevel, Source
@@ -229,6 +230,11 @@ def closest(name: str, known: List[str]) -> str:
 
     matches = difflib.get_close_matches(name, known, 1)
     return f"did you mean {matches[0]}?" if matches else ""
+
+
+def has_prefix(xml: str) -> bool:
+    """Return whether kept XML is an element with a namespace prefix."""
+    return re.match(r"<[A-Za-z_][\w.-]*:[A-Za-z_]", xml) is not None
 
 
 def to_xml(element: Any, wrap: Tuple[str, ...] = ()) -> str:

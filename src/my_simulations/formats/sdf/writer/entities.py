@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import contextlib
 from dataclasses import replace
-from typing import Any, Callable, Iterable, Iterator, List, Optional, Union
+from typing import Any, Callable, Iterable, Iterator, List, Optional, Tuple, Union
 
 from lxml import etree
 
@@ -20,6 +20,7 @@ from ....description.shapes import Collision, Visual
 from ....description.world import World
 from ....errors import CommandError
 from ....geometry import Vec3
+from ...xml.binding import has_prefix
 from ...xml.values import FLOAT, VECTOR3
 from ..model_tables import (
     AXIS,
@@ -51,7 +52,8 @@ _OLDER = "1.6"
 
 IsPlainInclude = Callable[[Model], Optional[Model]]
 """Returns the model that the URI of an included model refers to now; None if unknown. A model that
-differs from it only in name, pose, static and added plugins is written as an `<include>`."""
+differs from it only in name, pose, static, added plugins and elements with a prefix is written
+as an `<include>`."""
 
 
 def write_world(world: World, state: Optional[SavedState] = None,
@@ -144,15 +146,15 @@ class _Writer:
     def model_or_include(self, parent: Any, model: Model) -> None:
         """`<model>`, or the `<include>` of an unchanged included model."""
         bare = self._included(model) if self._included is not None and model.uri else None
-        added = _added_plugins(model, bare) if bare is not None else None
+        added = _added(model, bare) if bare is not None else None
         if bare is None or added is None:
             self.model(parent, model)
             return
-        plugins = added
+        plugins, extra = added
         element = _element(parent, "include", None)
         fill_element(element, model, INCLUDE, {
             "plugin": lambda at: write_plugins(at, plugins, INCLUDE),
-        }, [], required=("uri", "name", "pose", *(
+        }, extra, required=("uri", "name", "pose", *(
             ("static",) if model.static != bare.static else ())),
             leave_out=() if model.static != bare.static else ("static",))
 
@@ -245,11 +247,12 @@ def _direction(xyz: Vec3) -> Vec3:
     return (round(xyz[0], 14), round(xyz[1], 14), round(xyz[2], 14))
 
 
-def _added_plugins(model: Model, bare: Model) -> Optional[List[PluginSpec]]:
-    """The plugins that an include adds to its model; None if more than that differs."""
+def _added(model: Model, bare: Model) -> Optional[Tuple[List[PluginSpec], List[str]]]:
+    """The plugins and XML that an include adds to its model; None if more than that differs."""
     kept = model.plugins[:len(bare.plugins)]
+    extra = [xml for xml in model.extra if has_prefix(xml) and xml not in bare.extra]
     as_bare = replace(model, name=bare.name, pose=bare.pose, static=bare.static, uri=bare.uri,
-                      plugins=kept)
+                      plugins=kept, extra=[xml for xml in model.extra if xml not in extra])
     if differences(as_bare, bare):
         return None
-    return model.plugins[len(bare.plugins):]
+    return model.plugins[len(bare.plugins):], extra
