@@ -263,8 +263,8 @@ _TABLE: Tuple[Tuple[str, Tuple[Tuple[str, str, str, str], ...]], ...] = (
         ("shape-thin", WARNING, "A collision is so thin that moving bodies may pass through it.",
          "Make it thicker, or reduce the step size."),
         ("friction-shared", WARNING,
-         "Collisions of one link have unlike friction, in a static model or one with self_collide;"
-         " that of the lowest one holds for the link.",
+         "Collisions of one link have unlike friction, in a model of more than 127 links and"
+         " frictions; that of the lowest one holds for the link.",
          "Give those with another friction a link of their own, joined to the first."),
         ("advice-many", WARNING, "More warnings of this kind are not listed.",
          "Correct those listed first."),

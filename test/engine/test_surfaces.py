@@ -10,8 +10,8 @@ from laws import Laws
 
 from my_simulations.description.model import Inertial, Joint, JointAxis, Link, Model
 from my_simulations.description.shapes import Box, Collision, Sphere, Surface
-from my_simulations.engine.commands import ReadContacts
-from my_simulations.geometry import Pose, quat_from_rpy, rotate
+from my_simulations.engine.commands import ReadContacts, SetModelState
+from my_simulations.geometry import STILL, Pose, quat_from_rpy, rotate
 
 G = 9.8
 
@@ -65,12 +65,15 @@ def _sled(front: float, back: float) -> Model:
             Joint("axle", "revolute", "link", "rider", axis=JointAxis())])
 
 
+@pytest.mark.parametrize("self_collide", [False, True])
 @pytest.mark.parametrize("jointed", [True, False])
 @pytest.mark.parametrize("front, back", [(0.0, 0.8), (0.8, 0.0), (0.2, 0.6), (0.6, 0.2)])
 def test_each_collision_of_a_link_has_its_own_friction(lab: Lab, laws: Laws, front: float,
-                                                       back: float, jointed: bool):
+                                                       back: float, jointed: bool,
+                                                       self_collide: bool):
     lab.load(ground(1.0))
     model = _sled(front, back)
+    model.self_collide = self_collide
     if not jointed:
         model.joints, model.links[1:] = [], []
         model.links[0].inertial = inertial_of_box(6.0, 0.6, 0.4, 0.1)
@@ -88,6 +91,53 @@ def test_each_collision_of_a_link_has_its_own_friction(lab: Lab, laws: Laws, fro
     assert {max(each.row_a, each.row_b) for each in contacts} == {lab.rows[sled, "link"]}
     laws.near("the same: sum of normal forces, N", sum(each.force for each in contacts), 6 * G,
               rel=1e-3)
+
+
+def _tiles(*surfaces: Surface, kinematic: bool = False) -> Model:
+    """One link of tiles, 20 m wide, whose tops are level; their centres are 40 m apart in y."""
+    tiles = [Collision(f"tile{n}", Box((20, 20, 1)), Pose((0, 40.0 * n, -0.5)), surface=surface)
+             for n, surface in enumerate(surfaces)]
+    return Model("tiles", static=not kinematic,
+                 links=[Link("link", collisions=tiles, kinematic=kinematic)])
+
+
+@pytest.mark.parametrize("kinematic", [False, True])
+def test_each_collision_of_a_static_link_has_its_own_friction(lab: Lab, laws: Laws,
+                                                              kinematic: bool):
+    across = Surface(mu=0.6, mu2=0.2, fdir1=(0, 1, 0))
+    model = _tiles(Surface(mu=0.2), Surface(mu=0.6), across, Surface(mu=0.6),
+                   kinematic=kinematic)
+    tiles = lab.load(model, (1, 2, 3))
+    lab.apply(SetModelState(tiles, Pose(), STILL))    # all tiles follow their link
+    plates = [lab.load(_plate(f"plate{n}", Surface()), (0, 40.0 * n, 0.05)) for n in range(4)]
+    lab.steps(100)
+    for plate in plates:
+        lab.push(plate, (2, 0, 0))
+    starts = [lab.pose(plate).position[0] for plate in plates]
+    lab.seconds(1.5)
+    for plate, start, mu in zip(plates, starts, (0.2, 0.6, 0.2, 0.6)):
+        laws.near("tiles of one static link, each with its own mu: way to a stop, m",
+                  lab.pose(plate).position[0] - start, 2.0 ** 2 / (2 * mu * G), rel=0.02)
+    for contact in lab.apply(ReadContacts()):
+        assert lab.rows[tiles, "link"] in (contact.row_a, contact.row_b)
+
+
+def test_each_collision_of_a_static_link_has_its_own_restitution(lab: Lab, laws: Laws):
+    def surface(restitution: float) -> Surface:
+        return Surface(restitution=restitution, bounce_threshold=0.0)
+    lab.load(_tiles(surface(0.9), surface(0.4)))
+    balls = [lab.load(ball(f"ball{n}", 0.1, surface=surface(1.0)), (0, 40.0 * n, 1.1))
+             for n in range(2)]
+    lab.steps(round(math.sqrt(2 / G) * 1000) + 10)
+    tops = [0.0, 0.0]
+    for _ in range(1000):
+        lab.steps(1)
+        for n, body in enumerate(balls):
+            if lab.twist(body).linear[2] > 0.0:
+                tops[n] = max(tops[n], lab.pose(body).position[2] - 0.1)
+    for top, restitution in zip(tops, (0.9, 0.4)):
+        laws.near("tiles of one static link, each with its own restitution: height of a bounce, m",
+                  top, restitution ** 2, rel=0.02)
 
 
 @pytest.mark.parametrize("jointed", [False, True])

@@ -13,9 +13,11 @@ from ..errors import Severity
 from ..geometry import IDENTITY, Pose, Vec3, compose, conjugate, dot, norm, rotate, scale
 from .link_surface import coefficient, counting_collision
 from .model import WORLD, Inertial, Link, Model
-from .self_collision import self_collides
 from .shapes import Box, Capsule, Collision, Cylinder, Ellipsoid, Geometry, Plane, Sphere
 from .validate import Fault
+
+MOST_PIECES = 127
+"""Links with unlike friction are divided up to this number of links (`engine.surface_pieces`)."""
 
 THINNEST_M = 1e-4
 DEEPEST_M = 0.005
@@ -33,11 +35,11 @@ def advice(models: Sequence[Model], only: str = "") -> Iterator[Fault]:
             continue
         odd: List[Fault] = []
         shared: List[Fault] = []
-        divided = _divided(model)
+        is_divided = _count_pieces(model) <= MOST_PIECES
         for name, link, _pose, static in links_of(model):
             for collision in link.collisions:
                 yield from _thin(collision, name)
-            if name not in divided:
+            if not static and not is_divided:
                 shared += _shared_friction(link, name)
             if not static:
                 odd += _odd_inertia(link, name)
@@ -63,20 +65,10 @@ def links_of(model: Model, above: Pose = IDENTITY, scope: str = "",
         yield from links_of(inner, base, name, static)
 
 
-def _divided(model: Model, scope: str = "", static: bool = False) -> Set[str]:
-    """Scoped names of the links of which each collision keeps its own friction.
-
-    Not in static models, nor where links of a model collide with each other.
-    """
-    name, static = f"{scope}{model.name}::", static or model.static
-    found: Set[str] = set()
-    if self_collides(model):
-        return found
-    if not static:
-        found = {name + link.name for link in model.links if not link.kinematic}
-    for inner in model.models:
-        found |= _divided(inner, name, static)
-    return found
+def _count_pieces(model: Model) -> int:
+    """Return the number of links, counting each once for each friction of its collisions."""
+    return (sum(max(1, len({coefficient(one.surface) for one in link.collisions}))
+                for link in model.links) + sum(map(_count_pieces, model.models)))
 
 
 def _held(model: Model) -> Set[str]:

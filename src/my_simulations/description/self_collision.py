@@ -14,12 +14,6 @@ def asks(link: Link, model: Model) -> bool:
     return model.self_collide if link.self_collide is None else link.self_collide
 
 
-def self_collides(model: Model) -> bool:
-    """Whether any link of a model, or of one nested in it, is to collide with the others."""
-    return (any(asks(link, model) for link in model.links)
-            or any(map(self_collides, model.models)))
-
-
 class SelfCollision:
     """Answers for pairs of links of a flattened model, by their positions in `Model.links`."""
 

@@ -108,6 +108,7 @@ class Body:
 
     Attributes:
         uid: PyBullet's number; `more` those of further static pieces.
+        carriers: for a body of static pieces, the part of each with its collisions.
         balls: its ball joints, which have no row.
         parts: its links; `base` is the part whose index is BASE, None for a fixed base.
         moves: False for static and kinematic ones.
@@ -130,6 +131,7 @@ class Body:
     parts: List[Part]
     axes: List[Axis] = field(default_factory=list)
     more: Tuple[int, ...] = ()
+    carriers: Tuple[Part, ...] = ()
     balls: Tuple[Ball, ...] = ()
     moves: bool = True
     rigid: bool = True
@@ -154,15 +156,21 @@ class Body:
         """All PyBullet numbers it holds."""
         return (self.uid,) + self.more
 
-    @property
-    def faces(self) -> Set[int]:
-        """PyBullet's numbers of those that are boxes in place of the flat faces of meshes."""
-        return {uid for uid, (recipe, _) in zip(self.uids, self.shapes) if recipe.role == "faces"}
+    def with_role(self, role: str) -> Set[int]:
+        """Return PyBullet's numbers of those whose shapes have a role (`Recipe.role`)."""
+        return {uid for uid, (recipe, _) in zip(self.uids, self.shapes) if recipe.role == role}
 
     @property
     def colliders(self) -> Tuple[Part, ...]:
         """Its links and their pieces: all that can touch something."""
         return (*self.parts, *self.pieces)
+
+    @property
+    def surfaces(self) -> Tuple[Tuple[int, Part], ...]:
+        """All that can touch something, each with PyBullet's number of its body."""
+        if self.carriers:
+            return tuple(zip(self.uids, self.carriers))
+        return tuple((self.uid, part) for part in self.colliders)
 
     @property
     def owners(self) -> Dict[int, int]:

@@ -15,7 +15,7 @@ from ..body_plan import BASE, NO_LINK, BodyPlan, TreeLink, plan_bodies
 from ..commands import LoadModel
 from ..principal_inertia import principal
 from ..ring_rows import AXES, axis_rows, row_name
-from ..surface_pieces import carried_by, differs_in_friction, in_pieces
+from ..surface_pieces import by_friction, by_surface, carried_by, in_pieces
 from . import collision_groups, surface_coefficients
 from .bodies import (
     Axis,
@@ -57,13 +57,14 @@ _FIXED = _Masses(0.0, IDENTITY, (0.0, 0.0, 0.0))
 
 @dataclass(frozen=True)
 class _Rigid:
-    """A joint-free link, ready to be built."""
+    """A joint-free link, ready to be built; `carriers` has the collisions of each of `pieces`."""
 
     number: int
     static: bool
     masses: _Masses
     model_from_com: Pose
     pieces: Tuple[Recipe, ...]
+    carriers: Tuple[Link, ...]
 
 
 @dataclass(frozen=True)
@@ -93,7 +94,7 @@ class Builder:
         self._meets = SelfCollision(command.model)
         self._first_row = command.first_link_row
         self._articulated = command.articulated or not command.model.static and any(
-            is_soft(link) or differs_in_friction(link, command.model)
+            is_soft(link) or len(by_friction(link)) > 1
             for link in command.model.links)
         self._shapes = shapes
         self._axis_rows = {row.name: command.first_joint_row + n
@@ -138,9 +139,13 @@ class Builder:
         static = self._model.static or link.kinematic
         masses = (_FIXED if static
                   else _Masses(link.inertial.mass, *principal(link.inertial)))
-        collisions = link.collisions if static else with_ends(link, MAX_SHAPES)
-        return _Rigid(number, static, masses, compose(link.pose, masses.com), tuple(
-            self._shapes.recipes(collisions, meshes, inverse(masses.com), static)))
+        found = [(recipe, carrier) for carrier in (by_surface(link) if static else (link,))
+                 for recipe in self._shapes.recipes(
+                     carrier.collisions if static else with_ends(link, MAX_SHAPES), meshes,
+                     inverse(masses.com), static)]
+        return _Rigid(number, static, masses, compose(link.pose, masses.com),
+                      tuple(recipe for recipe, _ in found),
+                      tuple(carrier for _, carrier in found))
 
     def _build_rigid(self, rigid: _Rigid, pose: Pose) -> Body:
         link, masses = self._model.links[rigid.number], rigid.masses
@@ -150,21 +155,20 @@ class Builder:
         uids = [self._create(masses, shape, stand) for shape, stand in places]
         if not rigid.pieces:
             collision_groups.NOTHING.set(uids[0], BASE)  # else Bullet keeps a pair for any two
-        filters = {role: (collision_groups.static(link, role) if rigid.static
-                          else collision_groups.moving(link))
-                   for role in {piece.role for piece in rigid.pieces}}
-        for uid, piece in zip(uids, rigid.pieces):
-            filters[piece.role].set(uid, BASE)
+        for uid, piece, carrier in zip(uids, rigid.pieces, rigid.carriers):
+            (collision_groups.static(carrier, piece.role) if rigid.static
+             else collision_groups.moving(carrier)).set(uid, BASE)
             _fit(uid, BASE, piece)
-        surface = surface_coefficients.of_link(link)
         part = self._part(rigid.number, BASE, masses, link)
-        body = Body(uids[0], self.model_id, [part], more=tuple(uids[1:]),
+        carriers = tuple(self._part(rigid.number, BASE, masses, carrier)
+                         for carrier in rigid.carriers) if rigid.static else ()
+        body = Body(uids[0], self.model_id, [part], more=tuple(uids[1:]), carriers=carriers,
                     moves=not rigid.static, rigid=not self._articulated,
                     is_ball=[type(c.geometry) for c in link.collisions] == [Sphere],
                     may_sleep=self._may_sleep(link), shapes=taken)
-        for uid in uids:
-            set_dynamics(uid, BASE, surface, masses.mass, masses.moments,
-                         body.may_sleep and not rigid.static)
+        for uid, own in body.surfaces:
+            set_dynamics(uid, BASE, surface_coefficients.of_link(own.link), masses.mass,
+                         masses.moments, body.may_sleep and not rigid.static)
             if body.rigid and rigid.static:
                 let_rest(uid)
         body.radius = radius_of(uids[0])

@@ -35,6 +35,7 @@ from ...errors import SimulationError
 from ...geometry import IDENTITY, Pose, compose, multiply, rotate, transform
 from ..convex.hull_points import hull_points, naming_triangles, shrunk
 from ..scratch_folder import Scratch
+from ..surface_pieces import by_surface
 from .face_boxes import FaceBoxes
 
 MAX_SHAPES = 16
@@ -218,9 +219,10 @@ class ShapeFactory:
             for collision in link.collisions:
                 self._faces.parted([collision], meshes)
                 yield
-            for recipe in self.static_recipes(link.collisions, meshes, IDENTITY):
-                self.give([(recipe, recipe.make())])
-                yield
+            for carrier in by_surface(link):
+                for recipe in self.static_recipes(carrier.collisions, meshes, IDENTITY):
+                    self.give([(recipe, recipe.make())])
+                    yield
 
     def _floor(self, plane: Collision, meshes: MeshTable, frame: Pose) -> Recipe:
         """Return the box whose top is a plane; its own body has its origin in the box centre.

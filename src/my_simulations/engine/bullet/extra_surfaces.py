@@ -32,13 +32,13 @@ def store(body: Body, dt: float) -> None:
     Directions of friction (mu2, fdir1), softness (kp, kd, max_vel) and torsional friction; of the
     collision whose coefficient holds (SDF 1.7, collision/surface; Gazebo has one each).
     """
-    for part in body.colliders:
+    for uid, part in body.surfaces:
         collision = counting_collision(part.link)
         if collision is not None:
-            _store(body, part, collision, dt)
+            _store(body, uid, part, collision, dt)
 
 
-def _store(body: Body, part: Part, collision: Collision, dt: float) -> None:
+def _store(body: Body, uid: int, part: Part, collision: Collision, dt: float) -> None:
     surface = collision.surface
     settings: Dict[str, Any] = {}
     if directed(surface):
@@ -51,7 +51,7 @@ def _store(body: Body, part: Part, collision: Collision, dt: float) -> None:
         # Gazebo's limit: 3 pi / 16 times radius, coefficient and normal force.
         settings["spinningFriction"] = _TORSION * surface.patch_radius * surface.torsion
         settings["rollingFriction"] = _ROLLING  # Bullet looks at torsion only where this is not 0
-    for uid in body.uids if settings else ():
+    if settings:
         pybullet.changeDynamics(uid, part.index, **settings)
 
 

@@ -114,10 +114,10 @@ class ForceDependentSlip:
         """Register the links of a body, each with the surface that decides."""
         for axis in body.axes:
             self._axes[axis.row] = (body, axis)
-        for part in body.colliders:
-            self._add(body, part)
+        for uid, part in body.surfaces:
+            self._add(body, (uid, part.index), part)
 
-    def _add(self, body: Body, part: Part) -> None:
+    def _add(self, body: Body, key: LinkKey, part: Part) -> None:
         collision = counting_collision(part.link)
         surface = Surface() if collision is None else collision.surface
         slips, first = (surface.slip1, surface.slip1), None
@@ -125,12 +125,10 @@ class ForceDependentSlip:
             slips, first = (surface.slip1, surface.slip2), first_direction(collision, part)
         known = _Slippery(part, body.moves, slips, first, (
             surface.mu, surface.mu2 if directed(surface) else surface.mu))
-        for uid in body.uids:
-            key = (uid, part.index)
-            self._links[key] = known
-            self._rows.setdefault(part.row, []).append(key)
-            if known.slides:
-                self._slides[key] = known
+        self._links[key] = known
+        self._rows.setdefault(part.row, []).append(key)
+        if known.slides:
+            self._slides[key] = known
 
     def forget(self, body: Body) -> None:
         """Discard the data of a removed body."""

@@ -70,27 +70,25 @@ class FrictionBalance(StepHelper):
         """Register a new body."""
         if body.rigid:
             self._rigid.add(body.uid)
-        for part in body.colliders:
-            for uid in body.uids:
-                node = (uid, part.index)
-                self._mu[node] = max(part.mu, _SMALLEST)
-                if body.moves and part.mu != 1.0:
-                    self._free[node] = part.friction
-                    self._soon[node] = None
-                else:
-                    self._fixed[node] = max(part.friction, _SMALLEST)
+        for uid, part in body.surfaces:
+            node = (uid, part.index)
+            self._mu[node] = max(part.mu, _SMALLEST)
+            if body.moves and part.mu != 1.0:
+                self._free[node] = part.friction
+                self._soon[node] = None
+            else:
+                self._fixed[node] = max(part.friction, _SMALLEST)
 
     def forget(self, body: Body) -> None:
         """Discard the data of a removed body."""
         self._rigid.discard(body.uid)
-        for part in body.colliders:
-            for uid in body.uids:
-                node = uid, part.index
-                for pair in list(self._touching.get(node, ())):
-                    self._part(pair)
-                for table in (self._mu, self._fixed, self._free, self._touching, self._wait,
-                              self._soon):
-                    table.pop(node, None)
+        for uid, part in body.surfaces:
+            node = uid, part.index
+            for pair in list(self._touching.get(node, ())):
+                self._part(pair)
+            for table in (self._mu, self._fixed, self._free, self._touching, self._wait,
+                          self._soon):
+                table.pop(node, None)
 
     def handle_event(self, event: BodyEvent, body: Body) -> None:
         """Check the contacts of a moved or activated body soon."""

@@ -62,25 +62,23 @@ class PairRestitution(StepHelper):
 
     def add(self, body: Body) -> None:
         """Register a new body."""
-        for part in body.colliders:
+        for uid, part in body.surfaces:
             surface = surface_coefficients.of_link(part.link)
             if surface.restitution <= 0.0:
                 continue
-            never = surface.bounce_threshold >= surface_coefficients.NEVER_BOUNCES
-            for uid in body.uids:
-                node = (uid, part.index)
-                self._changed = True
-                self._kinds[node] = _Kind(body.moves, surface.restitution, never)
-                self._stored[node] = surface_coefficients.restitution(surface)
-                self._thresholds[node] = surface.bounce_threshold
-                self._models[node] = body.model_id
+            node = (uid, part.index)
+            self._changed = True
+            self._kinds[node] = _Kind(body.moves, surface.restitution, surface.bounce_threshold
+                                      >= surface_coefficients.NEVER_BOUNCES)
+            self._stored[node] = surface_coefficients.restitution(surface)
+            self._thresholds[node] = surface.bounce_threshold
+            self._models[node] = body.model_id
 
     def forget(self, body: Body) -> None:
         """Discard the data of a removed body."""
-        for part in body.colliders:
-            for uid in body.uids:
-                for table in (self._kinds, self._stored, self._thresholds, self._models):
-                    self._changed |= table.pop((uid, part.index), None) is not None
+        for uid, part in body.surfaces:
+            for table in (self._kinds, self._stored, self._thresholds, self._models):
+                self._changed |= table.pop((uid, part.index), None) is not None
 
     def due(self, step: int) -> int:
         """The next step after surfaces were added or removed, otherwise `FAR`."""

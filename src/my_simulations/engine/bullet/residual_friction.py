@@ -91,12 +91,10 @@ class ResidualFriction(StepHelper):
 
     def add(self, body: Body) -> None:
         """Register a new body; only rigid ones that move and can have several contacts matter."""
-        for part in body.colliders:
-            if not directed(of_link(part.link)):
-                self._mu.update({(uid, part.index): part.mu for uid in body.uids})
+        self._mu.update({(uid, part.index): part.mu for uid, part in body.surfaces
+                         if not directed(of_link(part.link))})
         if not body.moves:
-            if not body.radius:
-                self._planes.add(body.uid)  # infinite; the box below has the same contacts
+            self._planes |= body.with_role("plane")  # infinite; a box below has the same contacts
             return
         self._moving.add(body.uid)
         if not body.rigid:
@@ -117,10 +115,9 @@ class ResidualFriction(StepHelper):
         for table in (self._bodies, self._watched, self._fast, self._mended, self._clear):
             table.pop(body.uid, None)
         for group in (self._moving, self._trees, self._asleep, self._planes):
-            group.discard(body.uid)
-        for part in body.colliders:
-            for uid in body.uids:
-                self._mu.pop((uid, part.index), None)
+            group.difference_update(body.uids)
+        for uid, part in body.surfaces:
+            self._mu.pop((uid, part.index), None)
         self._rounds = None
 
     def handle_event(self, event: BodyEvent, body: Body) -> None:

@@ -129,7 +129,7 @@ class RollingContacts(StepHelper):
             self._moving.add(body.uid)
         elif any(isinstance(each.geometry, (Heightmap, Mesh)) for part in body.parts
                  for each in part.link.collisions):
-            self._seams.update(set(body.uids) - body.faces)
+            self._seams.update(set(body.uids) - body.with_role("faces"))
         for part in body.parts if body.moves else ():
             axis = axis_of(part.link)
             if axis is not None:

@@ -126,16 +126,16 @@ class Sliding(StepHelper):
 
     def add(self, body: Body) -> None:
         """Register a new body. Bullet's friction stays on floors with two coefficients."""
-        for part in body.parts:
+        for uid, part in body.surfaces:
             collision = counting_collision(part.link)
             if collision is not None and not slips(part.link):
-                self._add(body, part, collision)
+                self._add(body, uid, part, collision)
 
-    def _add(self, body: Body, part: Part, collision: Collision) -> None:
+    def _add(self, body: Body, uid: int, part: Part, collision: Collision) -> None:
         surface = collision.surface
         if not body.moves:
             if not directed(surface):
-                self._static.update({uid: part.mu for uid in body.uids})
+                self._static[uid] = part.mu
         elif part.mu > 0.0 and any(axis.index == part.index for axis in body.axes):
             self._parts.setdefault(body.uid, {})[part.index] = part
             self._mass[body.uid] = sum(each.mass for each in body.parts)

@@ -21,7 +21,6 @@ from typing import Dict, List, Set, Tuple
 
 import pybullet
 
-from ...description.shapes import Plane
 from ...geometry import Vec3, add, dot, norm, scale, subtract
 from ..body_plan import BASE
 from .approach import extent
@@ -61,9 +60,7 @@ class SurfaceStop(StepHelper):
     def add(self, body: Body) -> None:
         """Register a new body."""
         if not body.moves:
-            planes = [one for part in body.parts for one in part.link.collisions
-                      if isinstance(one.geometry, Plane)]
-            self._floors.update(body.uids[1:2 * len(planes):2])
+            self._floors |= body.with_role("floor")
             return
         self._moving.add(body.uid)
         if body.base is not None and not (body.swept and body.is_ball):
