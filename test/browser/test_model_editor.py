@@ -39,10 +39,10 @@ def add_link(editor, shape, point):
     editor.page.mouse.move(x, y, steps=4)
     editor.page.mouse.click(x, y)
     editor.until(f"editor.store.history.undo.length === {before + 1}", f"the {shape}")
-    # The page selects it when its request is answered.
+    # The page selects it when its request is answered; its model may come later.
     return wait_for(lambda: editor.get(
         f"[editor.store.selection[0] ?? ''].find((name) => name.includes('::') && "
-        f"name !== {selected!r})"), "the selected link")
+        f"name !== {selected!r} && editor.store.entity(name))"), "the selected link")
 
 
 def build_cart(editor):
@@ -181,6 +181,9 @@ def test_one_size_changes_collision_visual_and_inertia_in_one_step(editor):
     dialog.get_by_role("button", name="OK").click()
     dialog.wait_for(state="detached")
     editor.until(f"editor.store.history.depth === {depth + 1}", "one step")
+    # The history may come before the model does.
+    editor.until("editor.store.model('untitled')?.links[0].visuals[0].geometry.size[0] === 0.6",
+                 "the new size")
     after = editor.model("untitled")["links"][0]
     for part in ("collisions", "visuals"):
         assert [one["geometry"]["size"] for one in after[part]] == [[0.6, 0.4, 0.2]]
@@ -188,7 +191,8 @@ def test_one_size_changes_collision_visual_and_inertia_in_one_step(editor):
     assert after["inertial"]["ixx"] == approx((0.4 ** 2 + 0.2 ** 2) / 12)
     editor.get("editor.request('undo')")
     editor.until(f"editor.store.history.depth === {depth}", "the undone step")
-    assert editor.model("untitled")["links"][0] == before
+    wait_for(lambda: (editor.model("untitled") or {}).get("links", [None])[0] == before,
+             "the former link")
 
 
 JOINTS_OF_UNTITLED = "editor.store.model('untitled').joints"
@@ -248,6 +252,13 @@ def test_a_plugin_that_lacks_its_joint_is_reported_and_starts_with_the_joint(lau
     editor.page.get_by_role("dialog").get_by_role("button", name="OK").click()
     editor.until("editor.store.issues.some(({code}) => code === 'plugin-failed')",
                  "the fault in Messages")
+    editor.get("editor.store.select(['untitled'])")
+    editor.row("untitled").get_by_text("plugin failed").wait_for()
+    editor.page.get_by_role("treeitem", name="untitled", exact=True).press("ArrowRight")
+    editor.row("drive").get_by_text("failed").wait_for()
+    editor.row("drive").click()
+    properties = editor.page.get_by_role("region", name="Properties")
+    properties.get_by_text("link_1_joint").first.wait_for()
     editor.button("Connect").click()
     editor.page.get_by_role("combobox", name="Parent link").select_option("link_0")
     editor.page.get_by_role("combobox", name="Child link").select_option("link_1")
@@ -255,5 +266,6 @@ def test_a_plugin_that_lacks_its_joint_is_reported_and_starts_with_the_joint(lau
     editor.page.keyboard.press("Alt+t")
     wait_for(lambda: "/odom" in editor.get("document.body.innerText"),
              "the topic of the plugin")
+    editor.row("drive").get_by_text("running").wait_for()
     assert editor.faults == []
     editor.close()

@@ -320,6 +320,11 @@ export const FRAME_RECORD_BYTES = 32;
  *  number: number, name: string, selected: string[], held: string[]
  *}} Person */
 
+/** @typedef {{
+ *  model: string, name: string, filename: string, state: 'waiting'|'running'|'failed'|'off',
+ *  reason: string
+ *}} PluginState */
+
 /** @typedef {{parent: string, child: string, pose: pose}} Transform */
 
 /** @typedef {{
@@ -477,6 +482,8 @@ export const FRAME_RECORD_BYTES = 32;
 
 /** @typedef {{type: 'people', people: Person[]}} PeoplePush */
 
+/** @typedef {{type: 'plugins', states: PluginState[]}} PluginsPush */
+
 /** @typedef {{
  *  type: 'loading', title: string, text: string, done: number, of: number
  *}} LoadingPush */
@@ -505,8 +512,8 @@ export const FRAME_RECORD_BYTES = 32;
 
 /** @typedef {{type: 'shutdown', reason: string}} ShutdownPush */
 
-/** @typedef {ReplyPush|WorldPush|ChangePush|StatsPush|HistoryPush|PeoplePush|LoadingPush|IssuePush|
- *  LibraryPush|DownloadPush|WatchPush|AutosavePush|LogPush|ShutdownPush} Push */
+/** @typedef {ReplyPush|WorldPush|ChangePush|StatsPush|HistoryPush|PeoplePush|PluginsPush|LoadingPush|
+ *  IssuePush|LibraryPush|DownloadPush|WatchPush|AutosavePush|LogPush|ShutdownPush} Push */
 
 /** @typedef {{
  *  hello: {fields: {

@@ -65,6 +65,7 @@ import {WorldStore} from './world_store.js';
  * @property {undefined} modelEditing
  * @property {{model: string, link: string}[]} pick  links under a click in the mode `connect`, nearest
  *   first
+ * @property {undefined} plugins  whether they run
  * @property {undefined} people  who is here, what they hold and have selected
  * @property {LoadingPush} loading
  * @property {WatchPush} watch

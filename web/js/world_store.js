@@ -5,7 +5,8 @@ import {linkNames, renamedModel} from './model_editor/model_edits.js';
 import {compose, inverse} from './pose.js';
 import {splitScoped} from './scoped_names.js';
 /** @import {
- *   AutosavePush, ChangePush, HistoryPush, Link, LogPush, Model, Notices, Person, Push, World, WorldPush
+ *   AutosavePush, ChangePush, HistoryPush, Link, LogPush, Model, Notices, Person, PluginState, Push, World,
+ *   WorldPush
  * } from './protocol.js' */
 /** @import {Connection, Issue} from './connection.js' */
 /** @import {EntityChange, EntityRef, StoreEvents} from './store.js' */
@@ -35,6 +36,8 @@ export class WorldStore extends Emitter {
   me = 0;
   /** @type {Issue[]} */
   issues = [];
+  /** Of the plugins of models, their sensors and the world. @type {PluginState[]} */
+  pluginStates = [];
   connected = false;
   /** @type {AutosavePush|null} */
   autosave = null;
@@ -86,6 +89,7 @@ export class WorldStore extends Emitter {
       case 'autosave': this.autosave = message; this.emit('autosave', message); break;
       case 'log': this.log = message; this.emit('log', message); break;
       case 'people': this.people = message.people; this.emit('people'); break;
+      case 'plugins': this.pluginStates = message.states; this.emit('plugins'); break;
       case 'loading': this.emit('loading', message); break;
       case 'watch': this.emit('watch', message); break;
       case 'library': this.emit('library', message); break;

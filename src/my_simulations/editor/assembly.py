@@ -20,6 +20,7 @@ from .library.library_requests import LibraryRequests
 from .library.model_library import Library
 from .library.world_files import WorldFiles
 from .logs.replay import Logs
+from .scene.plugin_states import PluginStates
 from .scene.scene_json import Documents
 from .topics.topic_requests import TopicRequests
 from .transport.access_guard import Guard
@@ -68,6 +69,9 @@ class Assembly:
         pages = Pages(options, web_folder, documents, protocol.limits["upload_bytes"],
                       self._export)
         self.hub = Hub(simulator, documents, protocol, options.check_outgoing)
+        self._plugins = PluginStates(options.plugins)
+        self.hub.greetings.append(self._plugins.greeting)
+        self.hub.on_tick.append(self._push_plugins)
         self._pool = ThreadPoolExecutor(4, "editor requests")
         library = Library(resolver, documents.served, options.config_dir, self._downloading)
         self._requests = Requests(self.hub, resolver, self._history, self._files,
@@ -144,6 +148,11 @@ class Assembly:
                                 f"{type(defect).__name__}: {defect}"))
             asyncio.get_running_loop().call_exception_handler(
                 {"message": "a part of the editor has ended", "exception": defect})
+
+    def _push_plugins(self, *_poses_and_revision: object) -> None:
+        news = self._plugins.news()
+        if news is not None:
+            self.hub.push(news)
 
     def _leave(self, client: Client) -> None:
         self._requests.leave(client)

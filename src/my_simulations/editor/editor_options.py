@@ -4,9 +4,10 @@ from __future__ import annotations
 import ipaddress
 import os
 from dataclasses import dataclass, field
-from typing import Callable, List, Optional, Tuple
+from typing import Callable, List, Optional, Sequence, Tuple
 
 from ..errors import Issue
+from ..plugins.plugin_state import PluginState
 from .topic_source import TopicSource
 
 DEFAULT_PORT = 11346
@@ -41,6 +42,7 @@ class EditorOptions:
         data_dir: keeps state logs.
         more_logs: state logs that lie elsewhere.
         topics: the ROS topics; None in a world without ROS.
+        plugins: returns the states of the plugins of the world.
         read_only: accept no request that edits the world, its time or files.
         check_outgoing: hold what is sent to the protocol too (tests).
     """
@@ -57,6 +59,7 @@ class EditorOptions:
     data_dir: str = field(default_factory=lambda: os.path.expanduser("~/.gazebo/log"))
     more_logs: Tuple[str, ...] = ()
     topics: Optional[TopicSource] = None
+    plugins: Callable[[], Sequence[PluginState]] = tuple
     read_only: bool = False
     check_outgoing: bool = False
 

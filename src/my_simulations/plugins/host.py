@@ -30,6 +30,7 @@ from .order_sender import send_orders
 from .outgoing import Outgoing
 from .plugin_faults import describe_fault
 from .plugin_guard import PluginGuard
+from .plugin_state import PluginState
 from .record_handover import RecordHandover
 from .registry import (
     PluginRegistry,
@@ -141,6 +142,10 @@ class PluginHost:
     def faults(self, model: str) -> List[Issue]:
         """Return the faults of the plugins of a model; from any thread."""
         return [one.fault for one in self._models.of(model) if one.fault is not None]
+
+    def states(self) -> List[PluginState]:
+        """Return the states of all plugins; from any thread."""
+        return self._models.states()
 
     def wake(self) -> None:
         """Wake the plugins' thread, which then checks for changes."""
@@ -404,12 +409,17 @@ class PluginHost:
         context = SimulatedContext(self._shared, entity, found, lambda: self._ring(running))
         running = self._running[context] = Running(found, context, None)
         into.append(running)
-        if self._registry.is_provided(found.spec.filename) or not self._is_used(found):
+        if self._registry.is_provided(found.spec.filename):
+            running.note = "the simulator itself has its functions"
+            return
+        if not self._is_used(found):
+            running.note = "the program does not use it"
             return
         try:
             where = self._registry.locate(found.spec.filename)
         except UnknownPluginError as unknown:
             note = no_effect_note(found.spec)
+            running.note = note.message if note is not None else ""
             if note is None:
                 running.fault = self._unknown(found, entity, str(unknown))
             self._tell_once(library_name(found.spec.filename), note or running.fault)

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any, Callable, List, Optional
 
 from ..errors import Issue, warning
 from ..simulator.simulator import Simulator
+from .plugin_state import PluginState
 
 if TYPE_CHECKING:
     from .host import PluginHost
@@ -82,6 +83,10 @@ class HostStarter:
     def topic_uses(self) -> List[Any]:
         """The topics of all plugins (`plugins.graph.TopicUse`)."""
         return self._host.topic_uses() if self._host is not None else []
+
+    def states(self) -> List[PluginState]:
+        """The states of all plugins; none before the first model with a plugin."""
+        return self._host.states() if self._host is not None else []
 
     def stop(self) -> None:
         """End all plugins."""

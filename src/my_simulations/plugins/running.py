@@ -13,6 +13,7 @@ from ..simulator.session import do_nothing
 from ..simulator.simulator import Simulator
 from .base import Plugin
 from .found_plugins import Found, plugins_of, world_plugins
+from .plugin_state import FAILED, OFF, RUNNING, WAITING, PluginState
 from .simulated_context import SimulatedContext
 
 WORLD_SCOPE = ""
@@ -27,6 +28,7 @@ class Running:
         plugin: None for one that is unknown or was switched off.
         fault: why it is unknown or was switched off.
         end: ends the process of the plugin, if it has one.
+        note: why it has no effect although nothing failed; "" for one that has.
         is_busy: a call is under way in its process, and the world continues meanwhile.
     """
 
@@ -35,7 +37,16 @@ class Running:
     plugin: Optional[Plugin]
     fault: Optional[Issue] = None
     end: Callable[[], None] = do_nothing
+    note: str = ""
     is_busy: bool = False
+
+    def state(self, model: str) -> PluginState:
+        """Return the state as a plugin of `model`; from any thread."""
+        spec, fault = self.found.spec, self.fault
+        kind, reason = (
+            (FAILED, fault.message) if fault is not None else (OFF, self.note) if self.note
+            else (WAITING, "") if self.plugin is None else (RUNNING, ""))
+        return PluginState(model, spec.name, spec.filename, kind, reason)
 
     @property
     def is_callable(self) -> bool:
@@ -71,6 +82,14 @@ class ModelPlugins:
         """The plugins of a model, as far as they are loaded; from any thread."""
         _, running = self._models.get(model, (None, []))
         return list(running)
+
+    def states(self) -> List[PluginState]:
+        """Return the states of all plugins, also of those to be loaded; from any thread."""
+        waiting = [PluginState(name, found.spec.name, found.spec.filename, WAITING)
+                   for name, found in list(self._to_load)]
+        present = [running.state(name) for name, (_, all_running) in list(self._models.items())
+                   for running in list(all_running)]
+        return [*present, *waiting]
 
     def look(self) -> None:
         """Find the plugins to load and to end; call `rebind` for those that continue."""

@@ -75,6 +75,10 @@ class Node:
         return TopicGraph(self._plugins.topic_uses, lambda method: master_api.call(
             self._master_uri, method, rospy.get_name()))
 
+    def plugin_states(self) -> List[Any]:
+        """The states of the plugins (`plugins.plugin_state`), for the world editor."""
+        return self._plugins.states()
+
     def advertise(self) -> None:
         """Advertise topics and services, and set parameters."""
         from .lifecycle.tcpros_handshake import parallelise_handshakes

@@ -12,6 +12,7 @@ from my_simulations.editor.editor_options import EditorOptions
 from my_simulations.editor.transport import listening
 from my_simulations.errors import CommandError, error
 from my_simulations.geometry import STILL, Pose, Twist
+from my_simulations.plugins.plugin_state import PluginState
 
 case = pytest.fixture(cases)
 
@@ -323,3 +324,17 @@ def test_too_large_a_message_ends_the_connection(case):
         assert browser.socket.close_code == aiohttp.WSCloseCode.MESSAGE_TOO_BIG
 
     made.browse(send)
+
+
+def test_states_of_plugins_are_sent_when_they_change(case):
+    states = [PluginState("a", "drive", "libdrive.so", "waiting")]
+    made = case(box("a"), plugins=lambda: list(states))
+
+    async def follow(browser):
+        await browser.until(lambda: any(one["type"] == "plugins" and one["states"] == [
+            {"model": "a", "name": "drive", "filename": "libdrive.so", "state": "waiting",
+             "reason": ""}] for one in browser.pushes))
+        states[0] = PluginState("a", "drive", "libdrive.so", "failed", "no joint")
+        await browser.until(lambda: browser.last("plugins")["states"][0]["reason"] == "no joint")
+
+    made.browse(follow)

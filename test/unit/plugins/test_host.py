@@ -610,3 +610,21 @@ def test_rays_at_every_step_see_each_step_of_a_world_that_is_stepped(case):
         until(lambda step=step: len(one.graph.on("scan")) == step)
     assert [message.header.stamp for message in one.graph.on("scan")] == [
         10 ** 6, 2 * 10 ** 6, 3 * 10 ** 6]
+
+
+def test_states_say_whether_plugins_run_and_why_not(case):
+    libraries = {"fails": "libfails.so", "counts": "libcounts.so"}
+    made = case(robot("drives"), robot("fails", "<plugin/>", "libfails.so"),
+                robot("counts", "<plugin/>", "libcounts.so"),
+                robot("unknown", "<plugin/>", "libnot_there.so"),
+                robot("provided", "<plugin/>", "libgazebo_ros_api_plugin.so"),
+                extra={libraries["fails"]: f"{__name__}:Failing",
+                       libraries["counts"]: f"{__name__}:Counting"})
+    made.sim.clock.unpause()
+    until(lambda: made.failed())
+    states = {one.model: one for one in made.host.states()}
+    assert {name: one.state for name, one in states.items()} == {
+        "drives": "running", "fails": "failed", "counts": "running", "unknown": "failed",
+        "provided": "off"}
+    assert "nothing to divide" in states["fails"].reason
+    assert states["provided"].reason and not states["drives"].reason

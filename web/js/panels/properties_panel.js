@@ -6,6 +6,7 @@ import {compose, inverse} from '../pose.js';
 import {byId, elementsOf, fill, h, onceAFrame, remembered} from './dom.js';
 import {faultText} from './dialog.js';
 import {icon} from './icons.js';
+import {pluginState, withState} from './plugin_states.js';
 import {makeInput} from './property_inputs.js';
 import {sharedSections} from './model_sections.js';
 import {sectionsOf, valueAt} from './property_sections.js';
@@ -125,12 +126,19 @@ export class Properties {
 
   /** What several selected models have in common, else what the row is. @returns {Found|null} */
   #found() {
-    const {selection, document} = this.store;
-    if (selection.length < 2) return sectionsOf(document, this.row);
+    const {selection} = this.store;
+    if (selection.length < 2) return this.#ofRow();
     const models = selection.flatMap((name) => this.store.model(name) ?? []);
     return models.length === selection.length
       ? sharedSections(models, (name) => this.store.worldPose(name))
-      : sectionsOf(document, this.row);
+      : this.#ofRow();
+  }
+
+  /** What the row is; of a plugin, whether it runs. @returns {Found|null} */
+  #ofRow() {
+    const found = sectionsOf(this.store.document, this.row);
+    const state = found && this.row?.kind === 'plugin' ? pluginState(this.store, this.row) : undefined;
+    return found && state ? withState(found, state) : found;
   }
 
   #show() {

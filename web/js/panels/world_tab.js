@@ -2,6 +2,7 @@
 import {elementsOf, fill, h, onceAFrame, remembered} from './dom.js';
 import {groupsOf} from '../model_groups.js';
 import {colorOf, doing} from './people_bar.js';
+import {pluginState, stateTag} from './plugin_states.js';
 import {Properties} from './properties_panel.js';
 import {Tree} from './tree_view.js';
 import {rowOf, worldRows} from './world_rows.js';
@@ -58,6 +59,10 @@ export class WorldTab {
     this.store.listen('selection', () => this.#followSelection());
     this.store.listen('overlays', () => this.tree.draw());
     this.store.listen('people', () => this.tree.draw());
+    this.store.listen('plugins', () => {
+      this.tree.draw();
+      this.properties.update();
+    });
     /** @type {boolean|null} */
     let paused = null;
     this.store.listen('stats', () => {
@@ -179,7 +184,13 @@ export class WorldTab {
     if (row.kind === 'model') {
       const model = this.store.document?.models.find((one) => one.name === row.name);
       const tags = [model?.group, model?.static && 'static', ...FLAGS.map((flag) => model && this.store.overlay(flag, model.name) && flag)];
-      return h('span', {class: 'tags'}, ...tags.map((text) => text && h('span', {class: 'tag', text})));
+      const failed = this.store.pluginStates.find((one) => one.model === row.name && one.state === 'failed');
+      return h('span', {class: 'tags'}, ...tags.map((text) => text && h('span', {class: 'tag', text})),
+        failed && stateTag('plugin failed', failed.reason));
+    }
+    if (row.kind === 'plugin') {
+      const state = pluginState(this.store, row);
+      return state && stateTag(state.state, state.reason);
     }
     if (row.kind === 'physics' && this.store.stats.paused) {
       return h('span', {class: 'tag', text: 'paused'});

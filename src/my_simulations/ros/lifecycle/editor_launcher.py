@@ -59,6 +59,7 @@ class EditorLauncher:
 
     Attributes:
         topics: makes what the editor knows of ROS topics (`ros.plugins.topic_graph`).
+        plugins: returns the states of the plugins (`plugins.plugin_state`).
         world: what it shows, and what resolves URIs of models; None until they are there.
 
     Args:
@@ -75,6 +76,7 @@ class EditorLauncher:
         self._listen = listen
         self._caller = caller
         self.topics: Callable[[], Any] = lambda: None
+        self.plugins: Callable[[], Any] = tuple
         self._lock = threading.Lock()
         self._editor: Optional[RunningEditor] = None
         if rospy.has_param(URL):  # left behind by a node that was killed
@@ -116,7 +118,7 @@ class EditorLauncher:
                 early, self._loading = self._loading, None
                 self._editor = self._start(*self.world, {
                     **_settings(), "log": log_issue, "caller": self._caller,
-                    "topics": self.topics()}, early)
+                    "topics": self.topics(), "plugins": self.plugins}, early)
                 self._listen(self._editor.tell)
                 if early is None:
                     self._publish(self._editor.public_url)

@@ -303,7 +303,7 @@ class Server:
             None if launcher is None else launcher.open, self._master,
             (lambda: None) if launcher is None else launcher.announce, self._launch)
         if launcher is not None:
-            launcher.topics = node.topic_graph
+            launcher.topics, launcher.plugins = node.topic_graph, node.plugin_states
         node.advertise()
         self._profile.mark("services and topics registered")
         node.start_publishing()
