@@ -52,7 +52,7 @@ class HostSync:
 
     def note(self, command: Command, step: int) -> None:
         """The backend has carried out a command."""
-        self.records.note_puts(command)
+        self.records.count_joint_sets(command)
         if isinstance(command, _CHANGE_SETTINGS):
             self.change_settings(step)
 

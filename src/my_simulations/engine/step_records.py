@@ -126,7 +126,7 @@ class RecordWriter:
     def _find_next(self) -> None:
         self.next_step = min((due for due, _ in self._rules), default=NEVER)
 
-    def note_puts(self, command: Command) -> None:
+    def count_joint_sets(self, command: Command) -> None:
         """Count joints that a command puts somewhere."""
         if isinstance(command, SetJoints):
             self._puts.update(row for row, _, _ in command.joints)

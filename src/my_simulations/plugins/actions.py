@@ -34,7 +34,7 @@ class Goal:
     def accept(self, text: str = "") -> None:
         """Accept the goal."""
         self.status = PREEMPTING if self.status == RECALLING else ACTIVE
-        self._server.told(self, text)
+        self._server.status_changed(self, text)
 
     def reject(self, result: Any, text: str = "") -> None:
         """Reject the goal."""
@@ -84,11 +84,11 @@ class ActionServer:
         self._feedback = context.publish(f"{name}/feedback", f"{kind}ActionFeedback", _QUEUE)
         self._handles: List[Handle] = [
             self._status, self._results, self._feedback,
-            context.subscribe(f"{name}/goal", f"{kind}ActionGoal", self._hear_goal, _QUEUE),
-            context.subscribe(f"{name}/cancel", "actionlib_msgs/GoalID", self._hear_cancel,
+            context.subscribe(f"{name}/goal", f"{kind}ActionGoal", self._receive_goal, _QUEUE),
+            context.subscribe(f"{name}/cancel", "actionlib_msgs/GoalID", self._receive_cancel,
                               _QUEUE)]
-        self._timer: Ending = context.every(_STATUS_HZ, self._tell)
-        self._tell()
+        self._timer: Ending = context.every(_STATUS_HZ, self._publish_status)
+        self._publish_status()
 
     def result(self) -> Any:
         """Return an empty result message."""
@@ -102,16 +102,16 @@ class ActionServer:
 
     # -- for goals ---------------------------------------------------------------------------------
 
-    def told(self, goal: Goal, text: str) -> None:
+    def status_changed(self, goal: Goal, text: str) -> None:
         """Publish the status after the status of a goal changed."""
         goal.text = text
-        self._tell()
+        self._publish_status()
 
     def ended(self, goal: Goal, result: Any, text: str) -> None:
         """Publish the result and the status of a goal that ended."""
         goal.text, goal.ended_ns = text, self._context.now_ns
         self._send_result(goal, result)
-        self._tell()
+        self._publish_status()
 
     def send_feedback(self, goal: Goal, feedback: Any) -> None:
         """Publish feedback of a goal, if the topic has a subscriber."""
@@ -123,7 +123,7 @@ class ActionServer:
 
     # -- inside ------------------------------------------------------------------------------------
 
-    def _hear_goal(self, message: Any) -> None:
+    def _receive_goal(self, message: Any) -> None:
         goal_id = message.goal_id
         if not goal_id.id:
             goal_id.id = f"goal-{self._context.now_ns}-{len(self._goals)}"
@@ -132,13 +132,13 @@ class ActionServer:
                 return   # a goal is sent once; a later copy changes nothing
         goal = Goal(self, goal_id, message.goal)
         self._goals.append(goal)
-        if any(_meant(one, goal) for one, _ in self._early):
+        if any(_applies_to(one, goal) for one, _ in self._early):
             goal.cancel(self.result(), "cancelled before it came")
             return
         self._asked(goal)
 
-    def _hear_cancel(self, wanted: Any) -> None:
-        found = [goal for goal in self._goals if _meant(wanted, goal)]
+    def _receive_cancel(self, wanted: Any) -> None:
+        found = [goal for goal in self._goals if _applies_to(wanted, goal)]
         if wanted.id and not found:
             self._early.append((wanted, self._context.now_ns))
         for goal in found:
@@ -146,7 +146,7 @@ class ActionServer:
                 goal.status = PREEMPTING
                 self._cancelled(goal)
 
-    def _tell(self) -> None:
+    def _publish_status(self) -> None:
         now = self._context.now_ns
         self._goals = [goal for goal in self._goals if goal.ended_ns is None
                        or 0 <= now - goal.ended_ns <= _KEEP_NS]
@@ -168,7 +168,7 @@ class ActionServer:
         self._results.publish(message)
 
 
-def _meant(wanted: Any, goal: Goal) -> bool:
+def _applies_to(wanted: Any, goal: Goal) -> bool:
     """Return whether a cancel message applies to a goal: by id, by time, or to all goals."""
     stamp = wanted.stamp.to_nsec()
     if wanted.id:

@@ -28,7 +28,7 @@ class Barrier:
             return self._condition.wait_for(
                 lambda: self._over or self._answered >= number, timeout)
 
-    def look(self, is_quiet: Callable[[], bool]) -> None:
+    def answer_if_quiet(self, is_quiet: Callable[[], bool]) -> None:
         """Answer the requests if nothing is due; for the host, at the end of each turn."""
         asked = self._asked
         if asked > self._answered and is_quiet():

@@ -34,7 +34,7 @@ class ThreadAbandoned(BaseException):
     """Raised in a thread that returns from a call after it was abandoned: it must end."""
 
 
-class Patience(NamedTuple):
+class CallLimits(NamedTuple):
     """How long a call may take.
 
     Attributes:
@@ -45,12 +45,12 @@ class Patience(NamedTuple):
     computing: float = 5.0
     waiting: float = 30.0
 
-    def longer(self) -> "Patience":
+    def doubled(self) -> "CallLimits":
         """Return the limits of a call that may compute twice as long."""
-        return Patience(2.0 * self.computing, self.waiting)
+        return CallLimits(2.0 * self.computing, self.waiting)
 
 
-PATIENCE = Patience()
+CALL_LIMITS = CallLimits()
 """Limits for the plugins of users."""
 
 
@@ -64,8 +64,8 @@ class _Call:
         abandoned: another thread has taken over.
     """
 
-    def __init__(self, subject: Any, patience: Patience) -> None:
-        self.subject, self.patience = subject, patience
+    def __init__(self, subject: Any, limits: CallLimits) -> None:
+        self.subject, self.limits = subject, limits
         self.thread = threading.get_ident()
         self.looked = False
         self.interrupted = 0.0
@@ -83,11 +83,11 @@ class _Call:
             self._clock = time.pthread_getcpuclockid(self.thread)
             self._computed, self._begun = self._used(), time.monotonic()
         used = self._used() - self._computed
-        if used > self.patience.computing:
-            return f"it did not come back within {self.patience.computing:g} s of processor time"
+        if used > self.limits.computing:
+            return f"it did not come back within {self.limits.computing:g} s of processor time"
         waited = time.monotonic() - self._begun
-        if waited > self.patience.waiting and used < 0.1 * waited:
-            return f"it waited for more than {self.patience.waiting:g} s"
+        if waited > self.limits.waiting and used < 0.1 * waited:
+            return f"it waited for more than {self.limits.waiting:g} s"
         return ""
 
 
@@ -110,7 +110,7 @@ class CallWatch:
         """Stop watching calls."""
         self._stop.set()
 
-    def run(self, subject: Any, patience: Patience, call: Callable[..., Any],
+    def run(self, subject: Any, limits: CallLimits, call: Callable[..., Any],
             *arguments: Any) -> None:
         """Make a call.
 
@@ -122,7 +122,7 @@ class CallWatch:
         if self._watcher is None:
             self._watcher = threading.Thread(target=self._watch, name="plugin-watch", daemon=True)
             self._watcher.start()
-        mine = _Call(subject, patience)
+        mine = _Call(subject, limits)
         self._call = mine
         try:
             try:

@@ -72,7 +72,7 @@ class Joint(Protocol):
         """rad/s or m/s."""
 
     @property
-    def puts(self) -> float:
+    def set_count(self) -> float:
         """The number of times the position was set directly; -1 outside of an observation."""
 
     def drive(self, rate: float, effort: float) -> None:
@@ -82,7 +82,7 @@ class Joint(Protocol):
     def spec(self) -> JointSpec:
         """The description of the joint."""
 
-    def steer(self, servo: JointServo) -> None:
+    def set_servo(self, servo: JointServo) -> None:
         """Drive the axis by a servo of the engine from the next step on; `row` is filled in."""
 
 
@@ -149,7 +149,7 @@ class Context(Protocol):
         """Step size of the simulation, s."""
 
     @property
-    def by_hand(self) -> bool:
+    def is_stepped_manually(self) -> bool:
         """Whether the world is stepped manually, and waits for pictures."""
 
     @property
@@ -249,15 +249,15 @@ class Context(Protocol):
         The parameter is looked for in the namespace and those above. Raises PluginError.
         """
 
-    def push(self, link: str, force: Vec3, torque: Vec3) -> None:
+    def set_wrench(self, link: str, force: Vec3, torque: Vec3) -> None:
         """A wrench on a link from now on, instead of the one given before.
 
         N and N m, world axes, at the centre of mass. The link is one of the model, or of another
         model by its scoped name.
         """
 
-    def push_by(self, link: str, law: WrenchLaw, joint: str = "") -> None:
-        """As `push`, with the wrench that a law gives for the state of the link in each step.
+    def set_wrench_law(self, link: str, law: WrenchLaw, joint: str = "") -> None:
+        """As `set_wrench`, with the wrench that a law gives for the state of the link in each step.
 
         The engine computes it, so it costs no synchronization. `law` is one of
         `engine.wrench_laws`; it can follow the position of a joint of the model.

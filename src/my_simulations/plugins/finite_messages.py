@@ -6,30 +6,31 @@ from typing import Any, Callable, Protocol
 from ..description.model import INFINITE
 
 
-class Warns(Protocol):
+class WarningSink(Protocol):
     """Reports warnings to the user."""
 
     def warn(self, text: str) -> None:
         """Report a warning."""
 
 
-def finite_only(context: Warns, topic: str, call: Callable[[Any], None]) -> Callable[[Any], None]:
+def finite_only(context: WarningSink, topic: str, call: Callable[[Any], None]) -> Callable[[Any],
+                                                                                           None]:
     """Return a subscriber that ignores messages with NaN or infinity, and else calls `call`.
 
     The first ignored message is reported to the user.
     """
-    told = False
+    reported = False
 
-    def heard(message: Any) -> None:
-        nonlocal told
+    def receive(message: Any) -> None:
+        nonlocal reported
         if is_all_finite(message):
             call(message)
-        elif not told:
-            told = True
+        elif not reported:
+            reported = True
             context.warn(f"a message on {topic} contains NaN or infinity; such messages are"
                          " ignored")
 
-    return heard
+    return receive
 
 
 def is_all_finite(value: Any) -> bool:

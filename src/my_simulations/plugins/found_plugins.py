@@ -11,7 +11,7 @@ from ..description.world import World
 
 
 @dataclass(frozen=True)
-class Found:
+class FoundPlugin:
     """A plugin in a description: where it belongs. `scope` is that of a nested model, `inner::`."""
 
     spec: PluginSpec
@@ -21,12 +21,12 @@ class Found:
     sensor: Optional[Sensor] = field(default=None, compare=False)
 
 
-def plugins_of(model: Model, scope: str = "") -> Iterator[Found]:
+def plugins_of(model: Model, scope: str = "") -> Iterator[FoundPlugin]:
     """The plugins of a flattened model: its own, those of the sensors of links and
     joints, those of nested models.
     """
     for spec in model.plugins:
-        yield Found(spec, scope)
+        yield FoundPlugin(spec, scope)
     if not scope:
         for link in model.links:
             yield from _of_sensors(link.sensors, link.name, link.name, "")
@@ -41,8 +41,9 @@ def world_plugins(world: World) -> List[PluginSpec]:
     return [*world.plugins, *(spec for actor in world.actors for spec in actor.plugins)]
 
 
-def _of_sensors(sensors: Sequence[Sensor], owner: str, link: str, joint: str) -> Iterator[Found]:
+def _of_sensors(sensors: Sequence[Sensor], owner: str, link: str,
+                joint: str) -> Iterator[FoundPlugin]:
     inner = owner.rpartition("::")[0]
     for sensor in sensors:
         for spec in sensor.plugins:
-            yield Found(spec, f"{inner}::" if inner else "", link, joint, sensor)
+            yield FoundPlugin(spec, f"{inner}::" if inner else "", link, joint, sensor)

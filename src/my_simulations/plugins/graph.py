@@ -18,7 +18,7 @@ class TopicUse:
     Attributes:
         name: the name that the plugin uses, before remapping.
         kind: type, such as `sensor_msgs/LaserScan`.
-        heard: the plugin subscribes to it; else it publishes it.
+        is_subscription: whether the plugin subscribes to it; otherwise it publishes it.
         model: the plugin's model.
         link: the link that carries the plugin's sensor; "" for a plugin of the model.
         sensor: the sensor's type; "" likewise.
@@ -27,7 +27,7 @@ class TopicUse:
 
     name: str
     kind: str
-    heard: bool
+    is_subscription: bool
     model: str
     link: str
     sensor: str

@@ -19,14 +19,14 @@ from ..simulator.simulator import Simulator
 from ..simulator.sync_points import Moment
 from .barrier import Barrier
 from .base import Plugin
-from .call_watch import PATIENCE, Patience, ThreadAbandoned
-from .found_plugins import Found
+from .call_watch import CALL_LIMITS, CallLimits, ThreadAbandoned
+from .command_sender import send_commands
+from .found_plugins import FoundPlugin
 from .graph import Graph, TopicUse
 from .isolated.isolated_plugin import IsolatedPlugin
 from .isolated.plugin_process import PluginProcesses
-from .meanwhile import Meanwhile
+from .nested_turns import NestedTurns
 from .observations import Observation, Observations, StepView
-from .order_sender import send_orders
 from .outgoing import Outgoing
 from .plugin_faults import describe_fault
 from .plugin_guard import PluginGuard
@@ -39,14 +39,14 @@ from .registry import (
     library_name,
     plugin_class,
 )
-from .running import ModelPlugins, Running
+from .running import ModelPlugins, RunningPlugin
 from .schedule import Schedule, ScheduledCall
-from .simulated_context import Shared, SimulatedContext
+from .simulated_context import SharedServices, SimulatedContext
 from .step_readings import StepReadings
 from .without_effect import no_effect_note
 
-_LOOK_S = 0.5      # between two looks while nothing rings
-_SETTLE_S = 120.0   # how long a caller waits for plugins to be loaded
+_LOOK_S = 0.5      # between two checks while nothing wakes the thread
+_LOADING_S = 120.0   # how long a caller waits for plugins to be loaded
 _END_S = 2.0
 
 
@@ -61,16 +61,16 @@ class PluginHost:
         graph: how plugins reach ROS.
         registry: finds their classes.
         log: receives the faults of plugins that are unknown or fail.
-        patience: how long a call of a plugin may take; loading may compute twice as long.
+        limits: how long a call of a plugin may take; loading may compute twice as long.
         isolate: run each plugin that is not of this package in a process of its own.
         scene: casts rays and takes pictures; it is not closed. None for one of this host.
         is_used: whether a plugin is loaded.
     """
 
     def __init__(self, simulator: Simulator, graph: Graph, registry: PluginRegistry,
-                 log: Callable[[Issue], None], patience: Patience = PATIENCE,
+                 log: Callable[[Issue], None], limits: CallLimits = CALL_LIMITS,
                  isolate: bool = False, scene: Optional[SceneSensing] = None,
-                 is_used: Callable[[Found], bool] = lambda found: True) -> None:
+                 is_used: Callable[[FoundPlugin], bool] = lambda found: True) -> None:
         self._simulator, self._graph, self._registry, self._log = simulator, graph, registry, log
         self._has_scene, self._is_used = scene is None, is_used
         self._scene, self._schedule = scene or SceneSensing(simulator, log), Schedule()
@@ -78,47 +78,47 @@ class PluginHost:
         view = StepView(simulator.states, simulator.feed.rows)
         self._records = RecordHandover(self._sync, self._observations, view, self._schedule)
         readings = StepReadings(simulator, self._schedule, view)
-        self._shared = Shared(simulator, graph, log, self._scene, self._schedule, readings,
+        self._shared = SharedServices(simulator, graph, log, self._scene, self._schedule, readings,
                               self._observations, view, self._look_at_subscribers)
         self.barrier = Barrier(self.wake)
         self._outgoing = Outgoing(graph, self.wake)
         self._models = ModelPlugins(simulator, self._rebind)
-        self._running: Dict[SimulatedContext, Running] = {}
-        # Plugins that something has come for, and those whose orders and messages are to be taken.
-        self._rung: Deque[Running] = deque()
-        self._touched: Dict[SimulatedContext, Running] = {}
+        self._running: Dict[SimulatedContext, RunningPlugin] = {}
+        # Plugins with received messages or requests, and plugins with commands or messages to send.
+        self._with_input: Deque[RunningPlugin] = deque()
+        self._with_output: Dict[SimulatedContext, RunningPlugin] = {}
         self._due: Deque[ScheduledCall] = deque()
-        self._told: Dict[str, bool] = {}
+        self._reported: Dict[str, bool] = {}
         self._revision = -1
         self._world_resets = simulator.resets.world_resets
         self._simulation_resets = simulator.resets.simulation_resets
-        self._settled = threading.Condition()
+        self._loaded = threading.Condition()
         self._stop = threading.Event()
-        self._by_hand = simulator.clock.by_hand
-        self._delivering = False     # what has come is taken, and its effect not yet ordered
+        self._was_stepped_manually = simulator.clock.is_stepped_manually
+        self._delivering = False     # input was handed over, and its commands are not sent yet
         self._settings: Optional[int] = None
         self._moment: Optional[Moment] = None
-        self._patience = patience
+        self._limits = limits
         self._processes = PluginProcesses() if isolate else None
-        self._guard = PluginGuard(log, patience, self._touch, self._go_on_without)
-        self._overdue: Deque[Tuple[Running, str]] = deque()
+        self._guard = PluginGuard(log, limits, self._mark_output, self._go_on_without)
+        self._overdue: Deque[Tuple[RunningPlugin, str]] = deque()
         self._turns = 0
-        self._meanwhile = self._new_meanwhile()
+        self._nested_turns = self._new_nested_turns()
         self._thread = self._new_thread()
 
     def _new_thread(self) -> threading.Thread:
         return threading.Thread(target=self._run, name="plugins", daemon=True)
 
-    def _new_meanwhile(self) -> Meanwhile:
-        return Meanwhile(
+    def _new_nested_turns(self) -> NestedTurns:
+        return NestedTurns(
             lambda: self._guard.run_inside(self._guarded_turn), self._sync.wait,
-            lambda: self._simulator.clock.by_hand,
+            lambda: self._simulator.clock.is_stepped_manually,
             lambda running: running.context in self._running, self._resume)
 
     def start(self) -> None:
         """Begin; returns when the plugins of all present models are loaded."""
         self.begin()
-        self.settle()
+        self.wait_until_loaded()
 
     def begin(self) -> None:
         """Begin; from now on the world makes no step while plugins of new models are loaded.
@@ -128,16 +128,16 @@ class PluginHost:
         self._sync.attach(self._deliver_all)
         self._thread.start()
 
-    def settle(self) -> bool:
+    def wait_until_loaded(self) -> bool:
         """Wait until the plugins of all models that are in the world now are loaded.
 
-        Returns whether that happened within `_SETTLE_S`.
+        Returns whether that happened within `_LOADING_S`.
         """
         wanted = self._simulator.models.revision
         self.wake()
-        with self._settled:
-            return self._settled.wait_for(
-                lambda: self._revision >= wanted or self._stop.is_set(), _SETTLE_S)
+        with self._loaded:
+            return self._loaded.wait_for(
+                lambda: self._revision >= wanted or self._stop.is_set(), _LOADING_S)
 
     def faults(self, model: str) -> List[Issue]:
         """Return the faults of the plugins of a model; from any thread."""
@@ -168,22 +168,23 @@ class PluginHost:
         return [use for running in self._models.all() for use in running.context.topic_uses()]
 
     @property
-    def unheard(self) -> bool:
+    def has_pending_input(self) -> bool:
         """Whether a received message or request is not applied yet."""
         return self._delivering or self._observations.changed or any(
             running.context.inbox for running in self._models.all() if not running.is_busy)
 
     def _deliver_all(self) -> None:
         """Wait until all received messages and requests are handed over and applied."""
-        if self._by_hand != self._simulator.clock.by_hand:
+        if self._was_stepped_manually != self._simulator.clock.is_stepped_manually:
             self._look_at_subscribers()
-        with self._settled:
-            self._settled.wait_for(lambda: not self.unheard or self._stop.is_set(), _SETTLE_S)
+        with self._loaded:
+            self._loaded.wait_for(lambda: not self.has_pending_input or self._stop.is_set(),
+                                  _LOADING_S)
 
     def _is_quiet(self) -> bool:
         """Return whether all scans, pictures and messages that are due are published."""
         return self._settings is not None and not (
-            self.unheard or self._rung or self._touched or self._due
+            self.has_pending_input or self._with_input or self._with_output or self._due
             or self._sync.records.first() is not None
             or any(running.context.sensing.is_pending for running in self._models.all()))
 
@@ -193,10 +194,10 @@ class PluginHost:
         try:
             while not self._stop.is_set():
                 self._guarded_turn()
-                self.barrier.look(self._is_quiet)
-                self._rest()
+                self.barrier.answer_if_quiet(self._is_quiet)
+                self._wait_for_wake()
             self._models.end_all()
-            self._end_leaving()
+            self._end_removed()
         except ThreadAbandoned:
             return  # another thread has taken over
         except BaseException:
@@ -209,10 +210,10 @@ class PluginHost:
             self._turn()
         except CommandError as fault:  # the engine is being replaced, or the world ends
             self._log(warning("plugin-turn", f"plugins missed their turn: {fault}"))
-            self._end_deliveries(settled=False)
+            self._end_deliveries(loaded=False)
         except Exception as fault:  # a defect here must not end the plugins of all models
             self._log(error("plugin-turn", f"plugins missed their turn: {describe_fault(fault)}"))
-            self._end_deliveries(settled=False)
+            self._end_deliveries(loaded=False)
 
     def _clean_up(self) -> None:
         self._stop.set()
@@ -224,18 +225,18 @@ class PluginHost:
         self._outgoing.stop()
         self._sync.detach()
         self.barrier.end()
-        with self._settled:
-            self._settled.notify_all()
+        with self._loaded:
+            self._loaded.notify_all()
 
-    def _go_on_without(self, running: Running, why: str) -> None:
+    def _go_on_without(self, running: RunningPlugin, why: str) -> None:
         """Abandon a thread that does not return from a plugin; called by the watch."""
         running.plugin = None
-        self._overdue += [(one, why) for one in (running, *self._meanwhile.busy)]
-        self._meanwhile = self._new_meanwhile()
+        self._overdue += [(one, why) for one in (running, *self._nested_turns.busy)]
+        self._nested_turns = self._new_nested_turns()
         self._thread = self._new_thread()
         self._thread.start()
 
-    def _rest(self) -> None:
+    def _wait_for_wake(self) -> None:
         if not self._sync.wait(_LOOK_S):
             self._observations.changed = True   # graphs need not report subscribers
 
@@ -244,33 +245,33 @@ class PluginHost:
         while self._overdue:
             running, why = self._overdue.popleft()
             self._guard.switch_off(running, f"{why}; its thread was left behind")
-        if self._by_hand != self._simulator.clock.by_hand:   # observations may depend on it
-            self._by_hand = not self._by_hand
+        if self._was_stepped_manually != self._simulator.clock.is_stepped_manually:
+            self._was_stepped_manually = not self._was_stepped_manually
             self._observations.changed = True
         settings, moment = self._sync.settings, self._sync.now()
         if self._settings is None and not self._sync.waits_at(moment):
             return   # until the engine has stopped, for the first time
         turn = self._turns = self._turns + 1
         for act in (self._take_records, self._finish_changes, self._notice_resets,
-                    self._deliver_rung, self._serve):
+                    self._deliver_input, self._serve):
             act(settings, moment)
-            if self._turns != turn:   # turns inside a call (`meanwhile.py`): these values are old
+            if self._turns != turn:   # a nested turn: these values are old
                 self.wake()
                 return
         self._scene.send()
-        if self._touched:
-            self._give_orders()
+        if self._with_output:
+            self._send_commands()
         self._go_on(settings)
-        self._end_deliveries(settled=True)
-        if self._touched:
+        self._end_deliveries(loaded=True)
+        if self._with_output:
             self._publish()
 
-    def _end_deliveries(self, settled: bool) -> None:
-        with self._settled:
+    def _end_deliveries(self, loaded: bool) -> None:
+        with self._loaded:
             self._delivering = False
-            if settled and not self._meanwhile.busy:
+            if loaded and not self._nested_turns.busy:
                 self._revision = self._models.revision
-            self._settled.notify_all()
+            self._loaded.notify_all()
 
     def _take_records(self, _settings: int, _moment: Moment) -> None:
         self._records.hand_over(self._hand_over)
@@ -285,7 +286,7 @@ class PluginHost:
             self._sync.finish_changes()
         self._follow_models()
 
-    def _at_work(self) -> List[Running]:
+    def _at_work(self) -> List[RunningPlugin]:
         return [one for one in self._models.all() if one.plugin is not None]
 
     def _serve(self, _settings: int, moment: Moment) -> None:
@@ -304,29 +305,29 @@ class PluginHost:
             elif not running.is_busy:
                 self._guard.call(running, scheduled.call)
 
-    def _call_now_or_later(self, running: Running, call: Callable[[], None]) -> None:
+    def _call_now_or_later(self, running: RunningPlugin, call: Callable[[], None]) -> None:
         """Call a function of a plugin; if the plugin is busy, after its present call."""
         if running.is_busy:
             running.context.inbox.append(call)
         else:
             self._guard.call(running, call)
 
-    def _resume(self, running: Running) -> None:
-        """Have the inbox of a plugin and its orders processed after the call that is under way."""
-        self._touch(running)
+    def _resume(self, running: RunningPlugin) -> None:
+        """Process the inbox and the commands of a plugin after its present call."""
+        self._mark_output(running)
         if running.context.inbox:
-            self._rung.append(running)   # without a notice, which would end the next wait
+            self._with_input.append(running)   # without a notice, which would end the next wait
 
-    def _give_orders(self) -> None:
+    def _send_commands(self) -> None:
         """Send the commands of plugins for the present models to the engine, in one command."""
-        while not self._stop.is_set() and not send_orders(
-                self._simulator, list(self._touched), self._models.revision):
+        while not self._stop.is_set() and not send_commands(
+                self._simulator, list(self._with_output), self._models.revision):
             self._follow_models()
 
     def _go_on(self, settings: int) -> None:
         """Let the engine run to the next step at which a plugin acts."""
         if self._settings is None:
-            self._schedule.make_anew(was_set_back=False)
+            self._schedule.reschedule(was_set_back=False)
         if settings != self._settings or self._observations.changed:
             rules = self._observations.new_rules(self._graph.transforms_wanted,
                                                  settings != self._settings)
@@ -336,30 +337,30 @@ class PluginHost:
         self._settings = settings
 
     def _publish(self) -> None:
-        touched, self._touched = self._touched, {}
-        self._outgoing.send(touched, self._guard.send, self._failing)
+        waiting, self._with_output = self._with_output, {}
+        self._outgoing.send(waiting, self._guard.send, self._fault_handler)
 
-    def _ring(self, running: Running) -> None:
+    def _mark_input(self, running: RunningPlugin) -> None:
         """Wake the plugins' thread to process the inbox of a plugin."""
-        self._rung.append(running)
+        self._with_input.append(running)
         self.wake()
 
-    def _failing(self, running: Running) -> Callable[[Exception], None]:
+    def _fault_handler(self, running: RunningPlugin) -> Callable[[Exception], None]:
         """Return a function that passes an exception of another thread to the plugins' thread."""
         def fail(fault: Exception) -> None:
             def again() -> None:
                 raise fault
 
             running.context.inbox.append(again)
-            self._ring(running)
+            self._mark_input(running)
         return fail
 
-    def _deliver_rung(self, _settings: int, _moment: Moment) -> None:
-        while self._rung:
+    def _deliver_input(self, _settings: int, _moment: Moment) -> None:
+        while self._with_input:
             self._delivering = True
-            self._deliver(self._rung.popleft())
+            self._deliver(self._with_input.popleft())
 
-    def _deliver(self, running: Running) -> None:
+    def _deliver(self, running: RunningPlugin) -> None:
         inbox = running.context.inbox
         while inbox and not running.is_busy:
             call = inbox.popleft()
@@ -373,7 +374,7 @@ class PluginHost:
         resets = self._simulator.resets
         calls: List[str] = []
         if before is not None and moment.clock_sets != before.clock_sets:
-            self._schedule.make_anew(moment.sim_ns < before.sim_ns)
+            self._schedule.reschedule(moment.sim_ns < before.sim_ns)
             for running in self._at_work():
                 running.context.sensing.forget()
             if resets.simulation_resets != self._simulation_resets:
@@ -394,20 +395,20 @@ class PluginHost:
     def _follow_models(self) -> None:
         """Start and end plugins with their models."""
         while True:
-            self._models.look()
-            self._end_leaving()
+            self._models.update()
+            self._end_removed()
             found = self._models.next_to_load()
             if found is None:
                 return
             self._load(*found)  # which may change models
 
-    def _rebind(self, running: Running, entity: Entity) -> None:
+    def _rebind(self, running: RunningPlugin, entity: Entity) -> None:
         if running.plugin is not None:
             self._guard.call(running, running.context.bind, entity)
 
-    def _load(self, entity: Entity, into: List[Running], found: Found) -> None:
-        context = SimulatedContext(self._shared, entity, found, lambda: self._ring(running))
-        running = self._running[context] = Running(found, context, None)
+    def _load(self, entity: Entity, into: List[RunningPlugin], found: FoundPlugin) -> None:
+        context = SimulatedContext(self._shared, entity, found, lambda: self._mark_input(running))
+        running = self._running[context] = RunningPlugin(found, context, None)
         into.append(running)
         if self._registry.is_provided(found.spec.filename):
             running.note = "the simulator itself has its functions"
@@ -422,40 +423,40 @@ class PluginHost:
             running.note = note.message if note is not None else ""
             if note is None:
                 running.fault = self._unknown(found, entity, str(unknown))
-            self._tell_once(library_name(found.spec.filename), note or running.fault)
+            self._report_once(library_name(found.spec.filename), note or running.fault)
             return
 
         made: List[Plugin] = []
-        patience = self._patience.longer()
+        limits = self._limits.doubled()
         if not self._guard.call(running, lambda: made.append(self._made(running, where)),
-                                patience=patience):
+                                limits=limits):
             return
         running.plugin = made[0]
         self._schedule.set_moment(self._sync.now())
-        self._guard.call(running, running.plugin.load, patience=patience)
+        self._guard.call(running, running.plugin.load, limits=limits)
 
-    def _made(self, running: Running, where: str) -> Plugin:
+    def _made(self, running: RunningPlugin, where: str) -> Plugin:
         """Create a plugin; one of a user runs in its own process if this host isolates them."""
         if self._processes is None or is_built_in(where):
             return plugin_class(where)(running.context)
         process = self._processes.start()
         running.end = process.end
-        return IsolatedPlugin(running.context, where, process, self._patience,
-                              lambda waited: self._meanwhile.take_turn(running, waited))
+        return IsolatedPlugin(running.context, where, process, self._limits,
+                              lambda waited: self._nested_turns.take_turn(running, waited))
 
-    def _unknown(self, found: Found, entity: Entity, text: str) -> Issue:
+    def _unknown(self, found: FoundPlugin, entity: Entity, text: str) -> Issue:
         return warning("plugin-unknown", f"{text}; '{found.spec.name}' of model"
                        f" '{entity.model.name}' does nothing", file=found.spec.file,
                        line=found.spec.line,
                        hint="a package can bring one: see doc/plugins.md")
 
-    def _tell_once(self, library: str, issue: Optional[Issue]) -> None:
-        if issue is not None and library not in self._told:
-            self._told[library] = True
+    def _report_once(self, library: str, issue: Optional[Issue]) -> None:
+        if issue is not None and library not in self._reported:
+            self._reported[library] = True
             self._log(issue)
 
-    def _end_leaving(self) -> None:
-        leaving = self._models.leaving
+    def _end_removed(self) -> None:
+        leaving = self._models.removed
         while leaving:
             running = leaving.popleft()
             if running.plugin is not None and not running.is_busy:
@@ -463,13 +464,13 @@ class PluginHost:
             context = running.context
             context.close()
             with contextlib.suppress(CommandError):  # the engine ends as well
-                context.let_go()
+                context.release()
             running.plugin = None
             running.end()
             del self._running[context]
-            self._touched.pop(context, None)
+            self._with_output.pop(context, None)
 
-    def _touch(self, running: Running) -> None:
+    def _mark_output(self, running: RunningPlugin) -> None:
         """Mark a plugin so that its commands and messages are collected."""
         if running.context in self._running:
-            self._touched[running.context] = running
+            self._with_output[running.context] = running

@@ -24,7 +24,7 @@ class HostStarter:
         self._simulator, self._make = simulator, make
         self._lock = threading.Lock()
         self._host: Optional[PluginHost] = None
-        self._seen = -1
+        self._seen_revision = -1
         self._ended = False
 
     @property
@@ -32,7 +32,7 @@ class HostStarter:
         """The host; None before the first model with a plugin."""
         return self._host
 
-    def settle(self, model: str = "") -> List[Issue]:
+    def wait_until_loaded(self, model: str = "") -> List[Issue]:
         """Start the plugins of all models; return when they run.
 
         Cheap where no model has a plugin, and where nothing has changed.
@@ -40,29 +40,29 @@ class HostStarter:
         Returns:
             Why plugins of `model` do not work.
         """
-        settled = self._settle()
+        loaded = self._start_all()
         host = self._host
         faults: List[Issue] = host.faults(model) if host is not None and model else []
-        if not settled:
+        if not loaded:
             faults.append(warning("plugin-loading", "plugins are still being loaded"))
         return faults
 
-    def _settle(self) -> bool:
+    def _start_all(self) -> bool:
         """Start the plugins; returns whether they all run, or were switched off."""
         models, world = self._simulator.models, self._simulator.world
         with self._lock:
             revision = models.revision
-            if self._ended or revision == self._seen:
+            if self._ended or revision == self._seen_revision:
                 return True
-            self._seen = revision
+            self._seen_revision = revision
             if self._host is None and not (
                     models.with_plugins()[1] or world.plugins
                     or any(actor.plugins for actor in world.actors)):
                 return True
-            host = self._begun()
-        return host.settle()
+            host = self._begin_host()
+        return host.wait_until_loaded()
 
-    def _begun(self) -> PluginHost:
+    def _begin_host(self) -> PluginHost:
         """The host; started if it does not run. The world waits while it loads plugins."""
         if self._host is None:
             self._host = self._make()
@@ -73,12 +73,12 @@ class HostStarter:
         """Start the host, before the first model with plugins comes (`SyncPoints.on_plugins`)."""
         with self._lock:
             if not self._ended:
-                self._begun()
+                self._begin_host()
 
-    def look(self) -> None:
+    def start_if_needed(self) -> None:
         """Start the host if a model has come that needs it; for models from the editor."""
         if self._host is None:
-            self.settle()
+            self.wait_until_loaded()
 
     def topic_uses(self) -> List[Any]:
         """The topics of all plugins (`plugins.graph.TopicUse`)."""

@@ -42,7 +42,7 @@ class _Topic:
         self.listening: List[_Listening] = []
 
     @property
-    def is_heard_by_plugins(self) -> bool:
+    def has_plugin_subscriber(self) -> bool:
         """Whether a plugin subscribes to the topic."""
         return any(one.plugin for one in self.listening)
 
@@ -60,7 +60,7 @@ class LocalTopic:
     @property
     def wanted(self) -> bool:
         """Whether a listener exists."""
-        return self._graph.is_heard(self.name)
+        return self._graph.has_listener(self.name)
 
     def send(self, message: Any) -> None:
         """Pass the message to all listeners. Raises MessageFieldError for an invalid one."""
@@ -166,7 +166,7 @@ class LocalGraph:
     @property
     def transforms_wanted(self) -> bool:
         """Whether /tf has a listener."""
-        return self.is_heard(_TF)
+        return self.has_listener(_TF)
 
     def send_transforms(self, transforms: List[TransformOf], ns: int) -> None:
         """Broadcast to /tf, all in one message."""
@@ -180,7 +180,7 @@ class LocalGraph:
         """Return the types of the topics that plugins publish or subscribe to, by name."""
         with self._lock:
             return {name: topic.kind for name, topic in sorted(self._topics.items())
-                    if topic.publishers or topic.is_heard_by_plugins}
+                    if topic.publishers or topic.has_plugin_subscriber}
 
     def services(self) -> Dict[str, str]:
         """The types of the services that plugins offer, by name."""
@@ -211,24 +211,25 @@ class LocalGraph:
         finally:
             self._is_suspended = False
             with self._lock:
-                heard = [(topic, [one for one in topic.listening if not one.plugin])
+                topics_of_plugins = [(topic, [one for one in topic.listening if not one.plugin])
                          for topic in self._topics.values()]
-            for topic, listening in heard:
+            for topic, listening in topics_of_plugins:
                 for one in listening:
                     self._begin(topic, one)
 
     def publish_once(self, name: str, message: Any) -> None:
-        """Send a message to the plugins that hear a topic, in the type that they hear.
+        """Send a message to the plugins that subscribe to a topic, in their type.
 
         Raises CommandError: the topic does not exist, or the message does not fit its type.
         """
         full = resolve_name(name)
         with self._lock:
-            heard = {one: topic.kind for one, topic in sorted(self._topics.items())
-                     if topic.is_heard_by_plugins}
-        if full not in heard:
-            raise CommandError(f"no plugin hears {full}; they hear {', '.join(heard) or 'none'}")
-        self.deliver(full, heard[full], message)
+            topics_of_plugins = {one: topic.kind for one, topic in sorted(self._topics.items())
+                     if topic.has_plugin_subscriber}
+        if full not in topics_of_plugins:
+            raise CommandError(f"no plugin subscribes to {full}; plugins subscribe to "
+                               f"{', '.join(topics_of_plugins) or 'no topic'}")
+        self.deliver(full, topics_of_plugins[full], message)
 
     def call(self, name: str, request: Any) -> Message:
         """Ask a service and wait for its response; `request` is a message or a mapping.
@@ -268,7 +269,7 @@ class LocalGraph:
     def _topic(self, name: str) -> _Topic:
         return self._topics.setdefault(name, _Topic())
 
-    def is_heard(self, name: str) -> bool:
+    def has_listener(self, name: str) -> bool:
         """Whether a topic has a listener."""
         topic = self._topics.get(name)
         return topic is not None and bool(self._listening(topic))

@@ -10,11 +10,14 @@ from .graph import Topic
 _END_S = 2.0
 
 
-class Later(NamedTuple):
+class PendingMessage(NamedTuple):
     """A message to be made; a mark is taken from `unsent` once it has left."""
 
     make: Callable[[], Any]
     unsent: Deque[None]
+
+
+_Job = Tuple[Topic, PendingMessage, Callable[[Exception], None]]
 
 
 class MessageMaker:
@@ -26,11 +29,10 @@ class MessageMaker:
 
     def __init__(self, sent: Callable[[], None] = lambda: None) -> None:
         self._sent = sent
-        self._queue: "queue.Queue[Optional[Tuple[Topic, Later, Callable[[Exception], None]]]]" \
-            = queue.Queue()
+        self._queue: "queue.Queue[Optional[_Job]]" = queue.Queue()
         self._thread: Optional[threading.Thread] = None
 
-    def put(self, topic: Topic, later: Later, fail: Callable[[Exception], None]) -> None:
+    def put(self, topic: Topic, later: PendingMessage, fail: Callable[[Exception], None]) -> None:
         """Queue a message to make and publish; `fail` gets an exception, in that thread."""
         later.unsent.append(None)
         if self._thread is None:

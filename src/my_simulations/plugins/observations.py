@@ -100,7 +100,7 @@ class Observation:
     @property
     def is_single(self) -> bool:
         """Whether it takes as many steps as it can: rays at every step hold no world."""
-        return self.reads.world and self._rate.hertz <= 0.0 and not self.owner.by_hand
+        return self.reads.world and self._rate.hertz <= 0.0 and not self.owner.is_stepped_manually
 
     def ask_again(self) -> None:
         """Record another step, for one that takes as many as it can."""
@@ -238,7 +238,7 @@ class StepView:
         position, rate, _ = self._recorded_axis(row)
         return position, rate
 
-    def puts(self, row: int) -> float:
+    def set_count(self, row: int) -> float:
         """Return the number of times the position was set directly; -1 for the present."""
         return -1.0 if self._part is None else self._recorded_axis(row)[2]
 

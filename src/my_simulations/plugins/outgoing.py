@@ -4,8 +4,8 @@ from __future__ import annotations
 from typing import Any, Callable, Dict, List, Mapping, Sequence, Tuple
 
 from .graph import Graph, Topic, TransformOf
-from .message_maker import Later, MessageMaker
-from .running import Running
+from .message_maker import MessageMaker, PendingMessage
+from .running import RunningPlugin
 from .simulated_context import SimulatedContext
 
 
@@ -24,8 +24,8 @@ class Outgoing:
         """Stop after the waiting messages."""
         self._maker.stop()
 
-    def send(self, plugins: Mapping[SimulatedContext, Running], guarded: Callable[..., bool],
-             failing: Callable[[Running], Callable[[Exception], None]]) -> None:
+    def send(self, plugins: Mapping[SimulatedContext, RunningPlugin], guarded: Callable[..., bool],
+             failing: Callable[[RunningPlugin], Callable[[Exception], None]]) -> None:
         """Send the transforms of some plugins, then their messages, which may need them.
 
         Args:
@@ -48,7 +48,7 @@ class Outgoing:
     def _send(self, messages: Sequence[Tuple[Topic, Any]],
               fail: Callable[[Exception], None]) -> None:
         for topic, message in messages:
-            if isinstance(message, Later):
+            if isinstance(message, PendingMessage):
                 self._maker.put(topic, message, fail)
             else:
                 topic.send(message)

@@ -4,11 +4,11 @@ from __future__ import annotations
 from typing import Any, Callable, Optional
 
 from ..errors import CommandError, Issue, Severity, warning
-from .call_watch import CallOverdue, CallWatch, Patience, ThreadAbandoned
-from .meanwhile import PluginRemovedError
+from .call_watch import CallLimits, CallOverdue, CallWatch, ThreadAbandoned
+from .nested_turns import PluginRemovedError
 from .plugin_faults import describe_fault
 from .registry import library_name
-from .running import Running
+from .running import RunningPlugin
 
 
 class PluginGuard:
@@ -16,16 +16,16 @@ class PluginGuard:
 
     Args:
         log: receives the faults.
-        patience: how long a call may take.
-        touched: called before each call into a plugin, and after it was switched off.
+        limits: how long a call may take.
+        mark_output: called before each call into a plugin, and after it was switched off.
         abandon: called, in another thread, with a plugin that does not return, and the reason. The
             thread that called it will raise `ThreadAbandoned` if it returns.
     """
 
-    def __init__(self, log: Callable[[Issue], None], patience: Patience,
-                 touched: Callable[[Running], None],
-                 abandon: Callable[[Running, str], None]) -> None:
-        self._log, self._patience, self._touched = log, patience, touched
+    def __init__(self, log: Callable[[Issue], None], limits: CallLimits,
+                 mark_output: Callable[[RunningPlugin], None],
+                 abandon: Callable[[RunningPlugin, str], None]) -> None:
+        self._log, self._limits, self._mark_output = log, limits, mark_output
         self._watch = CallWatch(abandon)
 
     def stop(self) -> None:
@@ -36,23 +36,23 @@ class PluginGuard:
         """Make a turn with further calls inside the wait for the process of a plugin."""
         self._watch.run_inside(turn)
 
-    def call(self, running: Running, call: Callable[..., None], *arguments: Any,
-             patience: Optional[Patience] = None) -> bool:
+    def call(self, running: RunningPlugin, call: Callable[..., None], *arguments: Any,
+             limits: Optional[CallLimits] = None) -> bool:
         """Call a function of a plugin; returns whether the plugin still works.
 
         Raises ThreadAbandoned in a thread that must end.
         """
-        self._touched(running)
-        return self._run(running, patience or self._patience, call, *arguments)
+        self._mark_output(running)
+        return self._run(running, limits or self._limits, call, *arguments)
 
-    def send(self, running: Running, call: Callable[..., None], *arguments: Any) -> bool:
+    def send(self, running: RunningPlugin, call: Callable[..., None], *arguments: Any) -> bool:
         """As `call`, for a function that only sends messages, after which nothing is collected."""
-        return self._run(running, self._patience, call, *arguments)
+        return self._run(running, self._limits, call, *arguments)
 
-    def _run(self, running: Running, patience: Patience, call: Callable[..., None],
+    def _run(self, running: RunningPlugin, limits: CallLimits, call: Callable[..., None],
              *arguments: Any) -> bool:
         try:
-            self._watch.run(running, patience, call, *arguments)
+            self._watch.run(running, limits, call, *arguments)
             return True
         except ThreadAbandoned:
             raise
@@ -64,7 +64,7 @@ class PluginGuard:
             self.switch_off(running, describe_fault(fault))
         return False
 
-    def switch_off(self, running: Running, why: str) -> None:
+    def switch_off(self, running: RunningPlugin, why: str) -> None:
         """Report a plugin, and end what it does; the world continues."""
         spec, context = running.found.spec, running.context
         running.fault = Issue(
@@ -74,7 +74,7 @@ class PluginGuard:
         running.plugin = None
         running.end()
         context.close()
-        self._touched(running)
+        self._mark_output(running)
         try:
             context.stop()
         except CommandError as fault:

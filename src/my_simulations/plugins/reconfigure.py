@@ -39,7 +39,7 @@ class Reconfigure:
             descriptions, self._updates,
             context.serve(f"{below}set_parameters", "dynamic_reconfigure/Reconfigure", self._set)]
 
-    def tell(self, values: Mapping[str, Value]) -> None:
+    def publish(self, values: Mapping[str, Value]) -> None:
         """Publish values that were changed other than by the service."""
         self._values = {name: values[name] for name in self._values}
         self._updates.publish(self._messages.config(self._values))
@@ -55,5 +55,5 @@ class Reconfigure:
         except OptionError as fault:
             raise RequestError(str(fault)) from fault
         self._changed(wanted)
-        self.tell(wanted)
+        self.publish(wanted)
         response.config = self._messages.config(wanted)

@@ -42,7 +42,7 @@ class RecordHandover:
                 record = self._record
                 self._hand_over(record, call)
                 if self._record is not record:
-                    break   # a turn inside a call has taken the rest (`meanwhile.py`)
+                    break   # a turn inside a call has taken the rest (`nested_turns.py`)
                 self._record = None
                 records.release()
         finally:

@@ -12,7 +12,7 @@ from ..simulator.entity import Entity
 from ..simulator.session import do_nothing
 from ..simulator.simulator import Simulator
 from .base import Plugin
-from .found_plugins import Found, plugins_of, world_plugins
+from .found_plugins import FoundPlugin, plugins_of, world_plugins
 from .plugin_state import FAILED, OFF, RUNNING, WAITING, PluginState
 from .simulated_context import SimulatedContext
 
@@ -21,7 +21,7 @@ WORLD_SCOPE = ""
 
 
 @dataclass
-class Running:
+class RunningPlugin:
     """A running plugin.
 
     Attributes:
@@ -32,7 +32,7 @@ class Running:
         is_busy: a call is under way in its process, and the world continues meanwhile.
     """
 
-    found: Found
+    found: FoundPlugin
     context: SimulatedContext
     plugin: Optional[Plugin]
     fault: Optional[Issue] = None
@@ -58,27 +58,28 @@ class ModelPlugins:
     """Follows those models of a simulator that have plugins.
 
     Attributes:
-        revision: the revision of the models at the last `look`.
-        leaving: plugins to be ended; the host removes each one that it ends.
+        revision: the revision of the models at the last `update`.
+        removed: plugins to be ended; the host removes each one that it ends.
 
     Args:
         simulator: the world.
         rebind: called with each plugin whose model has other rows or was edited.
     """
 
-    def __init__(self, simulator: Simulator, rebind: Callable[[Running, Entity], None]) -> None:
+    def __init__(self, simulator: Simulator,
+                 rebind: Callable[[RunningPlugin, Entity], None]) -> None:
         self._simulator, self._rebind = simulator, rebind
-        self._models: Dict[str, Tuple[Entity, List[Running]]] = {}
-        self._to_load: Deque[Tuple[str, Found]] = deque()
-        self.leaving: Deque[Running] = deque()
+        self._models: Dict[str, Tuple[Entity, List[RunningPlugin]]] = {}
+        self._to_load: Deque[Tuple[str, FoundPlugin]] = deque()
+        self.removed: Deque[RunningPlugin] = deque()
         self.revision = -1
 
-    def all(self) -> Iterator[Running]:
+    def all(self) -> Iterator[RunningPlugin]:
         """Iterate over the plugins of all present models; from any thread."""
         for _, running in list(self._models.values()):
             yield from list(running)
 
-    def of(self, model: str) -> List[Running]:
+    def of(self, model: str) -> List[RunningPlugin]:
         """The plugins of a model, as far as they are loaded; from any thread."""
         _, running = self._models.get(model, (None, []))
         return list(running)
@@ -91,7 +92,7 @@ class ModelPlugins:
                    for running in list(all_running)]
         return [*present, *waiting]
 
-    def look(self) -> None:
+    def update(self) -> None:
         """Find the plugins to load and to end; call `rebind` for those that continue."""
         if self._simulator.models.revision == self.revision:
             return
@@ -99,7 +100,7 @@ class ModelPlugins:
         self._compare({WORLD_SCOPE: self._world_entity(),
                        **{entity.model.name: entity for entity in entities}})
 
-    def next_to_load(self) -> Optional[Tuple[Entity, List[Running], Found]]:
+    def next_to_load(self) -> Optional[Tuple[Entity, List[RunningPlugin], FoundPlugin]]:
         """Return the model of the next plugin to load, the list of its plugins, and the plugin."""
         if not self._to_load:
             return None
@@ -134,8 +135,8 @@ class ModelPlugins:
             self._models[name] = (entity, [])
             self._to_load += [(name, one) for one in found]
 
-    def _continuing(self, name: str, before: Tuple[Entity, List[Running]],
-                        entity: Entity) -> List[Running]:
+    def _continuing(self, name: str, before: Tuple[Entity, List[RunningPlugin]],
+                        entity: Entity) -> List[RunningPlugin]:
         """The plugins that continue; the others are loaded again.
 
         Other links or joints restart all plugins, any other edit those that failed.
@@ -145,7 +146,7 @@ class ModelPlugins:
             return all_running
         other_parts = _parts(old.model) != _parts(entity.model)
         again = [one for one in all_running if other_parts or one.fault is not None]
-        self.leaving += again
+        self.removed += again
         self._to_load += [(name, one.found) for one in again]
         return [one for one in all_running if all(one is not other for other in again)]
 
@@ -160,7 +161,7 @@ class ModelPlugins:
     def _end(self, name: str) -> None:
         _, all_running = self._models.pop(name)
         self._to_load = deque(one for one in self._to_load if one[0] != name)
-        self.leaving += all_running
+        self.removed += all_running
 
 
 def _parts(model: Model) -> Tuple[List[str], List[Tuple[str, str, str, str]]]:
@@ -169,6 +170,6 @@ def _parts(model: Model) -> Tuple[List[str], List[Tuple[str, str, str, str]]]:
             [(joint.name, joint.type, joint.parent, joint.child) for joint in model.joints])
 
 
-def _are_same(known: List[Found], found: List[Found]) -> bool:
+def _are_same(known: List[FoundPlugin], found: List[FoundPlugin]) -> bool:
     """Return whether both lists have the same plugins, in any order."""
     return len(known) == len(found) and all(known.count(one) == found.count(one) for one in found)

@@ -92,7 +92,7 @@ class Schedule:
             heapq.heappop(self._heap)
         return self._heap[0][0] if self._heap else None
 
-    def make_anew(self, was_set_back: bool) -> None:
+    def reschedule(self, was_set_back: bool) -> None:
         """Schedule all calls again from `moment`; drop single calls if sim time was set back."""
         before, self._heap = self._heap, []
         for _, number, scheduled in before:

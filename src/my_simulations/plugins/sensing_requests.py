@@ -23,7 +23,7 @@ class _Scan(NamedTuple):
     ns: int
 
 
-class _Shot(NamedTuple):
+class _PictureRequest(NamedTuple):
     futures: "List[Future[Pictures]]"
     call: Callable[[List[Pictures], int], None]
     ns: int
@@ -54,7 +54,7 @@ class SensingRequests:
         self._scene, self._inbox, self._wake, self._warn = scene, inbox, wake, warn
         self._answered = answered
         self._scan: Optional[_Scan] = None
-        self._shots: Dict[str, _Shot] = {}
+        self._shots: Dict[str, _PictureRequest] = {}
         self._unsent: Dict[str, Deque[None]] = {}
         self._warm: Set[str] = set()   # streams whose first pictures were rendered
         self._stream = ""
@@ -92,9 +92,9 @@ class SensingRequests:
         """
         self._end_scan(self._scan)
         scan = self._scan = _Scan(self._scene.cast(mount, fan, visuals, ns, rows), call, ns)
-        scan.future.add_done_callback(lambda _: self._hear(lambda: self._end_scan(scan)))
+        scan.future.add_done_callback(lambda _: self._receive(lambda: self._end_scan(scan)))
 
-    def _hear(self, call: Callable[[], None]) -> None:
+    def _receive(self, call: Callable[[], None]) -> None:
         self._inbox.append(call)
         self._wake()
 
@@ -108,7 +108,7 @@ class SensingRequests:
         try:
             found = scan.future.result(_SCAN_S)
         except (SensingError, FutureTimeoutError) as fault:
-            self._tell_fault("a scan is", fault)
+            self._report_fault("a scan is", fault)
             return
         scan.call(found, scan.ns)
 
@@ -138,27 +138,28 @@ class SensingRequests:
         """
         before, unsent = self._shots.get(stream), self._unsent.setdefault(stream, deque())
         if before is not None and (wait or before.done):
-            self._end_shot(before, _PICTURES_S if wait else 0.0)
+            self._end_request(before, _PICTURES_S if wait else 0.0)
         if wait:
             _wait_for(unsent)
         if stream in self._shots or (unsent and not queue):
             if stream not in self._shots or not self._shots[stream].first:
-                self._leave_out()
+                self._report_skipped()
             return False
         futures = self._scene.render(
             [(mount, view.camera, view.outputs) for mount, view in views], ns, rows)
         first = not (wait or stream in self._warm)
-        shot = self._shots[stream] = _Shot(futures, _ignore if first else call, ns, stream, first)
+        shot = self._shots[stream] = _PictureRequest(futures, _ignore if first else call, ns,
+                                                     stream, first)
 
         def arrived() -> None:
-            if self._end_shot(shot) and first:
+            if self._end_request(shot) and first:
                 again()
 
         for future in shot.futures:
-            future.add_done_callback(lambda _: self._hear(arrived))
+            future.add_done_callback(lambda _: self._receive(arrived))
         return True
 
-    def _end_shot(self, shot: _Shot, timeout: float = 0.0) -> bool:
+    def _end_request(self, shot: _PictureRequest, timeout: float = 0.0) -> bool:
         """Hand pictures over; return whether this call did so."""
         if shot is not self._shots.get(shot.stream) or not (timeout or shot.done):
             return False
@@ -170,14 +171,14 @@ class SensingRequests:
                      for future in shot.futures]
         except (SensingError, FutureTimeoutError) as fault:
             self._warm.discard(shot.stream)
-            self._tell_fault("a picture is", fault)
+            self._report_fault("a picture is", fault)
             return False
         self._stream = shot.stream
         self._warm.add(shot.stream)
         shot.call(found, shot.ns)
         return True
 
-    def _leave_out(self) -> None:
+    def _report_skipped(self) -> None:
         self._left_out += 1
         now = time.monotonic()
         if now - self._told >= _AGAIN_S:
@@ -185,7 +186,7 @@ class SensingRequests:
             self._warn(f"pictures are late, this machine draws slower than the camera's rate: "
                        f"{self._left_out} left out so far; physics goes on")
 
-    def _tell_fault(self, what: str, fault: Exception) -> None:
+    def _report_fault(self, what: str, fault: Exception) -> None:
         text = f"{what} left out: {fault or 'it took too long'}"
         if text != self._fault:
             self._fault = text

@@ -22,7 +22,7 @@ from ..simulator.scene_sensing import SceneSensing
 from ..simulator.simulator import Simulator
 from .checked_arguments import finite, vector
 from .context import PluginError, Publication, View
-from .found_plugins import Found
+from .found_plugins import FoundPlugin
 from .graph import Graph, TopicUse
 from .model_rows import ModelRows, transmissions_of
 from .observations import Observation, Observations, Reads, StepView, queries_of
@@ -30,11 +30,11 @@ from .parameters import Parameters
 from .schedule import Schedule, ScheduledCall
 from .sensing_requests import SensingRequests
 from .simulated_graph import GraphUser, PluginGraph
-from .simulated_handles import Orders, SimulatedJoint, SimulatedLink
+from .simulated_handles import PendingCommands, SimulatedJoint, SimulatedLink
 from .step_readings import StepReadings
 
 
-class Shared(NamedTuple):
+class SharedServices(NamedTuple):
     """What the contexts of all plugins share.
 
     Attributes:
@@ -58,13 +58,13 @@ class SimulatedContext(GraphUser):
     """One plugin's view of one model; see `context.Context`. For the thread of the host.
 
     Attributes:
-        orders: what it has ordered for its model since they were last taken.
-        push_ids: the wrenches that act now, by link.
+        commands: those for its model since they were last sent.
+        wrench_ids: the wrenches that act now, by link.
         graph: what it has on the graph; `inbox`: functions to be called for what has come.
         sensing: what it has asked of the sensing process.
     """
 
-    def __init__(self, shared: Shared, entity: Entity, found: Found,
+    def __init__(self, shared: SharedServices, entity: Entity, found: FoundPlugin,
                  wake: Callable[[], None]) -> None:
         self.simulator, self._report, self._schedule, self._readings = (
             shared.simulator, shared.report, shared.schedule, shared.readings)
@@ -75,12 +75,12 @@ class SimulatedContext(GraphUser):
         self.parameters = Parameters(found.spec.xml, self.warn)
         self.entity = entity
         self._rows = ModelRows(entity, found.scope)
-        self.orders = Orders()
+        self.commands = PendingCommands()
         self._level: Optional[PlanarVelocity] = None
         self.inbox: Deque[Callable[[], None]] = deque()
         self._links: Dict[str, SimulatedLink] = {}
         self._joints: Dict[str, SimulatedJoint] = {}
-        self.push_ids: Dict[str, int] = {}
+        self.wrench_ids: Dict[str, int] = {}
         self._attached: List[str] = []
         self._held = False
         self.sensing = SensingRequests(shared.scene, self.inbox, wake, self.warn,
@@ -96,8 +96,8 @@ class SimulatedContext(GraphUser):
         self.model = entity.model.name
         for link in self._links.values():
             self._find(link)
-        self.orders.motors.clear()
-        self.orders.servos.clear()
+        self.commands.motors.clear()
+        self.commands.servos.clear()
         for joint in self._joints.values():
             joint.moved_to(self._rows.axis(joint.spec_name))
         if self._level is not None:
@@ -118,14 +118,14 @@ class SimulatedContext(GraphUser):
             self.simulator.drives.stop(self.entity)
         if self._held:
             self.hold(False)
-        self.let_go()
+        self.release()
 
-    def let_go(self) -> None:
+    def release(self) -> None:
         """Remove the joints and the wrenches of the plugin."""
-        self.orders.pushes.clear()
-        if self.push_ids:
-            self.simulator.wrenches.remove(list(self.push_ids.values()))
-        self.push_ids = {}
+        self.commands.wrenches.clear()
+        if self.wrench_ids:
+            self.simulator.wrenches.remove(list(self.wrench_ids.values()))
+        self.wrench_ids = {}
         for name in list(self._attached):
             self.detach(name)
 
@@ -142,9 +142,9 @@ class SimulatedContext(GraphUser):
         return self.simulator.physics.settings.max_step_size
 
     @property
-    def by_hand(self) -> bool:
+    def is_stepped_manually(self) -> bool:
         """Whether the world is stepped manually."""
-        return self.simulator.clock.by_hand
+        return self.simulator.clock.is_stepped_manually
 
     @property
     def step(self) -> int:
@@ -241,7 +241,7 @@ class SimulatedContext(GraphUser):
         """A joint of the model that moves."""
         if name not in self._joints:
             spec = self._rows.joint(name)
-            joint = SimulatedJoint(self._view, self.orders, spec, name)
+            joint = SimulatedJoint(self._view, self.commands, spec, name)
             joint.row = self._rows.axis(spec.name)
             self._joints[name] = joint
         return self._joints[name]
@@ -252,7 +252,7 @@ class SimulatedContext(GraphUser):
 
     def drive_level(self, x: float, y: float, yaw_rate: float) -> None:
         """Move the model in its horizontal plane from now on."""
-        self.orders.planar = self._level = PlanarVelocity(
+        self.commands.planar = self._level = PlanarVelocity(
             self.entity.model_id, finite(x, "x"), finite(y, "y"), finite(yaw_rate, "yaw_rate"))
 
     @property
@@ -265,15 +265,15 @@ class SimulatedContext(GraphUser):
         return transmissions_of(self.entity.model, parameter,
                                 lambda: self.search_parameter(parameter, ""))
 
-    def push(self, link: str, force: Vec3, torque: Vec3) -> None:
+    def set_wrench(self, link: str, force: Vec3, torque: Vec3) -> None:
         """Apply a wrench from now on."""
-        self.orders.pushes[self._pushed(link)] = (vector(force, "force"),
+        self.commands.wrenches[self._pushed(link)] = (vector(force, "force"),
                                                   vector(torque, "torque"), None, "")
 
-    def push_by(self, link: str, law: WrenchLaw, joint: str = "") -> None:
+    def set_wrench_law(self, link: str, law: WrenchLaw, joint: str = "") -> None:
         """Apply the wrench of a law from now on."""
         followed = joint and f"{self.model}::{self._rows.joint(joint).name}"
-        self.orders.pushes[self._pushed(link)] = (ZERO3, ZERO3, law, followed)
+        self.commands.wrenches[self._pushed(link)] = (ZERO3, ZERO3, law, followed)
 
     def _pushed(self, link: str) -> str:
         return link if "::" in link and not self._rows.has_link(link) else self.scoped(link)
@@ -372,7 +372,8 @@ class SimulatedContext(GraphUser):
 
         # Request again at a step: the message's stamp is the sim time of the picture.
         return self.sensing.photograph(mounted, call, self.now_ns, self._view.world_rows(),
-                                       self.by_hand, lambda: self.once(0, again), stream, queue)
+                                       self.is_stepped_manually, lambda: self.once(0, again),
+                                       stream, queue)
 
     def sensors(self) -> List[Tuple[str, Sensor]]:
         """The sensors of the model's links."""
@@ -394,8 +395,8 @@ class SimulatedContext(GraphUser):
             if link not in self.entity.link_names:
                 link = self.sensor_link
         kind = self.sensor.type if self.sensor is not None else ""
-        return [TopicUse(name, message, heard, self.model, link, kind, pose)
-                for name, message, heard in self.graph.uses()]
+        return [TopicUse(name, message, is_subscription, self.model, link, kind, pose)
+                for name, message, is_subscription in self.graph.uses()]
 
     # -- log -------------------------------------------------------------------------------------
 

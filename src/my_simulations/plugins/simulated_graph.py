@@ -9,12 +9,12 @@ from ..geometry import Pose
 from .checked_arguments import pose_of
 from .context import PluginError, RequestError
 from .graph import Closing, Graph, MissingTypeError, ServiceTakenError, Topic, TransformOf
-from .message_maker import Later
+from .message_maker import PendingMessage
 
 _LOOK_S = 0.2   # interval of checks whether the plugin of a service call still exists
 
 
-class Offer:
+class PluginTopic:
     """A topic of a plugin; its messages are sent after the engine has resumed."""
 
     def __init__(self, owner: "PluginGraph", topic: Topic) -> None:
@@ -31,18 +31,18 @@ class Offer:
 
     def publish_later(self, make: Callable[[], Any]) -> None:
         """Publish a message that another thread makes."""
-        self._owner.outbox.append((self._topic, Later(make, self._owner.unsent())))
+        self._owner.outbox.append((self._topic, PendingMessage(make, self._owner.unsent())))
 
     def close(self) -> None:
         """Send the waiting messages, then remove the topic from the ROS graph."""
         waiting = [one for one in self._owner.outbox if one[0] is self._topic]
         self._owner.outbox = [one for one in self._owner.outbox if one[0] is not self._topic]
         for _, message in waiting:
-            self._topic.send(message.make() if isinstance(message, Later) else message)
+            self._topic.send(message.make() if isinstance(message, PendingMessage) else message)
         self._owner.close_one(self._topic)
 
 
-class _Nowhere:
+class _UnnamedTopic:
     """A topic with an empty name, as Gazebo's plugins allow: it is not on the ROS graph."""
 
     wanted = False
@@ -110,16 +110,16 @@ class PluginGraph:
         return list(self._uses.values())
 
     def _open(self, begin: Callable[[str], Any], name: str, kind: str,
-              heard: Optional[bool] = None) -> Any:
-        """Open a topic or service under its full name; `heard` for topics only."""
+              is_subscription: Optional[bool] = None) -> Any:
+        """Open a topic or service under its full name; `is_subscription` for topics only."""
         full = self._name(name)
         try:
             end = begin(full)
         except MissingTypeError as missing:
             raise PluginError(str(missing)) from missing
         self._opened.append(end)
-        if heard is not None:
-            self._uses[id(end)] = (full, kind, heard)
+        if is_subscription is not None:
+            self._uses[id(end)] = (full, kind, is_subscription)
         return end
 
     def use_namespace(self, namespace: str) -> None:
@@ -143,11 +143,11 @@ class PluginGraph:
         """Return a time as a message field."""
         return self._graph.stamp(ns)
 
-    def publish(self, name: str, kind: str, queue: int, latch: bool) -> Offer:
+    def publish(self, name: str, kind: str, queue: int, latch: bool) -> PluginTopic:
         """Advertise a topic."""
         if not name:
-            return Offer(self, _Nowhere())
-        return Offer(self, self._open(
+            return PluginTopic(self, _UnnamedTopic())
+        return PluginTopic(self, self._open(
             lambda full: self._graph.publish(full, kind, queue, latch, self._changed), name, kind,
             False))
 
@@ -199,7 +199,7 @@ class PluginGraph:
             end = self._open(lambda full: self._graph.serve(full, kind, asked), name, kind)
         except ServiceTakenError as taken:  # roscpp reports it, and Gazebo's plugins continue
             warn(str(taken))
-            end = _Nowhere()
+            end = _UnnamedTopic()
         return OpenEnd(self, end)
 
     def parameter(self, name: str, default: Any) -> Any:
@@ -249,7 +249,7 @@ class GraphUser:
         """Return a time as a message field."""
         return self.graph.stamp(self.now_ns if ns is None else ns)
 
-    def publish(self, name: str, kind: str, queue: int = 1, latch: bool = False) -> Offer:
+    def publish(self, name: str, kind: str, queue: int = 1, latch: bool = False) -> PluginTopic:
         """Advertise a topic."""
         return self.graph.publish(name, kind, queue, latch)
 

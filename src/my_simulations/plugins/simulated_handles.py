@@ -1,4 +1,4 @@
-"""Links and joints as a plugin holds them, and what it has ordered for its model."""
+"""The links and joints of a plugin, and its commands for its model."""
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
@@ -14,20 +14,20 @@ from .observations import StepView
 
 
 @dataclass
-class Orders:
-    """What a plugin has ordered since it was last taken to the engine.
+class PendingCommands:
+    """The commands of a plugin that were not sent to the engine yet.
 
     Attributes:
         motors, servos: by joint row.
         planar: of the model.
-        pushes: force and torque, or the law of both and the scoped name of the joint that the law
+        wrenches: force and torque, or the law of both and the scoped name of the joint that the law
             follows, by the scoped name of a link.
     """
 
     motors: Dict[int, JointMotor] = field(default_factory=dict)
     servos: Dict[int, JointServo] = field(default_factory=dict)
     planar: Optional[PlanarVelocity] = None
-    pushes: Dict[str, Tuple[Vec3, Vec3, Optional[WrenchLaw], str]] = field(default_factory=dict)
+    wrenches: Dict[str, Tuple[Vec3, Vec3, Optional[WrenchLaw], str]] = field(default_factory=dict)
 
 
 class SimulatedLink:
@@ -53,10 +53,11 @@ class SimulatedLink:
 class SimulatedJoint:
     """A joint axis, by the row it has now."""
 
-    def __init__(self, view: StepView, orders: Orders, spec: JointSpec, name: str) -> None:
+    def __init__(self, view: StepView, commands: PendingCommands, spec: JointSpec,
+                 name: str) -> None:
         self.name, self.spec_name = name, spec.name
         self.parent, self.child = spec.parent, spec.child
-        self._view, self._orders = view, orders
+        self._view, self._commands = view, commands
         self.row = -1
         self.motor: Optional[JointMotor] = None
         self.servo: Optional[JointServo] = None
@@ -73,20 +74,20 @@ class SimulatedJoint:
         return self._view.axis_at(self.row)[1]
 
     @property
-    def puts(self) -> float:
+    def set_count(self) -> float:
         """The number of times the position was set directly."""
-        return self._view.puts(self.row)
+        return self._view.set_count(self.row)
 
     def drive(self, rate: float, effort: float) -> None:
         """Drive the motor."""
         self.motor = JointMotor(self.row, finite(rate, "the rate of a motor"),
                                 number(effort, "the effort of a motor"))
-        self._orders.motors[self.row] = self.motor
+        self._commands.motors[self.row] = self.motor
 
-    def steer(self, servo: JointServo) -> None:
+    def set_servo(self, servo: JointServo) -> None:
         """Drive the axis by a servo of the engine."""
         self.servo = replace(servo, row=self.row)
-        self._orders.servos[self.row] = self.servo
+        self._commands.servos[self.row] = self.servo
 
     def moved_to(self, row: int) -> None:
         """Set the row of the axis, and send the motor or servo command for it again."""
@@ -94,11 +95,11 @@ class SimulatedJoint:
         if self.motor is not None:
             self.drive(self.motor.rate, self.motor.effort)
         if self.servo is not None:
-            self.steer(self.servo)
+            self.set_servo(self.servo)
 
     def release(self) -> None:
         """Switch off the motor and the servo."""
         if self.motor is not None:
             self.drive(0.0, 0.0)
         if self.servo is not None:
-            self.steer(JointServo(self.row, ""))
+            self.set_servo(JointServo(self.row, ""))

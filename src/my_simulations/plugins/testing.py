@@ -2,7 +2,7 @@
 
 context = FakeContext('<plugin><updateRate>10</updateRate></plugin>', joints=("left", "right"))
 plugin = MyPlugin(context); plugin.load()
-context.hear("cmd_vel", linear={"x": 0.5})
+context.deliver("cmd_vel", linear={"x": 0.5})
 context.advance(1.0)
 assert context.joints["left"].motor == (5.0, 1.0)
 assert context.published["odom"][-1].pose.pose.position.x == 0.5
@@ -55,14 +55,14 @@ class FakeContext(FakeGraph):
         links, joints: by name; a requested link is created.
         pose, twist: of the model.
         said: the messages to the user.
-        pushes: the last wrench of each link; laws are computed after each step.
+        wrenches: the last wrench of each link; laws are computed after each step.
         level: the last planar velocity.
         returns: the returns of rays; `fans`: (fan, visuals) of the scans.
         pictures: the result of each view; `views`: the views of each call. `late`: none is ready.
-        by_hand: the world is stepped manually.
+        is_stepped_manually: the world is stepped manually.
         model_sensors, labels: the results of `sensors` and `link_names`.
         touching: the contacts.
-        wrenches: the wrenches that joints transmit.
+        joint_wrenches: the wrenches that joints transmit.
         held: whether the model is held.
         slips: (joint, radius, normal force, lateral, longitudinal) of wheels.
         followers: (leader, multiplier, offset) of joints that mimic others.
@@ -78,7 +78,7 @@ class FakeContext(FakeGraph):
         super().__init__()
         self.model, self.sensor = model, sensor
         self.sensor_link, self.sensor_joint = sensor_link, sensor_joint
-        self.wrenches: Dict[str, JointWrench] = {}
+        self.joint_wrenches: Dict[str, JointWrench] = {}
         self.said: List[str] = []
         self.parameters = Parameters(xml, self.said.append)
         self.joints = {name: FakeJoint(name) for name in joints}
@@ -92,7 +92,7 @@ class FakeContext(FakeGraph):
         self.place_on_earth: Optional[SphericalCoordinates] = None
         self.seed = 0
         self.step_size, self.step = step_size, 0
-        self.pushes: Dict[str, Tuple[Vec3, Vec3]] = {}
+        self.wrenches: Dict[str, Tuple[Vec3, Vec3]] = {}
         self._laws: Dict[str, Tuple[WrenchLaw, str]] = {}
         self.level: Optional[Tuple[float, float, float]] = None
         self.touching: List[Any] = []
@@ -106,7 +106,7 @@ class FakeContext(FakeGraph):
         self.fans: List[Any] = []
         self.pictures: List[Any] = []
         self.views: List[Any] = []
-        self.late = self.by_hand = False
+        self.late = self.is_stepped_manually = False
         self.model_sensors: List[Tuple[str, Sensor]] = []
         self.labels: Dict[int, str] = {}
         self._calls: List[_Call] = []
@@ -186,12 +186,12 @@ class FakeContext(FakeGraph):
         """Record the call."""
         self.level = (x, y, yaw_rate)
 
-    def push(self, link: str, force: Vec3, torque: Vec3) -> None:
+    def set_wrench(self, link: str, force: Vec3, torque: Vec3) -> None:
         """Record the call."""
-        self.pushes[link] = (force, torque)
+        self.wrenches[link] = (force, torque)
         self._laws.pop(link, None)
 
-    def push_by(self, link: str, law: WrenchLaw, joint: str = "") -> None:
+    def set_wrench_law(self, link: str, law: WrenchLaw, joint: str = "") -> None:
         """Record the call."""
         self._laws[link] = law, joint
         self._compute_laws()
@@ -199,7 +199,7 @@ class FakeContext(FakeGraph):
     def _compute_laws(self) -> None:
         for name, (law, joint) in self._laws.items():
             link = self.link(name)
-            self.pushes[name] = law.wrench(
+            self.wrenches[name] = law.wrench(
                 link.pose, link.twist, link.inertial.pose.position,
                 self.joint(joint).position if joint else 0.0)
 
@@ -282,7 +282,7 @@ class FakeContext(FakeGraph):
 
     def joint_wrench(self, name: str) -> Optional[JointWrench]:
         """Return the value set by the test."""
-        return self.wrenches.get(name)
+        return self.joint_wrenches.get(name)
 
     def contacts(self) -> List[Any]:
         """Return the value set by the test."""

@@ -95,7 +95,7 @@ class FakeGraph:
 
     # -- what a test does --------------------------------------------------------------------------
 
-    def hear(self, topic: str, **fields: Any) -> None:
+    def deliver(self, topic: str, **fields: Any) -> None:
         """Deliver a message on a topic; dictionaries become nested messages.
 
         Raises MessageFieldError for fields that its type does not have.
@@ -103,7 +103,7 @@ class FakeGraph:
         self._heard[topic](fields)
 
     def call(self, service: str, **fields: Any) -> Any:
-        """Call a service; return the response. Raises MessageFieldError as `hear`."""
+        """Call a service; return the response. Raises MessageFieldError as `deliver`."""
         response = Message()
         self.services[service](fields, response)
         return response

@@ -27,7 +27,7 @@ class FakeJoint:
         spec: its description.
         effort: what the servo spent in the last step.
         stuck: something holds it.
-        puts: how often a test or a plugin has put it somewhere.
+        set_count: how often a test or a plugin has put it somewhere.
     """
 
     def __init__(self, name: str) -> None:
@@ -38,21 +38,21 @@ class FakeJoint:
         self.spec = JointSpec(name, "revolute", "base", name, axis=JointAxis())
         self.effort = 0.0
         self.stuck = False
-        self.puts = 0
+        self.set_count = 0
         self._law: Optional[ServoLaw] = None
 
     def put(self, position: float) -> None:
         """Set the position at once, with velocity 0."""
         self.position, self.velocity = position, 0.0
-        self.puts += 1
+        self.set_count += 1
         if self.servo is not None and self.servo.holds:
-            self.steer(self.servo)
+            self.set_servo(self.servo)
 
     def drive(self, rate: float, effort: float) -> None:
         """Drive the motor."""
         self.motor = (rate, effort)
 
-    def steer(self, servo: JointServo) -> None:
+    def set_servo(self, servo: JointServo) -> None:
         """Drive the axis by a servo."""
         servo = servo.held_at(self.position)
         before, self.servo = self.servo, servo

@@ -16,9 +16,9 @@ class Transforms:
     def __init__(self, context: Context) -> None:
         self._parents: Dict[str, Tuple[str, Pose]] = {}
         for topic in ("/tf", "/tf_static"):
-            context.subscribe(topic, "tf2_msgs/TFMessage", self._hear, queue=100)
+            context.subscribe(topic, "tf2_msgs/TFMessage", self._receive, queue=100)
 
-    def _hear(self, message: Any) -> None:
+    def _receive(self, message: Any) -> None:
         for one in message.transforms:
             at, turn = one.transform.translation, one.transform.rotation
             pose = Pose((at.x, at.y, at.z), (turn.x, turn.y, turn.z, turn.w))

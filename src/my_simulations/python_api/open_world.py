@@ -158,7 +158,7 @@ class OpenWorld(WorldChanges):
         self._whole()
         if steps:
             try:
-                self._robots.settle()
+                self._robots.wait_until_loaded()
                 self.simulator.clock.advance(steps)
                 self._robots.finish()
             except EngineLostError as fault:

@@ -77,7 +77,8 @@ class Robots:
         if self._topics is None:
             from .topics import Topics
 
-            self._topics = Topics(self.graph, self._advance, self._step_size, self.settle)
+            self._topics = Topics(self.graph, self._advance, self._step_size,
+                                  self.wait_until_loaded)
         return self._topics
 
     # -- life --------------------------------------------------------------------------------------
@@ -94,7 +95,7 @@ class Robots:
         starter = self._starter = HostStarter(simulator, self._new_host)
         simulator.sync_points.on_plugins(starter.expect)
         with contextlib.nullcontext() if self._graph is None else self._graph.suspended():
-            self.settle()
+            self.wait_until_loaded()
 
     def end(self) -> None:
         """End all plugins; the messages that have arrived are removed."""
@@ -111,10 +112,10 @@ class Robots:
         self.end()
         self._close_scene()
 
-    def settle(self) -> None:
+    def wait_until_loaded(self) -> None:
         """Have the plugins of all models run; returns when they are loaded."""
         if self._starter is not None:
-            for issue in self._starter.settle():
+            for issue in self._starter.wait_until_loaded():
                 self._log(issue)
 
     def finish(self) -> None:
@@ -131,18 +132,18 @@ class Robots:
     def publish(self, topic: str, message: Any) -> None:
         """Send a message to the plugins. Raises CommandError."""
         self._require_plugins()
-        self.settle()
+        self.wait_until_loaded()
         self.graph.publish_once(topic, message)
 
     def call(self, service: str, request: Any) -> Message:
         """Ask a service of a plugin. Raises CommandError."""
         self._require_plugins()
-        self.settle()
+        self.wait_until_loaded()
         return self.graph.call(service, request)
 
     def services(self) -> Dict[str, str]:
         """The types of the services by name."""
-        self.settle()
+        self.wait_until_loaded()
         return self.graph.services()
 
     # -- inside ------------------------------------------------------------------------------------

@@ -97,7 +97,7 @@ class Topics(Mapping[str, Topic]):
         graph: of the robots.
         advance: makes a number of steps.
         step_size: of the world, s.
-        settle: has the plugins of new models loaded.
+        wait_until_loaded: has the plugins of new models loaded.
     """
 
     def __init__(self, graph: LocalGraph, advance: Callable[[int], None],

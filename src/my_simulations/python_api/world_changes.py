@@ -42,7 +42,7 @@ class WorldChanges:
         """
         text = os.fspath(document)  # which leaves texts as they are
         name = self._furnisher.spawn(self._whole(), text, name, pose_of(pose), lambda model: model)
-        self._robots.settle()
+        self._robots.wait_until_loaded()
         return name
 
     def remove(self, name: str) -> None:

@@ -164,7 +164,7 @@ class Node:
         from .services.model_services import ModelServices
 
         return ModelServices(self._simulator, self._resolver, log_issue, self._launch.pid,
-                             self._plugins.settle)
+                             self._plugins.wait_until_loaded)
 
     def _late_handlers(self) -> Dict[str, Any]:
         from .services.editor_service import EditorService
@@ -194,7 +194,7 @@ class Node:
         While the master is unreachable, the next call tries again.
         """
         if self._network:
-            self._plugins.look()
+            self._plugins.start_if_needed()
         try:
             if self._membership is not None and not self._membership.keep_up():
                 return
@@ -228,7 +228,7 @@ class Node:
         if self._publishers is not None:
             self._publishers.start()
         if self._network:
-            self._plugins.settle()
+            self._plugins.wait_until_loaded()
 
     def spawn_robot(self) -> None:
         """Spawn the parameter `robot_description` if `~spawn_robot` is true.

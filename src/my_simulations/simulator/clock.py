@@ -62,7 +62,7 @@ class SimClock:
         return self._paused
 
     @property
-    def by_hand(self) -> bool:
+    def is_stepped_manually(self) -> bool:
         """Whether the world goes on by `advance` alone: paused, or stepped manually."""
         return self._paused or self._manual_stepping
 

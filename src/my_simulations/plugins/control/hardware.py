@@ -91,7 +91,7 @@ class HardwareJoint:
 
     def _steer(self, servo: JointServo) -> None:
         self._ordered, self.is_held = servo, False
-        self._joint.steer(servo)
+        self._joint.set_servo(servo)
 
     @property
     def drive_gains(self) -> Optional[PidGains]:

@@ -52,7 +52,7 @@ class DiffDrive(OdometryDrive):
         topics = [*self._odometer.topics, *(self._states.topics if self._states else [])]
         transforms = self._publishes and self._broadcasts or self._frames is not None
         if topics or transforms:
-            context.observe(hertz, self.tell, topics, transforms=transforms,
+            context.observe(hertz, self.publish, topics, transforms=transforms,
                             remembers=self._encoder and self._publishes)
 
     def reset(self) -> None:
@@ -64,7 +64,7 @@ class DiffDrive(OdometryDrive):
         self.clock_set()
         self._drive((0.0, 0.0))
 
-    def tell(self) -> None:
+    def publish(self) -> None:
         """Odometry, as it is before the command of the same update (as the original)."""
         if self._publishes:
             pose, velocity = self.motion()

@@ -59,7 +59,7 @@ class ForceBasedMove(Plugin):
         self._push()
         hertz = p.number("odometryRate", 20.0)
         if hertz > 0.0:
-            context.observe(hertz, self.tell, self._odometer.topics,
+            context.observe(hertz, self.publish, self._odometer.topics,
                             transforms=self._broadcasts)
 
     def reset(self) -> None:
@@ -85,10 +85,10 @@ class ForceBasedMove(Plugin):
 
     def _push(self) -> None:
         command = self._command
-        self.context.push_by(self._base.name, VelocityForce(
+        self.context.set_wrench_law(self._base.name, VelocityForce(
             self._gains, command.x, command.y if self._sideways else 0.0, command.yaw))
 
-    def tell(self) -> None:
+    def publish(self) -> None:
         """Publish odometry: truth, from where the robot began."""
         pose, twist = self.context.pose, self.context.twist
         x0, y0, yaw0 = self._start

@@ -20,7 +20,7 @@ from ..frames import prefixed, stamped
 from ..parameters import namespace_or
 from ..sensors.rays import fan_of
 from ..stepwise_change import StepwiseChange
-from .odometry import Odometer, WheelTurns, planar
+from .odometry import Odometer, WheelRotations, planar
 from .wheels import VelocityCommand, WheelStates
 
 _HERTZ = 50.0
@@ -42,7 +42,7 @@ class Kobuki(Plugin):
         context.use_namespace(namespace_or(p, context.model))
         self._wheels = [context.joint(_needed(p, f"{side}_wheel_joint_name"))
                         for side in ("left", "right")]
-        self._turns = WheelTurns(self._wheels)
+        self._turns = WheelRotations(self._wheels)
         self._separation = _needed_number(p, "wheel_separation")
         self._radius = _needed_number(p, "wheel_diameter") / 2.0
         self._torque = _needed_number(p, "torque")
@@ -65,7 +65,7 @@ class Kobuki(Plugin):
         self._events = KobukiEvents(self, prefix)
         self._powered = True
         self.reset()
-        context.observe(hertz, self.tell, transforms=self._broadcasts, remembers=True, topics=[
+        context.observe(hertz, self.publish, transforms=self._broadcasts, remembers=True, topics=[
             *self._states.topics, *self._odometer.topics, self._imu_topic])
         self._events.follow(hertz)
 
@@ -103,7 +103,7 @@ class Kobuki(Plugin):
         link = self.context.link(self._imu_link)
         return velocity_at(link.pose, link.twist, self._imu.pose)
 
-    def tell(self) -> None:
+    def publish(self) -> None:
         """Publish joint states, odometry and IMU, as they are before the command of an update."""
         now = self.context.now_ns
         dt = (now - self._last_ns) * 1e-9
@@ -111,15 +111,15 @@ class Kobuki(Plugin):
         if dt <= 0.0:
             return
         self._states.send()
-        self._tell_odometry(dt)
-        self._tell_imu(dt)
+        self._publish_odometry(dt)
+        self._publish_imu(dt)
 
     def _follow(self, dt: float) -> bool:
         self._command.look()
         self._drive()
         return True
 
-    def _tell_odometry(self, dt: float) -> None:
+    def _publish_odometry(self, dt: float) -> None:
         """The way is that of the wheels, the heading that of the gyroscope, as on the real base."""
         way = sum(self._turns.since(dt)) * self._radius / 2.0
         last, self._heading = self._heading, self._yaw()
@@ -132,7 +132,7 @@ class Kobuki(Plugin):
             self._odometer.transform(pose)
         self._odometer.publish(pose, (way / dt, 0.0, turn / dt))
 
-    def _tell_imu(self, dt: float) -> None:
+    def _publish_imu(self, dt: float) -> None:
         before, self._before = self._before, self._imu_velocity()
         if not self._imu_topic.wanted:
             return

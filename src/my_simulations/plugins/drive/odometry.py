@@ -8,9 +8,9 @@ from ...geometry import Pose, Twist, quat_from_rpy, rpy_from_quat
 from ..context import Context, Joint, Publication
 from ..frames import prefixed, stamped
 
-_NO_IDEA = 1e12  # of what a wheeled robot does not measure
+_UNKNOWN_VARIANCE = 1e12  # of what a wheeled robot does not measure
 
-DRIVE_COVARIANCE = (1e-5, 1e-5, _NO_IDEA, _NO_IDEA, _NO_IDEA, 1e-3)
+DRIVE_COVARIANCE = (1e-5, 1e-5, _UNKNOWN_VARIANCE, _UNKNOWN_VARIANCE, _UNKNOWN_VARIANCE, 1e-3)
 
 
 def planar(x: float, y: float, yaw: float) -> Pose:
@@ -32,7 +32,7 @@ def diagonal(values: Tuple[float, ...]) -> List[float]:
     return matrix
 
 
-class WheelTurns:
+class WheelRotations:
     """How far wheels turn between two looks, rad, without what they are put to.
 
     Gazebo's drives integrate the rates of the wheels: /gazebo/set_model_configuration moves them,
@@ -45,14 +45,14 @@ class WheelTurns:
 
     def forget(self) -> None:
         """Restart the count at the present wheel positions."""
-        self._last = [(joint.position, joint.puts) for joint in self._joints]
+        self._last = [(joint.position, joint.set_count) for joint in self._joints]
 
     def since(self, dt: float) -> List[float]:
         """What each wheel has turned since the last look, `dt` s ago."""
         before, self._last = self._last, []
         turns = []
         for joint, (position, puts) in zip(self._joints, before):
-            began, now = joint.puts, joint.position
+            began, now = joint.set_count, joint.position
             steady = puts in (began, -1.0)   # there is no count outside of observations
             self._last.append((now, began))
             turns.append(now - position if steady else joint.velocity * dt)
@@ -67,16 +67,16 @@ class WheelCounter:
     """
 
     def __init__(self, left: Joint, right: Joint, radius: float, separation: float) -> None:
-        self._wheels = WheelTurns((left, right))
+        self._wheels = WheelRotations((left, right))
         self._radius, self._separation = radius, separation
         self.reset()
 
     def reset(self) -> None:
         """Reset the pose, and restart the count at the present wheel positions."""
         self._x = self._y = self._yaw = 0.0
-        self.forget_way()
+        self.discard_rotation()
 
-    def forget_way(self) -> None:
+    def discard_rotation(self) -> None:
         """Discard the rotation of the wheels since the last count."""
         self._wheels.forget()
 

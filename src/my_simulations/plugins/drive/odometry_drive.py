@@ -17,7 +17,7 @@ class OdometryDrive(Plugin):
     def clock_set(self) -> None:
         """Measure time from now; keep the odometry pose."""
         self._last_ns = self.context.now_ns
-        self._counter.forget_way()
+        self._counter.discard_rotation()
 
     def elapsed(self) -> float:
         """Sim time since the last call, or since `clock_set`, s."""

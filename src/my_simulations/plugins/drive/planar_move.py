@@ -33,7 +33,7 @@ class PlanarMove(Plugin):
         self._last: Tuple[int, Pose] = (context.now_ns, context.pose)
         hertz = p.number("odometryRate", 20.0)
         if hertz > 0.0:
-            context.observe(hertz, self.tell, self._odometer.topics, transforms=True,
+            context.observe(hertz, self.publish, self._odometer.topics, transforms=True,
                             resume=self.clock_set)
         self.move()
 
@@ -58,7 +58,7 @@ class PlanarMove(Plugin):
         self._command.look()
         self.context.drive_level(self._command.x, self._command.y, self._command.yaw)
 
-    def tell(self) -> None:
+    def publish(self) -> None:
         """Publish odometry: where the model is, and how fast it went since the last time."""
         (before_ns, before), pose = self._last, self.context.pose
         self._last = (self.context.now_ns, pose)

@@ -36,7 +36,7 @@ class SkidSteerDrive(Plugin):
         self._command = VelocityCommand(context, p.text("commandTopic", "cmd_vel"),
                                         change=self._change)
         self.reset()
-        context.observe(hertz, self.tell, self._odometer.topics, transforms=self._broadcasts)
+        context.observe(hertz, self.publish, self._odometer.topics, transforms=self._broadcasts)
 
     def reset(self) -> None:
         """Stop the robot."""
@@ -44,7 +44,7 @@ class SkidSteerDrive(Plugin):
         self._change.end()
         self._drive()
 
-    def tell(self) -> None:
+    def publish(self) -> None:
         """Publish odometry."""
         pose = self.context.pose
         if self._broadcasts:

@@ -58,7 +58,7 @@ class TricycleDrive(OdometryDrive):
         self._command = VelocityCommand(context, p.text("commandTopic", "cmd_vel"),
                                         change=self._change)
         self.reset()
-        context.observe(hertz, self.tell, transforms=True, remembers=self._encoder, topics=[
+        context.observe(hertz, self.publish, transforms=True, remembers=self._encoder, topics=[
             *self._odometer.topics, *(self._states.topics if self._states else [])])
 
     def _by_side(self, left: Joint, right: Joint) -> Tuple[Joint, Joint]:
@@ -77,7 +77,7 @@ class TricycleDrive(OdometryDrive):
         self._wheel.drive(0.0, self._torque)
         self._change.begin()   # turns the steering to 0
 
-    def tell(self) -> None:
+    def publish(self) -> None:
         """Odometry, as it is before the command of the same update (as the original)."""
         pose, velocity = self.motion()
         self._odometer.transform(pose)
@@ -107,10 +107,10 @@ class TricycleDrive(OdometryDrive):
     def _steer(self, wanted: float) -> None:
         """With a steering speed the motor turns; without one the wheel is turned at once."""
         if self._steering_speed > 0.0:
-            self._steering.steer(JointServo(
+            self._steering.set_servo(JointServo(
                 0, "position", target=wanted, most_rate=self._steering_speed,
                 most_effort=self._torque))
             return
-        self._steering.steer(JointServo(0, "position", target=wanted))
+        self._steering.set_servo(JointServo(0, "position", target=wanted))
         if abs(wanted - self._steering.position) > _SAME_ANGLE:
             self.context.set_joint_positions({self._steering.name: wanted})

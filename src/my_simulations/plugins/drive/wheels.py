@@ -29,7 +29,7 @@ class VelocityCommand:
         self._time_out = TimeOut(context, timeout) if timeout is not None else None
         self._expiry: Optional[Ending] = None
         self.stop()
-        context.subscribe(topic, "geometry_msgs/Twist", finite_only(context, topic, self._hear))
+        context.subscribe(topic, "geometry_msgs/Twist", finite_only(context, topic, self._receive))
 
     def stop(self) -> None:
         """Discard the last command."""
@@ -41,7 +41,7 @@ class VelocityCommand:
         if self._expiry is not None:
             self._begin_expiry()
 
-    def _hear(self, message: Any) -> None:
+    def _receive(self, message: Any) -> None:
         self.x, self.y, self.yaw = message.linear.x, message.linear.y, message.angular.z
         if self._time_out is not None:
             self._time_out.begin()

@@ -197,7 +197,7 @@ class ArduPilot(Plugin):
         if channel.by_effort or channel.kind == "EFFORT":
             if channel.kind == "VELOCITY":
                 value /= channel.slowdown
-            channel.joint.steer(replace(channel.servo, target=value))
+            channel.joint.set_servo(replace(channel.servo, target=value))
         elif channel.kind == "VELOCITY":
             channel.joint.drive(value, _MOTOR_EFFORT)
         else:

@@ -17,7 +17,7 @@ def push_at_origin(context: Context, link: Link, wrench: Wrench) -> None:
     force, torque = wrench
     torque = subtract(torque, cross(link.inertial.pose.position, force))
     turn = link.pose.orientation
-    context.push(link.name, rotate(turn, force), rotate(turn, torque))
+    context.set_wrench(link.name, rotate(turn, force), rotate(turn, torque))
 
 
 def body_twist(link: Link) -> Tuple[Vec3, Vec3]:

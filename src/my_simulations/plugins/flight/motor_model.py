@@ -50,7 +50,7 @@ class MotorModel(Plugin):
         self._down_time = p.positive("timeConstantDown", 1.0 / 40.0)
         self._slowdown = p.positive("rotorVelocitySlowdownSim", 10.0)
         command = p.text("commandSubTopic", "command/motor_speed")
-        context.subscribe(command, ACTUATORS, finite_only(context, command, self._hear))
+        context.subscribe(command, ACTUATORS, finite_only(context, command, self._receive))
         self._offer_wind(p.text("windSpeedSubTopic", "wind_speed"))
         self._offer_states()
         self._timer: Optional[Ending] = None
@@ -60,7 +60,7 @@ class MotorModel(Plugin):
         self._wind: Vec3 = (0.0, 0.0, 0.0)
         try:
             self.context.subscribe(topic, "rotors_comm/WindSpeed",
-                                   finite_only(self.context, topic, self._hear_wind))
+                                   finite_only(self.context, topic, self._receive_wind))
         except PluginError as missing:
             self.context.info(f"no wind by a topic: {missing}")
 
@@ -96,10 +96,10 @@ class MotorModel(Plugin):
         """Restart the time of the lags."""
         self._last_ns = self.context.now_ns
 
-    def _hear_wind(self, message: Any) -> None:
+    def _receive_wind(self, message: Any) -> None:
         self._wind = (message.velocity.x, message.velocity.y, message.velocity.z)
 
-    def _hear(self, message: Any) -> None:
+    def _receive(self, message: Any) -> None:
         values = message.angular_velocities
         if self._number >= len(values):
             self.context.warn(f"a command for {len(values)} motors has none for motor"
@@ -112,9 +112,9 @@ class MotorModel(Plugin):
                 self.clock_set()
                 self._timer = self.context.every(0.0, self.update)
         elif self._kind == "force":
-            self._joint.steer(JointServo(0, "effort", target=wanted))
+            self._joint.set_servo(JointServo(0, "effort", target=wanted))
         else:
-            self._joint.steer(self._position_servo(wanted))
+            self._joint.set_servo(self._position_servo(wanted))
 
     def _position_servo(self, angle: float) -> JointServo:
         found = self.context.parameters.children("joint_control_pid")
@@ -137,10 +137,10 @@ class MotorModel(Plugin):
         axis = rotate(turn, (0.0, 0.0, 1.0))
         air = subtract(self._link.twist.linear, self._wind)
         across = subtract(air, scale(axis, dot(air, axis)))
-        self.context.push(self._link.name,
+        self.context.set_wrench(self._link.name,
                           add(scale(axis, thrust), scale(across, -abs(speed) * self._drag)),
                           (0.0, 0.0, 0.0))
-        self.context.push(self._parent.name, (0.0, 0.0, 0.0), add(
+        self.context.set_wrench(self._parent.name, (0.0, 0.0, 0.0), add(
             scale(axis, -self._direction * thrust * self._moment_constant),
             scale(across, -abs(speed) * self._rolling)))
         lag = self._up_time if self._wanted > self._speed else self._down_time

@@ -37,7 +37,7 @@ class QuadrotorAerodynamics(Plugin):
         topic = p.text("windTopicName", "/wind")
         if topic:
             context.subscribe(topic, "geometry_msgs/Vector3",
-                              finite_only(context, topic, self._hear))
+                              finite_only(context, topic, self._receive))
         self._frame = p.text("frameId", self._link.name)
         self._wrenches = context.publish(p.text("wrenchTopic", "aerodynamics/wrench"),
                                          "geometry_msgs/WrenchStamped", 10)
@@ -47,7 +47,7 @@ class QuadrotorAerodynamics(Plugin):
         """The wind is that of the world."""
         self._wind = None
 
-    def _hear(self, message: Any) -> None:
+    def _receive(self, message: Any) -> None:
         self._wind = (message.x, message.y, message.z)
 
     def update(self) -> None:

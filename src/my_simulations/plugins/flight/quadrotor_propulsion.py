@@ -112,9 +112,9 @@ class QuadrotorPropulsion(Plugin):
         self._status_ns = round(1e9 / p.positive("motorStatusRate", 1e9)) \
             if p.number("motorStatusRate", 0.0) > 0.0 else 0
         for name, kind, read in (
-                (p.text("topicName", "command/motor"), "MotorCommand", self._hear_voltages),
+                (p.text("topicName", "command/motor"), "MotorCommand", self._receive_voltages),
                 (p.text("voltageTopicName") or p.text("pwmTopicName", "motor_pwm"), "MotorPWM",
-                 self._hear_pwm)):
+                 self._receive_pwm)):
             if name:
                 context.subscribe(name, f"hector_uav_msgs/{kind}", finite_only(context, name, read))
         self._frame = p.text("frameId", self._link.name)
@@ -153,12 +153,12 @@ class QuadrotorPropulsion(Plugin):
 
     # -- commands --------------------------------------------------------------------------------
 
-    def _hear_voltages(self, message: Any) -> None:
+    def _receive_voltages(self, message: Any) -> None:
         steps = [min(_PWM_STEPS, max(0, round(value / self._voltage * _PWM_STEPS)))
                  for value in message.voltage]
         self._add(message.header.stamp, steps)
 
-    def _hear_pwm(self, message: Any) -> None:
+    def _receive_pwm(self, message: Any) -> None:
         self._add(message.header.stamp, list(message.pwm))
 
     def _add(self, stamp: Any, steps: Sequence[int]) -> None:

@@ -43,7 +43,7 @@ class QuadrotorSimpleController(Plugin):
         command = self._topic("velocity_topic", p.text("topicName", "cmd_vel"))
         if command:
             context.subscribe(command, "geometry_msgs/Twist",
-                              finite_only(context, command, self._hear))
+                              finite_only(context, command, self._receive))
         for name in ("imuTopic", "stateTopic"):
             if p.text(name):
                 context.warn(f"<{name}> is ignored; the controller uses the true state")
@@ -73,7 +73,7 @@ class QuadrotorSimpleController(Plugin):
         """The next update is due at once."""
         self._last_ns = self.context.now_ns - self._period_ns
 
-    def _hear(self, message: Any) -> None:
+    def _receive(self, message: Any) -> None:
         self._command = (message.linear.x, message.linear.y, message.linear.z)
         self._yaw_rate = message.angular.z
         if self._auto_engages and self._timer is None and self._command[2] > _TAKE_OFF:

@@ -70,7 +70,7 @@ class RotorsWind(Plugin):
 
     def _push(self) -> None:
         """Push from now on, at a point that moves with the link."""
-        self.context.push_by(self._link.name, ForceAtPoint(self.force(), self._offset))
+        self.context.set_wrench_law(self._link.name, ForceAtPoint(self.force(), self._offset))
 
     def _publish_force(self) -> None:
         message = stamped(self.context, "geometry_msgs/WrenchStamped", self._frame)

@@ -25,7 +25,7 @@ _LEAST_RATIO = 0.3  # of two forces that oppose each other, and the smallest, N:
 _LEAST_FORCE = 1e-4
 
 
-class Press(NamedTuple):
+class FingerForce(NamedTuple):
     """What a finger does to an object: force on the object, N, world axes, and where, m."""
 
     finger: str
@@ -33,7 +33,7 @@ class Press(NamedTuple):
     point: Vec3  # in the finger's frame
 
 
-Presses = Dict[str, Dict[str, List[Press]]]
+FingerForces = Dict[str, Dict[str, List[FingerForce]]]
 """By the link of the object and the finger: those of the moments in which it touched."""
 
 
@@ -52,7 +52,7 @@ class Arm:
     name: str
     palm: str
     fingers: List[str]
-    pressed: Presses = field(default_factory=dict)
+    pressed: FingerForces = field(default_factory=dict)
     counts: Dict[str, int] = field(default_factory=dict)
     held: str = ""
     marks: List[Tuple[str, Vec3, Vec3, Vec3]] = field(default_factory=list)
@@ -124,7 +124,7 @@ class GraspFix(Plugin):
                                   for name, by_finger in pressed.items()
                                   if name.partition("::")[0] in models})
             elif arm.held.partition("::")[0] not in models or self._opened(arm):
-                self._let_go(arm)
+                self._drop_object(arm)
 
     def _sample_on(self, touches: bool) -> None:
         """Start or stop the sampling of contacts between updates."""
@@ -147,11 +147,11 @@ class GraspFix(Plugin):
                 for finger, press in by_finger.items():
                     known.setdefault(finger, []).append(press)
 
-    def _pressed(self, arm: Arm, contacts: list) -> Dict[str, Dict[str, Press]]:
+    def _pressed(self, arm: Arm, contacts: list) -> Dict[str, Dict[str, FingerForce]]:
         """What presses movable links of other models, by their names and by those of fingers."""
         prefix, models = f"{self.context.model}::", self.context.models()
         parts = {self.context.scoped(name): name for name in arm.fingers}
-        found: Dict[str, Dict[str, Press]] = {}
+        found: Dict[str, Dict[str, FingerForce]] = {}
         for one, other, contact in contacts:
             for mine, theirs, sign in ((one, other, -1.0), (other, one, 1.0)):
                 if mine not in parts or theirs.startswith(prefix) or contact.force <= _FORGET:
@@ -164,11 +164,11 @@ class GraspFix(Plugin):
                 if before is not None:
                     force = add(before.force, force)
                 finger = self.context.link(parts[mine]).pose
-                found[theirs][mine] = Press(parts[mine], force,
+                found[theirs][mine] = FingerForce(parts[mine], force,
                                             transform(inverse(finger), contact.position))
         return found
 
-    def _count(self, arm: Arm, pressed: Dict[str, List[Press]]) -> None:
+    def _count(self, arm: Arm, pressed: Dict[str, List[FingerForce]]) -> None:
         gripped = {name for name, presses in pressed.items() if self._opposed(presses)}
         for name in gripped | set(arm.counts):
             arm.counts[name] = min(self._most, arm.counts.get(name, 0) + 1) if name in gripped \
@@ -179,7 +179,7 @@ class GraspFix(Plugin):
                 self._hold(arm, name, pressed[name])
                 return
 
-    def _opposed(self, presses: List[Press]) -> bool:
+    def _opposed(self, presses: List[FingerForce]) -> bool:
         for n, one in enumerate(presses):
             for other in presses[n + 1:]:
                 less, more = sorted((norm(one.force), norm(other.force)))
@@ -190,7 +190,7 @@ class GraspFix(Plugin):
                     return True
         return False
 
-    def _hold(self, arm: Arm, name: str, presses: List[Press]) -> None:
+    def _hold(self, arm: Arm, name: str, presses: List[FingerForce]) -> None:
         context, palm = self.context, self.context.link(arm.palm).pose
         context.attach(self._joint(arm), context.scoped(arm.palm), name)
         arm.held = name
@@ -214,7 +214,7 @@ class GraspFix(Plugin):
                 return True
         return False
 
-    def _let_go(self, arm: Arm) -> None:
+    def _drop_object(self, arm: Arm) -> None:
         self.context.detach(self._joint(arm))
         self.context.info(f"arm '{arm.name}' lets go of {arm.held}")
         arm.counts, arm.held, arm.marks = {}, "", []
@@ -223,9 +223,9 @@ class GraspFix(Plugin):
         return f"{self.context.scoped(arm.palm).rpartition('::')[0]}::{arm.name}::grasp"
 
 
-def _mean(presses: List[Press]) -> Press:
+def _mean(presses: List[FingerForce]) -> FingerForce:
     """Of one finger on one object."""
     share, force, point = 1.0 / len(presses), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
     for press in presses:
         force, point = add(force, press.force), add(point, press.point)
-    return Press(presses[0].finger, scale(force, share), scale(point, share))
+    return FingerForce(presses[0].finger, scale(force, share), scale(point, share))

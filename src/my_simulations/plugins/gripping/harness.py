@@ -86,8 +86,8 @@ class Harness(Plugin):
         self._inertia = self._about_the_link()
         above = f"/{context.model}/harness"
         context.subscribe(f"{above}/velocity", "std_msgs/Float32",
-                          finite_only(context, f"{above}/velocity", self._hear_rate))
-        context.subscribe(f"{above}/detach", "std_msgs/Bool", self._hear_detach)
+                          finite_only(context, f"{above}/velocity", self._receive_rate))
+        context.subscribe(f"{above}/detach", "std_msgs/Bool", self._receive_detach)
         self._timer: Optional[Ending] = None   # while it hangs
         self.reset()
 
@@ -133,19 +133,19 @@ class Harness(Plugin):
         """Measure the time between updates from now."""
         self._last_ns = self.context.now_ns
 
-    def _hear_rate(self, message: Any) -> None:
+    def _receive_rate(self, message: Any) -> None:
         self._rate = float(message.data)
         if self._rate == 0.0:
             self._place = self._position()
             self._position_pid.reset()
 
-    def _hear_detach(self, message: Any) -> None:
+    def _receive_detach(self, message: Any) -> None:
         if bool(message.data) and self._hangs:
             self._hangs = False
             if self._timer is not None:
                 self._timer.end()
                 self._timer = None
-            self.context.push(self._link.name, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
+            self.context.set_wrench(self._link.name, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
             self.context.info("the harness lets go")
 
     def _position(self) -> float:
@@ -172,7 +172,7 @@ class Harness(Plugin):
                        -self._inertia)
         # The straps hold at the link's origin; the wrench acts at its centre of mass.
         arm = rotate(pose.orientation, self._link.inertial.pose.position)
-        self.context.push(self._link.name, force, subtract(torque, cross(arm, force)))
+        self.context.set_wrench(self._link.name, force, subtract(torque, cross(arm, force)))
 
     def _winch(self, position: float, rate: float, dt: float) -> float:
         """Along the joint, N; it pulls up to a rate, and does not push down."""

@@ -33,7 +33,7 @@ class VacuumGripper(Plugin):
         context.serve("on", "std_srvs/Empty", lambda request, response: self._switch(True))
         context.serve("off", "std_srvs/Empty", lambda request, response: self._switch(False))
         self._search: Optional[Ending] = None   # while it is on
-        context.observe(_HERTZ, self.tell, [self._topic])
+        context.observe(_HERTZ, self.publish, [self._topic])
 
     def reset(self) -> None:
         """Nothing is held, and it stays on or off as it is."""
@@ -47,19 +47,19 @@ class VacuumGripper(Plugin):
             self._search = self.context.every(_HERTZ, self._take)
         elif not on:
             self._end_search()
-            self._let_go()
+            self._release_links()
 
     def _end_search(self) -> None:
         if self._search is not None:
             self._search.end()
             self._search = None
 
-    def _let_go(self) -> None:
+    def _release_links(self) -> None:
         for joint, _ in self._held:
             self.context.detach(joint)
         self._held = []
 
-    def tell(self) -> None:
+    def publish(self) -> None:
         """Publish whether it holds something."""
         message = self.context.message("std_msgs/Bool")
         message.data = bool(self._held)

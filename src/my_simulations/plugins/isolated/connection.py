@@ -11,15 +11,15 @@ from ...engine.message_pipe import Wire
 from ..context import PluginError, RequestError
 from ..plugin_faults import describe_fault
 from .messages import (
-    Ask,
     Call,
     Done,
     Function,
-    Order,
+    HandleCall,
+    Query,
+    QueryFailed,
     Raised,
     Readings,
     Reference,
-    Refused,
     Value,
 )
 
@@ -44,7 +44,7 @@ class Connection:
         self._single: Set[int] = set()       # functions that are called once at most
         self._answering: Set[Union[int, str]] = set()   # functions whose results are sent
         self._made = 0
-        self._orders: List[Order] = []
+        self._handle_calls: List[HandleCall] = []
         self._received: Deque[Any] = deque()
         self._thread = threading.get_ident()
         self._forked = False
@@ -74,11 +74,11 @@ class Connection:
             if self._forked:
                 os._exit(1)   # the plugin has returned, or raised, in a process that it forked
             kept = fault if isinstance(fault, (PluginError, RequestError)) else None
-            self.send(Raised(self._taken_orders(), kept, describe_fault(fault)))
+            self.send(Raised(self._take_handle_calls(), kept, describe_fault(fault)))
 
     def _done(self, call: Call) -> Done:
         result = self._function(call.function)(*call.arguments)
-        return Done(self._taken_orders(), result if call.function in self._answering else None)
+        return Done(self._take_handle_calls(), result if call.function in self._answering else None)
 
     def _function(self, which: Union[int, str]) -> Callable[..., Any]:
         if isinstance(which, str):
@@ -89,22 +89,23 @@ class Connection:
             del self._functions[which]
         return function
 
-    def order(self, handle: int, name: str, *arguments: Any) -> None:
+    def call_handle(self, handle: int, name: str, *arguments: Any) -> None:
         """Have the node call a method of a handle, before the next answer or return."""
-        self._orders.append(Order(handle, name, pickle.dumps(arguments, pickle.HIGHEST_PROTOCOL)))
+        self._handle_calls.append(HandleCall(handle, name,
+                                       pickle.dumps(arguments, pickle.HIGHEST_PROTOCOL)))
 
-    def _taken_orders(self) -> List[Order]:
-        orders, self._orders = self._orders, []
-        return orders
+    def _take_handle_calls(self) -> List[HandleCall]:
+        handle_calls, self._handle_calls = self._handle_calls, []
+        return handle_calls
 
     def state(self, handle: int) -> Any:
         """What a handle shows. Raises what reading it raises."""
         if handle not in self.readings.states:
-            self.readings = self.ask("readings")
+            self.readings = self.query("readings")
         found = self.readings.states.get(handle)
-        return self.ask("state", handle) if found is None else found
+        return self.query("state", handle) if found is None else found
 
-    def ask(self, name: str, *arguments: Any, **named: Any) -> Any:
+    def query(self, name: str, *arguments: Any, **named: Any) -> Any:
         """The result of a method of the node's context. Raises its exception, or PluginError."""
         if self._forked:
             raise PluginError(f"'{name}' was used in a process that the plugin has forked; only the"
@@ -112,7 +113,7 @@ class Connection:
         if threading.get_ident() != self._thread:
             raise PluginError(f"'{name}' was used in a thread of the plugin; only functions that"
                               " the simulator calls can use the context")
-        self.send(Ask(self._taken_orders(), name,
+        self.send(Query(self._take_handle_calls(), name,
                       tuple(self._packed(name, one) for one in arguments),
                       {key: self._packed(name, one) for key, one in named.items()}))
         while True:
@@ -122,7 +123,7 @@ class Connection:
                 continue
             if name not in ("readings", "state"):   # it may have changed the world
                 self.readings.states.clear()
-            if isinstance(message, Refused):
+            if isinstance(message, QueryFailed):
                 raise message.fault
             assert isinstance(message, Value)
             return message.value

@@ -6,27 +6,27 @@ import sys
 from typing import Any, Callable, Dict, Optional, Tuple, Union
 
 from ..base import Plugin
-from ..call_watch import Patience
+from ..call_watch import CallLimits
 from ..context import PluginError
 from ..plugin_faults import DescribedFaultError, describe_fault
 from ..simulated_context import SimulatedContext
 from .messages import (
+    CALLS_WITHOUT_RESULT,
     CONTEXT,
-    HANDLE_ORDERS,
+    HANDLE_CALLS,
     HANDLES,
     METHODS,
-    ORDERS,
     PROPERTIES,
-    Ask,
     Call,
     Done,
     Function,
+    HandleCall,
     HandleMade,
-    Order,
+    Query,
+    QueryFailed,
     Raised,
     Readings,
     Reference,
-    Refused,
     Start,
     Value,
 )
@@ -43,27 +43,27 @@ class IsolatedPlugin(Plugin):
         context: of the plugin.
         where: the class as `package.module:Class`.
         process: newly started.
-        patience: how long a call may take.
-        meanwhile: called during the wait for the process, see `PluginProcess.receive`.
+        limits: how long a call may take.
+        while_waiting: called during the wait for the process, see `PluginProcess.receive`.
     """
 
     def __init__(self, context: SimulatedContext, where: str, process: PluginProcess,
-                 patience: Patience, meanwhile: Callable[[float], bool]) -> None:
+                 limits: CallLimits, while_waiting: Callable[[float], bool]) -> None:
         super().__init__(context)
-        self._simulated, self._process, self._patience = context, process, patience
-        self._meanwhile = meanwhile
+        self._simulated, self._process, self._limits = context, process, limits
+        self._nested_turns = while_waiting
         self._handles: Dict[int, Tuple[str, Any]] = {CONTEXT: ("context", context)}
         self._shown: Dict[int, Tuple[str, Any]] = {}   # those of the handles that have a state
         self._made = CONTEXT
         process.send(list(sys.path))
-        process.receive(patience.longer(), meanwhile)
+        process.receive(limits.doubled(), while_waiting)
         process.send(Start(where, context.spec, context.sensor, context.sensor_link,
                            context.sensor_joint))
-        self._call("construct", patience=patience.longer())
+        self._call("construct", limits=limits.doubled())
 
     def load(self) -> None:
         """Load it."""
-        self._call("load", patience=self._patience.longer())
+        self._call("load", limits=self._limits.doubled())
 
     def reset(self) -> None:
         """The world was reset."""
@@ -78,17 +78,17 @@ class IsolatedPlugin(Plugin):
         self._call("close")
 
     def _call(self, function: Union[int, str], *arguments: Any,
-              patience: Optional[Patience] = None) -> Any:
+              limits: Optional[CallLimits] = None) -> Any:
         """Call a function in the process, and do what it asks for until it returns.
 
         Raises PluginError with what it has raised, or with why the process has ended.
         """
-        process, patience = self._process, patience or self._patience
+        process, limits = self._process, limits or self._limits
         process.send(Call(function, arguments, self._readings()))
         while True:
-            message = process.receive(patience, self._meanwhile)
-            for order in message.orders:
-                self._obey(order)
+            message = process.receive(limits, self._nested_turns)
+            for order in message.handle_calls:
+                self._carry_out(order)
             if isinstance(message, Done):
                 return message.result
             if isinstance(message, Raised):
@@ -100,9 +100,10 @@ class IsolatedPlugin(Plugin):
         return Readings(context.model, context.now_ns, context.step, {
             number: _state(kind, handle) for number, (kind, handle) in self._shown.items()})
 
-    def _obey(self, order: Order) -> None:
+    def _carry_out(self, order: HandleCall) -> None:
         kind, handle = self._handles.get(order.handle, ("", None))
-        allowed = ORDERS if order.handle == CONTEXT else HANDLE_ORDERS.get(kind, frozenset())
+        allowed = CALLS_WITHOUT_RESULT if order.handle == CONTEXT else HANDLE_CALLS.get(kind,
+                                                                                        frozenset())
         if order.name not in allowed:
             return   # a handle that has ended
         getattr(handle, order.name)(*pickle.loads(order.arguments))
@@ -115,25 +116,25 @@ class IsolatedPlugin(Plugin):
 
     # -- answers -----------------------------------------------------------------------------------
 
-    def _answer(self, ask: Ask) -> Union[Value, Refused]:
+    def _answer(self, query: Query) -> Union[Value, QueryFailed]:
         try:
-            return Value(self._value(ask))
+            return Value(self._value(query))
         except Exception as fault:  # the plugin receives it, as from a context in its own process
             known = type(fault).__module__.startswith(("builtins", "my_simulations.plugins"))
-            return Refused(fault if known else PluginError(describe_fault(fault)))
+            return QueryFailed(fault if known else PluginError(describe_fault(fault)))
 
-    def _value(self, ask: Ask) -> Any:
-        name, context = ask.name, self._simulated
+    def _value(self, query: Query) -> Any:
+        name, context = query.name, self._simulated
         if name == "readings":
             return self._readings()
         if name == "state":
-            return _read(*self._handles[ask.arguments[0]])
+            return _read(*self._handles[query.arguments[0]])
         if name in PROPERTIES:
             return getattr(context, name)
         if name not in METHODS and name not in HANDLES:
             raise AttributeError(f"the context has no '{name}'")
-        arguments = [self._unpacked(name, one) for one in ask.arguments]
-        named = {key: self._unpacked(name, one) for key, one in ask.named.items()}
+        arguments = [self._unpacked(name, one) for one in query.arguments]
+        named = {key: self._unpacked(name, one) for key, one in query.named.items()}
         if name in METHODS:
             return getattr(context, name)(*arguments, **named)
         return self._handle(HANDLES[name], getattr(context, name)(*arguments, **named))
@@ -186,7 +187,7 @@ def _read(kind: str, handle: Any) -> Any:
     if kind == "link":
         return handle.pose, handle.twist
     if kind == "joint":
-        return handle.position, handle.velocity, handle.puts
+        return handle.position, handle.velocity, handle.set_count
     return handle.wanted if kind == "topic" else True
 
 

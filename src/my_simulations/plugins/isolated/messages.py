@@ -1,8 +1,8 @@
 """The messages between the node and the process of a plugin.
 
-The node sends a `Call`; the process answers with `Done` or `Raised`, and may send an `Ask` before,
-which the node answers with `Value` or `Refused`. Calls nest: a function that the node calls to
-answer an `Ask` belongs to the plugin, too.
+The node sends a `Call`; the process answers with `Done` or `Raised`, and may send an `Query`
+before, which the node answers with `Value` or `QueryFailed`. Calls nest: a function that the node
+calls to answer an `Query` belongs to the plugin, too.
 """
 from __future__ import annotations
 
@@ -19,7 +19,8 @@ CONTEXT = 0
 """The number of the context among the handles."""
 
 PROPERTIES = frozenset((
-    "step_size", "by_hand", "pose", "twist", "gravity", "seed", "magnetic_field", "wind",
+    "step_size", "is_stepped_manually", "pose", "twist", "gravity", "seed", "magnetic_field",
+    "wind",
     "place_on_earth", "description"))
 """Properties of the context whose values are sent."""
 
@@ -33,10 +34,11 @@ HANDLES = {"link": "link", "model_link": "link", "joint": "joint", "publish": "t
            "subscribe": "end", "serve": "end", "every": "end", "observe": "end", "once": "end"}
 """Methods of the context that return handles, and the kinds of these."""
 
-ORDERS = frozenset(("drive_level", "push", "push_by", "transform", "info", "warn"))
+CALLS_WITHOUT_RESULT = frozenset(("drive_level", "set_wrench", "set_wrench_law", "transform",
+                                  "info", "warn"))
 """Methods of the context without a result."""
 
-HANDLE_ORDERS = {"link": frozenset(()), "joint": frozenset(("drive", "steer")),
+HANDLE_CALLS = {"link": frozenset(()), "joint": frozenset(("drive", "set_servo")),
                  "topic": frozenset(("publish", "close")), "end": frozenset(("close", "end"))}
 """Methods of the handles without a result, by kind."""
 
@@ -79,7 +81,7 @@ class Call(NamedTuple):
     readings: Readings
 
 
-class Order(NamedTuple):
+class HandleCall(NamedTuple):
     """Call a method of a handle; nothing is returned.
 
     Attributes:
@@ -91,23 +93,23 @@ class Order(NamedTuple):
     arguments: bytes
 
 
-class Ask(NamedTuple):
-    """Call a method of the context, or read a property; `orders` come first."""
+class Query(NamedTuple):
+    """Call a method of the context, or read a property; `handle_calls` come first."""
 
-    orders: List[Order]
+    handle_calls: List[HandleCall]
     name: str
     arguments: Tuple[Any, ...]
     named: Dict[str, Any]
 
 
 class Value(NamedTuple):
-    """The answer to an `Ask`."""
+    """The answer to an `Query`."""
 
     value: Any
 
 
-class Refused(NamedTuple):
-    """The exception that answers an `Ask`."""
+class QueryFailed(NamedTuple):
+    """The exception that answers an `Query`."""
 
     fault: Exception
 
@@ -115,7 +117,7 @@ class Refused(NamedTuple):
 class Done(NamedTuple):
     """A call has returned."""
 
-    orders: List[Order]
+    handle_calls: List[HandleCall]
     result: Any
 
 
@@ -127,25 +129,25 @@ class Raised(NamedTuple):
         text: the exception for the user, with function, file and line.
     """
 
-    orders: List[Order]
+    handle_calls: List[HandleCall]
     fault: Optional[Exception]
     text: str
 
 
 class Function(NamedTuple):
-    """Stands for a function of the plugin among the arguments of an `Ask`."""
+    """Stands for a function of the plugin among the arguments of an `Query`."""
 
     number: int
 
 
 class Reference(NamedTuple):
-    """Stands for a handle among the arguments of an `Ask`."""
+    """Stands for a handle among the arguments of an `Query`."""
 
     number: int
 
 
 class HandleMade(NamedTuple):
-    """A handle as the value of an `Ask`, with what never changes of it, and its state."""
+    """A handle as the value of an `Query`, with what never changes of it, and its state."""
 
     number: int
     kind: str

@@ -18,7 +18,7 @@ from typing import Any, Callable, Deque, List, Optional
 
 from ...child_process import child_command, child_environment, signal_name
 from ...engine.message_pipe import Wire
-from ..call_watch import Patience
+from ..call_watch import CallLimits
 from ..context import PluginError
 from ..plugin_faults import innermost_of_plugin, shortened
 from .messages import TRACE_SIGNAL
@@ -108,12 +108,13 @@ class PluginProcess:
         except OSError:
             raise self._lost() from None
 
-    def receive(self, patience: Patience, meanwhile: Callable[[float], bool]) -> Any:
+    def receive(self, limits: CallLimits, while_waiting: Callable[[float], bool]) -> Any:
         """The next message; waits for it.
 
         Args:
-            patience: how long the process may take.
-            meanwhile: called at each look with the time waited, s; returns whether it has waited.
+            limits: how long the process may take.
+            while_waiting: called at each look with the time waited, s; returns whether it has
+                waited.
 
         Raises ProcessEndedError if the process has ended, or takes too long and so was ended.
         """
@@ -124,8 +125,8 @@ class PluginProcess:
                 if begun is None:   # from the first look on, as all calls that are watched
                     begun, used_before = time.monotonic(), self._used()
                 waited = time.monotonic() - begun
-                self._check(patience, waited, self._used() - used_before)
-                look_s = 0.0 if meanwhile(waited) else _LOOK_S
+                self._check(limits, waited, self._used() - used_before)
+                look_s = 0.0 if while_waiting(waited) else _LOOK_S
                 continue
             try:
                 self._received += self._wire.receive(0.0)
@@ -156,13 +157,13 @@ class PluginProcess:
         except OSError:   # it has ended: the socket says so
             return 0.0
 
-    def _check(self, patience: Patience, waited: float, used: float) -> None:
+    def _check(self, limits: CallLimits, waited: float, used: float) -> None:
         """Raise ProcessEndedError for a call that takes too long."""
         why = ""
-        if used > patience.computing:
-            why = f"it did not return within {patience.computing:g} s of processor time"
-        elif waited > patience.waiting and used < 0.1 * waited:
-            why = f"it waited for more than {patience.waiting:g} s"
+        if used > limits.computing:
+            why = f"it did not return within {limits.computing:g} s of processor time"
+        elif waited > limits.waiting and used < 0.1 * waited:
+            why = f"it waited for more than {limits.waiting:g} s"
         if why:
             where = self._where()
             self._kill()

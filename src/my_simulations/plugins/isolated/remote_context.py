@@ -20,8 +20,8 @@ class RemoteHandle:
         self._connection, self.number = connection, made.number
         connection.readings.states[made.number] = made.state
 
-    def _order(self, name: str, *arguments: Any) -> None:
-        self._connection.order(self.number, name, *arguments)
+    def _call_handle(self, name: str, *arguments: Any) -> None:
+        self._connection.call_handle(self.number, name, *arguments)
 
 
 class RemoteLink(RemoteHandle):
@@ -63,18 +63,18 @@ class RemoteJoint(RemoteHandle):
         return float(self._connection.state(self.number)[1])
 
     @property
-    def puts(self) -> float:
+    def set_count(self) -> float:
         """The number of times the position was set directly."""
         return float(self._connection.state(self.number)[2])
 
     def drive(self, rate: float, effort: float) -> None:
         """Drive the motor."""
-        self._order("drive", finite(rate, "the rate of a motor"),
+        self._call_handle("drive", finite(rate, "the rate of a motor"),
                     number(effort, "the effort of a motor"))
 
-    def steer(self, servo: Any) -> None:
+    def set_servo(self, servo: Any) -> None:
         """Drive the axis by a servo of the engine."""
-        self._order("steer", servo)
+        self._call_handle("set_servo", servo)
 
 
 class RemoteTopic(RemoteHandle):
@@ -87,15 +87,15 @@ class RemoteTopic(RemoteHandle):
 
     def publish(self, message: Any) -> None:
         """Publish a message."""
-        self._order("publish", message)
+        self._call_handle("publish", message)
 
     def publish_later(self, make: Callable[[], Any]) -> None:
         """Publish what `make` returns. The process has one thread: it is called at once."""
-        self._order("publish", make())
+        self._call_handle("publish", make())
 
     def close(self) -> None:
         """Remove the topic from the ROS graph."""
-        self._order("close")
+        self._call_handle("close")
 
 
 class RemoteEnd(RemoteHandle):
@@ -103,11 +103,11 @@ class RemoteEnd(RemoteHandle):
 
     def end(self) -> None:
         """End it."""
-        self._order("end")
+        self._call_handle("end")
 
     def close(self) -> None:
         """End it."""
-        self._order("close")
+        self._call_handle("close")
 
 
 _KINDS: Dict[str, Any] = {
@@ -127,13 +127,13 @@ class RemoteContext:
 
     def __getattr__(self, name: str) -> Any:
         if name in PROPERTIES:
-            return self._connection.ask(name)
+            return self._connection.query(name)
         if name in METHODS:
-            return partial(self._connection.ask, name)
+            return partial(self._connection.query, name)
         raise AttributeError(f"the context has no '{name}'")
 
     def _handle(self, name: str, *arguments: Any, **named: Any) -> Any:
-        made = self._connection.ask(name, *arguments, **named)
+        made = self._connection.query(name, *arguments, **named)
         return _KINDS[made.kind](self._connection, made)
 
     # -- time ------------------------------------------------------------------------------------
@@ -195,25 +195,26 @@ class RemoteContext:
 
     def drive_level(self, x: float, y: float, yaw_rate: float) -> None:
         """Move the model in its horizontal plane from now on."""
-        self._order("drive_level", finite(x, "x"), finite(y, "y"), finite(yaw_rate, "yaw_rate"))
+        self._call_handle("drive_level", finite(x, "x"), finite(y, "y"),
+                          finite(yaw_rate, "yaw_rate"))
 
-    def push(self, link: str, force: Vec3, torque: Vec3) -> None:
+    def set_wrench(self, link: str, force: Vec3, torque: Vec3) -> None:
         """Apply a wrench from now on."""
-        self._order("push", link, vector(force, "force"), vector(torque, "torque"))
+        self._call_handle("set_wrench", link, vector(force, "force"), vector(torque, "torque"))
 
-    def push_by(self, link: str, law: WrenchLaw, joint: str = "") -> None:
+    def set_wrench_law(self, link: str, law: WrenchLaw, joint: str = "") -> None:
         """Apply the wrench of a law from now on."""
-        self._order("push_by", link, law, joint)
+        self._call_handle("set_wrench_law", link, law, joint)
 
-    def _order(self, name: str, *arguments: Any) -> None:
-        self._connection.order(CONTEXT, name, *arguments)
+    def _call_handle(self, name: str, *arguments: Any) -> None:
+        self._connection.call_handle(CONTEXT, name, *arguments)
 
     # -- topics, services, log -------------------------------------------------------------------
 
     def message(self, kind: str) -> Any:
         """A new message."""
         if kind not in self._messages:
-            self._messages[kind] = pickle.dumps(self._connection.ask("message", kind))
+            self._messages[kind] = pickle.dumps(self._connection.query("message", kind))
         return pickle.loads(self._messages[kind])
 
     def publish(self, name: str, kind: str, queue: int = 1, latch: bool = False) -> RemoteTopic:
@@ -236,12 +237,12 @@ class RemoteContext:
 
     def transform(self, parent: str, child: str, pose: Pose) -> None:
         """Broadcast a transform to tf."""
-        self._order("transform", str(parent), str(child), pose_of(pose, "a transform"))
+        self._call_handle("transform", str(parent), str(child), pose_of(pose, "a transform"))
 
     def info(self, text: str) -> None:
         """Report information to the user."""
-        self._order("info", str(text))
+        self._call_handle("info", str(text))
 
     def warn(self, text: str) -> None:
         """Report a warning to the user."""
-        self._order("warn", str(text))
+        self._call_handle("warn", str(text))

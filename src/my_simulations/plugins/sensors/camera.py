@@ -69,9 +69,9 @@ class Trigger:
         self._triggers = 0
         self._warm = self._drawing = False
         topic = context.parameters.text("triggerTopicName") or "image_trigger"
-        context.subscribe(stream.topics.named(topic), "std_msgs/Empty", self._hear, _TRIGGERS)
+        context.subscribe(stream.topics.named(topic), "std_msgs/Empty", self._receive, _TRIGGERS)
 
-    def _hear(self, message: Any) -> None:
+    def _receive(self, message: Any) -> None:
         self._triggers += 1
         self._soon()
 

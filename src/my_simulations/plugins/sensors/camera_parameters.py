@@ -94,7 +94,7 @@ class ImagerRate:
     def _look(self) -> None:
         """Take a picture at once when a first subscriber comes, as in Gazebo."""
         before, self._listened = self._listened, self._wanted()
-        if self._listened and not before and not self._context.by_hand:
+        if self._listened and not before and not self._context.is_stepped_manually:
             self._call()
 
     def _change(self, values: Mapping[str, Value]) -> None:
@@ -102,7 +102,7 @@ class ImagerRate:
         self._timer = self._context.observe(float(values[_RATE.name]), self._call, self._topics,
                                             world=True)
         for offer in self._offers:
-            offer.tell(values)
+            offer.publish(values)
 
 
 def spec_of(context: Context, block: CameraBlock, crop: bool = False) -> CameraSpec:

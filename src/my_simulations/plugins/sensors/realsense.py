@@ -96,13 +96,13 @@ class RealSense(Plugin):
         self._take("depth", self._gray, outputs, seen)
 
     def _take(self, name: str, stream: PictureStream, outputs: Tuple[str, ...],
-              tell: Callable[[Any, int], None]) -> None:
+              publish: Callable[[Any, int], None]) -> None:
         if not outputs:
-            tell(None, self.context.now_ns)
+            publish(None, self.context.now_ns)
             return
 
         def seen(pictures: List[Any], ns: int) -> None:
-            tell(pictures[0], ns)
+            publish(pictures[0], ns)
 
         self.context.photograph([stream.view(*outputs)], seen, name)
 

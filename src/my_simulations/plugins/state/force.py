@@ -23,17 +23,17 @@ class Force(Plugin):
         self._body = context.link(p.text("bodyName")).name
         self._force: Vec3 = ZERO3
         self._torque: Vec3 = ZERO3
-        context.subscribe(topic, "geometry_msgs/Wrench", finite_only(context, topic, self._hear))
+        context.subscribe(topic, "geometry_msgs/Wrench", finite_only(context, topic, self._receive))
 
     def reset(self) -> None:
         """Keep the wrench after a reset, as in Gazebo."""
         self._act()
 
-    def _hear(self, message: Any) -> None:
+    def _receive(self, message: Any) -> None:
         force, torque = message.force, message.torque
         self._force = (force.x, force.y, force.z)
         self._torque = (torque.x, torque.y, torque.z)
         self._act()
 
     def _act(self) -> None:
-        self.context.push(self._body, self._force, self._torque)
+        self.context.set_wrench(self._body, self._force, self._torque)

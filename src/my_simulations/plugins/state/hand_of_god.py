@@ -53,7 +53,7 @@ class HandOfGod(Plugin):
             if not self._told:
                 self._told = True
                 self.context.warn(f"there is no tf frame {self._frame}_desired in world yet")
-            self.context.push(self._link.name, lift, (0.0, 0.0, 0.0))
+            self.context.set_wrench(self._link.name, lift, (0.0, 0.0, 0.0))
             return
         pose, twist = self._link.pose, self._link.twist
         (kl, ka), (cl, ca) = self._stiffness, self._damping
@@ -62,7 +62,7 @@ class HandOfGod(Plugin):
         back = multiply(conjugate(pose.orientation), wanted.orientation)
         torque = subtract(scale(logarithm(back), ka),
                           scale(rotate(conjugate(pose.orientation), twist.angular), ca))
-        self.context.push(self._link.name, add(force, lift), rotate(pose.orientation, torque))
+        self.context.set_wrench(self._link.name, add(force, lift), rotate(pose.orientation, torque))
         self.context.transform("world", f"{self._frame}_actual",
                                Pose(pose.position, pose.orientation))
 

@@ -21,7 +21,7 @@ _MOST_INTEGRAL, _MOST_EFFORT = 1.0, 1000.0
 
 
 class JointControl(Plugin):
-    """Orders once; the engine does the rest."""
+    """Send the servos once; the engine does the rest."""
 
     def load(self) -> None:
         """Read parameters."""
@@ -32,7 +32,7 @@ class JointControl(Plugin):
             servo = self._servo(controller)
             for name in self._names(controller):
                 if "target" in controller:
-                    self.context.joint(name).steer(servo)
+                    self.context.joint(name).set_servo(servo)
 
     def reset(self) -> None:
         """Keep the targets after a reset."""

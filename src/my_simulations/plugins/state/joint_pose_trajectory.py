@@ -34,7 +34,7 @@ class JointPoseTrajectory(Plugin):
         topic = p.text("topicName", "set_joint_trajectory")
         service = p.text("serviceName", "set_joint_trajectory")
         if topic:
-            context.subscribe(topic, "trajectory_msgs/JointTrajectory", self._hear, queue=100)
+            context.subscribe(topic, "trajectory_msgs/JointTrajectory", self._receive, queue=100)
         if service:
             context.serve(service, "gazebo_msgs/SetJointTrajectory", self._asked)
 
@@ -44,7 +44,7 @@ class JointPoseTrajectory(Plugin):
 
     clock_set = reset
 
-    def _hear(self, message: Any) -> None:
+    def _receive(self, message: Any) -> None:
         try:
             self._begin(message, True)
         except PluginError as fault:  # of this trajectory

@@ -28,8 +28,8 @@ class Differential(Plugin):
     def update(self) -> None:
         """Before each step."""
         effort = self._constant * (self._one.position - self._other.position)
-        self._one.steer(JointServo(0, "effort", target=-effort))
-        self._other.steer(JointServo(0, "effort", target=effort))
+        self._one.set_servo(JointServo(0, "effort", target=-effort))
+        self._other.set_servo(JointServo(0, "effort", target=effort))
 
 
 class WarthogSuspension(Plugin):
@@ -40,7 +40,7 @@ class WarthogSuspension(Plugin):
         p = self.context.parameters
         gains = PidGains(p.number("suspension_k", 0.0), d=p.number("suspension_b", 0.0))
         for name in _SUSPENSIONS:
-            self.context.joint(name).steer(JointServo(0, "effort", gains=gains, by_rates=True))
+            self.context.joint(name).set_servo(JointServo(0, "effort", gains=gains, by_rates=True))
 
     def reset(self) -> None:
         """The springs act again."""

@@ -71,7 +71,7 @@ class Buoyancy(Plugin):
         """Apply buoyancy at the centres of volume, against the present gravity."""
         for link, volume, centre in self._floats:
             force = scale(self.context.gravity, -self._density * volume)
-            self.context.push_by(link.name, ForceAtPoint(force, centre))
+            self.context.set_wrench_law(link.name, ForceAtPoint(force, centre))
 
 
 def volume_of(shape: object) -> Optional[float]:

@@ -119,7 +119,7 @@ class DipoleMagnet(Plugin):
             field, torque = add(field, felt), add(torque, cross(moment, felt))
             force = add(force, force_between(moment, acting, arm))
         lever = subtract(at, transform(pose, self._link.inertial.pose.position))
-        self.context.push(self._link.name, force, add(torque, cross(lever, force)))
+        self.context.set_wrench(self._link.name, force, add(torque, cross(lever, force)))
         if self._publishes and self.context.now_ns >= self._next_ns:
             self._next_ns = self.context.now_ns + self._period_ns
             self._publish(force, torque, field)

@@ -29,13 +29,13 @@ class Elevator(Plugin):
     """Drives the joints `<lift_joint>` and `<door_joint>`."""
 
     def load(self) -> None:
-        """Read parameters; hear calls."""
+        """Read parameters; subscribe to calls."""
         context, p = self.context, self.context.parameters
         context.use_namespace(namespace_or(p, ""))
         self._lift, self._door = self._joint("lift_joint"), self._joint("door_joint")
         self._height = p.number("floor_height", 3.0)
         self._wait = TimeOut(context, p.number("door_wait_time", 5.0))
-        context.subscribe(p.text("topic") or "elevator", "std_msgs/String", self._hear)
+        context.subscribe(p.text("topic") or "elevator", "std_msgs/String", self._receive)
         self._change = StepwiseChange(context, _HERTZ, self._update)
         self.reset()
 
@@ -52,7 +52,7 @@ class Elevator(Plugin):
         self._go(0)
         self._move_door(_CLOSED)
 
-    def _hear(self, message: Any) -> None:
+    def _receive(self, message: Any) -> None:
         try:
             floor = int(str(message.data).strip())
             float(floor)
@@ -72,10 +72,10 @@ class Elevator(Plugin):
 
     def _go(self, floor: int) -> None:
         self._level = floor * self._height
-        self._lift.steer(_servo(self._lift, _LIFT_GAINS, self._level))
+        self._lift.set_servo(_servo(self._lift, _LIFT_GAINS, self._level))
 
     def _move_door(self, place: float) -> None:
-        self._door.steer(_servo(self._door, _DOOR_GAINS, place))
+        self._door.set_servo(_servo(self._door, _DOOR_GAINS, place))
 
     def _door_stage(self, place: float) -> Stage:
         def go_on() -> bool:

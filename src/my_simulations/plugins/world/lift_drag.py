@@ -36,7 +36,7 @@ class LiftDrag(Plugin):
 
     def reset(self) -> None:
         """Forces ended with the reset."""
-        self.context.push_by(self._link.name, self._wing, self._control)
+        self.context.set_wrench_law(self._link.name, self._wing, self._control)
 
     def _control_joint(self, name: str) -> str:
         """Return the control joint, or ""; report a missing one and ignore it, as in Gazebo."""

@@ -45,7 +45,7 @@ class Wind(Plugin):
         self._direction = self._lag(_child(across, "direction"), "amplitude", "direction")
         self._vertical = self._lag(p.children("vertical")[:1], "", "vertical")
         context.subscribe("/gazebo/wind", "geometry_msgs/Vector3",
-                          finite_only(context, "/gazebo/wind", self._hear))
+                          finite_only(context, "/gazebo/wind", self._receive))
         self._given: Optional[Vec3] = None
         self._pushed: List[str] = []
         self.reset()
@@ -71,7 +71,7 @@ class Wind(Plugin):
         """Keep the wind, as in Gazebo; measure the lag from now."""
         self._last_ns = self.context.now_ns
 
-    def _hear(self, message: Any) -> None:
+    def _receive(self, message: Any) -> None:
         self._given = (float(message.x), float(message.y), float(message.z))
 
     def update(self) -> None:
@@ -91,7 +91,7 @@ class Wind(Plugin):
             if scoped not in seen and scoped.partition("::")[0] in present:
                 seen[scoped] = (0.0, 0.0, 0.0)
         for scoped, force in seen.items():
-            context.push(scoped, force, (0.0, 0.0, 0.0))
+            context.set_wrench(scoped, force, (0.0, 0.0, 0.0))
         self._pushed = [scoped for scoped, force in seen.items() if any(force)]
 
     def velocity(self) -> Vec3:

@@ -114,8 +114,8 @@ def _of_plugins(uses: List[TopicUse]) -> Tuple[str, bool, str, Pose]:
     models: Set[str] = {use.model for use in uses}
     if len(models) != 1:
         return "", False, "", IDENTITY  # of no robot, or of several ones
-    driven = any(use.heard for use in uses)
-    sensor = next((use for use in uses if use.link and not use.heard), None)
+    driven = any(use.is_subscription for use in uses)
+    sensor = next((use for use in uses if use.link and not use.is_subscription), None)
     if sensor is None:
         return models.pop(), driven, "", IDENTITY
     optical = sensor.sensor in _CAMERAS and sensor.kind in _CLOUDS

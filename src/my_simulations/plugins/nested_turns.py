@@ -9,7 +9,7 @@ from __future__ import annotations
 from typing import Callable, List
 
 from .context import PluginError
-from .running import Running
+from .running import RunningPlugin
 
 _HOLD_S = 0.75      # how long the world waits for one plugin, after the first check of the call
 _WAIT_S = 0.02      # between two checks of the process, if the engine does not notify the host
@@ -20,7 +20,7 @@ class PluginRemovedError(PluginError):
     """The model of a plugin was deleted during a call of the plugin."""
 
 
-class Meanwhile:
+class NestedTurns:
     """Turns inside the wait for a plugin. For the thread of the host.
 
     Attributes:
@@ -35,13 +35,13 @@ class Meanwhile:
     """
 
     def __init__(self, turn: Callable[[], None], wait: Callable[[float], bool],
-                 stands: Callable[[], bool], is_present: Callable[[Running], bool],
-                 resume: Callable[[Running], None]) -> None:
+                 stands: Callable[[], bool], is_present: Callable[[RunningPlugin], bool],
+                 resume: Callable[[RunningPlugin], None]) -> None:
         self._turn, self._wait, self._stands = turn, wait, stands
         self._is_present, self._resume = is_present, resume
-        self.busy: List[Running] = []
+        self.busy: List[RunningPlugin] = []
 
-    def take_turn(self, running: Running, waited: float) -> bool:
+    def take_turn(self, running: RunningPlugin, waited: float) -> bool:
         """Take a turn if `running` has taken `waited` s; returns whether it did.
 
         Raises PluginRemovedError.
