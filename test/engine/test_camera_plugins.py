@@ -145,7 +145,7 @@ def test_what_is_painted_anew_is_seen_anew(case):
     one = case(CAMERA.format(rate=10))
     one.after(100, "cam/image_raw", 1)
     one.sim.models.delete("wall")
-    one.host.settle()
+    one.host.wait_until_loaded()
     seen = one.after(100, "cam/image_raw", 2)[1]
     assert pixels(seen, np.uint8)[60, 80].tolist() == [0, 0, 0]
 

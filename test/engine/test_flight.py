@@ -43,7 +43,7 @@ def case():
 
 
 def fly(one, seconds, x=0.0, y=0.0, z=0.0, yaw=0.0):
-    one.hear("cmd_vel", linear={"x": x, "y": y, "z": z}, angular={"x": 0.0, "y": 0.0, "z": yaw})
+    one.deliver("cmd_vel", linear={"x": x, "y": y, "z": z}, angular={"x": 0.0, "y": 0.0, "z": yaw})
     one.sim.clock.advance(round(seconds * 1000))
     return one.sim.states.model_state("quadrotor")
 
@@ -109,7 +109,7 @@ def test_a_quadrotor_rises_at_the_velocity_at_which_its_propellers_carry_it(case
     steps = 162
     one = case(quadrotor(plugin("libhector_gazebo_quadrotor_propulsion.so", ""), z=200.0),
                parameters={"quadrotor_propulsion": MOTOR})
-    one.hear("motor_pwm", header=Message(stamp=Stamp()), pwm=[steps] * 4)
+    one.deliver("motor_pwm", header=Message(stamp=Stamp()), pwm=[steps] * 4)
     one.sim.clock.advance(12000)
     speed, climb = balance(14.8 * steps / 255)
     pose, twist = one.sim.states.model_state("quadrotor")
@@ -127,7 +127,7 @@ def test_a_falling_quadrotor_reaches_the_velocity_at_which_drag_carries_it(case)
     # v = v_t tanh(g t / v_t)
     fall = one.sim.states.model_state("quadrotor")[1].linear[2]
     assert fall == pytest.approx(-terminal * math.tanh(G * 2.0 / terminal), rel=2e-3)
-    one.hear("/wind", x=0.0, y=0.0, z=terminal)
+    one.deliver("/wind", x=0.0, y=0.0, z=terminal)
     one.sim.clock.advance(6000)
     assert one.sim.states.model_state("quadrotor")[1].linear[2] == pytest.approx(0.0, abs=0.02)
 
@@ -170,7 +170,7 @@ def turned(yaw):
 
 
 def test_hectors_controllers_hover_at_a_pose_and_follow_velocities(flying):
-    flying.hear("/command/pose", header={"frame_id": "world", "stamp": Stamp()},
+    flying.deliver("/command/pose", header={"frame_id": "world", "stamp": Stamp()},
                 pose={"position": {"x": 1.0, "y": -0.5, "z": 2.0}, "orientation": turned(0.7)})
     flying.sim.clock.advance(10000)
     pose, twist = flying.sim.states.model_state("quadrotor")
@@ -180,7 +180,7 @@ def test_hectors_controllers_hover_at_a_pose_and_follow_velocities(flying):
     force = flying.graph.on("/command/wrench")[-1].wrench.force
     assert force.z == pytest.approx(MASS * G, rel=1e-3)
     for _ in range(25):   # ends position control; commands last for 0.5 s
-        flying.hear("/cmd_vel", linear={"x": 1.0, "y": 0.0, "z": 0.2},
+        flying.deliver("/cmd_vel", linear={"x": 1.0, "y": 0.0, "z": 0.2},
                     angular={"x": 0.0, "y": 0.0, "z": 0.0})
         flying.sim.clock.advance(200)
     _, twist = flying.sim.states.model_state("quadrotor")
@@ -260,7 +260,7 @@ def steer(one, seconds, **wanted):
     for _ in range(round(seconds * 100)):
         told = one.last("mav/odometry", one.now())
         one.graph.sent.clear()
-        one.hear("mav/gazebo/command/motor_speed",
+        one.deliver("mav/gazebo/command/motor_speed",
                  angular_velocities=rotor_speeds(told, **wanted))
         one.sim.clock.advance(10)
     return one.last("mav/odometry", one.now())

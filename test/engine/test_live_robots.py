@@ -181,7 +181,7 @@ def test_services_are_calls(world):
 def test_topics_that_do_not_exist_are_refused_with_those_that_do(world):
     with pytest.raises(CommandError, match="/cmd_vel.*/scan"):
         world.topics["/lidar"]
-    with pytest.raises(CommandError, match="no plugin hears /scan"):
+    with pytest.raises(CommandError, match="no plugin subscribes to /scan"):
         world.publish("/scan", {})
     with pytest.raises(CommandError, match="no field"):
         world.publish("/cmd_vel", {"speed": 1.0})

@@ -36,7 +36,7 @@ class Case(PluginCase):
     def drive(self, seconds, x=0.0, y=0.0, yaw=0.0):
         """Drive at a twist; commands come ten times a second."""
         for _ in range(round(seconds * 10)):
-            self.hear("robot/drive/cmd_vel", linear={"x": x, "y": y}, angular={"z": yaw})
+            self.deliver("robot/drive/cmd_vel", linear={"x": x, "y": y}, angular={"z": yaw})
             self.sim.clock.advance(100)
 
     def told(self):
@@ -134,7 +134,7 @@ def test_two_equal_angles_drive_four_steered_wheels_aside_without_a_turn(case):
     model, settings = four_wheel_steering()
     one = case(model, **settings)
     for _ in range(30):
-        one.hear("robot/drive/cmd_four_wheel_steering", speed=0.5, front_steering_angle=0.3,
+        one.deliver("robot/drive/cmd_four_wheel_steering", speed=0.5, front_steering_angle=0.3,
                  rear_steering_angle=0.3)
         one.sim.clock.advance(100)
     x, y, yaw = one.truth()

@@ -37,7 +37,7 @@ def case():
 def test_skid_steering_drives_straight_and_tells_the_truth(case):
     one = case(ground(), skid())
     one.sim.clock.advance(200)
-    one.hear("cmd_vel", linear={"x": 0.5}, angular={"z": 0.0})
+    one.deliver("cmd_vel", linear={"x": 0.5}, angular={"z": 0.0})
     one.sim.clock.advance(2000)
     x, y, yaw = one.truth("skid")
     assert x == pytest.approx(1.0, rel=0.02) and abs(y) < 0.005 and abs(yaw) < 0.01
@@ -48,7 +48,7 @@ def test_skid_steering_drives_straight_and_tells_the_truth(case):
 def test_skid_steering_turns_on_the_spot_slower_than_its_wheels(case):
     one = case(ground(), skid())
     one.sim.clock.advance(200)
-    one.hear("cmd_vel", linear={"x": 0.0}, angular={"z": 1.0})
+    one.deliver("cmd_vel", linear={"x": 0.0}, angular={"z": 1.0})
     one.sim.clock.advance(2000)
     x, y, yaw = one.truth("skid")
     assert 0.3 < yaw <= 2.0  # the wheels slip sideways: less than what they turn
@@ -65,9 +65,9 @@ def test_a_tricycle_drives_the_circle_of_its_steering_angle(case, steering, exac
     one = case(ground(), tricycle(steering))
     one.sim.clock.advance(200)
     angle, speed, base_length = 0.5, 0.4, 0.8
-    one.hear("tricycle/cmd_vel", linear={"x": 0.0}, angular={"z": angle})
+    one.deliver("tricycle/cmd_vel", linear={"x": 0.0}, angular={"z": angle})
     one.sim.clock.advance(1000)
-    one.hear("tricycle/cmd_vel", linear={"x": speed}, angular={"z": angle})
+    one.deliver("tricycle/cmd_vel", linear={"x": speed}, angular={"z": angle})
     one.sim.clock.advance(1000)
     before = one.truth("tricycle")
     one.sim.clock.advance(3000)
@@ -81,7 +81,7 @@ def test_a_tricycle_drives_the_circle_of_its_steering_angle(case, steering, exac
 def test_a_tricycle_counts_the_circle_that_it_drives(case):
     one = case(ground(), tricycle("<encoderWheelSeparation>0.5</encoderWheelSeparation>"))
     one.sim.clock.advance(200)
-    one.hear("tricycle/cmd_vel", linear={"x": 0.4}, angular={"z": 0.5})
+    one.deliver("tricycle/cmd_vel", linear={"x": 0.4}, angular={"z": 0.5})
     one.sim.clock.advance(5000)
     told, true = odometry(one.last("tricycle/odom", one.now())), one.truth("tricycle")
     way = 5.0 * 0.4 * math.cos(0.5)
@@ -105,10 +105,10 @@ def test_a_force_accelerates_by_its_mass(case):
                             "<bodyName>link</bodyName><topicName>push</topicName>")]
     one = case(model, gravity=(0.0, 0.0, 0.0))
     none = {"x": 0.0, "y": 0.0, "z": 0.0}
-    one.hear("push", force={"x": 2.0, "y": 0.0, "z": 0.0}, torque=none)
+    one.deliver("push", force={"x": 2.0, "y": 0.0, "z": 0.0}, torque=none)
     one.sim.clock.advance(1000)
     assert one.sim.states.model_state("load")[1].linear[0] == pytest.approx(0.5, rel=2e-3)
-    one.hear("push", force=none, torque={"x": 0.0, "y": 0.0, "z": 0.1})
+    one.deliver("push", force=none, torque={"x": 0.0, "y": 0.0, "z": 0.1})
     before = one.sim.states.model_state("load")[1].angular[2]
     one.sim.clock.advance(1000)
     inertia = 4.0 * 0.5 ** 2 / 6.0
@@ -212,7 +212,7 @@ def test_a_square_of_the_lab_robot_slips_less_than_two_per_cent(case):
     for _ in range(4):
         for forward, turn, seconds in ((0.25, 0.0, 2.0), (0.0, 0.0, 0.4),
                                        (0.0, 0.5, math.pi), (0.0, 0.0, 0.4)):
-            one.hear("/cmd_vel", linear={"x": forward}, angular={"z": turn})
+            one.deliver("/cmd_vel", linear={"x": forward}, angular={"z": turn})
             one.sim.clock.advance(round(1000 * seconds))
     told = odometry(one.last("/odom", one.now() // 20_000_000 * 20_000_000))
     true = one.truth("robo")

@@ -107,7 +107,7 @@ class Case(PluginCase):
         if not self.topic:
             return
         topic = next(one for one in self.graph.heard if one.strip("/") == self.topic)
-        self.hear(topic, linear={"x": x, "y": 0.0}, angular={"z": turn})
+        self.deliver(topic, linear={"x": x, "y": 0.0}, angular={"z": turn})
 
     def drive(self, at_once):
         """Drive a curve, then another one; the states of all links and joints at the end."""

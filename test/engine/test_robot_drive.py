@@ -44,7 +44,7 @@ class Drive:
         self.odometry()
         self.graph.heard["/cmd_vel"](Message(linear={"x": forward}, angular={"z": turn}))
         deadline = time.monotonic() + 60.0
-        while self.host.unheard:
+        while self.host.has_pending_input:
             assert time.monotonic() < deadline
             time.sleep(0.001)
         self.sim.clock.advance(round(seconds * 1000))

@@ -86,7 +86,7 @@ class Spawning:
     def spawn(self, model):
         self.sim.models.spawn(model)
         if self.host is not None:
-            self.host.settle()
+            self.host.wait_until_loaded()
 
     def positions(self):
         return [self.sim.joints.states(f"arm::{name}")[0][0] for name in NAMES]

@@ -38,7 +38,7 @@ def test_a_crate_hangs_lower_by_its_weight_over_the_winchs_gain(case):
     one.sim.clock.advance(4000)
     assert at(one, "crate")[2] == pytest.approx(3.0 - MASS * G / 400.0, abs=1e-4)
     assert at(one, "crate")[:2] == pytest.approx((0.0, 0.0), abs=1e-6)
-    one.hear("/crate/harness/detach", data=True)
+    one.deliver("/crate/harness/detach", data=True)
     before = at(one, "crate")[2]
     one.sim.clock.advance(200)
     assert before - at(one, "crate")[2] == pytest.approx(0.5 * G * 0.04, rel=0.02)
@@ -46,7 +46,7 @@ def test_a_crate_hangs_lower_by_its_weight_over_the_winchs_gain(case):
 
 def test_a_winch_lowers_a_crate_at_its_rate(case):
     one = case(hung("<vel_pid><p>1000</p></vel_pid>"))
-    one.hear("/crate/harness/velocity", data=-0.5)
+    one.deliver("/crate/harness/velocity", data=-0.5)
     one.sim.clock.advance(500)
     before = at(one, "crate")[2]
     one.sim.clock.advance(1000)
@@ -81,7 +81,7 @@ def test_a_lift_stands_at_its_floor_lower_by_its_weight_over_the_gain(case):
                         "<door_wait_time>60</door_wait_time>")])
     one = case(lift)
     one.sim.clock.advance(100)
-    one.hear("elevator", data="1")
+    one.deliver("elevator", data="1")
     one.sim.clock.advance(15000)
     height = at(one, "elevator")[2]
     assert height == pytest.approx(3.0 - 801.0 * G / 1e5, abs=2e-3)

@@ -67,7 +67,7 @@ def assert_finite(context: Context, name: str) -> None:
     """What a plugin has ordered can be carried out: a motor that is told NaN ends a robot."""
     orders = [value for joint in context.joints.values() for value in joint.motor or ()]
     orders += [joint.position for joint in context.joints.values()]
-    orders += [value for push in context.pushes.values() for part in push for value in part]
+    orders += [value for push in context.wrenches.values() for part in push for value in part]
     orders += [*(context.level or ()), *context.pose.position, *context.twist.linear]
     assert all(map(math.isfinite, orders)), f"{name} orders what is not finite"
 

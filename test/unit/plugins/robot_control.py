@@ -73,8 +73,8 @@ class Arm:
     def published(self, topic):
         return self.context.published[f"{NS}/{topic}"]
 
-    def hear(self, topic, **fields):
-        self.context.hear(f"{NS}/{topic}", **fields)
+    def deliver(self, topic, **fields):
+        self.context.deliver(f"{NS}/{topic}", **fields)
 
 
 def trajectory(names, *points, stamp=0.0):
@@ -95,13 +95,13 @@ class Client:
 
     def send(self, wanted, path=(), end=(), late=0.0):
         self._count += 1
-        self._arm.hear(f"{self._at}/goal", goal_id=Message(id=f"g{self._count}", stamp=Span()),
+        self._arm.deliver(f"{self._at}/goal", goal_id=Message(id=f"g{self._count}", stamp=Span()),
                        goal=Message(trajectory=wanted, path_tolerance=list(path),
                                     goal_tolerance=list(end), goal_time_tolerance=Span(late)))
         return f"g{self._count}"
 
     def cancel(self, goal=""):
-        self._arm.hear(f"{self._at}/cancel", id=goal, stamp=Span())
+        self._arm.deliver(f"{self._at}/cancel", id=goal, stamp=Span())
 
     @property
     def results(self):

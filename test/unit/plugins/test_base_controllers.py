@@ -31,7 +31,7 @@ def pose_of(message):
 
 def go(robot, seconds, x=0.0, y=0.0, yaw=0.0):
     for _ in range(round(seconds / 0.1)):
-        robot.hear("drive/cmd_vel", linear={"x": x, "y": y}, angular={"z": yaw})
+        robot.deliver("drive/cmd_vel", linear={"x": x, "y": y}, angular={"z": yaw})
         robot.context.advance(0.1)
 
 
@@ -131,7 +131,7 @@ def test_a_turn_on_four_steered_wheels_closes_in_the_odometry():
 def test_a_command_by_angles_goes_sideways():
     robot = four_wheels()
     for _ in range(10):
-        robot.hear("drive/cmd_four_wheel_steering", speed=0.5, front_steering_angle=0.3,
+        robot.deliver("drive/cmd_four_wheel_steering", speed=0.5, front_steering_angle=0.3,
                    rear_steering_angle=0.3)
         robot.context.advance(0.1)
     assert [robot.at(name) for name in STEERS] == pytest.approx([0.3] * 4, abs=1e-6)
@@ -143,9 +143,9 @@ def test_a_command_by_angles_goes_sideways():
 def test_a_twist_that_is_no_number_changes_nothing_of_a_command_by_angles():
     robot = four_wheels()
     for _ in range(5):
-        robot.hear("drive/cmd_four_wheel_steering", speed=0.5, front_steering_angle=0.3,
+        robot.deliver("drive/cmd_four_wheel_steering", speed=0.5, front_steering_angle=0.3,
                    rear_steering_angle=0.3)
-        robot.hear("drive/cmd_vel", linear={"x": math.nan, "y": 0.0}, angular={"z": 0.0})
+        robot.deliver("drive/cmd_vel", linear={"x": math.nan, "y": 0.0}, angular={"z": 0.0})
         robot.context.advance(0.1)
     assert [robot.at(name) for name in STEERS] == pytest.approx([0.3] * 4, abs=1e-6)
     assert [text for text in robot.context.said if "not finite" in text] == [
@@ -198,7 +198,7 @@ def motor():
     arm.run("go")
 
     def send(mode=10, q=0.0, dq=0.0, tau=0.0, stiffness=0.0, damping=0.0):
-        arm.hear("go/command", mode=mode, q=q, dq=dq, tau=tau, Kp=stiffness, Kd=damping)
+        arm.deliver("go/command", mode=mode, q=q, dq=dq, tau=tau, Kp=stiffness, Kd=damping)
     return arm, send
 
 
@@ -246,7 +246,7 @@ def test_sensors_of_the_robot_are_published_by_their_names():
     context.model_sensors = [("base", Sensor("trunk_imu", "imu", imu=Imu()))]
     context.description.joints[0].sensors.append(
         Sensor("wrist", "force_torque", force_torque=ForceTorque()))
-    context.wrenches = {"one": JointWrench((0.0, 0.0, 9.0), (0.5, 0.0, 0.0),
+    context.joint_wrenches = {"one": JointWrench((0.0, 0.0, 9.0), (0.5, 0.0, 0.0),
                                            (0.0, 0.0, 0.0, 1.0))}
     arm.run("imus", "wrists")
     link = context.link("base")
@@ -394,9 +394,9 @@ def test_limits_of_currents_must_name_all_actuators():
     robot = Arm(limits={"type": "pal_ros_controllers/CurrentLimitController",
                         "actuators": ["a", "b"]})
     robot.run("limits")
-    robot.hear("limits/command", actuator_names=["b", "a"], current_limits=[1.0, 1.0])
+    robot.deliver("limits/command", actuator_names=["b", "a"], current_limits=[1.0, 1.0])
     assert robot.context.said == []
-    robot.hear("limits/command", actuator_names=["b"], current_limits=[1.0])
+    robot.deliver("limits/command", actuator_names=["b"], current_limits=[1.0])
     assert any("actuators a, b" in text for text in robot.context.said)
 
 
@@ -408,7 +408,7 @@ def test_commands_of_joints_are_published_by_their_interfaces():
                 pushing={"type": "effort_controllers/JointEffortController", "joint": "push"})
     robot.run("read", "turning", "rolling", "pushing")
     for name, value in (("turning", 0.5), ("rolling", -2.0), ("pushing", 3.0)):
-        robot.hear(f"{name}/command", data=value)
+        robot.deliver(f"{name}/command", data=value)
     robot.context.advance(0.02)
     told = robot.published("joint_commands")[-1]
     assert told.name == ["turn", "roll", "push"]

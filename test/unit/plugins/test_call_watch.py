@@ -10,22 +10,22 @@ import pytest
 from plugin_case import until
 
 from my_simulations.plugins.call_watch import (
+    CallLimits,
     CallOverdue,
     CallWatch,
-    Patience,
     ThreadAbandoned,
 )
 
 TRACED = """
 import sys, threading
-from my_simulations.plugins.call_watch import CallWatch, Patience, ThreadAbandoned
+from my_simulations.plugins.call_watch import CallLimits, CallWatch, ThreadAbandoned
 
 left, back = threading.Event(), threading.Event()
 watch = CallWatch(lambda subject, why: left.set())
 
 def call():
     try:
-        watch.run("plugin", Patience(0.1, 0.1), back.wait)
+        watch.run("plugin", CallLimits(0.1, 0.1), back.wait)
     except ThreadAbandoned as abandoned:
         print("ended:", abandoned)
 
@@ -57,7 +57,7 @@ def in_a_thread(watch, call):
 
     def run():
         try:
-            watch.run("plugin", Patience(0.1, 0.1), call)
+            watch.run("plugin", CallLimits(0.1, 0.1), call)
         except BaseException as one:  # the thread of a host sees all of them
             raised.append(type(one))
 
@@ -98,7 +98,7 @@ def test_a_call_that_waits_is_not_charged_for_calls_inside_its_wait_and_is_watch
 
     def turn():
         inside.append("begun")
-        watch.run("other", Patience(60.0, 60.0), compute, time.thread_time() + 0.6)
+        watch.run("other", CallLimits(60.0, 60.0), compute, time.thread_time() + 0.6)
         compute(time.thread_time() + 0.3)   # no call of a plugin
         inside.append("ended")
 

@@ -64,7 +64,7 @@ def test_who_begins_to_listen_to_a_slow_camera_gets_a_picture_at_once():
 
 def test_a_slow_camera_of_a_world_stepped_by_hand_keeps_to_its_rate():
     context = camera(rate=0.5)
-    context.by_hand = True
+    context.is_stepped_manually = True
     context.advance(4.5)
     assert [one.header.stamp.to_nsec() / 1e9 for one in context.published[RAW]] == [2.0, 4.0]
 
@@ -194,7 +194,7 @@ def test_the_lower_rate_counts_and_a_camera_without_one_has_a_usual_one():
     for rate, said, count in ((10.0, "<updateRate>5</updateRate>", 5), (10.0, "", 10),
                               (0.0, "<updateRate>0</updateRate>", 30)):
         context = camera(said, rate=rate)
-        context.by_hand = True
+        context.is_stepped_manually = True
         context.advance(1.0)
         assert len(context.published[RAW]) == count
 
@@ -226,11 +226,11 @@ def test_a_trigger_takes_one_picture():
     context = camera(cls=TriggeredCamera)
     context.advance(0.3)
     assert not context.published[RAW]
-    context.hear("cam/image_trigger")
+    context.deliver("cam/image_trigger")
     context.advance(0.3)
     assert len(context.published[RAW]) == 1
     for _ in range(3):
-        context.hear("cam/image_trigger")
+        context.deliver("cam/image_trigger")
     context.late = True
     context.advance(0.1)
     context.late = False
@@ -241,8 +241,8 @@ def test_a_trigger_takes_one_picture():
 def test_a_trigger_does_not_wait_for_the_rate_of_the_sensor():
     context = camera(rate=1.0, cls=TriggeredCamera)
     context.advance(1.5)
-    context.hear("cam/image_trigger")
-    context.hear("cam/image_trigger")
+    context.deliver("cam/image_trigger")
+    context.deliver("cam/image_trigger")
     context.advance(0.01)
     assert [round(one.header.stamp.to_sec(), 2) for one in context.published[RAW]] == [1.5, 1.5]
 
@@ -266,9 +266,9 @@ def test_each_camera_of_a_pair_has_a_trigger_of_its_own():
     block, right = (CameraBlock(f"{side}_eye", width=8, height=6) for side in ("left", "right"))
     context = camera("", block, "multicamera", more=(right,), cls=TriggeredMultiCamera)
     context.advance(0.3)
-    context.hear("cam/right/image_trigger")
-    context.hear("cam/right/image_trigger")
-    context.hear("cam/left/image_trigger")
+    context.deliver("cam/right/image_trigger")
+    context.deliver("cam/right/image_trigger")
+    context.deliver("cam/left/image_trigger")
     context.advance(0.3)
     assert [len(context.published[f"cam/{side}/image_raw"]) for side in ("left", "right")] == [1, 2]
 

@@ -134,7 +134,7 @@ def test_positions_are_held_until_somebody_controls_them():
 def test_interfaces_are_known_in_all_spellings(spelling):
     arm = Arm(spelling, push={"type": "effort_controllers/JointEffortController", "joint": "one"})
     arm.run("push")
-    arm.hear("push/command", data=3.0)
+    arm.deliver("push/command", data=3.0)
     arm.context.advance(0.5)
     assert arm.context.joints["one"].velocity == pytest.approx(1.5)
 
@@ -152,7 +152,7 @@ def test_gains_of_the_hardware_make_a_loop_of_a_position_joint():
     gains = {"gazebo_ros_control": {"pid_gains": {"one": {"p": 100.0, "d": 20.0}}}}
     arm = Arm(parameters=gains, forward=FORWARD)
     arm.run("forward")
-    arm.hear("forward/command", data=0.5)
+    arm.deliver("forward/command", data=0.5)
     arm.context.advance(3.0)
     assert arm.context.joints["one"].servo.drive_gains.p == 100.0
     assert arm.at() == pytest.approx(0.5, abs=1e-3)
@@ -162,7 +162,7 @@ def test_limits_on_the_parameter_server_come_before_those_of_the_description():
     arm = Arm(parameters={"joint_limits": {"one": {
         "has_position_limits": True, "min_position": -0.1, "max_position": 0.1}}}, forward=FORWARD)
     arm.run("forward")
-    arm.hear("forward/command", data=2.0)
+    arm.deliver("forward/command", data=2.0)
     arm.context.advance(1.0)
     assert arm.at() == pytest.approx(0.1, abs=1e-6)
 
@@ -175,17 +175,17 @@ PUSH = {"type": "effort_controllers/JointEffortController", "joint": "one"}
 def test_the_emergency_stop_holds_positions_until_it_is_over():
     arm = Arm(inside=STOP, forward=FORWARD)
     arm.run("forward")
-    arm.hear("forward/command", data=2.0)
+    arm.deliver("forward/command", data=2.0)
     arm.context.advance(0.02)
-    arm.hear("stop", data=True)
+    arm.deliver("stop", data=True)
     halted = arm.at()
-    arm.hear("forward/command", data=-1.0)
+    arm.deliver("forward/command", data=-1.0)
     arm.context.advance(1.0)
     assert arm.at() == pytest.approx(halted, abs=1e-6)
-    arm.hear("stop", data=False)
+    arm.deliver("stop", data=False)
     arm.context.advance(1.0)
     assert arm.at() == pytest.approx(halted, abs=1e-6)   # restarted at the joint's position
-    arm.hear("forward/command", data=1.0)
+    arm.deliver("forward/command", data=1.0)
     arm.context.advance(1.0)
     assert arm.at() == pytest.approx(1.0, abs=1e-6)
 
@@ -193,7 +193,7 @@ def test_the_emergency_stop_holds_positions_until_it_is_over():
 def test_controllers_run_and_joint_states_come_during_the_emergency_stop():
     arm = Arm(inside=STOP, forward=FORWARD, states=STATE)
     arm.run("forward", "states")
-    arm.hear("stop", data=True)
+    arm.deliver("stop", data=True)
     arm.context.advance(0.1)
     assert arm.states() == {"forward": "running", "states": "running"}
     assert [one.header.stamp.to_nsec() for one in arm.published("joint_states")] == [
@@ -206,13 +206,13 @@ def test_controllers_run_and_joint_states_come_during_the_emergency_stop():
 def test_a_controller_that_is_started_during_the_emergency_stop_drives_after_it(
         interface, controller):
     arm = Arm(interface, inside=STOP, late=controller)
-    arm.hear("stop", data=True)
+    arm.deliver("stop", data=True)
     arm.run("late")
-    arm.hear("late/command", data=2.0)
+    arm.deliver("late/command", data=2.0)
     arm.context.advance(0.5)
     assert arm.at() == pytest.approx(0.0, abs=1e-9)
-    arm.hear("stop", data=False)
-    arm.hear("late/command", data=2.0)
+    arm.deliver("stop", data=False)
+    arm.deliver("late/command", data=2.0)
     arm.context.advance(0.5)
     assert arm.at() > 0.1
 
@@ -221,19 +221,19 @@ def test_a_controller_that_is_started_during_the_emergency_stop_drives_after_it(
 def test_a_reset_during_the_emergency_stop_leaves_controllers_running_and_joints_at_rest(event):
     arm = Arm(inside=STOP, forward=FORWARD)
     arm.run("forward")
-    arm.hear("forward/command", data=2.0)
+    arm.deliver("forward/command", data=2.0)
     arm.context.advance(0.02)
-    arm.hear("stop", data=True)
+    arm.deliver("stop", data=True)
     if event == "reset":
         arm.context.joints["one"].position = 0.0
     getattr(arm.plugin, event)()
     begun = arm.at()
-    arm.hear("forward/command", data=1.0)
+    arm.deliver("forward/command", data=1.0)
     arm.context.advance(1.0)
     assert arm.at() == pytest.approx(begun, abs=1e-6)
     assert arm.states() == {"forward": "running"}
-    arm.hear("stop", data=False)
-    arm.hear("forward/command", data=1.0)
+    arm.deliver("stop", data=False)
+    arm.deliver("forward/command", data=1.0)
     arm.context.advance(1.0)
     assert arm.at() == pytest.approx(1.0, abs=1e-6)
 
@@ -241,12 +241,12 @@ def test_a_reset_during_the_emergency_stop_leaves_controllers_running_and_joints
 def test_a_controller_that_is_loaded_anew_during_the_emergency_stop_is_the_one_that_goes_on():
     arm = Arm(inside=STOP, forward=FORWARD)
     arm.run("forward")
-    arm.hear("stop", data=True)
+    arm.deliver("stop", data=True)
     assert arm.switch((), ["forward"])
     assert arm.ask("unload_controller", name="forward").ok
     arm.run("forward")
-    arm.hear("stop", data=False)
-    arm.hear("forward/command", data=1.0)
+    arm.deliver("stop", data=False)
+    arm.deliver("forward/command", data=1.0)
     arm.context.advance(1.0)
     assert arm.at() == pytest.approx(1.0, abs=1e-6)
 
@@ -255,8 +255,8 @@ def test_loops_between_interface_and_joint_hold_still_during_the_emergency_stop(
     gains = {"gazebo_ros_control": {"pid_gains": {"one": {"p": 100.0, "d": 20.0}}}}
     arm = Arm(inside=STOP, parameters=gains, forward=FORWARD)
     arm.run("forward")
-    arm.hear("stop", data=True)
-    arm.hear("forward/command", data=0.5)
+    arm.deliver("stop", data=True)
+    arm.deliver("forward/command", data=0.5)
     arm.context.advance(1.0)
     assert arm.at() == pytest.approx(0.0, abs=1e-6)
     assert arm.context.joints["one"].servo.drive_gains.p == 100.0
@@ -265,7 +265,7 @@ def test_loops_between_interface_and_joint_hold_still_during_the_emergency_stop(
 def test_a_reset_starts_controllers_anew_where_joints_are():
     arm = Arm(forward=FORWARD)
     arm.run("forward")
-    arm.hear("forward/command", data=2.0)
+    arm.deliver("forward/command", data=2.0)
     arm.context.advance(1.0)
     arm.context.joints["one"].position = 0.0
     arm.plugin.reset()
@@ -283,7 +283,7 @@ def test_what_comes_while_a_controller_does_not_run_is_told_once():
     arm = Arm(forward=FORWARD)
     assert arm.load("forward")
     for _ in range(3):
-        arm.hear("forward/command", data=2.0)
+        arm.deliver("forward/command", data=2.0)
     assert sum("does not run" in text for text in arm.context.said) == 1
 
 

@@ -19,7 +19,7 @@ def test_a_position_command_is_followed_no_faster_than_the_joint_may():
     arm = Arm(axis=slow, go={"type": "position_controllers/JointPositionController",
                              "joint": "one"})
     arm.run("go")
-    arm.hear("go/command", data=1.0)
+    arm.deliver("go/command", data=1.0)
     arm.context.advance(1.0)
     assert arm.at() == pytest.approx(0.5, abs=1e-3)
 
@@ -28,10 +28,10 @@ def test_a_group_takes_a_value_for_each_joint():
     arm = Arm(VELOCITY, group={"type": "velocity_controllers/JointGroupVelocityController",
                                "joints": ["one", "two"]})
     arm.run("group")
-    arm.hear("group/command", data=[1.0, -2.0])
+    arm.deliver("group/command", data=[1.0, -2.0])
     arm.context.advance(0.5)
     assert (arm.at("one"), arm.at("two")) == pytest.approx((0.5, -1.0))
-    arm.hear("group/command", data=[1.0])
+    arm.deliver("group/command", data=[1.0])
     assert "of 1" in arm.context.said[-1]
 
 
@@ -39,7 +39,7 @@ def test_stopping_a_velocity_controller_stops_the_joint():
     arm = Arm(VELOCITY, turn={"type": "velocity_controllers/JointVelocityController",
                               "joint": "one"})
     arm.run("turn")
-    arm.hear("turn/command", data=1.0)
+    arm.deliver("turn/command", data=1.0)
     arm.context.advance(0.5)
     arm.switch((), ["turn"])
     arm.context.advance(0.5)
@@ -51,7 +51,7 @@ def test_a_loop_about_a_position_is_a_spring_and_a_damper():
                           "pid": PD})
     arm.run("go")
     arm.context.advance(0.001)
-    arm.hear("go/command", data=0.5)
+    arm.deliver("go/command", data=0.5)
     arm.context.advance(0.2)
     t = 0.2
     assert arm.at() == pytest.approx(0.5 * (1.0 - (1.0 + 10.0 * t) * math.exp(-10.0 * t)),
@@ -67,7 +67,7 @@ def test_a_loop_about_a_position_keeps_within_the_limits():
     arm = Arm(EFFORT, go={"type": "effort_controllers/JointPositionController", "joint": "one",
                           "pid": PD})
     arm.run("go")
-    arm.hear("go/command", data=9.0)
+    arm.deliver("go/command", data=9.0)
     arm.context.advance(5.0)
     assert arm.at() == pytest.approx(3.0, abs=1e-3)
 
@@ -76,7 +76,7 @@ def test_a_loop_about_a_rate_reaches_it():
     arm = Arm(EFFORT, turn={"type": "effort_controllers/JointVelocityController", "joint": "one",
                             "pid": {"p": 20.0}})
     arm.run("turn")
-    arm.hear("turn/command", data=2.0)
+    arm.deliver("turn/command", data=2.0)
     arm.context.advance(0.1)
     assert arm.context.joints["one"].velocity == pytest.approx(2.0 * (1.0 - math.exp(-2.0)),
                                                                rel=0.02)
@@ -86,7 +86,7 @@ def test_a_group_of_positions_with_loops():
     arm = Arm(EFFORT, go={"type": "effort_controllers/JointGroupPositionController",
                           "joints": ["one", "two"], "one": {"pid": PD}, "two": {"pid": PD}})
     arm.run("go")
-    arm.hear("go/command", data=[0.5, -0.5])
+    arm.deliver("go/command", data=[0.5, -0.5])
     arm.context.advance(3.0)
     assert (arm.at("one"), arm.at("two")) == pytest.approx((0.5, -0.5), abs=1e-4)
 
@@ -97,7 +97,7 @@ def gripper(**settings):
     arm.run("grip")
 
     def send(position, effort=0.0, name="g"):
-        arm.hear("grip/gripper_cmd/goal", goal_id=Message(id=name, stamp=Span()),
+        arm.deliver("grip/gripper_cmd/goal", goal_id=Message(id=name, stamp=Span()),
                  goal=Message(command=Message(position=position, max_effort=effort)))
 
     def results():
@@ -189,7 +189,7 @@ def base(**settings):
 
 def go(arm, x, yaw, seconds):
     for _ in range(round(seconds / 0.1)):
-        arm.hear("drive/cmd_vel", linear={"x": x}, angular={"z": yaw})
+        arm.deliver("drive/cmd_vel", linear={"x": x}, angular={"z": yaw})
         arm.context.advance(0.1)
 
 
@@ -246,7 +246,7 @@ def test_accelerations_are_limited_and_old_commands_forgotten():
 def test_a_base_heeds_a_command_to_the_last_step_of_its_time(seconds):
     """Their nanoseconds times 1e-9 are above them."""
     arm = base(cmd_vel_timeout=seconds)
-    arm.hear("drive/cmd_vel", linear={"x": 0.4}, angular={"z": 0.0})
+    arm.deliver("drive/cmd_vel", linear={"x": 0.4}, angular={"z": 0.0})
     arm.context.advance(seconds)
     assert arm.context.joints["one"].servo.target == pytest.approx(4.0)
     arm.context.advance(0.01)
@@ -277,6 +277,6 @@ def test_soft_limits_do_not_hold_a_joint_without_position_limits(kind):
                                soft=SoftLimits(0.0, 0.0, 0.0, 10.0)),
                 go={"type": f"{kind.lower()}_controllers/Joint{kind}Controller", "joint": "one"})
     robot.run("go")
-    robot.hear("go/command", data=2.0)
+    robot.deliver("go/command", data=2.0)
     robot.context.advance(1.0)
     assert robot.at() == pytest.approx(1.0 if kind == "Effort" else 2.0, rel=0.01)

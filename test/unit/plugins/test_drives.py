@@ -34,7 +34,7 @@ def diff_drive(inside="", **options):
 
 def test_a_command_becomes_wheel_speeds_with_the_defaults_of_the_original():
     context, _ = diff_drive()
-    context.hear("robot/cmd_vel", linear={"x": 0.3}, angular={"z": 1.0})
+    context.deliver("robot/cmd_vel", linear={"x": 0.3}, angular={"z": 1.0})
     context.advance(0.01)
     left, right = (context.joints[name].motor for name in WHEELS)
     assert left == pytest.approx(((0.3 - 0.17) / 0.075, 5.0))
@@ -44,7 +44,7 @@ def test_a_command_becomes_wheel_speeds_with_the_defaults_of_the_original():
 def test_wheels_with_the_names_of_the_other_side_are_exchanged_where_the_file_says_so():
     context, _ = diff_drive("<legacyMode>true</legacyMode>"
                             "<odometrySource>encoder</odometrySource>")
-    context.hear("robot/cmd_vel", linear={"x": 0.0}, angular={"z": 1.0})
+    context.deliver("robot/cmd_vel", linear={"x": 0.0}, angular={"z": 1.0})
     context.advance(0.5)
     left, right = (context.joints[name].motor[0] for name in WHEELS)
     assert left == -right > 0.0
@@ -61,7 +61,7 @@ def test_it_publishes_at_its_rate_under_the_models_name():
 
 def test_encoder_odometry_of_a_circle_is_the_circle():
     context, _ = diff_drive("<odometrySource>encoder</odometrySource>")
-    context.hear("robot/cmd_vel", linear={"x": 0.5}, angular={"z": math.pi / 2})
+    context.deliver("robot/cmd_vel", linear={"x": 0.5}, angular={"z": math.pi / 2})
     context.advance(1.01)  # the first command acts from the first appointment on
     odom = context.published["robot/odom"][-1]
     radius = 0.5 / (math.pi / 2)
@@ -75,7 +75,7 @@ def test_encoder_odometry_of_a_circle_is_the_circle():
 def test_wheels_that_are_put_somewhere_are_no_way_that_was_driven():
     """Gazebo's drive integrates the rates of its wheels."""
     context, _ = diff_drive("<odometrySource>encoder</odometrySource>")
-    context.hear("robot/cmd_vel", linear={"x": 0.5}, angular={"z": 0.0})
+    context.deliver("robot/cmd_vel", linear={"x": 0.5}, angular={"z": 0.0})
     context.advance(1.01)
     for name in WHEELS:
         context.joints[name].put(100.0)
@@ -87,7 +87,7 @@ def test_wheels_that_are_put_somewhere_are_no_way_that_was_driven():
 
 def test_backwards_is_negative():
     context, _ = diff_drive("<odometrySource>encoder</odometrySource>")
-    context.hear("robot/cmd_vel", linear={"x": -0.2}, angular={"z": 0.0})
+    context.deliver("robot/cmd_vel", linear={"x": -0.2}, angular={"z": 0.0})
     context.advance(0.5)
     assert context.published["robot/odom"][-1].twist.twist.linear.x == pytest.approx(-0.2)
 
@@ -105,7 +105,7 @@ def test_odometry_of_the_world_turns_velocities_into_the_base():
 
 def test_wheels_accelerate_no_faster_than_they_may():
     context, _ = diff_drive("<wheelAcceleration>0.5</wheelAcceleration>")
-    context.hear("robot/cmd_vel", linear={"x": 1.0}, angular={"z": 0.0})
+    context.deliver("robot/cmd_vel", linear={"x": 1.0}, angular={"z": 0.0})
     context.advance(0.1)
     assert context.joints["left_joint"].motor[0] * 0.075 == pytest.approx(0.05)
 
@@ -130,14 +130,14 @@ def test_namespace_prefix_and_topics_are_those_of_the_file():
                           "<commandTopic>/go</commandTopic></plugin>", joints=WHEELS)
     context.ros_parameters["tf_prefix"] = "/r1"
     DiffDrive(context).load()
-    context.hear("/go", linear={"x": 0.1}, angular={"z": 0.0})
+    context.deliver("/go", linear={"x": 0.1}, angular={"z": 0.0})
     context.advance(0.01)
     assert context.published["r1/odom"][0].child_frame_id == "r1/base_footprint"
 
 
 def test_a_reset_stands_still_and_counts_from_there():
     context, plugin = diff_drive("<odometrySource>encoder</odometrySource>")
-    context.hear("robot/cmd_vel", linear={"x": 0.5}, angular={"z": 0.0})
+    context.deliver("robot/cmd_vel", linear={"x": 0.5}, angular={"z": 0.0})
     context.advance(0.5)
     plugin.reset()
     assert context.joints["left_joint"].motor[0] == 0.0
@@ -159,7 +159,7 @@ def test_skid_steering_drives_both_wheels_of_a_side_alike():
     corners = ("left_front_joint", "right_front_joint", "left_rear_joint", "right_rear_joint")
     context = FakeContext(joints=corners)
     SkidSteerDrive(context).load()
-    context.hear("cmd_vel", linear={"x": 0.2}, angular={"z": 1.0})
+    context.deliver("cmd_vel", linear={"x": 0.2}, angular={"z": 1.0})
     context.advance(0.01)
     speeds = [context.joints[name].motor[0] * 0.075 for name in corners]
     assert speeds == pytest.approx([0.0, 0.4, 0.0, 0.4])
@@ -171,7 +171,7 @@ def test_skid_steering_drives_both_wheels_of_a_side_alike():
 def test_planar_move_passes_the_command_on_and_forgets_an_old_one():
     context = FakeContext("<plugin><cmdTimeout>0.1</cmdTimeout></plugin>")
     PlanarMove(context).load()
-    context.hear("cmd_vel", linear={"x": 0.2, "y": 0.1}, angular={"z": 0.5})
+    context.deliver("cmd_vel", linear={"x": 0.2, "y": 0.1}, angular={"z": 0.5})
     context.advance(0.05)
     assert context.level == (0.2, 0.1, 0.5)
     context.advance(0.1)
@@ -182,7 +182,7 @@ def test_planar_move_passes_the_command_on_and_forgets_an_old_one():
 def test_planar_move_heeds_a_command_to_the_last_step_of_its_time(seconds):
     context = FakeContext(f"<plugin><cmdTimeout>{seconds}</cmdTimeout></plugin>")
     PlanarMove(context).load()
-    context.hear("cmd_vel", linear={"x": 0.2, "y": 0.1}, angular={"z": 0.5})
+    context.deliver("cmd_vel", linear={"x": 0.2, "y": 0.1}, angular={"z": 0.5})
     context.advance(seconds)
     assert context.level == (0.2, 0.1, 0.5)
     context.advance(0.001)
@@ -194,7 +194,7 @@ def test_a_command_is_forgotten_also_when_the_clock_is_set_back():
     plugin = PlanarMove(context)
     plugin.load()
     context.advance(60.0)
-    context.hear("cmd_vel", linear={"x": 0.2, "y": 0.1}, angular={"z": 0.5})
+    context.deliver("cmd_vel", linear={"x": 0.2, "y": 0.1}, angular={"z": 0.5})
     context.step = 0
     plugin.clock_set()
     context.advance(0.05)
@@ -226,18 +226,18 @@ def tricycle(inside=""):
 
 def test_a_tricycle_drives_and_steers_its_front_wheel():
     context, _ = tricycle()
-    context.hear("robot/cmd_vel", linear={"x": 0.3}, angular={"z": 0.5})
+    context.deliver("robot/cmd_vel", linear={"x": 0.3}, angular={"z": 0.5})
     context.advance(0.01)
     assert context.joints["front_wheel_joint"].motor == pytest.approx((4.0, 5.0))
     assert context.joints["front_steering_joint"].position == 0.5
-    context.hear("robot/cmd_vel", linear={"x": 0.0}, angular={"z": -2.0})
+    context.deliver("robot/cmd_vel", linear={"x": 0.0}, angular={"z": -2.0})
     context.advance(0.01)
     assert context.joints["front_steering_joint"].position == pytest.approx(-math.pi / 2)
 
 
 def test_a_tricycle_steers_no_faster_than_it_may_and_stops_at_the_angle():
     context, _ = tricycle("<steeringSpeed>0.4</steeringSpeed>")
-    context.hear("robot/cmd_vel", linear={"x": 0.0}, angular={"z": 0.2})
+    context.deliver("robot/cmd_vel", linear={"x": 0.0}, angular={"z": 0.2})
     context.advance(0.26)
     assert context.joints["front_steering_joint"].position == pytest.approx(0.1)
     context.advance(0.4)
@@ -247,7 +247,7 @@ def test_a_tricycle_steers_no_faster_than_it_may_and_stops_at_the_angle():
 
 def test_a_tricycle_goes_on_in_the_step_of_a_reset():
     context, plugin = tricycle("<steeringSpeed>0.4</steeringSpeed>")
-    context.hear("robot/cmd_vel", linear={"x": 0.0}, angular={"z": 0.5})
+    context.deliver("robot/cmd_vel", linear={"x": 0.0}, angular={"z": 0.5})
     context.advance(0.5)
     plugin.reset()  # joints keep their angles here
     context.advance(1.3)
@@ -258,12 +258,12 @@ def test_a_tricycle_accelerates_and_brakes_as_it_is_told():
     context, _ = tricycle("<wheelAcceleration>2</wheelAcceleration>"
                           "<wheelDeceleration>4</wheelDeceleration>")
     wheel = context.joints["front_wheel_joint"]
-    context.hear("robot/cmd_vel", linear={"x": 0.75}, angular={"z": 0.0})
+    context.deliver("robot/cmd_vel", linear={"x": 0.75}, angular={"z": 0.0})
     context.advance(0.5)
     assert wheel.motor[0] == pytest.approx(1.0, abs=0.03)
     context.advance(5.0)
     assert wheel.motor[0] == pytest.approx(10.0)
-    context.hear("robot/cmd_vel", linear={"x": 0.0}, angular={"z": 0.0})
+    context.deliver("robot/cmd_vel", linear={"x": 0.0}, angular={"z": 0.0})
     context.advance(0.5)
     assert wheel.motor[0] == pytest.approx(8.0, abs=0.05)
 
@@ -289,12 +289,12 @@ def test_forces_move_a_base_as_it_is_told():
     ForceBasedMove(context).load()
     context.links["base_footprint"].pose = Pose((0, 0, 0), quat_from_rpy(0, 0, math.pi / 2))
     context.links["base_footprint"].twist = Twist((0.0, 0.1, 0.0), (0.0, 0.0, 0.2))
-    context.hear("cmd_vel", linear={"x": 0.3, "y": 0.0}, angular={"z": 0.5})
+    context.deliver("cmd_vel", linear={"x": 0.3, "y": 0.0}, angular={"z": 0.5})
     context.advance(0.001)
-    force, torque = context.pushes["base_footprint"]
+    force, torque = context.wrenches["base_footprint"]
     assert force == pytest.approx((0.0, 2000.0, 0.0)) and torque == pytest.approx((0, 0, 3.0))
     context.advance(10.0)  # a command holds for ever
-    assert context.pushes["base_footprint"][0] == pytest.approx((0.0, 2000.0, 0.0))
+    assert context.wrenches["base_footprint"][0] == pytest.approx((0.0, 2000.0, 0.0))
 
 
 def moved_by_forces(library, inside=""):
@@ -313,11 +313,11 @@ def moved_by_forces(library, inside=""):
 ])
 def test_a_base_moved_by_forces_stops_after_the_time_of_its_library(library, inside, seconds):
     context = moved_by_forces(library, inside)
-    context.hear("cmd_vel", linear={"x": 0.3, "y": 0.0}, angular={"z": 0.0})
+    context.deliver("cmd_vel", linear={"x": 0.3, "y": 0.0}, angular={"z": 0.0})
     context.advance(seconds)
-    assert context.pushes["base_footprint"][0] == pytest.approx((3000.0, 0.0, 0.0))
+    assert context.wrenches["base_footprint"][0] == pytest.approx((3000.0, 0.0, 0.0))
     context.advance(0.001)
-    assert context.pushes["base_footprint"][0] == pytest.approx((0.0, 0.0, 0.0))
+    assert context.wrenches["base_footprint"][0] == pytest.approx((0.0, 0.0, 0.0))
 
 
 @pytest.mark.parametrize("library, element", [
@@ -326,23 +326,23 @@ def test_a_watchdog_of_no_time_lets_a_robot_stand(library, element):
     """In both originals no value switches it off; hector's 0 does."""
     for seconds in (0.0, -1.0):
         context = moved_by_forces(library, f"<{element}>{seconds}</{element}>")
-        context.hear("cmd_vel", linear={"x": 0.3, "y": 0.0}, angular={"z": 0.0})
+        context.deliver("cmd_vel", linear={"x": 0.3, "y": 0.0}, angular={"z": 0.0})
         context.advance(0.002)
-        assert context.pushes["base_footprint"][0] == pytest.approx((0.0, 0.0, 0.0))
+        assert context.wrenches["base_footprint"][0] == pytest.approx((0.0, 0.0, 0.0))
     context = moved_by_forces(
         ForceBasedMove, "<commandTimeoutDuration>0</commandTimeoutDuration>")
-    context.hear("cmd_vel", linear={"x": 0.3, "y": 0.0}, angular={"z": 0.0})
+    context.deliver("cmd_vel", linear={"x": 0.3, "y": 0.0}, angular={"z": 0.0})
     context.advance(30.0)
-    assert context.pushes["base_footprint"][0] == pytest.approx((3000.0, 0.0, 0.0))
+    assert context.wrenches["base_footprint"][0] == pytest.approx((3000.0, 0.0, 0.0))
 
 
 def test_a_base_moved_by_forces_goes_sideways_unless_it_must_not():
     for inside, force in (("", 3000.0),
                           ("<allowLateralMotion>false</allowLateralMotion>", 0.0)):
         context = moved_by_forces(ForceBasedMove, inside)
-        context.hear("cmd_vel", linear={"x": 0.0, "y": 0.3}, angular={"z": 0.0})
+        context.deliver("cmd_vel", linear={"x": 0.0, "y": 0.3}, angular={"z": 0.0})
         context.advance(0.1)
-        assert context.pushes["base_footprint"][0] == pytest.approx((0.0, force, 0.0))
+        assert context.wrenches["base_footprint"][0] == pytest.approx((0.0, force, 0.0))
 
 
 def test_forces_push_the_base_of_a_nested_model_and_not_the_first_link():
@@ -350,7 +350,7 @@ def test_forces_push_the_base_of_a_nested_model_and_not_the_first_link():
     context.description.links += [Link("frame"), Link("inner::base_footprint")]
     ForceBasedMove(context).load()
     context.advance(0.001)
-    assert list(context.pushes) == ["base_footprint"]
+    assert list(context.wrenches) == ["base_footprint"]
 
 
 def test_a_base_moved_by_forces_trusts_its_yaw_while_it_does_not_turn():
@@ -418,7 +418,7 @@ CAR = ("left_front_joint", "right_front_joint", "left_rear_joint", "right_rear_j
 def test_all_wheels_of_a_limo_roll_about_one_centre(speed, yaw):
     context = FakeContext("<plugin><wheelDiameter>0.09</wheelDiameter></plugin>", joints=CAR)
     LimoAckermann(context).load()
-    context.hear("cmd_vel", linear={"x": speed}, angular={"z": yaw})
+    context.deliver("cmd_vel", linear={"x": speed}, angular={"z": yaw})
     context.advance(0.02)
     angles = [context.published[f"limo_{side}_steering_hinge_controller/command"][-1].data
               for side in ("fl", "fr")]
@@ -434,11 +434,11 @@ def test_all_wheels_of_a_limo_roll_about_one_centre(speed, yaw):
 def test_a_limo_steers_no_further_than_it_can():
     context = FakeContext("<plugin/>", joints=CAR)
     LimoAckermann(context).load()
-    context.hear("cmd_vel", linear={"x": 0.1}, angular={"z": 9.0})
+    context.deliver("cmd_vel", linear={"x": 0.1}, angular={"z": 9.0})
     context.advance(0.02)
     left = context.published["limo_fl_steering_hinge_controller/command"][-1].data
     assert left == pytest.approx(math.radians(30.0))
-    context.hear("cmd_vel", linear={"x": 0.0}, angular={"z": 9.0})
+    context.deliver("cmd_vel", linear={"x": 0.0}, angular={"z": 9.0})
     context.advance(0.02)
     assert context.published["limo_fl_steering_hinge_controller/command"][-1].data == 0.0
     assert context.joints["left_rear_joint"].motor[0] == 0.0

@@ -32,9 +32,9 @@ def test_unknown_fields_and_wrong_values_are_refused():
         topic.publish(context.message("std_msgs/Empty"))
     context.subscribe("speed", "std_msgs/Float64", lambda heard: None)
     with pytest.raises(MessageFieldError, match="no field 'value'"):
-        context.hear("speed", value=1.0)
+        context.deliver("speed", value=1.0)
     with pytest.raises(MessageFieldError, match="data cannot be 'fast'"):
-        context.hear("speed", data="fast")
+        context.deliver("speed", data="fast")
 
 
 def test_a_service_is_called_with_its_types():

@@ -29,9 +29,9 @@ NOT_FINITE = (math.nan, math.inf, -math.inf, 1e308)
 def test_a_drive_passes_over_a_command_that_is_not_finite_and_says_so_once(value):
     context = FakeContext(joints=WHEELS)
     DiffDrive(context).load()
-    context.hear("robot/cmd_vel", linear={"x": 0.3}, angular={"z": 0.0})
+    context.deliver("robot/cmd_vel", linear={"x": 0.3}, angular={"z": 0.0})
     for _ in range(3):
-        context.hear("robot/cmd_vel", linear={"x": 0.0}, angular={"z": value})
+        context.deliver("robot/cmd_vel", linear={"x": 0.0}, angular={"z": value})
     context.advance(0.02)
     assert context.joints["left_joint"].motor[0] == pytest.approx(4.0)
     assert [said for said in context.said if "cmd_vel" in said and "NaN" in said] == context.said
@@ -41,9 +41,9 @@ def test_a_wrench_that_is_not_finite_leaves_the_last_one():
     context = FakeContext("<plugin><bodyName>base</bodyName><topicName>push</topicName></plugin>")
     Force(context).load()
     none = {"x": 0.0, "y": 0.0, "z": 0.0}
-    context.hear("push", force={**none, "x": 1.0}, torque=none)
-    context.hear("push", force={**none, "x": math.inf}, torque=none)
-    assert context.pushes["base"] == ((1.0, 0.0, 0.0), (0.0, 0.0, 0.0))
+    context.deliver("push", force={**none, "x": 1.0}, torque=none)
+    context.deliver("push", force={**none, "x": math.inf}, torque=none)
+    assert context.wrenches["base"] == ((1.0, 0.0, 0.0), (0.0, 0.0, 0.0))
 
 
 def test_numbers_of_messages_are_looked_at_wherever_they_are():

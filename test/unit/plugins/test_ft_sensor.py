@@ -20,7 +20,7 @@ def sensor_of(inside=ASKED, **options):
     context = FakeContext(f"<plugin>{inside}</plugin>", **options)
     context.description.joints.append(Joint("wrist", "fixed", "arm", "hand",
                                             Pose(orientation=quat_from_rpy(0, 0, math.pi / 2))))
-    context.wrenches["wrist"] = JointWrench((1.0, 2.0, 3.0), (4.0, 5.0, 6.0),
+    context.joint_wrenches["wrist"] = JointWrench((1.0, 2.0, 3.0), (4.0, 5.0, 6.0),
                                             quat_from_rpy(0, 0, math.pi))
     plugin = FtSensor(context)
     plugin.load()
@@ -43,7 +43,7 @@ def test_it_tells_what_the_child_does_to_the_parent_in_the_childs_frame():
 
 def test_nothing_is_published_before_there_is_a_measurement():
     context = sensor_of()
-    del context.wrenches["wrist"]
+    del context.joint_wrenches["wrist"]
     context.advance(0.01)
     assert not context.published["ft"]
 

@@ -39,7 +39,7 @@ def test_a_harness_pulls_back_to_where_the_model_hung():
     link = context.links["link"]
     link.pose = Pose((0.01, 0.0, -0.1), quat_from_rpy(0.0, 0.02, 0.0))
     context.advance(0.001)
-    (force, torque) = context.pushes["link"]
+    (force, torque) = context.wrenches["link"]
     stiff = (2.0 * math.pi * 10.0) ** 2
     assert force == pytest.approx((-2.0 * stiff * 0.01, 0.0, 400.0 * 0.1))
     assert torque == pytest.approx((0.0, -stiff * 0.02, 0.0), rel=1e-3)
@@ -52,35 +52,35 @@ def test_the_integral_term_of_a_winch_stays_within_its_limits(limits, most):
     context = hanging(UP.replace("<pos_pid><p>400</p>", f"<pos_pid><i>1000</i>{limits}"))
     context.links["link"].pose = Pose((0.0, 0.0, -0.1))
     context.advance(0.5)
-    assert context.pushes["link"][0][2] == pytest.approx(most)
+    assert context.wrenches["link"][0][2] == pytest.approx(most)
 
 
 def test_the_winch_pulls_up_to_its_rate_and_holds_where_it_stops():
     context = hanging()
     link = context.links["link"]
-    context.hear("/box/harness/velocity", data=-0.5)
+    context.deliver("/box/harness/velocity", data=-0.5)
     link.twist = Twist((0.0, 0.0, -0.8), (0.0, 0.0, 0.0))
     context.advance(0.001)
-    assert context.pushes["link"][0][2] == pytest.approx(100.0 * 0.3)
+    assert context.wrenches["link"][0][2] == pytest.approx(100.0 * 0.3)
     link.twist = Twist((0.0, 0.0, -0.2), (0.0, 0.0, 0.0))
     context.advance(0.001)
-    assert context.pushes["link"][0][2] == pytest.approx(0.0)   # it does not push down
+    assert context.wrenches["link"][0][2] == pytest.approx(0.0)   # it does not push down
     link.pose, link.twist = Pose((0.0, 0.0, -1.0)), Twist()
-    context.hear("/box/harness/velocity", data=0.0)
+    context.deliver("/box/harness/velocity", data=0.0)
     context.advance(0.001)
-    assert context.pushes["link"][0][2] == pytest.approx(0.0)   # it holds here from now on
+    assert context.wrenches["link"][0][2] == pytest.approx(0.0)   # it holds here from now on
 
 
 def test_a_model_that_is_let_go_falls_and_hangs_again_after_a_reset():
     context = hanging()
     context.links["link"].pose = Pose((0.0, 0.0, -0.1))
     context.advance(0.001)
-    context.hear("/box/harness/detach", data=False)
+    context.deliver("/box/harness/detach", data=False)
     context.advance(0.001)
-    assert context.pushes["link"][0][2] > 0.0
-    context.hear("/box/harness/detach", data=True)
+    assert context.wrenches["link"][0][2] > 0.0
+    context.deliver("/box/harness/detach", data=True)
     context.advance(0.001)
-    assert context.pushes["link"] == ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
+    assert context.wrenches["link"] == ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
 
 
 @pytest.mark.parametrize("pose, way", [("0 0 0 0 1.5707963 0", (40.0, 0.0, 0.0)),
@@ -89,7 +89,7 @@ def test_a_harness_pulls_along_its_joints_axis_also_where_the_pose_is_no_pose(po
     context = hanging(UP.replace("<parent>", f"<pose>{pose}</pose><parent>"))
     context.links["link"].pose = Pose(tuple(-part / 400.0 for part in way))
     context.advance(0.001)
-    assert context.pushes["link"][0] == pytest.approx(way, abs=1e-4)
+    assert context.wrenches["link"][0] == pytest.approx(way, abs=1e-4)
     assert any("<pose>" in text for text in context.said) == (len(pose.split()) != 6)
 
 
@@ -117,7 +117,7 @@ def targets(context):
 def arrive(context):
     """Joints are where they are to be."""
     for joint in context.joints.values():
-        joint.steer(joint.servo)
+        joint.set_servo(joint.servo)
         joint.position, joint.velocity = joint.servo.target, 0.0
     context.advance(0.01)
 
@@ -127,9 +127,9 @@ def test_a_lift_closes_moves_opens_waits_and_closes():
     for joint in context.joints.values():
         joint.stuck = True
     assert targets(context) == (0.0, 0.0)
-    context.hear("elevator", data="1")
+    context.deliver("elevator", data="1")
     arrive(context)                       # the door was closed
-    context.hear("elevator", data="0")    # busy: left out
+    context.deliver("elevator", data="0")    # busy: left out
     context.advance(0.02)
     assert targets(context) == (2.0, 0.0)
     arrive(context)
@@ -141,7 +141,7 @@ def test_a_lift_closes_moves_opens_waits_and_closes():
     context.advance(0.2)
     assert targets(context) == (2.0, 0.0)
     arrive(context)
-    context.hear("elevator", data="0")
+    context.deliver("elevator", data="0")
     context.advance(0.05)
     assert targets(context) == (0.0, 0.0)
 
@@ -149,7 +149,7 @@ def test_a_lift_closes_moves_opens_waits_and_closes():
 def test_a_lift_stops_the_engine_only_while_it_serves_a_call():
     context, _ = lift()
     assert context.stops == 0
-    context.hear("elevator", data="1")
+    context.deliver("elevator", data="1")
     assert context.stops == 1
     for _ in range(5):   # stages
         arrive(context)
@@ -160,7 +160,7 @@ def test_a_lift_stops_the_engine_only_while_it_serves_a_call():
 def test_a_harness_stops_the_engine_until_it_lets_go():
     context = hanging()
     assert context.stops == 1
-    context.hear("/box/harness/detach", data=True)
+    context.deliver("/box/harness/detach", data=True)
     assert context.stops == 0
 
 
@@ -169,7 +169,7 @@ def test_a_lift_that_waits_while_the_clock_is_set_back_goes_on():
     context.advance(60.0)
     for joint in context.joints.values():
         joint.stuck = True
-    context.hear("elevator", data="1")
+    context.deliver("elevator", data="1")
     for _ in range(2):
         arrive(context)
         context.advance(0.02)
@@ -187,7 +187,7 @@ def test_a_lift_that_waits_while_the_clock_is_set_back_goes_on():
 @pytest.mark.parametrize("floor", ["roof", "9" * 400])
 def test_what_is_no_floor_is_told(floor):
     context, _ = lift()
-    context.hear("elevator", data=floor)
+    context.deliver("elevator", data=floor)
     assert floor in context.said[-1]
     context.advance(0.05)
     assert targets(context) == (0.0, 0.0)
@@ -217,8 +217,8 @@ def test_wind_pushes_by_mass_and_by_how_much_faster_it_is():
     context, _ = windy(CALM.format(""))
     context.model_link("boat::sail").twist = Twist((1.0, 0.0, 0.0), (0.0, 0.0, 0.0))
     context.advance(0.01)
-    assert set(context.pushes) == {"boat::sail"}
-    assert context.pushes["boat::sail"][0] == pytest.approx((2.0, 4.0, 0.0))
+    assert set(context.wrenches) == {"boat::sail"}
+    assert context.wrenches["boat::sail"][0] == pytest.approx((2.0, 4.0, 0.0))
 
 
 def test_wind_rises_with_its_lag():
@@ -243,7 +243,7 @@ def test_wind_blows_on_when_the_clock_is_set_back():
 def test_wind_swings_and_another_one_can_be_given():
     swing = "<sin><amplitude_percent>0.2</amplitude_percent><period>4</period></sin>"
     context, plugin = windy(CALM.format(swing))
-    context.hear("/gazebo/wind", x=10.0, y=0.0, z=0.0)
+    context.deliver("/gazebo/wind", x=10.0, y=0.0, z=0.0)
     context.advance(1.0)
     assert plugin.velocity()[0] == pytest.approx(12.0)
     context.advance(2.0)
@@ -255,11 +255,11 @@ def test_what_leaves_the_wind_is_pushed_no_more():
     context.advance(0.01)
     context.others["boat"] = Model("boat", links=[Link("sail")])
     context.advance(0.01)
-    assert context.pushes["boat::sail"][0] == (0.0, 0.0, 0.0)
+    assert context.wrenches["boat::sail"][0] == (0.0, 0.0, 0.0)
     del context.others["boat"]
-    context.pushes.clear()
+    context.wrenches.clear()
     context.advance(0.05)
-    assert context.pushes == {}
+    assert context.wrenches == {}
 
 
 def test_a_link_decides_for_itself_whether_wind_acts_on_it():

@@ -36,7 +36,7 @@ def loaded(cls, inside="", parameters=None, inertial=None):
 
 
 def push(context):
-    return context.pushes["base"]
+    return context.wrenches["base"]
 
 
 # -- the controller ------------------------------------------------------------------------------
@@ -59,10 +59,10 @@ def test_the_filter_of_a_command_has_its_time_constant():
 def test_motors_start_with_a_command_to_rise():
     context, _ = loaded(QuadrotorSimpleController,
                         "<velocityZProportionalGain>5</velocityZProportionalGain>")
-    context.hear("cmd_vel", **command(x=1.0))
+    context.deliver("cmd_vel", **command(x=1.0))
     context.advance(0.01)
-    assert not context.pushes
-    context.hear("cmd_vel", **command(z=0.5))
+    assert not context.wrenches
+    context.deliver("cmd_vel", **command(z=0.5))
     context.advance(0.01)
     assert push(context)[0] == pytest.approx((0.0, 0.0, MASS * (9.8 + 5.0 * 0.5)))
     assert context.published["wrench_out"][-1].force.z == pytest.approx(MASS * 12.3)
@@ -71,7 +71,7 @@ def test_motors_start_with_a_command_to_rise():
 def test_a_tilted_body_carries_its_weight():
     context, _ = loaded(QuadrotorSimpleController)
     context.link("").pose = Pose(orientation=quat_from_rpy(0.0, 0.3, 0.0))
-    context.hear("cmd_vel", **command(z=0.5))
+    context.deliver("cmd_vel", **command(z=0.5))
     context.advance(0.01)
     force = push(context)[0]
     assert force[2] == pytest.approx(MASS * 9.8)
@@ -81,7 +81,7 @@ def test_a_tilted_body_carries_its_weight():
 def test_thrust_acts_at_the_origin_of_the_link_and_is_limited():
     context, _ = loaded(QuadrotorSimpleController, "<maxForce>10</maxForce>",
                         inertial=Inertial(MASS, Pose((0.1, 0.0, 0.0))))
-    context.hear("cmd_vel", **command(z=0.5))
+    context.deliver("cmd_vel", **command(z=0.5))
     context.advance(0.001)
     assert push(context)[0][2] == pytest.approx(10.0)
     assert push(context)[1] == pytest.approx((0.0, 1.0, 0.0))   # -(0.1, 0, 0) x (0, 0, 10)
@@ -92,7 +92,7 @@ def test_a_forward_command_pitches_along_the_heading():
                         "<velocityXYProportionalGain>4.9</velocityXYProportionalGain>"
                         "<rollpitchProportionalGain>10</rollpitchProportionalGain>")
     context.link("").pose = Pose(orientation=quat_from_rpy(0.0, 0.0, math.pi / 2))
-    context.hear("cmd_vel", **command(x=1.0, z=0.2))
+    context.deliver("cmd_vel", **command(x=1.0, z=0.2))
     context.advance(0.001)
     # 0.5 rad of pitch wanted; the y axis of the body is the -x axis of the world
     assert push(context)[1] == pytest.approx((-0.02 * 10.0 * 0.5, 0.0, 0.0), abs=1e-12)
@@ -107,16 +107,16 @@ def test_services_start_and_stop_motors():
     assert push(context) == ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
     context.services["engage"](Message(), Message())
     plugin.reset()
-    context.pushes.clear()
+    context.wrenches.clear()
     context.advance(0.01)
-    assert not context.pushes
+    assert not context.wrenches
 
 
 def test_a_landed_body_stops_its_motors():
     context, _ = loaded(QuadrotorSimpleController)
-    context.hear("cmd_vel", **command(z=0.5))
+    context.deliver("cmd_vel", **command(z=0.5))
     context.advance(0.1)
-    context.hear("cmd_vel", **command(z=-0.5))
+    context.deliver("cmd_vel", **command(z=-0.5))
     context.advance(1.5)
     assert push(context)[0][2] > 0.0
     context.advance(1.0)   # the integral of the error is below -1 m, and it stands
@@ -153,7 +153,7 @@ def pwm(*values, ns=0):
 
 def test_rotors_reach_the_speed_at_which_torques_balance():
     context, _ = propelled()
-    context.hear("motor_pwm", **pwm(128, 128, 128, 128))
+    context.deliver("motor_pwm", **pwm(128, 128, 128, 128))
     context.advance(2.0)
     speed = steady(14.8 * 128 / 255)
     status = context.published["motor_status"][-1]
@@ -167,7 +167,7 @@ def test_the_order_of_motors_gives_roll_pitch_and_yaw():
     for order, way in (((0, 1, 0, -1), 0), ((-1, 0, 1, 0), 1), ((1, -1, 1, -1), 2)):
         context, _ = propelled()
         signs = [-one if way == 0 else one for one in order]
-        context.hear("motor_pwm", **pwm(*(128 + 20 * sign for sign in signs)))
+        context.deliver("motor_pwm", **pwm(*(128 + 20 * sign for sign in signs)))
         context.advance(1.0)
         torque = push(context)[1]
         assert torque[way] > 0.01
@@ -180,7 +180,7 @@ def test_rising_rotors_meet_more_air():
         (2.0 - 0.2, 2.0 - 0.1, 2.0 + 0.2, 2.0 + 0.1))
     context, _ = propelled()
     context.link("").twist = Twist((0.0, 0.0, 1.0))
-    context.hear("motor_pwm", **pwm(128, 128, 128, 128))
+    context.deliver("motor_pwm", **pwm(128, 128, 128, 128))
     context.advance(2.0)
     status = context.published["motor_status"][-1]
     thrust = sum(MOTOR["CT0s"] * w * w + MOTOR["CT1s"] * w for w in status.frequency)
@@ -190,7 +190,7 @@ def test_rising_rotors_meet_more_air():
 def test_a_command_acts_after_its_delay():
     context, _ = propelled("<controlDelay>0.05</controlDelay>")
     context.advance(0.02)
-    context.hear("command/motor", **voltages(7.4, 7.4, 7.4, 7.4, ns=20 * 10 ** 6))
+    context.deliver("command/motor", **voltages(7.4, 7.4, 7.4, 7.4, ns=20 * 10 ** 6))
     context.advance(0.045)
     assert context.published["motor_status"][-1].voltage == [0.0] * 4
     context.advance(0.01)
@@ -199,7 +199,7 @@ def test_a_command_acts_after_its_delay():
 
 def test_motors_stop_without_commands():
     context, _ = propelled("<controlRate>100</controlRate>")
-    context.hear("motor_pwm", **pwm(255, 255, 255, 255))
+    context.deliver("motor_pwm", **pwm(255, 255, 255, 255))
     context.advance(0.9)
     assert context.published["motor_status"][-1].on
     context.advance(0.2)
@@ -223,7 +223,7 @@ def test_drag_grows_with_the_square_of_the_speed_through_the_air():
     force, torque = push(context)
     assert force == pytest.approx((-0.12 * 5.0 * 3.0, 0.0, -0.1 * 5.0 * 4.0))
     assert torque == pytest.approx((0.0, 0.0, -0.051 * 4.0))
-    context.hear("/wind", x=3.0, y=0.0, z=4.0)
+    context.deliver("/wind", x=3.0, y=0.0, z=4.0)
     context.advance(0.001)
     assert push(context)[0] == pytest.approx((0.0, 0.0, 0.0))
 
@@ -265,13 +265,13 @@ def start(robot, running=True):
 
 def test_nothing_pushes_until_the_motors_run():
     robot = chain("velocity", "attitude")
-    robot.hear("cmd_vel", **command(z=1.0))
+    robot.deliver("cmd_vel", **command(z=1.0))
     robot.context.advance(0.1)
-    assert not robot.context.pushes
+    assert not robot.context.wrenches
     start(robot)
     robot.context.advance(0.1)
     assert push(robot.context)[0][2] == pytest.approx(MASS * 9.8065)
-    robot.hear("cmd_vel", **command(z=1.0))
+    robot.deliver("cmd_vel", **command(z=1.0))
     robot.context.advance(0.1)
     assert push(robot.context)[0][2] == pytest.approx(MASS * (2.0 + 9.8065))
     start(robot, False)
@@ -282,7 +282,7 @@ def test_a_velocity_is_given_in_the_axes_of_the_heading():
     robot = chain("velocity", "attitude")
     robot.context.link("").pose = Pose(orientation=quat_from_rpy(0.0, 0.0, math.pi / 2))
     start(robot)
-    robot.hear("cmd_vel", **command(x=1.0))
+    robot.deliver("cmd_vel", **command(x=1.0))
     robot.context.advance(0.1)
     pitch = math.asin(2.0 / 9.8065)
     # a torque about the y axis of the body, which is -x of the world
@@ -295,12 +295,12 @@ def test_tilt_and_yaw_rate_are_limited():
     start(robot)
     for name, value in (("attitude", {"roll": 0.0, "pitch": 2.0}), ("yawrate", {"turnrate": 9.0}),
                         ("thrust", {"thrust": 7.0})):
-        robot.hear(f"command/{name}", header={"stamp": Time()}, **value)
+        robot.deliver(f"command/{name}", header={"stamp": Time()}, **value)
     robot.context.advance(0.1)
     force, torque = push(robot.context)
     assert force == (0.0, 0.0, 7.0)
     assert torque == pytest.approx((0.0, 0.02 * 100.0 * math.sin(0.5), 0.03 * 5.0 * 1.0))
-    robot.hear("estop", data=True)
+    robot.deliver("estop", data=True)
     robot.context.advance(1.0)
     assert push(robot.context)[0][2] == pytest.approx(7.0 - MASS * 1.0, abs=0.05)
 
@@ -308,16 +308,16 @@ def test_tilt_and_yaw_rate_are_limited():
 def test_a_velocity_ends_position_control_and_standing_still_does_not():
     robot = chain("position", "velocity", "attitude")
     start(robot)
-    robot.hear("command/pose", header={"frame_id": "world", "stamp": Time()}, pose={
+    robot.deliver("command/pose", header={"frame_id": "world", "stamp": Time()}, pose={
         "position": {"x": 0.0, "y": 0.0, "z": 1.0},
         "orientation": {"x": 0.0, "y": 0.0, "z": 0.0, "w": 1.0}})
-    robot.hear("cmd_vel", **command())
+    robot.deliver("cmd_vel", **command())
     robot.context.advance(0.1)
     assert push(robot.context)[0][2] == pytest.approx(MASS * (2.0 * 2.0 + 9.8065))
-    robot.hear("command/twist_limit", **command(z=0.5))
+    robot.deliver("command/twist_limit", **command(z=0.5))
     robot.context.advance(0.1)
     assert push(robot.context)[0][2] == pytest.approx(MASS * (0.5 * 2.0 + 9.8065))
-    robot.hear("cmd_vel", **command(z=-0.5))
+    robot.deliver("cmd_vel", **command(z=-0.5))
     robot.context.advance(0.1)
     assert push(robot.context)[0][2] == pytest.approx(MASS * (-0.5 * 2.0 + 9.8065))
 
@@ -325,7 +325,7 @@ def test_a_velocity_ends_position_control_and_standing_still_does_not():
 def test_commands_in_other_frames_are_ignored():
     robot = chain("position", "velocity", "attitude")
     start(robot)
-    robot.hear("command/pose", header={"frame_id": "map", "stamp": Time()}, pose={
+    robot.deliver("command/pose", header={"frame_id": "map", "stamp": Time()}, pose={
         "position": {"x": 0.0, "y": 0.0, "z": 1.0},
         "orientation": {"x": 0.0, "y": 0.0, "z": 0.0, "w": 1.0}})
     robot.context.advance(0.1)

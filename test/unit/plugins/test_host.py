@@ -19,7 +19,7 @@ from my_simulations.engine.ring import RECORDS
 from my_simulations.errors import Severity
 from my_simulations.geometry import Pose
 from my_simulations.plugins.base import Plugin
-from my_simulations.plugins.call_watch import PATIENCE, Patience
+from my_simulations.plugins.call_watch import CALL_LIMITS, CallLimits
 from my_simulations.plugins.context import PluginError, RequestError
 from my_simulations.plugins.graph import TopicUse
 from my_simulations.plugins.registry import PluginRegistry, exports, library_name, plugin_class
@@ -61,9 +61,9 @@ def robot(name="robot", xml=DRIVE, library="libgazebo_ros_diff_drive.so"):
 
 
 class Case(PluginCase):
-    def __init__(self, *models, extra=None, patience=PATIENCE, plugins=()):
+    def __init__(self, *models, extra=None, limits=CALL_LIMITS, plugins=()):
         super().__init__(World(models=list(models), plugins=list(plugins)), KinematicBackend,
-                         extra, patience)
+                         extra, limits)
 
     def failed(self):
         return [issue for issue in self.issues if issue.code == "plugin-failed"]
@@ -129,10 +129,10 @@ def test_the_same_run_gives_the_same_messages(case):
 def test_a_spawned_robot_has_its_plugin_and_a_deleted_one_has_not(case):
     one = case()
     one.sim.models.spawn(robot())
-    one.host.settle()
+    one.host.wait_until_loaded()
     assert "robot/cmd_vel" in one.graph.heard
     one.sim.models.delete("robot")
-    one.host.settle()
+    one.host.wait_until_loaded()
     assert "robot/cmd_vel" not in one.graph.heard
     assert one.sim.clock.advance(50) == 50
 
@@ -262,7 +262,7 @@ class Sleeping(Plugin):
 @pytest.mark.parametrize("where", ["load", "update", "reset", "hear"])
 def test_a_plugin_that_never_returns_is_switched_off_and_the_others_go_on(case, monkeypatch, where):
     monkeypatch.setattr(Spinning, "where", where)
-    one = case(robot("bad", "<plugin/>", "libspin.so"), robot(), patience=Patience(0.1, 10.0),
+    one = case(robot("bad", "<plugin/>", "libspin.so"), robot(), limits=CallLimits(0.1, 10.0),
                extra={"libspin.so": f"{__name__}:Spinning"})
     if where == "reset":
         one.sim.resets.reset_simulation()
@@ -280,7 +280,7 @@ def test_a_plugin_that_never_returns_is_switched_off_and_the_others_go_on(case, 
 
 def test_a_plugin_that_waits_for_ever_is_left_behind(case, monkeypatch):
     monkeypatch.setattr(Sleeping, "ends", threading.Event())
-    one = case(robot("bad", "<plugin/>", "libsleep.so"), robot(), patience=Patience(5.0, 0.2),
+    one = case(robot("bad", "<plugin/>", "libsleep.so"), robot(), limits=CallLimits(5.0, 0.2),
                extra={"libsleep.so": f"{__name__}:Sleeping"})
     one.command(linear={"x": 0.5}, angular={"z": 0.0})
     one.sim.clock.advance(110)
@@ -298,12 +298,12 @@ def test_a_plugin_that_waits_for_ever_is_left_behind(case, monkeypatch):
 class Grumbling(Plugin):
     def load(self):
         for topic in "ab":
-            self.context.subscribe(topic, "std_msgs/Empty", self.hear, queue=5)
-        self.context.serve("ask", "std_srvs/Empty", lambda request, response: self.hear(None))
-        self.context.every(100.0, lambda: self.hear(None))
-        self.context.every(50.0, lambda: self.hear(None))
+            self.context.subscribe(topic, "std_msgs/Empty", self.receive, queue=5)
+        self.context.serve("ask", "std_srvs/Empty", lambda request, response: self.receive(None))
+        self.context.every(100.0, lambda: self.receive(None))
+        self.context.every(50.0, lambda: self.receive(None))
 
-    def hear(self, message):
+    def receive(self, message):
         raise RuntimeError("no")
 
 
@@ -316,7 +316,7 @@ def test_a_plugin_that_raises_in_everything_is_switched_off_once(case):
     one.sim.clock.advance(100)
     until(one.failed)
     one.sim.clock.advance(100)
-    assert len(one.failed()) == 1 and not one.host.unheard
+    assert len(one.failed()) == 1 and not one.host.has_pending_input
     with pytest.raises(PluginError, match="ended"):
         ask(Message(), Message())
 
@@ -362,7 +362,7 @@ def test_a_plugin_goes_on_without_a_service_that_another_one_offers(case):
     assert (told.severity, told.line) == (Severity.WARNING, 12) and "'second'" in told.message
     assert not one.failed()
     one.sim.models.delete("second")
-    one.host.settle()
+    one.host.wait_until_loaded()
     assert "/default_imu" in one.graph.heard
 
 
@@ -415,14 +415,14 @@ def test_topics_of_plugins_are_known_with_the_place_of_their_sensor(case):
     one.graph.heard["/stop"](Message())
     until(lambda: one.host.topic_uses() == [stop])
     one.sim.models.delete("robot")
-    one.host.settle()
+    one.host.wait_until_loaded()
     assert one.host.topic_uses() == []
 
 
 def test_topics_of_a_drive_belong_to_no_link(case):
     one = case(robot())
     uses = {use.name: use for use in one.host.topic_uses()}
-    assert uses["robot/cmd_vel"].heard and not uses["robot/odom"].heard
+    assert uses["robot/cmd_vel"].is_subscription and not uses["robot/odom"].is_subscription
     assert {(use.model, use.link, use.sensor) for use in uses.values()} == {("robot", "", "")}
 
 
@@ -440,7 +440,7 @@ def test_a_topic_without_a_name_is_offered_to_nobody(case):
                extra={"libmumble.so": f"{__name__}:Mumbling"})
     one.sim.clock.advance(20)
     assert [use.name for use in one.host.topic_uses()] == ["eyes/scan", "/stop"]
-    one.hear("/stop")
+    one.deliver("/stop")
     assert (one.graph.sent, one.failed()) == ([], [])
 
 
@@ -478,12 +478,12 @@ def test_a_plugin_that_was_switched_off_has_no_topics(case):
 
 class Pushing(Plugin):
     def load(self):
-        self.context.subscribe("push", "std_msgs/Float64", self.hear)
+        self.context.subscribe("push", "std_msgs/Float64", self.receive)
 
-    def hear(self, message):
-        self.context.push("wheel_l", (message.data, 0.0, 0.0), (0.0, 0.0, 0.0))
-        self.context.push("other::base", (0.0, message.data, 0.0), (0.0, 0.0, 0.0))
-        self.context.push("gone::base", (0.0, message.data, 0.0), (0.0, 0.0, 0.0))
+    def receive(self, message):
+        self.context.set_wrench("wheel_l", (message.data, 0.0, 0.0), (0.0, 0.0, 0.0))
+        self.context.set_wrench("other::base", (0.0, message.data, 0.0), (0.0, 0.0, 0.0))
+        self.context.set_wrench("gone::base", (0.0, message.data, 0.0), (0.0, 0.0, 0.0))
 
 
 def test_wrenches_replace_each_other_in_one_gap_and_end_with_the_plugin(case):
@@ -491,7 +491,8 @@ def test_wrenches_replace_each_other_in_one_gap_and_end_with_the_plugin(case):
                extra={"libpush.so": f"{__name__}:Pushing"})
 
     def acting():
-        return {(force.row, force.force) for force in one.sim.wrenches.pending(one.sim.clock.step)}
+        return {(force.row, force.force)
+                for force in one.sim.wrenches.pending(one.sim.clock.step)}
 
     for newton in (1.0, 2.0, 0.0, 3.0):
         one.graph.heard["push"](Message(data=newton))
@@ -524,7 +525,7 @@ def test_what_is_attached_is_let_go(case, how):
         (running,) = [running for running in one.host._at_work() if "libjoin" in
                       running.found.spec.filename]
         running.context.inbox.append(lambda: 1 / 0)
-        one.host._ring(running)
+        one.host._mark_input(running)
     until(lambda: not connected)
 
 

@@ -39,7 +39,7 @@ def test_a_joint_is_driven_by_the_interface_that_its_controller_claims():
     robot = arm()
     assert drive_of(robot) == "position"             # the first one, until a controller runs
     robot.run("by_position")
-    robot.hear("by_position/command", data=0.5)
+    robot.deliver("by_position/command", data=0.5)
     robot.context.advance(0.2)
     assert robot.at() == pytest.approx(0.5, abs=1e-6)
     for name, drive in (("by_velocity", "velocity"), ("by_effort", "effort"),
@@ -49,7 +49,7 @@ def test_a_joint_is_driven_by_the_interface_that_its_controller_claims():
         assert robot.switch([name], running), robot.context.said
         assert drive_of(robot) == drive
     robot.switch(["by_velocity"], ["by_position"])
-    robot.hear("by_velocity/command", data=1.0)
+    robot.deliver("by_velocity/command", data=1.0)
     before = robot.at()
     robot.context.advance(0.5)
     assert robot.at() - before == pytest.approx(0.5, abs=0.01)
@@ -58,7 +58,7 @@ def test_a_joint_is_driven_by_the_interface_that_its_controller_claims():
 def test_a_joint_without_controller_keeps_the_interface_of_the_last_one():
     robot = arm()
     robot.run("by_velocity")
-    robot.hear("by_velocity/command", data=1.0)
+    robot.deliver("by_velocity/command", data=1.0)
     robot.context.advance(0.1)
     assert robot.switch(stop=["by_velocity"])
     assert (drive_of(robot), robot.context.joints["one"].servo.target) == ("velocity", 0.0)
@@ -110,17 +110,17 @@ def test_an_invalid_state_stops_until_the_emergency_stop_is_released():
     robot.run("by_velocity")
 
     def turned():
-        robot.hear("by_velocity/command", data=1.0)
+        robot.deliver("by_velocity/command", data=1.0)
         before = robot.at()
         robot.context.advance(0.1)
         return robot.at() - before > 0.05
 
     assert turned()
-    robot.hear("valid", data=False)
+    robot.deliver("valid", data=False)
     assert not turned()
-    robot.hear("stop", data=False)
+    robot.deliver("stop", data=False)
     assert not turned()                              # the state is still invalid
-    robot.hear("valid", data=True)
+    robot.deliver("valid", data=True)
     assert not turned()
-    robot.hear("stop", data=False)
+    robot.deliver("stop", data=False)
     assert turned()

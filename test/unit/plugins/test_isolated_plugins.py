@@ -11,9 +11,14 @@ import pytest
 from plugin_case import kept, until
 from test_plugin_faults import GOOD, HEAD, LOAD, Case, model
 
-from my_simulations.plugins.call_watch import Patience
+from my_simulations.plugins.call_watch import CallLimits
 from my_simulations.plugins.context import Context
-from my_simulations.plugins.isolated.messages import HANDLES, METHODS, ORDERS, PROPERTIES
+from my_simulations.plugins.isolated.messages import (
+    CALLS_WITHOUT_RESULT,
+    HANDLES,
+    METHODS,
+    PROPERTIES,
+)
 from my_simulations.plugins.isolated.remote_context import RemoteContext
 from my_simulations.plugins.testing import Message
 from my_simulations.sensing.api import RayReturns
@@ -26,7 +31,7 @@ MOVES = LOAD + """        context = self.context
         self.hinge, self.base = context.joint("hinge"), context.link("base")
         self.said = context.publish("said", "std_msgs/Float64")
         self.times = []
-        context.subscribe("rate", "std_msgs/Float64", self.hear)
+        context.subscribe("rate", "std_msgs/Float64", self.deliver)
         context.serve("ask", "std_srvs/Trigger", self.answer)
         context.once(15_000_000, lambda: self.times.append(context.now_ns))
         context.every(100.0, self.call)
@@ -34,7 +39,7 @@ MOVES = LOAD + """        context = self.context
         context.mark = (context.model, context.parameters.text("word"), self.hinge.parent,
                         self.base.inertial.mass, context.step_size, context.gravity[2])
 
-    def hear(self, message):
+    def deliver(self, message):
         self.hinge.drive(message.data, 10.0)
 
     def call(self):
@@ -63,7 +68,7 @@ def test_a_plugin_uses_its_context_from_its_own_process(case):
     one = case()
     one.spawn(MOVES)
     assert one.failed() == []
-    one.hear("rate", data=2.0)
+    one.deliver("rate", data=2.0)
     one.sim.clock.advance(40)
     until(lambda: len(one.graph.on("said")) == 2)
     (first, place, base), (second, later, _) = (said.data for said in one.graph.on("said"))
@@ -120,7 +125,7 @@ ENDS = [
 @pytest.mark.parametrize("when", ["import", "load", "call"])
 @pytest.mark.parametrize(("statement", "said", "located"), ENDS, ids=range(len(ENDS)))
 def test_nothing_that_a_plugin_does_ends_another_one(case, statement, said, located, when):
-    one = case(patience=Patience(0.5, 8.0))
+    one = case(limits=CallLimits(0.5, 8.0))
     if when == "import" and "self" in statement:
         statement, said = "1 / 0", "ZeroDivisionError"
     source = {"import": "{}\n", "load": LOAD + "        {}\n", "call": CALL + "        {}\n"}
@@ -256,7 +261,7 @@ def test_a_process_ends_with_all_that_it_has_started(case, tmp_path, how):
         one.host.stop()
     else:
         os.kill(mine, signal.SIGKILL)
-        one.hear("talk")
+        one.deliver("talk")
     until(lambda: not is_running(mine))
     until(lambda: not is_running(started))
     if how == "kill":
@@ -271,7 +276,8 @@ def test_the_context_of_a_process_has_all_that_a_context_has():
     given = {*METHODS, *PROPERTIES, *vars(RemoteContext), "parameters", "sensor", "sensor_link",
              "sensor_joint"}
     assert wanted - given == set()
-    assert {name for name in ORDERS | set(HANDLES) if name not in vars(RemoteContext)} == set()
+    assert {name for name in CALLS_WITHOUT_RESULT | set(HANDLES)
+            if name not in vars(RemoteContext)} == set()
 
 
 SLOW = LOAD + """        context = self.context
@@ -309,7 +315,7 @@ def runs(one, count=20):
     ("call", "__import__('time').sleep(1000)"),
 ])
 def test_the_world_continues_while_a_plugin_hangs(case, when, statement):
-    one = case(patience=Patience(1000.0, 1000.0))
+    one = case(limits=CallLimits(1000.0, 1000.0))
     one.sim.clock.unpause()
     source = {"import": "{}\n", "load": LOAD + "        {}\n", "call": CALL + "        {}\n"}
     one.file.write_text(source[when].format(statement))
@@ -321,11 +327,11 @@ def test_the_world_continues_while_a_plugin_hangs(case, when, statement):
     one.sim.models.delete("bad")   # which ends the call
     until(lambda: not any(running.is_busy for running in one.host._running.values()))
     runs(one)
-    assert one.host.settle() and one.failed() == []
+    assert one.host.wait_until_loaded() and one.failed() == []
 
 
 def test_a_plugin_that_hangs_in_a_running_world_is_named_and_the_next_one_is_loaded(case):
-    one = case(patience=Patience(0.75, 1000.0))
+    one = case(limits=CallLimits(0.75, 1000.0))
     one.sim.clock.unpause()
     one.spawn(LOAD + "        while True: pass\n")   # returns when it is known
     (issue,) = one.failed()
@@ -337,7 +343,7 @@ def test_a_plugin_that_hangs_in_a_running_world_is_named_and_the_next_one_is_loa
 
 
 def test_a_slow_call_ends_and_what_came_meanwhile_follows(case, tmp_path):
-    one = case(patience=Patience(1000.0, 1000.0))
+    one = case(limits=CallLimits(1000.0, 1000.0))
     gate = tmp_path / "gate"
     one.sim.clock.unpause()
     one.spawn(SLOW.format(gate=f"__import__('os').path.exists({str(gate)!r})"))

@@ -23,7 +23,7 @@ def arm_with(settings=None, **options):
 
 
 def command(arm, wanted):
-    arm.hear("arm/command", **vars(wanted))
+    arm.deliver("arm/command", **vars(wanted))
 
 
 @pytest.mark.parametrize("states, law", [

@@ -55,7 +55,7 @@ def rates(context):
 
 def test_wheels_turn_until_the_command_is_too_old():
     context = started()
-    context.hear("mobile_base/commands/velocity", linear={"x": 0.2}, angular={"z": 1.0})
+    context.deliver("mobile_base/commands/velocity", linear={"x": 0.2}, angular={"z": 1.0})
     context.advance(0.1)
     assert rates(context) == pytest.approx(((0.2 - 0.115) / 0.035, (0.2 + 0.115) / 0.035))
     context.advance(0.7)
@@ -99,18 +99,18 @@ def test_a_cliff_event_has_the_reading_of_its_distance():
 
 def test_motors_that_are_off_stand():
     context = started()
-    context.hear("mobile_base/commands/motor_power", state=0)
-    context.hear("mobile_base/commands/velocity", linear={"x": 0.2}, angular={"z": 0.0})
+    context.deliver("mobile_base/commands/motor_power", state=0)
+    context.deliver("mobile_base/commands/velocity", linear={"x": 0.2}, angular={"z": 0.0})
     context.advance(0.1)
     assert rates(context) == (0.0, 0.0)
-    context.hear("mobile_base/commands/motor_power", state=1)
+    context.deliver("mobile_base/commands/motor_power", state=1)
     context.advance(0.1)
     assert rates(context)[0] > 0.0
 
 
 def test_wheels_of_a_kobuki_that_are_put_somewhere_move_no_odometry():
     context = started()
-    context.hear("mobile_base/commands/velocity", linear={"x": 0.2}, angular={"z": 0.0})
+    context.deliver("mobile_base/commands/velocity", linear={"x": 0.2}, angular={"z": 0.0})
     context.advance(0.5)
     for name in WHEELS:
         context.joints[name].put(context.joints[name].position - 50.0)
@@ -121,7 +121,7 @@ def test_wheels_of_a_kobuki_that_are_put_somewhere_move_no_odometry():
 def test_the_odometry_takes_the_way_from_wheels_and_the_heading_from_the_gyroscope():
     context = started(publish_tf="1")
     for step in range(1, 101):
-        context.hear("mobile_base/commands/velocity", linear={"x": 0.2}, angular={"z": 0.0})
+        context.deliver("mobile_base/commands/velocity", linear={"x": 0.2}, angular={"z": 0.0})
         context.link("base_footprint").pose = Pose(
             orientation=quat_from_rpy(0.0, 0.0, step * 0.02))
         context.advance(0.02)
@@ -133,7 +133,7 @@ def test_the_odometry_takes_the_way_from_wheels_and_the_heading_from_the_gyrosco
         (radius * math.sin(2.0), radius * (1.0 - math.cos(2.0))), abs=0.005)
     assert odom.twist.twist.angular.z == pytest.approx(1.0)
     assert {one[:2] for one in context.transforms} == {("odom", "base_footprint")}
-    context.hear("mobile_base/commands/reset_odometry")
+    context.deliver("mobile_base/commands/reset_odometry")
     context.advance(0.02)
     assert context.published["odom"][-1].pose.pose.position.x == pytest.approx(0.004)
 
@@ -194,7 +194,7 @@ def test_without_kobuki_msgs_it_drives():
     context.publish = missing
     plugin.load()
     assert "kobuki_msgs" in context.said[-1]
-    context.hear("mobile_base/commands/velocity", linear={"x": 0.2}, angular={"z": 0.0})
+    context.deliver("mobile_base/commands/velocity", linear={"x": 0.2}, angular={"z": 0.0})
     context.advance(0.1)
     assert rates(context)[0] > 0.0
 

@@ -68,7 +68,7 @@ def test_suspended_listeners_are_not_there_and_come_back(graph):
 
 
 def test_a_message_is_published_once_to_plugins(graph):
-    with pytest.raises(CommandError, match="no plugin hears /cmd_vel"):
+    with pytest.raises(CommandError, match="no plugin subscribes to /cmd_vel"):
         graph.publish_once("cmd_vel", {})
     heard = []
     graph.subscribe("cmd_vel", "geometry_msgs/Twist", heard.append, 1)

@@ -37,7 +37,7 @@ def base(offset=0.0, wheels=LIST, axis=None, odometry=None, run=True, **settings
 
 def go(robot, seconds, x=0.0, y=0.0, yaw=0.0):
     for _ in range(round(seconds / 0.1)):
-        robot.hear("drive/command", linear={"x": x, "y": y}, angular={"z": yaw})
+        robot.deliver("drive/command", linear={"x": x, "y": y}, angular={"z": yaw})
         robot.context.advance(0.1)
 
 
@@ -110,7 +110,7 @@ def test_after_a_stop_wheels_keep_their_angles():
 
 def test_a_command_ends_after_its_timeout():
     robot = base(timeout=0.3)
-    robot.hear("drive/command", linear={"x": 0.2, "y": 0.0}, angular={"z": 0.0})
+    robot.deliver("drive/command", linear={"x": 0.2, "y": 0.0}, angular={"z": 0.0})
     robot.context.advance(0.28)
     assert robot.context.joints["b_drive"].velocity > 0.0
     robot.context.advance(0.04)
@@ -119,7 +119,7 @@ def test_a_command_ends_after_its_timeout():
 
 def test_zero_is_no_timeout():
     robot = base(timeout=0.0)
-    robot.hear("drive/command", linear={"x": 0.2, "y": 0.0}, angular={"z": 0.0})
+    robot.deliver("drive/command", linear={"x": 0.2, "y": 0.0}, angular={"z": 0.0})
     robot.context.advance(5.0)
     assert robot.context.joints["b_drive"].velocity == pytest.approx(2.5)
 

@@ -11,7 +11,7 @@ from my_simulations.description.model import Inertial, Joint, JointAxis, Link, M
 from my_simulations.description.plugin import PluginSpec
 from my_simulations.description.world import World
 from my_simulations.engine.kinematic_backend import KinematicBackend
-from my_simulations.plugins.call_watch import PATIENCE, Patience
+from my_simulations.plugins.call_watch import CALL_LIMITS, CallLimits
 
 NUMBERS = itertools.count()
 HEAD = "from my_simulations.plugins.base import Plugin\n\n\nclass Bad(Plugin):\n"
@@ -36,14 +36,14 @@ GOOD = HEAD.replace("Bad", "Good") + """
 class Case(PluginCase):
     """A world with a plugin that works, and modules of plugins that a test writes."""
 
-    def __init__(self, folder, patience=PATIENCE, isolate=False):
+    def __init__(self, folder, limits=CALL_LIMITS, isolate=False):
         number = next(NUMBERS)
         self.good, self.bad = f"good_{number}", f"bad_{number}"
         self.folder = folder
         (folder / f"{self.good}.py").write_text(GOOD)
         super().__init__(World(models=[model("works")]), KinematicBackend,
                          {"libgood.so": f"{self.good}:Good", "libbad.so": f"{self.bad}:Bad"},
-                         patience, isolate=isolate)
+                         limits, isolate=isolate)
 
     @property
     def file(self):
@@ -52,7 +52,7 @@ class Case(PluginCase):
     def spawn(self, source):
         self.file.write_text(source)
         self.sim.models.spawn(model("bad", "libbad.so"))
-        assert self.host.settle()
+        assert self.host.wait_until_loaded()
 
     def failed(self):
         return [issue for issue in self.issues if issue.code == "plugin-failed"]
@@ -159,7 +159,7 @@ def test_faults_of_a_model_are_known(case):
     LOAD + "        while True: pass\n",
 ])
 def test_a_loop_before_the_first_call_is_ended(case, source):
-    one = case(patience=Patience(0.1, 10.0))
+    one = case(limits=CallLimits(0.1, 10.0))
     one.spawn(source)
     one.goes_on()
     (issue,) = one.failed()
@@ -172,7 +172,7 @@ def test_a_replaced_model_has_new_plugins(case):
     one = case()
     one.spawn("undefined_name\n")
     one.sim.models.spawn(model("bad"), replace=True)
-    assert one.host.settle()
+    assert one.host.wait_until_loaded()
     one.sim.clock.advance(20)
     until(lambda: len(one.graph.on("bad/alive")) == 2)
 
@@ -193,11 +193,11 @@ def test_a_plugin_that_failed_starts_again_when_its_model_is_edited(case):
     hinge = Joint("late_hinge", "revolute", "base", "extra", axis=JointAxis())
     extra = Link("extra", inertial=Inertial())
     made.sim.models.edit("bad", replace(described, links=[*described.links, extra]))
-    assert made.host.settle()
+    assert made.host.wait_until_loaded()
     assert len(made.failed()) == 2  # it lacks its joint still
     made.sim.models.edit("bad", replace(described, links=[*described.links, extra],
                                         joints=[*described.joints, hinge]))
-    assert made.host.settle()
+    assert made.host.wait_until_loaded()
     assert made.host.faults("bad") == []
     made.sim.clock.advance(50)
     until(lambda: len(made.graph.on("bad/late")) == 5)
@@ -211,7 +211,7 @@ def test_an_edit_starts_no_plugin_again_that_works(case):
     running = made.host._models.of("works")[0].plugin
     described = made.sim.models.get("works")
     made.sim.models.edit("works", replace(described, allow_auto_disable=False))
-    assert made.host.settle()
+    assert made.host.wait_until_loaded()
     assert made.host._models.of("works")[0].plugin is running
     made.goes_on()
 
@@ -222,6 +222,6 @@ def test_a_plugin_starts_again_when_its_model_gets_other_joints(case):
     described = made.sim.models.get("works")
     made.sim.models.edit("works", replace(described, joints=[
         replace(joint, name="renamed") for joint in described.joints]))
-    assert made.host.settle()
+    assert made.host.wait_until_loaded()
     assert made.host._models.of("works")[0].plugin is not running
     made.goes_on()

@@ -101,11 +101,11 @@ def test_gains_of_a_running_loop_change_without_a_jump_of_its_target():
     arm = Arm(EFFORT, go={"type": "effort_controllers/JointPositionController", "joint": "one",
                           "pid": {"p": 100.0, "d": 20.0}})
     arm.run("go")
-    arm.hear("go/command", data=0.5)
+    arm.deliver("go/command", data=0.5)
     ask(arm.context, "robot/go/pid", doubles=[("p", 50.0)])
     arm.context.advance(0.001)
     assert arm.context.joints["one"].effort == pytest.approx(25.0)
-    arm.hear("go/command", data=1.0)
+    arm.deliver("go/command", data=1.0)
     arm.context.advance(0.001)
     assert arm.context.joints["one"].servo.gains.p == 50.0
 
@@ -129,11 +129,11 @@ def test_gains_below_an_interface_change_and_stay():
     arm = Arm(POSITION, parameters={"gazebo_ros_control": {"pid_gains": {"one": {"p": 100.0}}}},
               go={"type": "position_controllers/JointPositionController", "joint": "one"})
     arm.run("go")
-    arm.hear("go/command", data=0.5)
+    arm.deliver("go/command", data=0.5)
     ask(arm.context, "robot/gazebo_ros_control/pid_gains/one", doubles=[("p", 30.0)])
     servo = arm.context.joints["one"].servo
     assert (servo.drive_gains.p, servo.target) == (30.0, 0.5)
-    arm.hear("go/command", data=0.2)
+    arm.deliver("go/command", data=0.2)
     assert arm.context.joints["one"].servo.drive_gains.p == 30.0
 
 
@@ -178,7 +178,7 @@ def test_a_diff_drive_changes_its_lengths_and_its_odometry_while_it_drives():
 
     def go_on(seconds):
         for _ in range(round(seconds / 0.1)):
-            arm.hear("drive/cmd_vel", linear={"x": 0.33}, angular={"z": 0.4})
+            arm.deliver("drive/cmd_vel", linear={"x": 0.33}, angular={"z": 0.4})
             arm.context.advance(0.1)
 
     go_on(0.5)

@@ -43,7 +43,7 @@ def motor(inside="<turningDirection>ccw</turningDirection>"):
 
 
 def order(context, *speeds):
-    context.hear("mav/command/motor_speed", angular_velocities=list(speeds))
+    context.deliver("mav/command/motor_speed", angular_velocities=list(speeds))
 
 
 # -- rotors --------------------------------------------------------------------------------------
@@ -54,8 +54,8 @@ def test_thrust_grows_with_the_square_of_the_speed(way, sign):
     order(context, 0.0, 500.0)
     context.advance(1.0)
     assert context.joints["rotor_1_joint"].velocity == pytest.approx(sign * 50.0)
-    assert context.pushes["rotor_1"][0] == pytest.approx((0.0, 0.0, K * 500.0 ** 2))
-    assert context.pushes["base"][1] == pytest.approx(
+    assert context.wrenches["rotor_1"][0] == pytest.approx((0.0, 0.0, K * 500.0 ** 2))
+    assert context.wrenches["base"][1] == pytest.approx(
         (0.0, 0.0, -sign * MOMENT * K * 500.0 ** 2))
 
 
@@ -79,22 +79,22 @@ def test_commands_beyond_the_fastest_speed_are_limited_and_short_ones_reported()
     order(context, 1.0)
     assert any("motor 1" in text for text in context.said)
     plugin.reset()
-    context.pushes.clear()
+    context.wrenches.clear()
     context.advance(0.01)
-    assert not context.pushes
+    assert not context.wrenches
 
 
 def test_a_rotor_in_the_wind_is_dragged_across_its_axis():
     context, _ = motor()
     context.link("rotor_1").pose = Pose(orientation=quat_from_rpy(math.pi / 2, 0.0, 0.0))
     context.link("rotor_1").twist = Twist((3.0, 1.0, 0.0))
-    context.hear("mav/wind_speed", velocity={"x": 1.0, "y": 0.0, "z": 0.0})
+    context.deliver("mav/wind_speed", velocity={"x": 1.0, "y": 0.0, "z": 0.0})
     order(context, 0.0, 400.0)
     context.advance(1.0)
     # The axis is -y of the world; across it, the air passes at 2 m/s along x.
-    assert context.pushes["rotor_1"][0] == pytest.approx(
+    assert context.wrenches["rotor_1"][0] == pytest.approx(
         (-400.0 * 1e-4 * 2.0, -K * 400.0 ** 2, 0.0), abs=1e-12)
-    assert context.pushes["base"][1] == pytest.approx(
+    assert context.wrenches["base"][1] == pytest.approx(
         (-400.0 * 1e-6 * 2.0, MOMENT * K * 400.0 ** 2, 0.0), abs=1e-12)
 
 
@@ -127,7 +127,7 @@ def test_states_of_rotors_are_published_in_the_order_of_their_numbers():
 
 def test_commands_are_passed_on():
     context, _ = loaded(ControllerInterface, "<robotNamespace>mav</robotNamespace>")
-    context.hear("mav/command/motor_speed", angular_velocities=[1.0, 2.0])
+    context.deliver("mav/command/motor_speed", angular_velocities=[1.0, 2.0])
     (passed,) = context.published["mav/gazebo/command/motor_speed"]
     assert passed.angular_velocities == [1.0, 2.0]
 
@@ -259,10 +259,10 @@ def test_a_gust_blows_for_its_time():
                         "<windGustDuration>0.1</windGustDuration><windSpeedMean>4</windSpeedMean>")
     context.link("base").inertial = Inertial(1.0)
     context.advance(0.05)
-    assert context.pushes["base"] == ((2.0, 0.0, 0.0), (0.0, 2.0, 0.0))
+    assert context.wrenches["base"] == ((2.0, 0.0, 0.0), (0.0, 2.0, 0.0))
     context.advance(0.1)
-    assert context.pushes["base"][0] == pytest.approx((2.0, 3.0, 0.0))
+    assert context.wrenches["base"][0] == pytest.approx((2.0, 3.0, 0.0))
     assert context.published["external_force"][-1].wrench.force.y == pytest.approx(3.0)
     context.advance(0.1)
-    assert context.pushes["base"][0] == (2.0, 0.0, 0.0)
+    assert context.wrenches["base"][0] == (2.0, 0.0, 0.0)
     assert context.published["wind_speed"][-1].velocity.x == 4.0

@@ -7,7 +7,7 @@ from concurrent.futures import Future
 
 from my_simulations.geometry import Pose
 from my_simulations.plugins.context import View
-from my_simulations.plugins.message_maker import Later, MessageMaker
+from my_simulations.plugins.message_maker import MessageMaker, PendingMessage
 from my_simulations.plugins.sensing_requests import SensingRequests
 from my_simulations.sensing.api import CameraSpec, Mount, SensingGoneError
 
@@ -177,15 +177,15 @@ class Topic:
 def test_messages_are_made_in_order_by_another_thread():
     maker, topic, unsent = MessageMaker(), Topic(), deque()
     for n in range(3):
-        maker.put(topic, Later(lambda n=n: n, unsent), lambda fault: None)
+        maker.put(topic, PendingMessage(lambda n=n: n, unsent), lambda fault: None)
     maker.stop()
     assert topic.sent == [(n, "plugin messages") for n in range(3)] and not unsent
 
 
 def test_a_message_that_cannot_be_made_is_told_and_the_next_is_sent():
     maker, topic, unsent, faults = MessageMaker(), Topic(), deque(), []
-    maker.put(topic, Later(lambda: 1 // 0, unsent), faults.append)
-    maker.put(topic, Later(lambda: "next", unsent), faults.append)
+    maker.put(topic, PendingMessage(lambda: 1 // 0, unsent), faults.append)
+    maker.put(topic, PendingMessage(lambda: "next", unsent), faults.append)
     maker.stop()
     assert [type(fault) for fault in faults] == [ZeroDivisionError]
     assert topic.sent[0][0] == "next" and not unsent

@@ -259,8 +259,9 @@ def test_a_force_holds_until_the_next_one():
     context = FakeContext("<plugin><bodyName>base</bodyName><topicName>force</topicName></plugin>")
     plugin = Force(context)
     plugin.load()
-    context.hear("force", force={"x": 1.0, "y": 0.0, "z": 2.0}, torque={"x": 0, "y": 0, "z": 3.0})
-    assert context.pushes["base"] == ((1.0, 0.0, 2.0), (0, 0, 3.0))
+    context.deliver("force", force={"x": 1.0, "y": 0.0, "z": 2.0},
+                    torque={"x": 0, "y": 0, "z": 3.0})
+    assert context.wrenches["base"] == ((1.0, 0.0, 2.0), (0, 0, 3.0))
 
 
 def test_an_imu_that_nobody_listened_to_begins_anew():

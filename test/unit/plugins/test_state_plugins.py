@@ -32,7 +32,7 @@ def point(seconds, *positions):
 
 
 def play(context, *points, frame="world", names=("a", "b"), at=0.0):
-    context.hear("set_joint_trajectory", header=Message(frame_id=frame, stamp=stamp(at)),
+    context.deliver("set_joint_trajectory", header=Message(frame_id=frame, stamp=stamp(at)),
                  joint_names=list(names), points=list(points))
 
 
@@ -162,7 +162,7 @@ def test_transforms_that_tf2_ignores_change_nothing(spoilt):
     context = FakeContext()
     heard = Transforms(context)
     for one in (transform("world", "hand", 1.0), spoilt):
-        context.hear("/tf", transforms=[one])
+        context.deliver("/tf", transforms=[one])
     assert heard.look_up("world", "hand").position == (1.0, 0.0, 0.0)
 
 
@@ -175,11 +175,11 @@ def test_the_hand_of_god_pulls_like_a_critically_damped_spring():
     HandOfGod(context).load()
     context.advance(0.002)
     assert len(context.said) == 1
-    assert context.pushes["hand"] == (pytest.approx((0.0, 0.0, 2 * 9.8)), (0.0, 0.0, 0.0))
-    context.hear("/tf", transforms=[transform("base", "hog_desired", 0.5, 0.4),
+    assert context.wrenches["hand"] == (pytest.approx((0.0, 0.0, 2 * 9.8)), (0.0, 0.0, 0.0))
+    context.deliver("/tf", transforms=[transform("base", "hog_desired", 0.5, 0.4),
                                     transform("/world", "base", 1.0)])
     context.advance(0.001)
-    force, torque = context.pushes["hand"]
+    force, torque = context.wrenches["hand"]
     assert force == pytest.approx((50 * 1.5 - 2 * math.sqrt(100.0) * 0.1, 0.0, 2 * 9.8))
     assert torque == pytest.approx((0.0, 0.0, 8 * 0.2 - 2 * math.sqrt(4.0) * 0.2))
     assert context.transforms[-1][:2] == ("world", "hog_actual")

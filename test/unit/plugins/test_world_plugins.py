@@ -28,7 +28,7 @@ def wing(speed, alpha, xml=WING, **options):
     link.twist = Twist((speed, 0.0, 0.0), (0.0, 0.0, 0.0))
     LiftDrag(context).load()
     context.advance(0.001)
-    return context.pushes["wing"]
+    return context.wrenches["wing"]
 
 
 @pytest.mark.parametrize("alpha", [-0.3, -0.1, 0.0, 0.2, 0.33])
@@ -49,7 +49,7 @@ def test_a_wing_that_is_swept_lifts_and_drags_by_the_square_of_the_cosine(sweep)
                                          -ahead * math.sin(0.2)), (0.0, 0.0, 0.0))
     LiftDrag(context).load()
     context.advance(0.001)
-    force, _ = context.pushes["wing"]
+    force, _ = context.wrenches["wing"]
     pressure = 0.5 * 1.2 * ahead ** 2 * 0.5 * math.cos(sweep) ** 2
     lift, drag = 4.75 * 0.2 * pressure, 0.6 * 0.2 * pressure
     assert force == pytest.approx((lift * math.sin(0.2) - drag * math.cos(0.2), 0.0,
@@ -73,7 +73,7 @@ def test_a_control_joint_adds_lift():
     context.joints["flap"].position = 0.1
     LiftDrag(context).load()
     context.advance(0.001)
-    assert context.pushes["wing"][0][2] == pytest.approx(4.0 * 0.1 * 0.5 * 1.2 * 100.0 * 0.5)
+    assert context.wrenches["wing"][0][2] == pytest.approx(4.0 * 0.1 * 0.5 * 1.2 * 100.0 * 0.5)
 
 
 def test_a_wing_without_its_control_joint_flies():
@@ -97,7 +97,7 @@ def test_a_volume_that_cannot_be_is_told_and_that_of_the_collisions_counts(block
     """As in Gazebo."""
     context = buoy(block, Collision("a", geometry=Box((1.0, 0.5, 0.2))))
     assert "volume" in context.said[-1]
-    force, torque = context.pushes["hull"]
+    force, torque = context.wrenches["hull"]
     assert force[2] == pytest.approx(999.1026 * 0.1 * 9.8)
     assert torque == pytest.approx((0.0, 0.0, 0.0))
 
@@ -106,7 +106,7 @@ def test_a_hull_is_lifted_by_the_weight_of_the_water_in_its_place():
     context = buoy("", Collision("a", geometry=Box((1.0, 0.5, 0.2))),
                    Collision("b", Sphere(0.1), Pose((1.0, 0.0, 0.0))))
     volume, ball = 0.1, 4 / 3 * math.pi * 0.1 ** 3
-    force, torque = context.pushes["hull"]
+    force, torque = context.wrenches["hull"]
     lift = 999.1026 * (volume + ball) * 9.8
     assert force == pytest.approx((0.0, 0.0, lift))
     assert torque == pytest.approx((0.0, -lift * ball / (volume + ball), 0.0))
@@ -118,14 +118,14 @@ def test_a_given_volume_counts_and_turns_with_the_link():
                    Collision("a", geometry=Cylinder(5.0, 1.0)))
     context.links["hull"].pose = Pose((0.0, 0.0, 0.0), quat_from_rpy(math.pi / 2, 0.0, 0.0))
     context.advance(0.001)
-    force, torque = context.pushes["hull"]
+    force, torque = context.wrenches["hull"]
     assert force == pytest.approx((0.0, 0.0, 98.0))
     assert torque == pytest.approx((-0.2 * 98.0, 0.0, 0.0))
 
 
 def test_a_mesh_without_a_volume_is_told():
     context = buoy("", Collision("a", geometry=Mesh("model://boat.dae")))
-    assert not context.pushes and "give its <volume>" in context.said[0]
+    assert not context.wrenches and "give its <volume>" in context.said[0]
 
 
 # -- magnets -------------------------------------------------------------------------------------
@@ -149,7 +149,7 @@ def beside(moment, other, arm, **poses):
 
 def test_magnets_in_a_row_attract():
     context = beside("0 0 2", "0 0 3", (0.0, 0.0, 0.1))
-    force, torque = context.pushes["bar"]
+    force, torque = context.wrenches["bar"]
     # 6 mu0 m1 m2 / (4 pi r^4), and the field on the axis is mu0 2 m / (4 pi r^3)
     assert force == pytest.approx((0.0, 0.0, -6e-7 * 2.0 * 3.0 / 0.1 ** 4))
     assert torque == pytest.approx((0.0, 0.0, 0.0))
@@ -158,10 +158,10 @@ def test_magnets_in_a_row_attract():
 
 
 def test_magnets_side_by_side_repel_and_a_crossed_one_turns():
-    force, _ = beside("0 0 2", "0 0 3", (0.1, 0.0, 0.0)).pushes["bar"]
+    force, _ = beside("0 0 2", "0 0 3", (0.1, 0.0, 0.0)).wrenches["bar"]
     assert force == pytest.approx((3e-7 * 6.0 / 0.1 ** 4, 0.0, 0.0))
     _, torque = beside("0 0 2", "0 0 3", (0.0, 0.0, 0.1),
-                       orientation=quat_from_rpy(math.pi / 2, 0.0, 0.0)).pushes["bar"]
+                       orientation=quat_from_rpy(math.pi / 2, 0.0, 0.0)).wrenches["bar"]
     # the moment is (0, -2, 0), the field (0, 0, 6e-4)
     assert torque == pytest.approx((-2.0 * 6e-4, 0.0, 0.0), abs=1e-12)
 

@@ -51,7 +51,7 @@ def test_the_reply_says_which_plugins_do_not_work_and_why(services, tmp_path, mo
     starter = PluginStarter(services.simulator, services.simulator.report,
                             {"libbad.so": "plugin_with_a_typo:Bad"})
     spawn = ModelServices(services.simulator, Resolver(), services.issues.append,
-                          changed=starter.settle)
+                          changed=starter.wait_until_loaded)
     try:
         said = spawn.spawn_object(request(xml=BAD, file="/tmp/m.sdf"), None)
     finally:

@@ -30,7 +30,8 @@ def services():
                           paused=True, log=lambda issue: None)
     simulator.start()
     starter = PluginStarter(simulator, lambda issue: None)
-    yield ModelServices(simulator, Resolver(), lambda issue: None, changed=starter.settle)
+    yield ModelServices(simulator, Resolver(), lambda issue: None,
+                        changed=starter.wait_until_loaded)
     simulator.close()
 
 

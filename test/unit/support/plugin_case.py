@@ -6,7 +6,7 @@ import time
 from plugin_graph import Graph
 
 from my_simulations.engine.inline_engine import InlineEngine
-from my_simulations.plugins.call_watch import PATIENCE
+from my_simulations.plugins.call_watch import CALL_LIMITS
 from my_simulations.plugins.host import PluginHost
 from my_simulations.plugins.registry import PluginRegistry
 from my_simulations.plugins.testing import Message
@@ -28,20 +28,20 @@ class PluginCase:
     plugins in processes of their own.
     """
 
-    def __init__(self, world, backend, extra=None, patience=PATIENCE, parameters=None,
+    def __init__(self, world, backend, extra=None, limits=CALL_LIMITS, parameters=None,
                  isolate=False):
         self.issues, self.graph = [], Graph(parameters)
         self.sim = Simulator(world, engine_factory=lambda: InlineEngine(backend), paused=True,
                              log=self.issues.append)
         self.sim.start()
         self.host = PluginHost(self.sim, self.graph, PluginRegistry(extra), self.issues.append,
-                               patience, isolate)
+                               limits, isolate)
         self.host.start()
 
-    def hear(self, topic, **fields):
+    def deliver(self, topic, **fields):
         """Send a message; returns when the plugin has heard it."""
         self.graph.heard[topic](Message(**fields))
-        until(lambda: not self.host.unheard)
+        until(lambda: not self.host.has_pending_input)
 
     def ask(self, service, **fields):
         """The response of a service."""
