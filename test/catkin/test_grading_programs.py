@@ -22,7 +22,7 @@ GRADE = [sys.executable, str(REPOSITORY / "scripts" / "grade")]
 SECONDS = 900.0
 
 BOX = REPOSITORY / "examples" / "friction_study_box.sdf"
-MODELS = f"models:\n  box: {{file: {BOX}, pose: [0, 0, 0.1]}}\n"
+MODELS = f"models:\n  box: {{file: {BOX}, pose: [0, 0, 0.1]}}\nservices: all\n"
 DRIVE = f"""lab: drive
 submission: {{run: go.py}}
 world: worlds/empty.world
@@ -295,6 +295,60 @@ def graded(folder, assignment, *words):
     assert done.returncode == 0, done.stderr
     with open(folder.parent / "marks" / "marks.csv", newline="") as stream:
         return {row["student"]: row for row in csv.DictReader(stream)}
+
+
+TELEPORT = """import rospy
+from gazebo_msgs.msg import LinkState, ModelState
+from gazebo_msgs.srv import DeleteModel, GetModelState, SetModelState, SpawnModel
+from geometry_msgs.msg import Twist
+from my_simulations_msgs.srv import StepWorld
+from std_srvs.srv import Empty
+
+rospy.init_node("teleport")
+command = rospy.Publisher("/cmd_vel", Twist, queue_size=1)
+models = rospy.Publisher("/gazebo/set_model_state", ModelState, queue_size=1)
+links = rospy.Publisher("/gazebo/set_link_state", LinkState, queue_size=1)
+state = ModelState(model_name="robo")
+state.pose.position.x, state.pose.orientation.w = 2.0, 1.0
+link = LinkState(link_name="robo::base_link", pose=state.pose)
+
+def ask(name, kind, *values):
+    rospy.wait_for_service("/gazebo/" + name)
+    try:
+        said = rospy.ServiceProxy("/gazebo/" + name, kind)(*values)
+        print(name, getattr(said, "success", True), flush=True)
+    except rospy.ServiceException as fault:
+        print(name, "failed", fault, flush=True)
+
+ask("get_model_state", GetModelState, "robo", "")
+ask("set_model_state", SetModelState, state)
+ask("delete_model", DeleteModel, "robo")
+ask("spawn_sdf_model", SpawnModel, "robo", "<sdf/>", "", state.pose, "")
+ask("reset_world", Empty)
+ask("step_world", StepWorld, 100)
+while not rospy.is_shutdown():
+    command.publish(Twist())
+    models.publish(state)
+    links.publish(link)
+    rospy.sleep(0.1)
+"""
+
+
+def test_a_moved_robot_earns_no_points_for_driving(tmp_path):
+    (tmp_path / "submissions" / "cheat").mkdir(parents=True)
+    (tmp_path / "submissions" / "cheat" / "go.py").write_text(TELEPORT)
+    row = graded(tmp_path / "submissions", "drive_to_goal")["cheat"]
+    # It commands the robot, which stays on its wheels.
+    assert points(row, "the program commands the robot", "the robot comes to the goal",
+                  "the robot stops at the goal") == [2, 0, 0], row
+    folder = tmp_path / "marks" / "students" / "cheat"
+    said = (folder / "output.txt").read_text()
+    assert "get_model_state True" in said and "delete_model False" in said, said
+    assert "reset_world failed" in said and "is not permitted" in said, said
+    page = (folder / "index.html").read_text()
+    for name in ("set_model_state", "set_link_state", "delete_model", "spawn_sdf_model",
+                 "reset_world", "step_world"):
+        assert f"/gazebo/{name}" in page, name
 
 
 WALL = ("the program commands the robot", "the robot comes near the wall",

@@ -194,6 +194,7 @@ class Assignment:
         sample: s of sim time between two samples.
         limits: of each submission.
         checks: in the order of the file.
+        may_change_world: whether programs can call services of /gazebo that change the world.
     """
 
     lab: str
@@ -204,6 +205,7 @@ class Assignment:
     sample: float
     limits: GradeLimits
     checks: Tuple[Check, ...] = field(default_factory=tuple)
+    may_change_world: bool = True
 
     @property
     def points(self) -> float:

@@ -18,7 +18,8 @@ from .assignment import (
 from .assignment_values import AssignmentValues
 from .check_reader import CheckReader
 
-_KEYS = ("lab", "submission", "world", "models", "sample", "limits", "checks")
+_KEYS = ("lab", "submission", "world", "models", "services", "sample", "limits", "checks")
+_READ, _ALL = "read", "all"
 _LIMITS = ("seconds", "processor_seconds", "memory_mb", "processes", "file_mb")
 _LONGEST_S = 3600.0
 
@@ -51,12 +52,15 @@ class _AssignmentReader(AssignmentValues):
             self.fault(("world",), "the world is that of the submission or that of the assignment,"
                                    " not both", code="grade-key")
         checks = self._checks(top.get("checks"), bool(form.world or world), bool(form.run))
+        services = top.get("services", _READ if top.get("models") else _ALL)
+        if services not in (_READ, _ALL):
+            self.fault(("services",), f"'services' must be {_READ} or {_ALL}, is {services!r}")
         stem = os.path.splitext(os.path.basename(file))[0]
         return Assignment(
             self.text(top.get("lab", stem), ("lab",)), file, form, world,
             self.models(top.get("models")),
             self.number(top.get("sample", 0.01), ("sample",), above=0.0, most=_LONGEST_S),
-            self._limits(top.get("limits")), checks)
+            self._limits(top.get("limits")), checks, services == _ALL)
 
     def _form(self, value: Any) -> SubmissionForm:
         path = ("submission",)

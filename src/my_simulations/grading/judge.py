@@ -136,8 +136,8 @@ class Judge:
             with contextlib.closing(self._program(file, graph.uri)) as program:
                 graph.run(program)
                 WorldRun(self._assignment, world, name, graph).run(record, self._writer.result)
-                if program.why_ended():
-                    self._writer.note(program.why_ended())
+                for note in filter(None, (program.why_ended(), graph.refused)):
+                    self._writer.note(note)
                 self._writer.file(OUTPUT, program.output())
 
     def _program(self, file: str, uri: str) -> Program:

@@ -41,7 +41,8 @@ class RosGraph:
         os.environ.update(graph_environment(self.uri))
         from ..ros.attached_node import AttachedNode  # rospy: only programs need it
 
-        self._node = AttachedNode(world.simulator, resolver, self.uri)
+        self._node = AttachedNode(world.simulator, resolver, self.uri,
+                                  assignment.may_change_world)
         self._upkeep = time.monotonic()
         self._program: Optional[Program] = None
         self._lockstep: Optional[Lockstep] = None
@@ -69,6 +70,12 @@ class RosGraph:
         if time.monotonic() > self._upkeep + _UPKEEP_S:
             self._upkeep = time.monotonic()
             self._node.keep_up()
+
+    @property
+    def refused(self) -> str:
+        """What the program tried that the assignment does not permit; "" for nothing."""
+        names = ", ".join(f"/gazebo/{name}" for name in self._node.refused)
+        return f"the program used {names}, which the assignment does not permit" if names else ""
 
     def result(self, check: Timed) -> CheckResult:
         """Decide a check of a topic or service."""

@@ -10,6 +10,7 @@ import rospy
 from ..resources.resolver import Resolver
 from ..simulator.simulator import Simulator
 from .node import Node
+from .refused_requests import RefusedRequests
 from .registration import publisher
 
 _NAME = "gazebo"
@@ -24,15 +25,19 @@ class AttachedNode:
         simulator: the simulator.
         resolver: resolves URIs of spawned models.
         master: URI of the master, which must run.
+        may_change_world: whether requests of others can change the world.
     """
 
-    def __init__(self, simulator: Simulator, resolver: Resolver, master: str) -> None:
+    def __init__(self, simulator: Simulator, resolver: Resolver, master: str,
+                 may_change_world: bool = True) -> None:
         rospy.init_node(_NAME, argv=[_NAME], disable_rostime=True, disable_signals=True,
                         log_level=rospy.WARN)
         rospy.set_param("/use_sim_time", True)
         rospy.set_param("~manual_stepping", True)
         clock = publisher("/clock", queue_size=_CLOCK_QUEUE, tcp_nodelay=True)
-        self._node = Node(simulator, resolver, clock, None, master)
+        self._refused = RefusedRequests(may_change_world)
+        self._node = Node(simulator, resolver, clock, None, master,
+                          replace=self._refused.replace)
         self._node.advertise()
         self._node.start_publishing()
         self._node.advertise_late()
@@ -41,6 +46,11 @@ class AttachedNode:
         self._types: Dict[str, str] = {}
         self._answers: Dict[str, str] = {}
         self._subscribers: Dict[str, Any] = {}
+
+    @property
+    def refused(self) -> Tuple[str, ...]:
+        """Names of the services and topics of /gazebo that were used but are not permitted."""
+        return self._refused.used
 
     def keep_up(self) -> None:
         """Keep the registration up to date; call it about once a second."""

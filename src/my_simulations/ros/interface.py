@@ -58,6 +58,12 @@ class Row:
         return self.extension or self.handler.split(".")[0] == "reconfigure"
 
     @property
+    def changes_world(self) -> bool:
+        """Whether requests or messages can change the world, its time or files."""
+        return (self.direction is not Direction.PUBLISHES and self.handler != BY_ROSPY
+                and not self.name.startswith("get_"))
+
+    @property
     def graph_name(self) -> str:
         """The name for rospy: private unless absolute."""
         return self.name if self.name.startswith("/") else f"~{self.name}"

@@ -22,6 +22,7 @@ from .services.editor_service import Open
 from .services.world_services import WorldServices
 
 if TYPE_CHECKING:
+    from .registration import Replace
     from .services.model_services import ModelServices
 
 
@@ -31,7 +32,8 @@ class Node:
     def __init__(self, simulator: Simulator, resolver: Resolver, clock: rospy.Publisher,
                  open_editor: Optional[Open] = None, master_uri: str = "",
                  announce_editor: Callable[[], None] = lambda: None,
-                 launch: Optional[Launch] = None) -> None:
+                 launch: Optional[Launch] = None,
+                 replace: Replace = lambda _: None) -> None:
         """Take over a started, paused simulator.
 
         Args:
@@ -42,6 +44,7 @@ class Node:
             master_uri: URI of the ROS master, to register again after it restarts; "" for never.
             announce_editor: sets the parameter with the editor's URL, if the editor runs.
             launch: how this process was started.
+            replace: replaces handlers of some services and topics.
         """
         self._simulator = simulator
         self._clock = clock
@@ -50,6 +53,7 @@ class Node:
         self._open_editor = open_editor
         self._launch = launch or Launch.of(())
         self._registered: List[Any] = []
+        self._replace = replace
         self._publishers: Optional[Any] = None
         self._metrics: Optional[Any] = None
         self._reconfigure: Optional[Any] = None
@@ -95,7 +99,8 @@ class Node:
         # Set before any service: tools read it to tell this node from Gazebo.
         rospy.set_param("~my_simulations/version", __version__)
         if self._network:
-            self._registered = register(self._rows(late=False), self._handlers())
+            self._registered = register(self._rows(late=False), self._handlers(),
+                                        self._replace)
         self._set_world_parameters()
 
     def _manual_stepping(self) -> bool:
@@ -139,7 +144,7 @@ class Node:
             self._metrics.start()
         handlers = self._late_handlers()
         self._reconfigure = handlers["reconfigure"]
-        self._registered += register(self._rows(late=True), handlers)
+        self._registered += register(self._rows(late=True), handlers, self._replace)
 
     def _rows(self, late: bool) -> List[Row]:
         return [row for row in rows(extensions=self._extensions) if row.late == late]

@@ -2,7 +2,7 @@
 from __future__ import annotations
 
 import importlib
-from typing import Any, Callable, Dict, Iterable, List
+from typing import Any, Callable, Dict, Iterable, List, Optional
 
 import rospy
 
@@ -25,7 +25,12 @@ def publisher(name: str, **options: Any) -> rospy.Publisher:
     return rospy.Publisher(row.graph_name, class_of(row), **options)
 
 
-def register(rows: Iterable[Row], handlers: Dict[str, Any]) -> List[Any]:
+Replace = Callable[[Row], Optional[Callable[..., Any]]]
+"""Returns a handler that is called instead of that of a row; None for the row's own."""
+
+
+def register(rows: Iterable[Row], handlers: Dict[str, Any],
+             replace: Replace = lambda _: None) -> List[Any]:
     """Advertise the services and subscribe to the topics among `rows`.
 
     Published topics are advertised by their publishers. A service whose class is not installed is
@@ -34,6 +39,7 @@ def register(rows: Iterable[Row], handlers: Dict[str, Any]) -> List[Any]:
     Args:
         rows: rows of the table.
         handlers: objects with the handlers, by the first half of `Row.handler`.
+        replace: replaces handlers of some rows.
 
     Returns:
         The services and subscribers; keep a reference to them.
@@ -49,7 +55,7 @@ def register(rows: Iterable[Row], handlers: Dict[str, Any]) -> List[Any]:
                           row.name, row.type)
             continue
         group, method = row.handler.split(".")
-        handler = getattr(handlers[group], method)
+        handler = replace(row) or getattr(handlers[group], method)
         if row.direction is SERVES:
             found.append(_service(row, kind, handler, getattr(handlers[group], "responses", {})))
         else:

@@ -103,6 +103,17 @@ def test_faults_of_the_file_are_named(tmp_path):
         tmp_path, "submission: {world: a.world}\nchecks:\n" + 2 * twice)[0][2]
 
 
+def test_programs_change_a_world_with_models_of_the_assignment_only_if_it_says_so(tmp_path):
+    (tmp_path / "box.sdf").write_text("<sdf version='1.6'/>")
+    checks = "submission: {world: a.world}\nchecks: [{points: 1, check_model: strict}]\n"
+    models = "models: {box: {file: box.sdf}}\n"
+    assert read(tmp_path, checks).may_change_world
+    assert not read(tmp_path, models + checks).may_change_world
+    assert read(tmp_path, models + "services: all\n" + checks).may_change_world
+    assert not read(tmp_path, "services: read\n" + checks).may_change_world
+    assert "'services' must be read or all" in faults(tmp_path, "services: no\n" + checks)[0][2]
+
+
 @pytest.mark.parametrize("name", names())
 def test_shipped_assignments_are_valid(name):
     found, issues = read_assignment(shipped_assignment(name))
