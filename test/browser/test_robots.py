@@ -148,6 +148,25 @@ def test_any_number_of_a_topic_is_plotted(editor):
     editor.button("Close plots").click()
 
 
+def test_parameters_of_a_sensor_are_set_in_fields(editor):
+    editor.row("rover").click()
+    editor.page.keyboard.press("ArrowRight")
+    row = editor.page.get_by_role("treeitem", name="base::laser", exact=True)
+    row.get_by_text("running").wait_for()
+    row.click()
+    properties = editor.page.get_by_role("region", name="Properties")
+    far = properties.locator(".section", has_text="Ray range").get_by_role("textbox", name="max")
+    before = far.input_value()
+    far.fill("4.5")
+    far.press("Enter")
+    editor.until("editor.store.model('rover').links.flatMap(({sensors}) => sensors).some("
+                 "({parameters}) => parameters.some(({path, value}) => path === 'ray/range/max'"
+                 " && value === 4.5))", "the new range")
+    editor.page.keyboard.press("Escape")
+    editor.page.keyboard.press("Control+z")
+    wait_for(lambda: far.input_value() == before, "the value of before")
+
+
 def test_parameters_of_a_plugin_are_set_in_fields_and_the_plugin_starts_again(editor):
     editor.row("rover").click()
     editor.page.keyboard.press("ArrowRight")

@@ -40,7 +40,7 @@ export function shapeModel(shape) {
     uri: '', scalable: true, group: '',
     links: [{
       id: 0, name: 'link', pose: origin(), gravity: true, kinematic: false, linear_decay: 0,
-      angular_decay: 0, collisions: [],
+      angular_decay: 0, collisions: [], sensors: [],
       inertial: {mass: 1, pose: origin(), ixx, ixy: 0, ixz: 0, iyy, iyz: 0, izz},
       visuals: [{name: 'visual', pose: origin(), geometry: GEOMETRIES[shape], material: GREY,
         cast_shadows: true, transparency: 0, laser_retro: 0}],

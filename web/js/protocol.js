@@ -54,7 +54,8 @@ export const FRAME_RECORD_BYTES = 32;
 
 /** @typedef {{
  *  name: string, type: string, parent: string, child: string, pose: pose, axis?: Axis|null,
- *  axis2?: Axis|null, thread_pitch: number, gearbox_ratio: number, gearbox_reference: string
+ *  axis2?: Axis|null, thread_pitch: number, gearbox_ratio: number, gearbox_reference: string,
+ *  sensors: Sensor[]
  *}} Joint */
 
 /** @typedef {{url?: string|null, pattern?: string|null, scale: vec2}} Texture */
@@ -134,8 +135,14 @@ export const FRAME_RECORD_BYTES = 32;
 /** @typedef {{
  *  id: number, name: string, pose: pose, inertial: Inertial, gravity: boolean,
  *  kinematic: boolean, self_collide?: boolean|null, linear_decay: number, angular_decay: number,
- *  collisions: Collision[], visuals: Visual[]
+ *  collisions: Collision[], visuals: Visual[], sensors: Sensor[]
  *}} Link */
+
+/** @typedef {{
+ *  path: string, kind: 'flag'|'integer'|'number'|'text'|'vector'|'pose', value: unknown
+ *}} SensorParameter */
+
+/** @typedef {{name: string, type: string, parameters: SensorParameter[]}} Sensor */
 
 /** @typedef {{name: string, filename: string, xml: string}} Plugin */
 
@@ -443,6 +450,10 @@ export const FRAME_RECORD_BYTES = 32;
 
 /** @typedef {{kind: 'set_plugins', model: string, text: string}} SetPluginsOperation */
 
+/** @typedef {{
+ *  kind: 'add_sensor', link: string, sensor: 'camera'|'laser'|'imu'
+ *}} AddSensorOperation */
+
 /** @typedef {{kind: 'set_group', names: string[], group?: string|null}} SetGroupOperation */
 
 /** @typedef {{kind: 'remove_part', target: string}} RemovePartOperation */
@@ -456,8 +467,8 @@ export const FRAME_RECORD_BYTES = 32;
 /** @typedef {InsertOperation|InsertLightOperation|DeleteOperation|MoveOperation|ScaleOperation|
  *  RenameOperation|SetOperation|PasteOperation|WrenchOperation|ResetOperation|JointOperation|
  *  AddLinkOperation|AddShapeOperation|RenameLinkOperation|AddJointOperation|EditJointOperation|
- *  AddModelOperation|SetPluginsOperation|SetGroupOperation|RemovePartOperation|
- *  ComputeInertialOperation|GroupOperation} Operation */
+ *  AddModelOperation|SetPluginsOperation|AddSensorOperation|SetGroupOperation|
+ *  RemovePartOperation|ComputeInertialOperation|GroupOperation} Operation */
 
 /** @typedef {{
  *  type: 'reply', id: number, ok: boolean, value?: unknown|null, issues?: Issue[]|null

@@ -125,7 +125,7 @@ class ModelPlugins:
                 *(one for owner, one in self._to_load if owner == name)]
             if before is not None and before[0].spawn_id == entity.spawn_id and (
                     _are_same(known, found)):
-                kept = self._continuing(name, before, entity)
+                kept = self._continuing(name, before, entity, found)
                 self._models[name] = (entity, kept)
                 for running in kept:
                     self._rebind(running, entity)
@@ -136,18 +136,20 @@ class ModelPlugins:
             self._to_load += [(name, one) for one in found]
 
     def _continuing(self, name: str, before: Tuple[Entity, List[RunningPlugin]],
-                        entity: Entity) -> List[RunningPlugin]:
+                        entity: Entity, found: List[FoundPlugin]) -> List[RunningPlugin]:
         """The plugins that continue; the others are loaded again.
 
-        Other links or joints restart all plugins, any other edit those that failed.
+        Other links or joints restart all plugins, any other edit those that failed and those of a
+        sensor that was edited.
         """
         old, all_running = before
         if old.model == entity.model:
             return all_running
         other_parts = _parts(old.model) != _parts(entity.model)
-        again = [one for one in all_running if other_parts or one.fault is not None]
+        again = [one for one in all_running if other_parts or one.fault is not None
+                 or found[found.index(one.found)].sensor != one.found.sensor]
         self.removed += again
-        self._to_load += [(name, one.found) for one in again]
+        self._to_load += [(name, found[found.index(one.found)]) for one in again]
         return [one for one in all_running if all(one is not other for other in again)]
 
     def _world_entity(self) -> Entity:

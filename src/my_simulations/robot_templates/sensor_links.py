@@ -39,20 +39,60 @@ def namespace(values: Values) -> str:
     return "/" + values["namespace"]
 
 
+def camera_sensor(values: Values, name: str, link: str, at: str = "") -> str:
+    """A camera; `at` is its `<pose>` in the link."""
+    width, height = int(values["image_width"]), int(values["image_height"])
+    return (f'<sensor name="{name}" type="camera">{at}<update_rate>'
+            f'{values["camera_rate"]:g}</update_rate><camera>'
+            f'<horizontal_fov>{math.radians(values["field_of_view"]):.6g}</horizontal_fov>'
+            f"<image><width>{width}</width><height>{height}</height><format>R8G8B8</format>"
+            "</image><clip><near>0.02</near><far>100</far></clip></camera>"
+            + sdf.plugin(name, "libgazebo_ros_camera.so", robotNamespace=namespace(values),
+                         cameraName=values["camera_name"], imageTopicName="image_raw",
+                         cameraInfoTopicName="camera_info", frameName=link)
+            + "</sensor>")
+
+
+def laser_sensor(values: Values, name: str, link: str) -> str:
+    """A laser scanner about the z axis of the link."""
+    half, samples = math.radians(values["scan_angle"]) / 2.0, int(values["scan_samples"])
+    return (f'<sensor name="{name}" type="ray"><update_rate>{values["scan_rate"]:g}</update_rate>'
+            f"<ray><scan><horizontal><samples>{samples}</samples><resolution>1</resolution>"
+            f"<min_angle>{-half:.6g}</min_angle><max_angle>{half:.6g}</max_angle></horizontal>"
+            f'</scan><range><min>0.06</min><max>{values["scan_range"]:g}</max>'
+            "<resolution>0.01</resolution></range></ray>"
+            + sdf.plugin(name, "libgazebo_ros_laser.so", robotNamespace=namespace(values),
+                         topicName=values["scan_topic"], frameName=link) + "</sensor>")
+
+
+def imu_sensor(values: Values, name: str, link: str) -> str:
+    """An IMU at the origin of the link."""
+    return (f'<sensor name="{name}" type="imu"><always_on>1</always_on>'
+            f'<update_rate>{values["imu_rate"]:g}</update_rate>'
+            + sdf.plugin(name, "libgazebo_ros_imu_sensor.so", robotNamespace=namespace(values),
+                         topicName=values["imu_topic"], frameName=link,
+                         updateRateHZ=f'{values["imu_rate"]:g}') + "</sensor>")
+
+
+def sensor_alone(kind: str, name: str, link: str) -> str:
+    """The XML of a sensor with default values and topics below its name.
+
+    Args:
+        kind: `camera`, `laser` or `imu`.
+        name: of the sensor and its topics.
+        link: name of the link, which is the frame of the messages.
+    """
+    values: Values = {"namespace": "", **{one.name: one.default for one in (*CAMERA, *LASER, *IMU)},
+                      "camera_name": name, "scan_topic": name, "imu_topic": name}
+    if kind == "camera":
+        return camera_sensor(values, name, link)
+    return (laser_sensor if kind == "laser" else imu_sensor)(values, name, link)
+
+
 def camera_link(values: Values, at: sdf.Triple) -> str:
     """`camera_link`, which looks along its x axis; `at` is its place in the model, m."""
-    width, height = int(values["image_width"]), int(values["image_height"])
     # The camera looks from the front of its box, which it would see from inside otherwise.
-    front = sdf.pose((0.025, 0.0, 0.0))
-    sensor = (f'<sensor name="camera" type="camera">{front}<update_rate>'
-              f'{values["camera_rate"]:g}</update_rate><camera>'
-              f'<horizontal_fov>{math.radians(values["field_of_view"]):.6g}</horizontal_fov>'
-              f"<image><width>{width}</width><height>{height}</height><format>R8G8B8</format>"
-              "</image><clip><near>0.02</near><far>100</far></clip></camera>"
-              + sdf.plugin("camera", "libgazebo_ros_camera.so", robotNamespace=namespace(values),
-                           cameraName=values["camera_name"], imageTopicName="image_raw",
-                           cameraInfoTopicName="camera_info", frameName="camera_link")
-              + "</sensor>")
+    sensor = camera_sensor(values, "camera", "camera_link", sdf.pose((0.025, 0.0, 0.0)))
     lens = sdf.visual("lens", sdf.cylinder(0.012, 0.01), "glass",
                       sdf.pose((CAMERA_SIZE[0] / 2.0, 0.0, 0.0), (0.0, math.pi / 2.0, 0.0)))
     return sdf.link("camera_link", sdf.pose(at), sdf.box_inertial(0.05, CAMERA_SIZE),
@@ -61,14 +101,7 @@ def camera_link(values: Values, at: sdf.Triple) -> str:
 
 def laser_link(values: Values, at: sdf.Triple) -> str:
     """`laser_link`, whose scan is about its z axis; `at` is its place in the model, m."""
-    half, samples = math.radians(values["scan_angle"]) / 2.0, int(values["scan_samples"])
-    sensor = (f'<sensor name="laser" type="ray"><update_rate>{values["scan_rate"]:g}</update_rate>'
-              f"<ray><scan><horizontal><samples>{samples}</samples><resolution>1</resolution>"
-              f"<min_angle>{-half:.6g}</min_angle><max_angle>{half:.6g}</max_angle></horizontal>"
-              f'</scan><range><min>0.06</min><max>{values["scan_range"]:g}</max>'
-              "<resolution>0.01</resolution></range></ray>"
-              + sdf.plugin("laser", "libgazebo_ros_laser.so", robotNamespace=namespace(values),
-                           topicName=values["scan_topic"], frameName="laser_link") + "</sensor>")
+    sensor = laser_sensor(values, "laser", "laser_link")
     return sdf.link("laser_link", sdf.pose(at),
                     sdf.cylinder_inertial(0.1, LASER_RADIUS, LASER_LENGTH),
                     sdf.visual("case", sdf.cylinder(LASER_RADIUS, LASER_LENGTH), "dark"), sensor)
@@ -76,11 +109,7 @@ def laser_link(values: Values, at: sdf.Triple) -> str:
 
 def imu_link(values: Values, at: sdf.Triple) -> str:
     """`imu_link`; `at` is its place in the model, m."""
-    sensor = (f'<sensor name="imu" type="imu"><always_on>1</always_on>'
-              f'<update_rate>{values["imu_rate"]:g}</update_rate>'
-              + sdf.plugin("imu", "libgazebo_ros_imu_sensor.so", robotNamespace=namespace(values),
-                           topicName=values["imu_topic"], frameName="imu_link",
-                           updateRateHZ=f'{values["imu_rate"]:g}') + "</sensor>")
+    sensor = imu_sensor(values, "imu", "imu_link")
     return sdf.link("imu_link", sdf.pose(at), sdf.box_inertial(0.02, IMU_SIZE),
                     sdf.visual("case", sdf.box(IMU_SIZE), "blue"), sensor)
 

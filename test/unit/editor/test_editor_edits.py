@@ -103,6 +103,7 @@ EDITS = {
     "nest a model": {"kind": "add_model", "model": "arm", "uri": "model://table", "pose": POSE},
     "set plugins": {"kind": "set_plugins", "model": "arm",
                     "text": "<plugin name='p' filename='libnone.so'><rate>5</rate></plugin>"},
+    "add a sensor": {"kind": "add_sensor", "link": "arm::tip", "sensor": "camera"},
     "remove a link": {"kind": "remove_part", "target": "arm::tip"},
     "remove a joint": {"kind": "remove_part", "target": "arm::hinge"},
     "remove a visual": {"kind": "remove_part", "target": "a::link::visual:visual"},
@@ -474,5 +475,45 @@ def test_copies_of_a_group_are_a_group_of_their_own(case):
                             == list(groups().values()))
         await browser.ask("edit", op={"kind": "set_group", "names": ["a", "b"], "group": ""})
         assert groups()["a"] == groups()["b"] == ""
+
+    made.browse(edit)
+
+
+def test_a_parameter_of_a_sensor_is_set_in_its_xml_and_its_description(case):
+    made = case(arm("arm"))
+
+    def laser():
+        return made.sim.models.link("arm::tip").sensors[0]
+
+    async def edit(browser):
+        for name in ("laser", "laser_0"):
+            await browser.ask("edit", op={"kind": "add_sensor", "link": "arm::tip",
+                                          "sensor": "laser"})
+            assert made.sim.models.link("arm::tip").sensors[-1].name == name
+        target = "arm::tip::sensor:laser"
+        for path, value in (("ray/range/max", 3.5), ("ray/scan/vertical/samples", 4),
+                            ("ray/noise/@type", "gaussian"), ("pose", [0, 0, 1, 0, 0, 0, 1]),
+                            ("plugin:laser/topicName", "a & b")):
+            await browser.ask("edit", op={"kind": "set", "target": target, "path": path,
+                                          "value": value})
+        assert (laser().ray.max_range, laser().ray.vertical.samples, laser().ray.noise.type) == (
+            3.5, 4, "gaussian")
+        assert laser().pose == Pose((0.0, 0.0, 1.0))
+        assert "<topicName>a &amp; b</topicName>" in laser().plugins[0].xml
+        label = "Set samples of arm::tip::laser to 4"
+        assert label in browser.last("history")["undo"]
+        text = (await browser.ask("copy", names=["arm"]))["text"]
+        assert "<max>3.5</max>" in text and '<noise type="gaussian"/>' in text
+        await browser.until(lambda: any(
+            one == {"path": "ray/range/max", "kind": "number", "value": 3.5}
+            for sensor in browser.document["models"][0]["links"][1]["sensors"][:1]
+            for one in sensor["parameters"]))
+        for path, value in (("ray/range/max", "far"), ("ray/none", 1), ("plugin:other/x", "y"),
+                            ("ray/scan/horizontal/samples", 1.5)):
+            with pytest.raises(Refused):
+                await browser.ask("edit", op={"kind": "set", "target": target, "path": path,
+                                              "value": value})
+        await browser.ask("edit", op={"kind": "remove_part", "target": target})
+        assert [one.name for one in made.sim.models.link("arm::tip").sensors] == ["laser_0"]
 
     made.browse(edit)

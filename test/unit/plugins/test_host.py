@@ -629,3 +629,23 @@ def test_states_say_whether_plugins_run_and_why_not(case):
         "provided": "off"}
     assert "nothing to divide" in states["fails"].reason
     assert states["provided"].reason and not states["drives"].reason
+
+
+class Rates(Plugin):
+    seen = []
+
+    def load(self):
+        self.seen.append(self.context.sensor.update_rate)
+
+
+def test_the_plugin_of_an_edited_sensor_starts_again_with_its_new_values(case):
+    model = robot()
+    sensor = Sensor("laser", "ray", update_rate=5.0, ray=Ray(),
+                    plugins=[PluginSpec("rates", "librates.so", "<plugin/>")])
+    model.links[0].sensors.append(sensor)
+    made = case(model, extra={"librates.so": f"{__name__}:Rates"})
+    assert Rates.seen == [5.0]
+    base = replace(model.links[0], sensors=[replace(sensor, update_rate=7.0)])
+    made.sim.models.edit("robot", replace(model, links=[base, *model.links[1:]]))
+    until(lambda: Rates.seen == [5.0, 7.0])
+    assert not made.failed()

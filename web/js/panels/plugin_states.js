@@ -18,6 +18,20 @@ export function pluginState({document, pluginStates}, {model = '', index = -1}) 
 }
 
 /**
+ * The state of the plugin of a sensor's row; undefined without one.
+ * @param {{document: World|null, pluginStates: PluginState[]}} store
+ * @param {Row} row
+ * @returns {PluginState|undefined}
+ */
+export function sensorState({document, pluginStates}, {model = '', owner, name}) {
+  const found = document?.models.find((one) => one.name === model);
+  const holder = found && [...found.links, ...found.joints].find((one) => one.name === owner);
+  const sensor = holder?.sensors?.find((one) => one.name === name);
+  return sensor && pluginStates.find((state) => state.model === model &&
+    sensor.parameters.some(({path}) => path.startsWith(`plugin:${state.name}/`)));
+}
+
+/**
  * A tag at the end of a row, red where something failed.
  * @param {string} text
  * @param {string} reason

@@ -5,6 +5,7 @@ import * as table from './property_fields.js';
 import {geometryFields} from './geometry_fields.js';
 import {bodySections} from './model_sections.js';
 import {pluginFields} from './plugin_fields.js';
+import {newSensors, removal, sensorSections} from './sensor_fields.js';
 /** @import {Field, Section} from './property_fields.js' */
 /** @import {Row} from './world_rows.js' */
 /** @import {World} from '../protocol.js' */
@@ -133,6 +134,15 @@ const KINDS = {
       section('Second axis', target, joint.axis2, axes, 'axis2.'),
     ];
   },
+  sensor: (world, row) => {
+    const model = named(world.models, row.model);
+    const holder = model && [...model.links, ...model.joints].find(({name, sensors}) =>
+      name === row.owner && sensors?.some((one) => one.name === row.name));
+    const sensor = holder && named(holder.sensors, row.name);
+    if (!model || !sensor) return null;
+    const target = `${model.name}::${row.owner}::sensor:${sensor.name}`;
+    return [removal(sensor, target), ...sensorSections(sensor, target)].map((one) => ({...one, prefix: ''}));
+  },
   plugin: (world, row) => {
     const model = named(world.models, row.model);
     const index = row.index ?? -1;
@@ -165,6 +175,7 @@ function linkSections(world, row) {
       ),
     ),
     section('Inertial', target, link.inertial, table.INERTIAL, 'inertial.'),
+    {...newSensors(target), prefix: ''},
   ];
   // A collision and a visual may share a name: the target says which is meant.
   for (const collision of link.collisions) {

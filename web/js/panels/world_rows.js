@@ -7,13 +7,14 @@
  * @property {string} icon
  * @property {number} level    1 for the outermost
  * @property {string} kind     gui, scene, spherical, physics, atmosphere, wind, plugins, models,
- *   lights, model, group, heading, link, joint, plugin, light, road, actor
+ *   lights, model, group, heading, link, joint, sensor, plugin, light, road, actor
  * @property {boolean} expandable
  * @property {boolean} open
  * @property {string} [select] what a click selects: a model, `model::link` or a light
  * @property {string} [model]  the model the row belongs to
  * @property {string} [name]   of the link, joint, light, …
  * @property {number} [index]  of a plugin
+ * @property {string} [owner]  of a sensor: its link or joint
  */
 
 import {groupsOf} from '../model_groups.js';
@@ -168,8 +169,13 @@ function modelRows(rows, open, model) {
     name: link.name,
   }));
   part(rows, model, 'JOINTS', 'joint', model.joints, (joint) => ({name: joint.name}));
+  part(rows, model, 'SENSORS', 'sensor', sensorsOf(model), ({sensor, owner}) => ({name: sensor.name, owner}));
   part(rows, model, 'PLUGINS', 'plugin', model.plugins, (plugin, index) => ({index}));
 }
+
+/** The sensors of a model, each with the name of its link or joint. @param {Model} model */
+const sensorsOf = (model) => [...model.links, ...model.joints].flatMap((holder) =>
+  (holder.sensors ?? []).map((sensor) => ({name: `${holder.name}::${sensor.name}`, sensor, owner: holder.name})));
 
 /**
  * @template {{name: string, filename?: string}} T

@@ -2,7 +2,7 @@
 import {elementsOf, fill, h, onceAFrame, remembered} from './dom.js';
 import {groupsOf} from '../model_groups.js';
 import {colorOf, doing} from './people_bar.js';
-import {pluginState, stateTag} from './plugin_states.js';
+import {pluginState, sensorState, stateTag} from './plugin_states.js';
 import {Properties} from './properties_panel.js';
 import {Tree} from './tree_view.js';
 import {rowOf, worldRows} from './world_rows.js';
@@ -188,8 +188,8 @@ export class WorldTab {
       return h('span', {class: 'tags'}, ...tags.map((text) => text && h('span', {class: 'tag', text})),
         failed && stateTag('plugin failed', failed.reason));
     }
-    if (row.kind === 'plugin') {
-      const state = pluginState(this.store, row);
+    if (row.kind === 'plugin' || row.kind === 'sensor') {
+      const state = (row.kind === 'plugin' ? pluginState : sensorState)(this.store, row);
       return state && stateTag(state.state, state.reason);
     }
     if (row.kind === 'physics' && this.store.stats.paused) {

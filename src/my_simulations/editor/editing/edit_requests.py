@@ -243,7 +243,8 @@ class Edits:
         target, path = op["target"], op["path"]
         operation = property_change(self._world, self._resolver, target, path, op.get("value"))
         model = split_target(self._world, target)[0] if self._is_of_model(target) else None
-        label = history_labels.set_property(target, path, op.get("value"), model)
+        label = history_labels.set_property(target, path.replace("/", ".").replace("@", ""),
+                                            op.get("value"), model)
         return label, operation, {}
 
     def _set_group(self, op: Dict[str, Any]) -> Planned:

@@ -19,7 +19,7 @@ _WORDS: Dict[str, str] = {
 _KEPT_PREFIXES = ("axis2", "sky", "fog", "material", "gui_camera")
 """Parts of a path that stand before its last part, which alone would be ambiguous."""
 
-_PART = re.compile(r"::(collision|visual):")
+_PART = re.compile(r"::(collision|visual|sensor):")
 _LONGEST_TEXT = 40
 _MOST_NAMES = 3
 

@@ -28,6 +28,7 @@ from .inserts import checked, entity_of_text, entity_of_uri, free_name, taken_na
 from .part_inertia import inertial_of
 from .property_path import made
 from .property_target import split_target
+from .sensor_edits import sensor_of, with_new_sensor, without_sensor
 
 Planned = Tuple[str, Operation, Dict[str, Any]]
 NEW_MODEL = "untitled"
@@ -59,6 +60,7 @@ class ModelBuilding:
                 "add_joint": self._add_joint, "edit_joint": self._edit_joint,
                 "add_model": self._add_model, "remove_part": self._remove,
                 "rename_link": self._rename_link, "set_plugins": self._set_plugins,
+                "add_sensor": self._add_sensor,
                 "compute_inertial": self._compute_inertial}
 
     # -- links and shapes ------------------------------------------------------------------------
@@ -189,8 +191,13 @@ class ModelBuilding:
         model, rest = split_target(self._world, op["target"])
         if not rest:
             raise CommandError(f"{op['target']} is a whole model")
-        return self._edited(f"Remove {op['target']}", model, parts.without(model, rest),
-                            model.name)
+        left = without_sensor(model, rest) if sensor_of(rest) else parts.without(model, rest)
+        return self._edited(f"Remove {op['target']}", model, left, model.name)
+
+    def _add_sensor(self, op: Dict[str, Any]) -> Planned:
+        model, rest = split_target(self._world, op["link"])
+        changed, name = with_new_sensor(model, rest, op["sensor"], self._resolver)
+        return self._edited(f"Add {name} to {op['link']}", model, changed, op["link"])
 
     # -- common ----------------------------------------------------------------------------------
 

@@ -26,6 +26,7 @@ from ...simulator.operations import (
 from ...simulator.simulator import Simulator
 from .inserts import checked
 from .property_path import with_value
+from .sensor_edits import sensor_of, with_sensor_value
 
 _NEW = {"gui_camera": GuiCamera, "spherical_coordinates": SphericalCoordinates}
 _PART = re.compile(r"(collision|visual):(.+)\Z", re.DOTALL)
@@ -52,6 +53,8 @@ def property_change(world: Simulator, resolver: Resolver, target: str, path: str
         _refuse_name(path)
         return EditLight(target, with_value(world.lights.get(target), path, value))
     owner, rest = split_target(world, target)
+    if sensor_of(rest):
+        return _edited(owner, with_sensor_value(owner, rest, path, value, resolver))
     if not rest:
         return _of_model(owner, path, value)
     joint = next((one for one in owner.joints if one.name == rest), None)

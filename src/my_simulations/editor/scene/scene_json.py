@@ -33,6 +33,7 @@ from ...simulator.entity import Entity
 from .generated_meshes import Solids
 from .materials import Materials
 from .plain_json import plain, plain_fields
+from .sensor_json import sensor_documents
 from .served_files import MESHES, ServedFiles
 
 NAMES = {Box: "box", Sphere: "sphere", Cylinder: "cylinder", Capsule: "capsule", Cone: "cone",
@@ -113,6 +114,7 @@ class Documents:
 
     def _link(self, link: Link, known: int) -> Dict[str, Any]:
         return {**plain_fields(link, "collisions", "visuals"), "id": known,
+                "sensors": sensor_documents(link),
                 "collisions": [self._collision(one) for one in link.collisions],
                 "visuals": [self._visual(one) for one in link.visuals]}
 
@@ -158,7 +160,7 @@ class Documents:
 
 
 def _joint(joint: Joint) -> Dict[str, Any]:
-    return plain_fields(joint)
+    return {**plain_fields(joint), "sensors": sensor_documents(joint)}
 
 
 def is_scalable(model: Model) -> bool:
