@@ -269,3 +269,49 @@ def test_a_plugin_that_lacks_its_joint_is_reported_and_starts_with_the_joint(lau
     editor.row("drive").get_by_text("running").wait_for()
     assert editor.faults == []
     editor.close()
+
+
+def test_the_schematic_shows_links_and_joints_and_selects_and_connects_them(editor):
+    with_covered_sphere(editor)
+    editor.page.keyboard.press("Control+e")
+    schematic = editor.page.get_by_role("region", name="Schematic")
+    schematic.get_by_role("button", name="Link link_0").click()
+    editor.until("editor.store.selection.join() === 'untitled::link_0'", "the selected link")
+    editor.button("Connect").click()
+    schematic.get_by_role("button", name="Link link_0").click()
+    schematic.get_by_role("button", name="Link link_1").press("Enter")
+    schematic.get_by_role("button", name="revolute").click()
+    editor.page.get_by_role("dialog").get_by_role("button", name="Cancel").click()
+    assert joint_ends(editor) == ["link_0", "link_1"]
+    editor.page.keyboard.press("Control+e")
+    schematic.wait_for(state="hidden")
+
+
+LETTER = """<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 20 10" onload="window.ran = true">
+<g transform="translate(1 1)"><path d="M0 0h16v8h-16z M2 2v4h4v-4z"/></g>
+<script>window.ran = true</script>
+</svg>"""
+
+
+def test_the_outline_of_an_svg_drawing_becomes_a_link(editor):
+    editor.page.keyboard.press("Control+m")
+    editor.button("SVG…").click()
+    dialog = editor.page.get_by_role("dialog", name="Add SVG")
+    dialog.get_by_label("SVG file").set_input_files(
+        {"name": "letter.svg", "mimeType": "image/svg+xml", "buffer": LETTER.encode()})
+    dialog.get_by_text("2 outlines, 8 corners").wait_for()
+    dialog.get_by_label("Width").fill("0.8")
+    dialog.get_by_label("Height").fill("0.2")
+    dialog.get_by_role("button", name="Add").click()
+    dialog.wait_for(state="detached")
+    editor.until("editor.store.model('untitled')", "the model")
+    link = editor.model("untitled")["links"][0]
+    assert {part: link[part][0]["geometry"]["type"] for part in ("visuals", "collisions")} == {
+        "visuals": "polyline", "collisions": "polyline"}
+    assert link["inertial"]["mass"] == approx(1.0)
+    # The hole of 0.2 m is to the left of the middle.
+    assert link["inertial"]["pose"][:3] == approx([0.04 * 0.2 / 0.28, 0.0, 0.1])
+    editor.until("editor.view.bounds('untitled')", "its picture")
+    bounds = editor.get("(({min, max}) => [...min, ...max])(editor.view.bounds('untitled'))")
+    assert bounds == approx([-0.4, -0.2, 0.0, 0.4, 0.2, 0.2], abs=1e-3)
+    assert editor.get("window.ran") is None

@@ -6,7 +6,9 @@ import {
   renamedModel, resizing, sizeOf, stepsSince,
 } from '../../web/js/model_editor/model_edits.js';
 import {ModelEditor} from '../../web/js/model_editor/model_editor.js';
+import {BOX, schematicOf} from '../../web/js/model_editor/schematic_layout.js';
 import {SOLID_SHAPES, solidModel} from '../../web/js/model_editor/solids.js';
+import {scaledLoops} from '../../web/js/model_editor/svg_outline.js';
 import {Store} from '../../web/js/store.js';
 import {near} from './near.mjs';
 import {model, NotingConnection, world} from './scene.mjs';
@@ -184,4 +186,29 @@ test('a size is for the collision and the shapes like it, and the inertia follow
   assert.deepEqual(ops.at(-1), {kind: 'compute_inertial', target: 'm::l', density: null});
   assert.deepEqual(sizeOf({collisions: [{geometry: {type: 'mesh'}}]}), []);
   assert.deepEqual(sizeOf({collisions: []}), []);
+});
+
+test('the schematic has a row for each joint above a link', () => {
+  const links = ['base', 'arm', 'tool', 'loose'].map((name) => ({name}));
+  const joints = [['world', 'base'], ['base', 'arm'], ['arm', 'tool'], ['base', 'tool']].map(([parent, child]) =>
+    ({name: `${parent}_${child}`, type: 'revolute', parent, child}));
+  const {links: placed, edges, width, height} = schematicOf({links, joints});
+  const at = Object.fromEntries(placed.map(({name, x, y}) => [name, [x, y]]));
+  const rows = (...names) => names.map((name) => (at[name][1] - BOX.margin) / (BOX.height + BOX.down));
+  assert.deepEqual(rows('world', 'loose', 'base', 'arm', 'tool'), [0, 0, 1, 2, 2]);
+  assert.equal(edges.length, 4);
+  assert.ok(placed.every(({x, y}) => x >= 0 && y >= 0 && x + BOX.width <= width && y + BOX.height <= height));
+  const loop = schematicOf({links: links.slice(0, 2), joints: [{name: 'a', parent: 'base', child: 'arm'},
+    {name: 'b', parent: 'arm', child: 'base'}]});
+  assert.deepEqual(loop.links.map(({name}) => name), ['base', 'arm']);
+});
+
+test('outlines of a drawing get a width in metres, y up, the largest first', () => {
+  const square = (x, y, size) => [[x, y], [x + size, y], [x + size, y + size], [x, y + size], [x, y]];
+  const [outer, hole] = scaledLoops([square(4, 2, 2), square(0, 0, 10)], 1);
+  assert.deepEqual(outer, [[-0.5, 0.5], [0.5, 0.5], [0.5, -0.5], [-0.5, -0.5]]);
+  near(hole.flat(), [-0.1, 0.3, 0.1, 0.3, 0.1, 0.1, -0.1, 0.1]);
+  assert.throws(() => scaledLoops([[[0, 0], [1, 0]]], 1), /no closed outline/);
+  const many = Array.from({length: 3000}, (_, at) => [Math.cos(at / 477) * 100, Math.sin(at / 477) * 100]);
+  assert.throws(() => scaledLoops([many], 1), /3000 corners/);
 });

@@ -37,7 +37,7 @@ import {NOTHING} from './nothing.js';
  */
 
 /** @typedef {'newWorld'|'open'|'saveAs'|'cloneWorld'|'applyForce'|'hotkeys'|'about'|'plot'|'logs'|'joints'|'topics'|'recover'|'importFiles'|
- *            'building'|'modelEditor'|'saveModel'|'togglePanels'|'find'|'rename'|'array'|'commands'|'nextRegion'|'previousRegion'} DialogName */
+ *            'building'|'modelEditor'|'saveModel'|'schematic'|'togglePanels'|'find'|'rename'|'array'|'commands'|'nextRegion'|'previousRegion'} DialogName */
 
 /** @typedef {{name: DialogName, target?: string, entries?: Dropped[], place?: Vec3}} DialogRequest */
 
@@ -282,6 +282,7 @@ export function createActions({store, connection}) {
     logs: () => dialog('logs'),
     joints: () => dialog('joints'),
     building: () => dialog('building'),
+    schematic: () => dialog('schematic'),
     /** Opens the model editor, or leaves it. @param {string} [name]  of the model to edit */
     modelEditor: (name) => dialog('modelEditor', name ? {target: name} : {}),
     togglePanels: () => dialog('togglePanels'),

@@ -36,6 +36,7 @@ export const HOTKEYS = Object.freeze([
   {keys: 'Ctrl+R', title: 'Reset world', group: 'Edit', action: 'resetWorld'},
   {keys: 'Ctrl+B', title: 'Building editor', group: 'Edit', action: 'building'},
   {keys: 'Ctrl+M', title: 'Model editor', group: 'Edit', action: 'modelEditor'},
+  {keys: 'Ctrl+E', title: 'Schematic view of the model editor', group: 'Edit', action: 'schematic'},
   {keys: 'Escape', title: 'Select mode; cancel; clear selection', group: 'Tools', action: 'escape'},
   {keys: 'T', title: 'Translate', group: 'Tools', action: 'translateMode'},
   {keys: 'R', title: 'Rotate', group: 'Tools', action: 'rotateMode'},

@@ -327,6 +327,8 @@ export const FRAME_RECORD_BYTES = 32;
  *  number: number, name: string, selected: string[], held: string[]
  *}} Person */
 
+/** @typedef {{loops: vec2[][], height: number}} Extrusion */
+
 /** @typedef {{
  *  model: string, name: string, filename: string, state: 'waiting'|'running'|'failed'|'off',
  *  reason: string
@@ -430,7 +432,7 @@ export const FRAME_RECORD_BYTES = 32;
 
 /** @typedef {{
  *  kind: 'add_link', model?: string|null, shape?: SolidShape|null, uri?: string|null,
- *  pose?: pose|null
+ *  polyline?: Extrusion|null, pose?: pose|null
  *}} AddLinkOperation */
 
 /** @typedef {{

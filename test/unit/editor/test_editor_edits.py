@@ -93,6 +93,8 @@ EDITS = {
                      "gains": {"p": 9}},
     "begin a model": {"kind": "add_link", "shape": "capsule", "pose": POSE},
     "add a link": {"kind": "add_link", "model": "arm", "shape": "cylinder", "pose": POSE},
+    "add an outline": {"kind": "add_link", "model": "arm", "polyline": {
+        "loops": [[[0, 0], [1, 0], [1, 1]], [[0.6, 0.2], [0.8, 0.2], [0.8, 0.4]]], "height": 0.1}},
     "add a collision": {"kind": "add_shape", "link": "a::link", "part": "collision",
                         "shape": "cone"},
     "rename a link": {"kind": "rename_link", "link": "arm::tip", "to": "hand"},

@@ -85,6 +85,11 @@ export class ModelEditor {
     if (name) store.select([name]);
   }
 
+  /** Shows the links and joints as a diagram, or hides it. */
+  toggleSchematic() {
+    this.#palette?.schematic.toggle();
+  }
+
   /** Saves; a first time asks for a name. @param {boolean} [as] asks for another name */
   async save(as = false) {
     const {model} = this;

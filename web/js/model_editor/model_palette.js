@@ -5,7 +5,9 @@ import {icon} from '../panels/icons.js';
 import {jointDialog} from './joint_dialog.js';
 import {isLinkOf, JOINT_TYPES, jointText, pluginText, resizing, sizeOf} from './model_edits.js';
 import {meshDialog} from './model_files.js';
+import {Schematic} from './schematic.js';
 import {SOLID_SHAPES, solidModel} from './solids.js';
+import {svgDialog} from './svg_dialog.js';
 /** @import {Joint, Model, Operation, SolidShape} from '../protocol.js' */
 /** @import {ModelEditor} from './model_editor.js' */
 
@@ -38,9 +40,11 @@ export class Palette {
       h('h3', {text: 'Add link'}),
       h('div', {class: 'tools'}, ...SOLID_SHAPES.map((shape) =>
         button(capital(shape), () => this.#place(shape), {'aria-label': `Link: ${shape}`})),
-      button('Mesh…', () => this.#addMesh()), button('Model…', () => this.#nest())),
+      button('Mesh…', () => this.#addMesh()),
+      button('SVG…', () => this.#addSvg(), {title: 'Extrude the outline of a drawing'}), button('Model…', () => this.#nest())),
       h('h3', {text: 'Joints'}),
       h('div', {class: 'row'}, this.#type, this.#connect),
+      button('Schematic', () => this.schematic.toggle(), {title: 'Links and joints as a diagram (Ctrl+E)'}),
       this.#hint, this.#joints, this.#parts,
       h('h3', {text: 'Model'}),
       h('div', {class: 'tools'}, button('Plugins…', () => this.#plugins()),
@@ -53,6 +57,7 @@ export class Palette {
       this.#element.addEventListener(event, (one) => one.stopPropagation());
     }
     view.append(this.#element);
+    this.schematic = new Schematic(view, editor, (joint) => this.model && this.#editJoint(this.model, joint));
   }
 
   /** @type {{path: 'static'|'allow_auto_disable', input: HTMLInputElement}[]} */
@@ -67,7 +72,10 @@ export class Palette {
 
   get model() { return this.editor.model; }
 
-  remove() { this.#element.remove(); }
+  remove() {
+    this.#element.remove();
+    this.schematic.remove();
+  }
 
   /** @param {'static'|'allow_auto_disable'} path @param {string} title */
   #flag(path, title) {
@@ -97,6 +105,7 @@ export class Palette {
     fill(this.#joints, ...(model?.joints ?? []).map((joint) => h('li', {},
       button(jointText(joint), () => model && this.#editJoint(model, joint), {class: 'plain wide', title: `Edit ${joint.name}`}))));
     this.#showParts(model);
+    this.schematic.update();
   }
 
   /** The links that the joint can connect next, for those that the view hides. @param {Model} model */
@@ -156,6 +165,14 @@ export class Palette {
     const {store, request} = this.editor;
     return meshDialog(request, async (uri) => {
       const {name} = await request('edit', {op: {kind: 'add_link', model: store.modelEditing?.name ?? null, uri}});
+      this.editor.actions.placed(name ?? '');
+    });
+  }
+
+  #addSvg() {
+    const {store, request} = this.editor;
+    return svgDialog(async (polyline) => {
+      const {name} = await request('edit', {op: {kind: 'add_link', model: store.modelEditing?.name ?? null, polyline}});
       this.editor.actions.placed(name ?? '');
     });
   }

@@ -154,13 +154,13 @@ export function isTextInput(element) {
 
 /**
  * A click on the element or Enter and Space on it, for things that are no buttons.
- * @param {HTMLElement} element
+ * @param {HTMLElement|SVGElement} element
  * @param {(event: Event) => void} handler
  */
 export function onActivate(element, handler) {
   element.addEventListener('click', handler);
-  element.addEventListener('keydown', (event) => {
-    if (event.target !== element || (event.key !== 'Enter' && event.key !== ' ')) return;
+  element.addEventListener('keydown', (/** @type {Event} */ event) => {
+    if (!(event instanceof KeyboardEvent) || event.target !== element || (event.key !== 'Enter' && event.key !== ' ')) return;
     event.preventDefault();
     event.stopPropagation();
     handler(event);

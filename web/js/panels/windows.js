@@ -99,6 +99,8 @@ export class Windows {
       building: () => this.#toggleBuilding(),
       modelEditor: () => this.#toggleModelEditor(detail.target ?? null),
       saveModel: () => this.#model?.save(),
+      schematic: () => (this.#model ? this.#model.toggleSchematic()
+        : this.page.notices.say('The schematic view is part of the model editor (Ctrl+M).')),
       togglePanels: () => document.body.classList.toggle('bare'),
       find: () => this.#inWorld((world) => world.find()),
       array: () => arrayDialog(this.page),

@@ -15,6 +15,7 @@ from ...description.shapes import (
     Geometry,
     Material,
     Mesh,
+    Polyline,
     Sphere,
 )
 from ...errors import CommandError, Issue
@@ -32,6 +33,7 @@ from .sensor_edits import sensor_of, with_new_sensor, without_sensor
 
 Planned = Tuple[str, Operation, Dict[str, Any]]
 NEW_MODEL = "untitled"
+_MOST_CORNERS = 5000
 
 _SHAPES: Dict[str, Geometry] = {
     "box": Box((1.0, 1.0, 1.0)), "sphere": Sphere(0.5), "cylinder": Cylinder(0.5, 1.0),
@@ -92,8 +94,10 @@ class ModelBuilding:
                             _with_link(model, link, changed), op["link"])
 
     def _geometry(self, op: Dict[str, Any]) -> Geometry:
-        if bool(op.get("shape")) == bool(op.get("uri")):
-            raise CommandError("a shape needs exactly one of shape and uri")
+        if sum(bool(op.get(name)) for name in ("shape", "uri", "polyline")) != 1:
+            raise CommandError("a shape needs exactly one of shape, uri and polyline")
+        if op.get("polyline"):
+            return _polyline(op["polyline"])
         if op.get("shape"):
             return _SHAPES[op["shape"]]
         try:
@@ -251,6 +255,16 @@ def _solid_link(name: str, geometry: Geometry, pose: Pose) -> Link:
     paint = None if isinstance(geometry, Mesh) else _grey()
     link = parts.shaped(Link(name, pose), geometry, paint)
     return replace(link, inertial=inertial_of(link.collisions, mass=1.0))
+
+
+def _polyline(given: Dict[str, Any]) -> Polyline:
+    """An extruded outline. Raises CommandError."""
+    shape = made(Polyline, given)
+    corners = sum(map(len, shape.loops))
+    if not shape.loops or min(map(len, shape.loops)) < 3 or corners > _MOST_CORNERS:
+        raise CommandError("a polyline needs outlines of at least 3 corners, and has at most "
+                           f"{_MOST_CORNERS} corners; found {corners}")
+    return shape
 
 
 def _with_link(model: Model, old: Link, new: Link) -> Model:
