@@ -58,7 +58,7 @@ def editor_url() -> str:
     from my_simulations_msgs.srv import OpenEditor
 
     rospy.wait_for_service("/gazebo/open_editor", 30)
-    return address_file.whole(rospy.ServiceProxy("/gazebo/open_editor", OpenEditor)().url)
+    return address_file.with_token(rospy.ServiceProxy("/gazebo/open_editor", OpenEditor)().url)
 
 
 @contextlib.contextmanager

@@ -88,7 +88,8 @@ class Node:
             public = wait_for(self._editor_url, "the editor's address")
         except AssertionError as fault:
             raise AssertionError(f"{fault}; roslaunch said {self.said()}") from fault
-        self.url = address_file.whole(public, os.path.join(self.home, ".cache", "my_simulations"))
+        self.url = address_file.with_token(public,
+                                           os.path.join(self.home, ".cache", "my_simulations"))
 
     def _editor_url(self):
         assert self.process.poll() is None, self.said()

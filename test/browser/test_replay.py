@@ -121,7 +121,7 @@ def recorded(path, topic):
     try:
         name = f'"topic":"{topic}"'.encode()
         return sum(kind == MESSAGE and name in content
-                   for kind, content in log.notes(-1, len(log.times(0.0))))
+                   for kind, content in log.records(-1, len(log.times(0.0))))
     finally:
         log.close()
 

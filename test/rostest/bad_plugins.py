@@ -116,7 +116,7 @@ class BadPlugins(unittest.TestCase):
 
     def test_the_editor_shows_the_fault(self):
         self.spawn("undefined_name\n")
-        url = address_file.whole(self.gazebo.open_editor().url)
+        url = address_file.with_token(self.gazebo.open_editor().url)
 
         async def watch():
             async with aiohttp.ClientSession() as session:

@@ -52,7 +52,7 @@ class EditorNode(unittest.TestCase):
         cls.gazebo = support.Gazebo(persistent=False)
         cls.public = wait_for(lambda: rospy.get_param("/gazebo/my_simulations/editor_url", ""),
                               "the editor")
-        cls.url = address_file.whole(cls.public)
+        cls.url = address_file.with_token(cls.public)
 
     def setUp(self):
         folder = tempfile.TemporaryDirectory()
@@ -62,7 +62,7 @@ class EditorNode(unittest.TestCase):
     def opened(self, node):
         """The whole address of the editor of a node with this test's folder as its cache."""
         url = support.Gazebo(node, persistent=False).open_editor().url
-        return address_file.whole(url, os.path.join(self.folder, "my_simulations"))
+        return address_file.with_token(url, os.path.join(self.folder, "my_simulations"))
 
     def world(self, text=""):
         path = os.path.join(self.folder, "a.world")
@@ -99,7 +99,7 @@ class EditorNode(unittest.TestCase):
         async def drag(browser):
             name = (await browser.edit("insert", shape="sphere"))["name"]
             high = [8, 0, 5, 0, 0, 0, 1]
-            await browser.tell("drag", names=[name], poses=[high])
+            await browser.notify("drag", names=[name], poses=[high])
             await browser.until(lambda: (browser.link_pose(name) or [0, 0, 0])[2] > 4.9)
             await browser.ask("watch", topics=["plot:sim_time"])
             await browser.until(lambda: browser.last("watch"))

@@ -77,7 +77,7 @@ def main(words: List[str], program: str) -> int:
         if not options.paused:
             simulator.clock.unpause()
         editor = front_ends.edit(simulator, resolver, settings, page)
-        log.also(editor.tell)
+        log.also(editor.show_issue)
         opening.now()
         ended.wait()
         editor.stop()

@@ -29,9 +29,9 @@ from .transport.error_messages import EditRefusedError
 from .transport.http_pages import Pages
 from .transport.hub import Hub
 from .transport.protocol import Protocol
-from .transport.watch_requests import Watching
+from .transport.watch_requests import WatchRequests
 from .transport.web_socket import Route, Sockets
-from .world_requests import Requests
+from .world_requests import WorldRequests
 
 _AUTOSAVE_S = 1.0
 _READING = ("hello", "presence", "viewed", "watch", "topics", "topic_fields", "library",
@@ -45,7 +45,7 @@ async def _refuse(_client: Client, message: Dict[str, Any]) -> Any:
 
 
 class Assembly:
-    """Made and used in the loop, but for `tell`.
+    """Made and used in the loop, but for `show_issue`.
 
     Attributes:
         application: serves pages and sockets.
@@ -61,9 +61,9 @@ class Assembly:
         self._options = options
         documents = Documents(resolver)
         self._history = History(simulator)
-        self._files = WorldFiles(simulator, resolver, self._history, options, self.tell_all)
+        self._files = WorldFiles(simulator, resolver, self._history, options, self.report_issue)
         self._autosave = Autosave(self._files, self._history,
-                                  os.path.join(options.cache_dir, "autosave"), self.tell_all)
+                                  os.path.join(options.cache_dir, "autosave"), self.report_issue)
         web_folder = options.web or Pages.own_folder()
         protocol = Protocol.from_folder(web_folder)
         pages = Pages(options, web_folder, documents, protocol.limits["upload_bytes"],
@@ -74,14 +74,14 @@ class Assembly:
         self.hub.on_tick.append(self._push_plugins)
         self._pool = ThreadPoolExecutor(4, "editor requests")
         library = Library(resolver, documents.served, options.config_dir, self._downloading)
-        self._requests = Requests(self.hub, resolver, self._history, self._files,
-                                  self._autosave, self.tell_all)
-        self._models = LibraryRequests(self.hub, resolver, library, self._pool, self.tell_all)
-        self._logs = Logs(self.hub, options.data_dir, self.tell_all, options.more_logs)
+        self._requests = WorldRequests(self.hub, resolver, self._history, self._files,
+                                  self._autosave, self.report_issue)
+        self._models = LibraryRequests(self.hub, resolver, library, self._pool, self.report_issue)
+        self._logs = Logs(self.hub, options.data_dir, self.report_issue, options.more_logs)
         self._topics = TopicRequests(self.hub, options.topics)
         self.routes: Dict[str, Route] = {
             **self._requests.routes(), **self._models.routes(), **self._logs.routes(),
-            **Watching(self.hub, self._topics.live).routes(), **self._topics.routes(),
+            **WatchRequests(self.hub, self._topics.live).routes(), **self._topics.routes(),
             **BuildingRequests(self.hub, library, self._pool, self._files).routes(),
         }
         if options.read_only:
@@ -99,7 +99,7 @@ class Assembly:
         """Begin to look after the world."""
         works: List[Callable[[], Any]] = [self.hub.run, self._models.watch]
         if not self._options.read_only:
-            works.append(self._keep)
+            works.append(self._autosave_loop)
         self._tasks = [asyncio.ensure_future(work()) for work in works]
         for task in self._tasks:
             task.add_done_callback(self._ended)
@@ -119,24 +119,24 @@ class Assembly:
         self._pool.shutdown(wait=False)
         self._requests.close()
         if not self._options.read_only:
-            self._autosave.keep()
+            self._autosave.save()
 
-    def tell(self, issue: Issue) -> None:
+    def show_issue(self, issue: Issue) -> None:
         """Show an issue on all pages; safe from any thread."""
-        self.hub.tell(issue)
+        self.hub.show_issue(issue)
 
-    def tell_all(self, issue: Issue) -> None:
+    def report_issue(self, issue: Issue) -> None:
         """An issue of the editor's own work: to the pages, and to who started the server."""
-        self.hub.tell(issue)
+        self.hub.show_issue(issue)
         if issue.severity is not Severity.NOTE:
             self._options.log(issue)
 
-    async def _keep(self) -> None:
+    async def _autosave_loop(self) -> None:
         """Write the autosave whenever there is something new."""
         loop = asyncio.get_running_loop()
         while True:
             started = loop.time()
-            await loop.run_in_executor(self._pool, self._autosave.keep)
+            await loop.run_in_executor(self._pool, self._autosave.save)
             # A world that takes long to write is written less often.
             await asyncio.sleep(_AUTOSAVE_S + 10.0 * (loop.time() - started))
 
@@ -144,13 +144,13 @@ class Assembly:
         """Report a task that ended by itself, which is a defect, to the owner of the server."""
         if not task.cancelled():
             defect = task.exception()
-            self.tell_all(error("editor-defect", "a part of the editor has ended: "
+            self.report_issue(error("editor-defect", "a part of the editor has ended: "
                                 f"{type(defect).__name__}: {defect}"))
             asyncio.get_running_loop().call_exception_handler(
                 {"message": "a part of the editor has ended", "exception": defect})
 
     def _push_plugins(self, *_poses_and_revision: object) -> None:
-        news = self._plugins.news()
+        news = self._plugins.changes()
         if news is not None:
             self.hub.push(news)
 

@@ -53,12 +53,12 @@ class LoadingServer:
     def show(self, title: str, text: str = "", done: int = 0, of: int = 0) -> None:
         """What is under way, and how much of it is done (`of` 0: unknown). From any thread."""
         self._state = {**self._state, "title": title, "text": text, "done": done, "of": of}
-        self._soon(self._tell)
+        self._soon(self._push_state)
 
     def say(self, text: str) -> None:
         """A line about what is under way. From any thread."""
         self._state = {**self._state, "text": text}
-        self._soon(self._tell)
+        self._soon(self._push_state)
 
     def hand_over(self) -> socket.socket:
         """End; returns the listening socket, at which browsers that come meanwhile wait."""
@@ -103,7 +103,7 @@ class LoadingServer:
                                shutdown_timeout=0.2)
         await runner.setup()
         assert runner.server is not None
-        factory = self.guard.silent.watched(runner.server, self._loop)
+        factory = self.guard.silent.with_deadline(runner.server, self._loop)
         # A copy: the server closes what it listens at, the editor goes on with the original.
         server = await self._loop.create_server(factory, sock=self._listener.dup(), backlog=64)
         self._started.set_result(None)
@@ -126,7 +126,7 @@ class LoadingServer:
             self._sockets.discard(browser)
         return browser
 
-    def _tell(self) -> None:
+    def _push_state(self) -> None:
         text = encoded(self._state)
         for browser in list(self._sockets):
             asyncio.ensure_future(self._send(browser, text))

@@ -70,10 +70,10 @@ class EditorServer:
             return  # it has ended by itself
         self._thread.join(_END_S)
 
-    def tell(self, issue: Issue) -> None:
+    def show_issue(self, issue: Issue) -> None:
         """Show an issue on all pages; safe from any thread."""
         if self._editor is not None:
-            self._editor.tell(issue)
+            self._editor.show_issue(issue)
 
     def _main(self) -> None:
         try:
@@ -96,7 +96,7 @@ class EditorServer:
                                shutdown_timeout=0.5)
         await runner.setup()
         assert runner.server is not None
-        factory = self._guard.silent.watched(runner.server, self._loop)
+        factory = self._guard.silent.with_deadline(runner.server, self._loop)
         server = await self._loop.create_server(factory, sock=self._listener, backlog=64)
         self._editor.start()
         self._started.set_result(None)

@@ -27,11 +27,11 @@ class ListedTopic(Protocol):
 
     @property
     def model(self) -> str:
-        """The model whose plugin publishes or hears it; "" for others."""
+        """The model whose plugin publishes or subscribes to it; "" for others."""
 
     @property
     def driven(self) -> bool:
-        """Whether a plugin of the model hears it."""
+        """Whether a plugin of the model subscribes to it."""
 
     @property
     def link(self) -> str:
@@ -43,7 +43,7 @@ class ListedTopic(Protocol):
 
 
 class Subscription(Protocol):
-    """A topic that is heard."""
+    """A subscription to a topic."""
 
     @property
     def received_bytes(self) -> int:
@@ -69,7 +69,7 @@ class TopicSource(Protocol):
     def topics(self) -> List[ListedTopic]:
         """All topics with a publisher or subscriber, by name."""
 
-    def hear(self, name: str, kind: str, call: Callable[[Any], None]) -> Subscription:
+    def receive(self, name: str, kind: str, call: Callable[[Any], None]) -> Subscription:
         """Subscribe; `call` comes from another thread and must not change the message.
 
         Raises SimulationError: the type's package is not installed.

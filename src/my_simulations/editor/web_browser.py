@@ -37,18 +37,19 @@ def show(url: str, program: str) -> None:
 
     `url`: of an editor, with or without its token.
     """
-    whole = address_file.whole(url)
+    full_url = address_file.with_token(url)
     if is_private(sys.stdout):
-        _write(sys.stdout, f"{program}: the world editor is at {whole}")
+        _write(sys.stdout, f"{program}: the world editor is at {full_url}")
     else:
         _write(sys.stdout, f"{program}: the world editor is at"
-               f" {address_file.without_token(whole)}; others can read this output, so run"
+               f" {address_file.without_token(full_url)}; others can read this output, so run"
                " gzclient in a terminal for the address with the token")
     if not has_display():
         return
     import webbrowser
 
-    shown = whole if whole == address_file.without_token(whole) else address_file.page(whole)
+    has_token = full_url != address_file.without_token(full_url)
+    shown = address_file.page(full_url) if has_token else full_url
     try:
         opened = bool(shown) and webbrowser.open(shown)
     except webbrowser.Error:

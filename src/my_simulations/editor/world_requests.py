@@ -11,10 +11,10 @@ from ..errors import CommandError, Issue
 from ..resources.resolver import Resolver
 from ..simulator.history import History
 from ..simulator.simulator import Simulator
-from .editing.company import Company
 from .editing.drags import Drags
-from .editing.edit_requests import Edits
-from .editing.people import People
+from .editing.edit_notices import EditNotices
+from .editing.edit_requests import EditRequests
+from .editing.users import Users
 from .library.autosave import Autosave
 from .library.world_files import WorldFiles
 from .scene.plain_json import pose_of
@@ -28,7 +28,7 @@ _LISTED = 200
 """Labels of the history that are sent."""
 
 
-class Requests:
+class WorldRequests:
     """The requests about the world itself: editing, time and files.
 
     Those that change the world run in one thread, in the order in which they came. While another
@@ -37,20 +37,20 @@ class Requests:
     """
 
     def __init__(self, hub: Hub, resolver: Resolver, history: History, files: WorldFiles,
-                 autosave: Autosave, tell: Callable[[Issue], None]) -> None:
+                 autosave: Autosave, report: Callable[[Issue], None]) -> None:
         self._hub = hub
         self._world: Simulator = hub.simulator
         self._history = history
         self._files = files
         self._autosave = autosave
         self._drags = Drags(self._world)
-        self._people = People()
-        self._company = Company(hub, self._people, self._drags)
+        self._users = Users()
+        self._notices = EditNotices(hub, self._users, self._drags)
         self._acting = 0
         self._pending: Dict[int, Dict[str, Any]] = {}
-        self._edits = Edits(self._world, resolver, history, hub.protocol, tell,
-                            lambda names: self._drags.taken(self._acting, names))
-        self._told: Dict[str, Any] = {}
+        self._edits = EditRequests(self._world, resolver, history, hub.protocol, report,
+                            lambda names: self._drags.start_poses(self._acting, names))
+        self._last_history: Dict[str, Any] = {}
         self.thread = ThreadPoolExecutor(1, "editor edits")
         self._disk = ThreadPoolExecutor(1, "editor folders")
 
@@ -95,12 +95,12 @@ class Requests:
     def leave(self, client: Client) -> None:
         """A client has gone: what it held falls."""
         self._pending.pop(client.number, None)
-        self._people.leave(client.number)
+        self._users.leave(client.number)
         self.thread.submit(self._end_drags, client.number)
 
     def history_push(self) -> Dict[str, Any]:
         """The push `history`."""
-        names = self._people.names
+        names = self._users.names
         undo = self._history.undo_labels
         return {"type": "history", "undo": undo[:_LISTED], "undoable": len(undo),
                 "depth": self._history.depth, "state": self._history.state,
@@ -119,11 +119,11 @@ class Requests:
                 f" {version}", "reload the page")
         given = message.get("session") or ""
         client.session = given or secrets.token_hex(8)
-        self._people.join(client.number, message.get("person") or client.session,
+        self._users.join(client.number, message.get("person") or client.session,
                           message.get("name") or "")
-        await self._hub.welcome(client, new=not given)
+        await self._hub.add_client(client, new=not given)
         self._hub.push(self.history_push(), [client])
-        self._hub.push(self._people.push())
+        self._hub.push(self._users.push())
         found = self._autosave.push()
         if found["found"] or (found["others"] and not given):
             self._hub.push(found, [client])
@@ -133,11 +133,11 @@ class Requests:
     async def _presence(self, client: Client, message: Dict[str, Any]) -> None:
         """Store the name or the selection that a client sends."""
         if message.get("name"):
-            self._people.rename(client.number, message["name"])
+            self._users.rename(client.number, message["name"])
             self._hub.push(self.history_push())
         if message.get("selected") is not None:
-            self._people.select(client.number, message["selected"])
-        self._hub.push(self._people.push())
+            self._users.select(client.number, message["selected"])
+        self._hub.push(self._users.push())
 
     # -- editing ---------------------------------------------------------------------------------
 
@@ -145,10 +145,10 @@ class Requests:
         _refuse_in_log(client)
         op = message["op"]
         self._acting = client.number
-        with self._company.watching(client.number):
-            value = self._edits.do(op, self._people.key_of(client.number))
+        with self._notices.notify_of_deletions(client.number):
+            value = self._edits.do(op, self._users.key_of(client.number))
             if op.get("kind") == "move":
-                self._company.released(client.number, list(op["poses"]))
+                self._notices.drag_ended(client.number, list(op["poses"]))
         self._changed()
         return value
 
@@ -171,10 +171,10 @@ class Requests:
             (history.undo, history.undo_authors, history.undo_labels) if verb == "undo" else
             (history.redo, history.redo_authors, history.redo_labels))
         try:
-            with self._company.watching(client.number):
+            with self._notices.notify_of_deletions(client.number):
                 label = move(steps)
             theirs = list(zip(authors[:steps + 1], labels[:steps + 1]))
-            return {"label": label, "by": self._company.moved_in_history(
+            return {"label": label, "by": self._notices.notify_of_undo(
                 client.number, verb, theirs)}
         finally:
             self._changed()
@@ -196,7 +196,7 @@ class Requests:
         if poses:
             fresh = self._drags.drag(number, {name: pose_of(pose)
                                               for name, pose in poses.items()})
-            self._company.grasped(number, fresh)
+            self._notices.drag_started(number, fresh)
 
     def _drag_end(self, client: Client, _message: Dict[str, Any]) -> None:
         self._pending.pop(client.number, None)
@@ -204,7 +204,7 @@ class Requests:
 
     def _end_drags(self, number: int) -> None:
         self._drags.end(number)
-        self._company.tell_holds(always=True)
+        self._notices.push_drags(always=True)
 
     # -- time ------------------------------------------------------------------------------------
 
@@ -248,7 +248,7 @@ class Requests:
     def _set_aside(self, message: Dict[str, Any]) -> None:
         """What is discarded can be recovered."""
         if message.get("discard"):
-            self._autosave.set_aside()
+            self._autosave.save_as_discarded()
 
     def _folders(self, _client: Client, message: Dict[str, Any]) -> Dict[str, Any]:
         return self._files.folders(message)
@@ -260,12 +260,12 @@ class Requests:
                handler: Callable[[Dict[str, Any]], Dict[str, Any]],
                message: Dict[str, Any]) -> Dict[str, Any]:
         try:
-            with self._company.watching(client.number):
+            with self._notices.notify_of_deletions(client.number):
                 value = handler(message)
                 if verb == "opened":
-                    self._let_go()
+                    self._end_all_drags()
             file = value.get("path") or value.get("file") or "an empty world"
-            self._company.tell_others(client.number, f"{verb} {file}")
+            self._notices.notify_others(client.number, f"{verb} {file}")
             return value
         finally:
             self._changed()
@@ -280,7 +280,7 @@ class Requests:
         try:
             if message["action"] == "restore":
                 file = self._autosave.restore(message.get("name") or "")
-                self._let_go()
+                self._end_all_drags()
                 return {"file": file}
             self._autosave.discard()
             return {"file": ""}
@@ -288,18 +288,18 @@ class Requests:
             self._hub.push_soon(self._autosave.push())
             self._changed()
 
-    def _let_go(self) -> None:
+    def _end_all_drags(self) -> None:
         """What people dragged was of the world before this one."""
         self._pending.clear()
-        self._drags.forget()
-        self._company.tell_holds()
+        self._drags.clear()
+        self._notices.push_drags()
 
     def _changed(self) -> None:
         """After an edit: everybody looks at the world, and at the history if it differs."""
-        self._hub.nudge()
+        self._hub.wake()
         push = self.history_push()
-        if push != self._told:
-            self._told = push
+        if push != self._last_history:
+            self._last_history = push
             self._hub.push_soon(push)
 
 

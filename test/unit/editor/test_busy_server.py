@@ -119,7 +119,7 @@ def test_other_pages_are_greeted_while_an_edit_takes_long(case, monkeypatch):
             await gate.reached()
             other = await Browser.open(browser.session, made.url)
             assert other.last("history")["undo"] == []
-            await browser.tell("presence", selected=["old"])
+            await browser.notify("presence", selected=["old"])
             await other.ask("folders")
             assert not pending.done()
         finally:

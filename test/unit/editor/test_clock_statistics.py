@@ -1,7 +1,7 @@
 """The figures of the time bar belong together."""
 import pytest
 
-from my_simulations.editor.transport.clock_statistics import RealTime
+from my_simulations.editor.transport.clock_statistics import ClockStatistics
 from my_simulations.engine.ring import Clock
 
 STEP_NS = 1000000
@@ -36,7 +36,7 @@ class Sim:
 @pytest.mark.parametrize("looks", range(1, 12))
 def test_a_pause_is_told_with_its_last_step_and_time(looks):
     sim = Sim(looks)
-    figures = RealTime(sim)
+    figures = ClockStatistics(sim)
     while True:
         told = figures.read()
         assert told["sim_ns"] == told["iterations"] * STEP_NS

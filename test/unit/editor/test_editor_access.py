@@ -91,7 +91,7 @@ def test_the_token_can_be_turned_off_where_only_this_machine_listens(
 def test_the_address_with_the_token_is_in_a_file_for_its_user_alone(guarded):
     made, base, token = guarded
     cache = made.options.cache_dir
-    assert address_file.whole(base, cache) == made.url
+    assert address_file.with_token(base, cache) == made.url
     folder = os.path.join(cache, "editor")
     assert stat.S_IMODE(os.stat(folder).st_mode) == 0o700
     files = [os.path.join(folder, name) for name in os.listdir(folder)]
@@ -101,16 +101,16 @@ def test_the_address_with_the_token_is_in_a_file_for_its_user_alone(guarded):
     with open(page[len("file://"):], encoding="utf-8") as stream:
         assert f'content="0;url={made.url}"' in stream.read()
     made.server.stop()
-    assert os.listdir(folder) == ["page_key"] and address_file.whole(base, cache) == base
+    assert os.listdir(folder) == ["page_key"] and address_file.with_token(base, cache) == base
 
 
 def test_an_address_is_read_for_the_very_server_only(tmp_path):
     address_file.write("http://127.0.0.1:1/?token=secret", str(tmp_path))
-    assert address_file.whole("http://127.0.0.1:2/", str(tmp_path)) == "http://127.0.0.1:2/"
+    assert address_file.with_token("http://127.0.0.1:2/", str(tmp_path)) == "http://127.0.0.1:2/"
     os.rename(tmp_path / "editor" / "127.0.0.1_1.json", tmp_path / "editor" / "127.0.0.1_2.json")
-    assert address_file.whole("http://127.0.0.1:2/", str(tmp_path)) == "http://127.0.0.1:2/"
+    assert address_file.with_token("http://127.0.0.1:2/", str(tmp_path)) == "http://127.0.0.1:2/"
     (tmp_path / "editor" / "127.0.0.1_3.json").write_text("[]")
-    assert address_file.whole("http://127.0.0.1:3/", str(tmp_path)) == "http://127.0.0.1:3/"
+    assert address_file.with_token("http://127.0.0.1:3/", str(tmp_path)) == "http://127.0.0.1:3/"
 
 
 def test_a_server_whose_folder_cannot_be_written_runs_and_says_so(case, monkeypatch, tmp_path):

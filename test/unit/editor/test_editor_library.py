@@ -382,7 +382,7 @@ def test_who_looks_at_a_log_does_not_edit_the_world_unseen(case):
             with pytest.raises(Refused) as refused:
                 await browser.ask(kind, **fields)
             assert refused.value.code == "replay"
-        await browser.tell("drag", names=["a"], poses=[pose])
+        await browser.notify("drag", names=["a"], poses=[pose])
         await browser.ask("drag_end")
         other = await Browser.open(browser.session, made.url)
         assert other.model("a") and other.model("unit_box")

@@ -37,10 +37,10 @@ def test_everybody_knows_who_is_here_and_what_they_have_selected(case):
     async def meet(first):
         second = await another(first, made.url, person="key", name="Anna")
         await first.until(lambda: set(people(first)) == {"Guest 1", "Anna"})
-        await second.tell("presence", selected=["a"])
+        await second.notify("presence", selected=["a"])
         await first.until(lambda: people(first)["Anna"]["selected"] == ["a"])
-        await second.tell("presence", name="Guest 1")   # another's
-        await second.tell("presence", name="  Bea\n M. ")
+        await second.notify("presence", name="Guest 1")   # another's
+        await second.notify("presence", name="  Bea\n M. ")
         await first.until(lambda: set(people(first)) == {"Guest 1", "Bea M."})
         await second.socket.close()
         await first.until(lambda: set(people(first)) == {"Guest 1"})
@@ -55,9 +55,9 @@ def test_the_last_release_wins_and_both_hands_are_told(case):
 
     async def pull(first):
         second = await another(first, made.url)
-        await first.tell("drag", names=["a"], poses=[POSE])
+        await first.notify("drag", names=["a"], poses=[POSE])
         await second.until(lambda: people(second)["Guest 1"]["held"] == ["a"])
-        await second.tell("drag", names=["a"], poses=[FARTHER])
+        await second.notify("drag", names=["a"], poses=[FARTHER])
         await first.until(lambda: any("Guest 2 is dragging a too" in text for text in
                                       notes(first)))
         await second.until(lambda: any("Guest 1 is dragging a too" in text for text in
@@ -82,7 +82,7 @@ def test_deleting_what_somebody_drags_says_so_to_both(case):
 
     async def delete(first):
         second = await another(first, made.url)
-        await first.tell("drag", names=["a"], poses=[POSE])
+        await first.notify("drag", names=["a"], poses=[POSE])
         await second.until(lambda: people(second)["Guest 1"]["held"] == ["a"])
         await second.edit("delete", names=["a"])
         await first.until(lambda: "a, which you were dragging, was deleted by Guest 2"
@@ -116,11 +116,11 @@ def test_a_hand_that_lets_go_without_release_leaves_what_another_holds(case):
 
     async def leave(first):
         second = await another(first, made.url)
-        await first.tell("drag", names=["a"], poses=[POSE])
+        await first.notify("drag", names=["a"], poses=[POSE])
         await second.until(lambda: people(second)["Guest 1"]["held"] == ["a"])
-        await second.tell("drag", names=["a"], poses=[FARTHER])
+        await second.notify("drag", names=["a"], poses=[FARTHER])
         await first.until(lambda: people(first)["Guest 2"]["held"] == ["a"])
-        await first.tell("drag_end")
+        await first.notify("drag_end")
         await second.until(lambda: people(second)["Guest 1"]["held"] == [])
         assert made.sim.states.model_state("a")[0].position[0] == pytest.approx(2.0)
 

@@ -76,7 +76,7 @@ def test_a_world_that_stands_still_is_looked_at_less_often_until_something_happe
 
     async def quiet():
         deadline = asyncio.get_running_loop().time() + DEADLINE
-        while not hub._quiet():
+        while not hub._is_idle():
             assert asyncio.get_running_loop().time() < deadline, "it never comes to rest"
             await asyncio.sleep(0.01)
 
@@ -84,13 +84,13 @@ def test_a_world_that_stands_still_is_looked_at_less_often_until_something_happe
         await quiet()
         made.sim.models.spawn(box("b"))          # by another client
         await browser.until(lambda: browser.model("b"))
-        assert not hub._quiet()
+        assert not hub._is_idle()
         await quiet()
         await browser.ask("folders")      # by a page
-        assert not hub._quiet()
+        assert not hub._is_idle()
         await quiet()
         made.sim.clock.unpause()
-        assert not hub._quiet()
+        assert not hub._is_idle()
         made.sim.states.set_model_state("a", Pose((0, 0, 9)), Twist((1.0, 0.0, 0.0)))
         await browser.until(lambda: browser.link_pose("a")[0] > 0.1)
 
@@ -173,7 +173,7 @@ def test_issues_are_shown_with_file_and_line_also_to_who_comes_later(case):
     made = case()
 
     async def see(first):
-        made.server.tell(error("bad", "it is bad", file="/a.world", line=3))
+        made.server.show_issue(error("bad", "it is bad", file="/a.world", line=3))
         await first.until(lambda: first.last("issue"))
         second = await Browser.open(first.session, made.url)
         await second.until(lambda: second.last("issue"))
@@ -187,7 +187,7 @@ def test_a_known_session_is_not_told_old_issues_again(case):
     made = case()
 
     async def see(first):
-        made.server.tell(error("bad", "it is bad"))
+        made.server.show_issue(error("bad", "it is bad"))
         await first.until(lambda: first.last("issue"))
         again = await Browser.open(first.session, made.url, hello=False)
         assert (await again.ask("hello", version=1, session="x"))["session"] == "x"
@@ -225,7 +225,7 @@ def test_a_dragged_body_moves_live_and_a_move_is_one_step_from_where_it_was(case
 
     async def drag(browser):
         for x in (1.0, 2.0, 3.0):
-            await browser.tell("drag", names=["a"], poses=[[x, 0, 0.5, 0, 0, 0, 1]])
+            await browser.notify("drag", names=["a"], poses=[[x, 0, 0.5, 0, 0, 0, 1]])
         await browser.until(lambda: browser.link_pose("a") == pytest.approx([3.0, 0.0, 0.5]))
         assert browser.last("history")["undo"] == []
         await browser.edit("move", poses={"a": [4, 0, 0.5, 0, 0, 0, 1]}, label="translate")
@@ -242,14 +242,14 @@ def test_a_drag_that_is_broken_off_goes_back(case):
     made = case(box("a"), lights=[sun()])
 
     async def drag(browser):
-        await browser.tell("drag", names=["a", "sun"],
+        await browser.notify("drag", names=["a", "sun"],
                            poses=[[9, 0, 0.5, 0, 0, 0, 1], [7, 0, 0, 0, 0, 0, 1]])
         await browser.until(lambda: browser.light("sun")["pose"][0] == 7)
-        await browser.tell("drag_end")
+        await browser.notify("drag_end")
         await browser.until(lambda: browser.light("sun")["pose"][0] == 0)
         assert made.sim.states.model_state("a")[0].position[0] == pytest.approx(0.0)
         other = await Browser.open(browser.session, made.url)
-        await other.tell("drag", names=["a"], poses=[[9, 0, 0.5, 0, 0, 0, 1]])
+        await other.notify("drag", names=["a"], poses=[[9, 0, 0.5, 0, 0, 0, 1]])
         await browser.until(lambda: (browser.link_pose("a") or [0])[0] == pytest.approx(9.0))
         await other.socket.close()
         await browser.until(lambda: browser.link_pose("a")[0] == pytest.approx(0.0))
@@ -265,7 +265,7 @@ def test_a_drag_ends_with_its_world(case, how):
     async def drag(browser):
         await browser.ask("save", path="kept.world")
         await browser.edit("move", poses={"a": [5, 0, 0.5, 0, 0, 0, 1]})
-        await browser.tell("drag", names=["a"], poses=[[9, 0, 0.5, 0, 0, 0, 1]])
+        await browser.notify("drag", names=["a"], poses=[[9, 0, 0.5, 0, 0, 0, 1]])
         await browser.until(lambda: browser.link_pose("a") == pytest.approx([9.0, 0.0, 0.5]))
         if how == "new":
             await browser.ask("new", discard=True)
@@ -281,8 +281,8 @@ def test_a_drag_ends_with_its_world(case, how):
 
 def test_a_drag_of_what_is_not_there_harms_nobody(case):
     async def drag(browser):
-        await browser.tell("drag", names=["nix"], poses=[[0, 0, 0, 0, 0, 0, 1]])
-        await browser.tell("drag", names=["a", "b"], poses=[[0, 0, 0, 0, 0, 0, 1]])
+        await browser.notify("drag", names=["nix"], poses=[[0, 0, 0, 0, 0, 0, 1]])
+        await browser.notify("drag", names=["a", "b"], poses=[[0, 0, 0, 0, 0, 0, 1]])
         await browser.until(lambda: browser.last("issue"))
         assert (await browser.ask("step", steps=1))["step"] == 1
 

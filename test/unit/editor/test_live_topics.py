@@ -109,12 +109,12 @@ def test_a_page_that_is_slow_gets_the_newest_message_when_it_has_shown_the_last(
                 source.heard["/scan"](scan(float(n)))
                 count = n
                 await quick.until(lambda: len(quick.views) == count)
-                await quick.tell("viewed", topic="/scan")
+                await quick.notify("viewed", topic="/scan")
             assert len(browser.views) == 1
-            await browser.tell("viewed", topic="/scan")
+            await browser.notify("viewed", topic="/scan")
             await browser.until(lambda: len(browser.views) == 2)
             assert struct.unpack("<f", views(browser)[-1][1]) == (5.0,)
-            await browser.tell("viewed", topic="/scan")
+            await browser.notify("viewed", topic="/scan")
             await browser.ask("watch", topics=["ros:/scan"])
             assert len(browser.views) == 2  # nothing new has come
 
@@ -155,7 +155,7 @@ def test_a_topic_that_nobody_publishes_yet_is_found_later(case):
     async def look(browser):
         await browser.ask("watch", topics=["ros:/scan"])
         await browser.until(lambda: browser.last("watch"))
-        assert browser.last("watch")["problem"] == "nobody publishes it yet"
+        assert browser.last("watch")["problem"] == "no node publishes it yet"
         source.listed.append(SCAN)
         await until(lambda: "/scan" in source.heard)
 

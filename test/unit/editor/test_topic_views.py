@@ -34,7 +34,7 @@ TYPES = Protocol.from_folder(Pages.own_folder()).types
 def view(message, kind=None):
     """Fields and payload of a message that alone has come; checked against the protocol."""
     viewer = Viewer(kind or message._type, lambda: 0.0)
-    viewer.take(message)
+    viewer.receive(message)
     frame, stamp, (fields, payload) = viewer.view()
     TYPES.check({"topic": "/t", "frame": frame, "stamp": stamp, "view": fields}, "TopicHead", "v")
     return fields, payload
@@ -190,9 +190,9 @@ def transform(parent, child, x):
 
 def test_tf_is_told_whole_although_it_comes_in_parts():
     viewer = Viewer(TFMessage._type, lambda: 0.0)
-    viewer.take(TFMessage([transform("odom", "base", 1.0)]))
-    viewer.take(TFMessage([transform("base", "laser", 0.2)]))
-    viewer.take(TFMessage([transform("odom", "base", 2.0)]))
+    viewer.receive(TFMessage([transform("odom", "base", 1.0)]))
+    viewer.receive(TFMessage([transform("base", "laser", 0.2)]))
+    viewer.receive(TFMessage([transform("odom", "base", 2.0)]))
     fields = viewer.view()[2][0]
     assert [(one["parent"], one["child"], one["pose"][0]) for one in fields["transforms"]] == \
         [("odom", "base", 2.0), ("base", "laser", 0.2)]
@@ -204,11 +204,11 @@ def test_markers_stay_until_they_are_deleted():
                       points=[Point(0, 0, 0), Point(1, 0, 0)], pose=Pose())
 
     viewer = Viewer(MarkerArray._type, lambda: 0.0)
-    viewer.take(MarkerArray([marker(1), marker(2)]))
-    viewer.take(MarkerArray([]))
-    viewer.take(MarkerArray([marker(1, Marker.DELETE)]))
+    viewer.receive(MarkerArray([marker(1), marker(2)]))
+    viewer.receive(MarkerArray([]))
+    viewer.receive(MarkerArray([marker(1, Marker.DELETE)]))
     assert [one["id"] for one in viewer.view()[2][0]["markers"]] == ["n/2"]
-    viewer.take(MarkerArray([marker(0, 3)]))
+    viewer.receive(MarkerArray([marker(0, 3)]))
     assert viewer.view()[2][0]["markers"] == []
     assert view(marker(1))[0]["markers"][0]["shape"] == "line_strip"
 
@@ -220,8 +220,8 @@ class Trail:
         self.now = 10.0
         self._viewer = Viewer(Marker._type, lambda: self.now)
 
-    def take(self, number, lifetime):
-        self._viewer.take(Marker(id=number, lifetime=Duration.from_sec(lifetime)))
+    def receive(self, number, lifetime):
+        self._viewer.receive(Marker(id=number, lifetime=Duration.from_sec(lifetime)))
 
     def shown(self):
         """Ids of what is shown, with what is left of its lifetime, s."""
@@ -230,10 +230,10 @@ class Trail:
 
 def test_markers_go_when_their_lifetime_is_over():
     trail = Trail()
-    trail.take(1, 0.0)
-    trail.take(2, 0.5)
+    trail.receive(1, 0.0)
+    trail.receive(2, 0.5)
     trail.now = 10.2
-    trail.take(3, 0.5)
+    trail.receive(3, 0.5)
     assert trail.shown() == {"/1": 0.0, "/2": pytest.approx(0.3), "/3": pytest.approx(0.5)}
     trail.now = 10.6
     assert trail.shown() == {"/1": 0.0, "/3": pytest.approx(0.1)}
@@ -243,13 +243,13 @@ def test_markers_go_when_their_lifetime_is_over():
 
 def test_the_newest_markers_are_shown_however_many_came_before():
     trail = Trail()
-    trail.take(0, 0.0)
+    trail.receive(0, 0.0)
     for number in range(1, 1500):
         trail.now += 0.1
-        trail.take(number, 0.45)
+        trail.receive(number, 0.45)
     assert set(trail.shown()) == {"/0", *(f"/{n}" for n in range(1495, 1500))}
     for number in range(2000, 3500):
-        trail.take(number, 0.0)
+        trail.receive(number, 0.0)
     assert list(trail.shown()) == [f"/{n}" for n in range(2500, 3500)]
 
 

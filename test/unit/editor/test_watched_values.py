@@ -3,7 +3,7 @@ from __future__ import annotations
 
 from pytest import approx
 
-from my_simulations.editor.transport.watched_values import Watches
+from my_simulations.editor.transport.watched_values import WatchedValues
 from my_simulations.engine.ring import Clock, Snapshot
 
 
@@ -29,12 +29,14 @@ class Running:
 
 def test_a_value_has_the_time_of_the_state_that_it_is_read_from():
     world = Running()
-    found = Watches(world, None, lambda _: None).pushes(["plot:iterations"])["plot:iterations"]
+    found = WatchedValues(world, None,
+                          lambda _: None).pushes(["plot:iterations"])["plot:iterations"]
     assert found["value"] == world.written and found["time"] == approx(world.written * 1e-3)
 
 
 def test_time_goes_on_while_nothing_moves():
     world = Running()
     world.latest = lambda: ([], Snapshot(1, 5, Clock(0, 0, 10 ** 9), [], []))
-    found = Watches(world, None, lambda _: None).pushes(["plot:iterations"])["plot:iterations"]
+    found = WatchedValues(world, None,
+                          lambda _: None).pushes(["plot:iterations"])["plot:iterations"]
     assert found["value"] == 820 and found["time"] == approx(0.82)

@@ -112,7 +112,7 @@ class Browser:
         self.views = []
         self.poses = {}
         self.document = None
-        self.news = asyncio.Condition()
+        self.changes = asyncio.Condition()
         self._replies = {}
         self._number = 0
         self._reader = asyncio.ensure_future(self._read())
@@ -152,14 +152,14 @@ class Browser:
     async def edit(self, kind, **fields):
         return await self.ask("edit", op={"kind": kind, **fields})
 
-    async def tell(self, kind, **fields):
+    async def notify(self, kind, **fields):
         """Send a notice."""
         await self.socket.send_json({"type": kind, **fields})
 
     async def until(self, condition):
         """Wait until something that was received makes a condition true."""
-        async with self.news:
-            await asyncio.wait_for(self.news.wait_for(condition), DEADLINE)
+        async with self.changes:
+            await asyncio.wait_for(self.changes.wait_for(condition), DEADLINE)
 
     def last(self, kind):
         return next((push for push in reversed(self.pushes) if push["type"] == kind), None)
@@ -178,12 +178,12 @@ class Browser:
 
     async def _read(self):
         async for message in self.socket:
-            async with self.news:
+            async with self.changes:
                 if message.type == aiohttp.WSMsgType.BINARY:
                     self._frame(message.data)
                 else:
                     self._text(json.loads(message.data))
-                self.news.notify_all()
+                self.changes.notify_all()
         for waiting in self._replies.values():
             waiting.set_exception(ConnectionError(f"closed: {self.socket.close_code}"))
         self._replies.clear()

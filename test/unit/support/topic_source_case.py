@@ -31,7 +31,7 @@ class Source:
     def topics(self):
         return list(self.listed)
 
-    def hear(self, name, kind, call):
+    def receive(self, name, kind, call):
         heard = self.heard
         heard[name] = call
 

@@ -34,7 +34,7 @@ class Drags:
             except CommandError:
                 continue
         if fresh:
-            self._hold()
+            self._pin_dragged()
         for name, pose in poses.items():
             if name not in mine or not pose_is_finite(pose):
                 continue
@@ -44,17 +44,17 @@ class Drags:
                 mine.pop(name)
         return [name for name in fresh if name in mine]
 
-    def held(self) -> Dict[int, List[str]]:
+    def dragged(self) -> Dict[int, List[str]]:
         """Names of what is dragged, by client."""
         return {client: sorted(before) for client, before in self._before.items() if before}
 
     def others(self, client: int, names: List[str]) -> Dict[int, List[str]]:
         """Which of these others drag, by client."""
-        return {other: shared for other, held in self.held().items()
+        return {other: shared for other, held in self.dragged().items()
                 for shared in [[name for name in names if name in held]]
                 if shared and other != client}
 
-    def taken(self, client: int, names: List[str]) -> Dict[str, Pose]:
+    def start_poses(self, client: int, names: List[str]) -> Dict[str, Pose]:
         """Where these were before the client dragged them, as far as it does."""
         mine = self._before.get(client, {})
         return {name: mine[name] for name in names if name in mine}
@@ -72,9 +72,9 @@ class Drags:
                     before[name] = pose_of(self._world, name)
                 except CommandError:
                     before.pop(name)
-        self._hold()
+        self._pin_dragged()
 
-    def gone(self) -> Dict[int, List[str]]:
+    def remove_deleted(self) -> Dict[int, List[str]]:
         """Return and forget the dragged names that no longer exist, by client."""
         lost: Dict[int, List[str]] = {}
         for client, before in self._before.items():
@@ -97,14 +97,14 @@ class Drags:
             except CommandError:
                 continue
         if before:
-            self._hold()
+            self._pin_dragged()
 
-    def forget(self) -> None:
+    def clear(self) -> None:
         """End all drags where the bodies are: another world was opened."""
         self._before.clear()
-        self._hold()
+        self._pin_dragged()
 
-    def _hold(self) -> None:
+    def _pin_dragged(self) -> None:
         names = {split_scoped(name, self._world.models.has)[0]
                  for before in self._before.values() for name in before}
         self._world.models.pin(sorted(names - {""}))

@@ -64,7 +64,7 @@ Planned = Tuple[str, Operation, Dict[str, Any]]
 """Words, what to do, and the reply's value."""
 
 
-class Edits:
+class EditRequests:
     """Makes operations of messages and has the history carry them out. One thread at a time.
 
     Args:
@@ -72,20 +72,20 @@ class Edits:
         resolver: finds what texts and URIs name.
         history: remembers.
         protocol: says which operations there are.
-        tell: hears of warnings about what was inserted.
+        report: receives warnings about inserted entities.
         dragged: poses from before a drag that a move ends, by name; forgets them.
     """
 
     def __init__(self, simulator: Simulator, resolver: Resolver, history: History,
-                 protocol: Protocol, tell: Callable[[Issue], None],
+                 protocol: Protocol, report: Callable[[Issue], None],
                  dragged: Callable[[List[str]], Dict[str, Pose]]) -> None:
         self._world = simulator
         self._resolver = resolver
         self._history = history
         self._protocol = protocol
-        self._tell = tell
+        self._report = report
         self._dragged = dragged
-        self._building = ModelBuilding(simulator, resolver, tell)
+        self._building = ModelBuilding(simulator, resolver, report)
 
     def do(self, op: Dict[str, Any], author: str = "") -> Dict[str, Any]:
         """Carry out one operation as one step of its author's; returns the reply's value.
@@ -137,7 +137,7 @@ class Edits:
         else:
             entity, issues = entity_of_text(op["sdf"], self._resolver, op.get("source"))
         for issue in issues:
-            self._tell(issue)
+            self._report(issue)
         if isinstance(entity, Model) and op.get("scale"):
             entity = resized(entity, tuple(op["scale"]))  # type: ignore[arg-type]
         name = free_name(op.get("name") or entity.name, taken_names(self._world))
@@ -151,7 +151,7 @@ class Edits:
         model = replace(entity, name=name, pose=pose)
         meshes, issues = checked(model)
         for issue in issues:
-            self._tell(issue)
+            self._report(issue)
         return AddModel(model, pose, meshes)
 
     def _insert_light(self, op: Dict[str, Any]) -> Planned:
@@ -186,7 +186,7 @@ class Edits:
     def _paste(self, op: Dict[str, Any]) -> Planned:
         entities, issues = entities_of_text(op["text"], self._resolver, op.get("source"))
         for issue in issues:
-            self._tell(issue)
+            self._report(issue)
         if not entities:
             raise CommandError("the pasted text contains no models or lights")
         taken = set(taken_names(self._world))
@@ -324,7 +324,7 @@ class Edits:
 class _Deferred:
     """A group whose parts are planned one by one, since each may build on those before it."""
 
-    def __init__(self, edits: Edits, ops: List[Dict[str, Any]], depth: int) -> None:
+    def __init__(self, edits: EditRequests, ops: List[Dict[str, Any]], depth: int) -> None:
         self._edits, self._ops, self._depth = edits, ops, depth
         self.value: Dict[str, Any] = {"names": []}
 

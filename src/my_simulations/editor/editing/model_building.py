@@ -47,14 +47,14 @@ class ModelBuilding:
     Args:
         simulator: has the models.
         resolver: finds meshes and models.
-        tell: hears of warnings.
+        report: receives warnings.
     """
 
     def __init__(self, simulator: Simulator, resolver: Resolver,
-                 tell: Callable[[Issue], None]) -> None:
+                 report: Callable[[Issue], None]) -> None:
         self._world = simulator
         self._resolver = resolver
-        self._tell = tell
+        self._report = report
 
     def planners(self) -> Dict[str, Callable[[Dict[str, Any]], Planned]]:
         """By kind of operation. They raise CommandError, InputError."""
@@ -163,7 +163,7 @@ class ModelBuilding:
         model = self._world.models.get(op["model"])
         nested, issues = entity_of_uri(op["uri"], self._resolver)
         for issue in issues:
-            self._tell(issue)
+            self._report(issue)
         if not isinstance(nested, Model):
             raise CommandError(f"{op['uri']} is no model")
         taken = parts.part_names(model)
@@ -180,7 +180,7 @@ class ModelBuilding:
         _check_xml(text)
         found, issues = entity_of_text(text, self._resolver)
         for issue in issues:
-            self._tell(issue)
+            self._report(issue)
         if not isinstance(found, Model) or len(found.links) != 1 or found.joints or found.models \
                 or found.extra:
             raise CommandError("the text must contain <plugin> elements only")
@@ -219,7 +219,7 @@ class ModelBuilding:
     def _checked(self, model: Model) -> Any:
         meshes, issues = checked(model)
         for issue in issues:
-            self._tell(issue)
+            self._report(issue)
         return meshes
 
     def _edited(self, label: str, old: Model, new: Model, name: str) -> Planned:

@@ -21,15 +21,15 @@ from ..transport.error_messages import EditRefusedError
 from .world_files import WorldFiles
 
 _DAY_S = 86400.0
-KEPT_S = 7.0 * _DAY_S
+DISCARDED_LIFE_S = 7.0 * _DAY_S
 """How long discarded changes can be recovered."""
 
-UNCLAIMED_S = 60.0 * _DAY_S
+UNRESTORED_LIFE_S = 60.0 * _DAY_S
 """How long changes are kept that were neither discarded nor restored."""
 
 
 @dataclass(frozen=True)
-class Entry:
+class AutosaveEntry:
     """`file`: the world it belongs to, "" for a new one; `saved_at` s since 1970; `launched`: the
     models of it that a launch file had spawned; `discarded_at`: 0 unless it was discarded.
     """
@@ -50,7 +50,9 @@ class Entry:
     @property
     def age_limit(self) -> float:
         """When it is no longer kept, s since 1970."""
-        return self.discarded_at + KEPT_S if self.discarded_at else self.saved_at + UNCLAIMED_S
+        if self.discarded_at:
+            return self.discarded_at + DISCARDED_LIFE_S
+        return self.saved_at + UNRESTORED_LIFE_S
 
 
 class Autosave:
@@ -60,61 +62,62 @@ class Autosave:
         files: gives the world's text and its file.
         history: says what is dirty.
         folder: where entries lie.
-        tell: hears when that does not work.
+        report: receives a warning if edits cannot be saved.
     """
 
     def __init__(self, files: WorldFiles, history: History, folder: str,
-                 tell: Callable[[Issue], None]) -> None:
+                 report: Callable[[Issue], None]) -> None:
         self._files = files
         self._history = history
         self._folder = folder
-        self._tell = tell
+        self._report = report
         self._lock = threading.Lock()
-        self._kept: Optional[int] = None
-        self._complained = False
+        self._saved_state: Optional[int] = None
+        self._failure_reported = False
         self._process = process_id(os.getpid())
         self._name = f"{os.getpid()}-{time.time_ns():x}"
         self._purge()
-        self.found: Optional[Entry] = self._offered()
+        self.found: Optional[AutosaveEntry] = self._newest_recoverable()
 
     def push(self) -> Dict[str, Any]:
         """The push `autosave`."""
         found = self.found
         return {"type": "autosave", "found": found is not None,
                 "file": found.file if found else "", "time": found.saved_at if found else 0.0,
-                "others": sum(not entry.discarded_at for entry in self._left() if entry != found)}
+                "others": sum(not entry.discarded_at for entry in self._recoverable()
+                              if entry != found)}
 
     def entries(self) -> List[Dict[str, Any]]:
         """What can be recovered, the newest first (`Recoverable` of the protocol)."""
         return [{"name": entry.name, "file": entry.file, "time": entry.saved_at,
                  "discarded": bool(entry.discarded_at)}
-                for entry in sorted(self._left(), key=lambda one: -one.saved_at)]
+                for entry in sorted(self._recoverable(), key=lambda one: -one.saved_at)]
 
-    def keep(self) -> None:
+    def save(self) -> None:
         """Write the entry again if edits are missing in it; remove it if there are no edits.
 
         Blocks; call it now and then, from any thread.
         """
         with self._lock:
             state = self._history.state if self._history.dirty else None
-            if state == self._kept:
+            if state == self._saved_state:
                 return
             try:
                 if state is None:
                     self._remove(self._path(".json"), self._path(".world"))
                 else:
                     self._write()
-                self._kept = state
-                self._complained = False
+                self._saved_state = state
+                self._failure_reported = False
             except (CommandError, OSError) as fault:
-                self._complain(str(fault))
+                self._report_failure(str(fault))
             except Exception as defect:  # edits to come must still be kept
-                self._complain(f"internal error: {type(defect).__name__}: {defect}")
+                self._report_failure(f"internal error: {type(defect).__name__}: {defect}")
 
-    def _complain(self, reason: str) -> None:
-        if not self._complained:
-            self._tell(warning("autosave", f"unsaved changes cannot be kept: {reason}"))
-        self._complained = True
+    def _report_failure(self, reason: str) -> None:
+        if not self._failure_reported:
+            self._report(warning("autosave", f"unsaved changes cannot be kept: {reason}"))
+        self._failure_reported = True
 
     def restore(self, name: str = "") -> str:
         """Load an entry, or what was found; returns the file it belongs to.
@@ -122,9 +125,9 @@ class Autosave:
         Changes of the world that it replaces can be recovered in turn. Raises CommandError.
         """
         found = self._entry(name)
-        self.set_aside()
+        self.save_as_discarded()
         self._files.restore(found.world, found.file, list(found.launched))
-        self.keep()
+        self.save()
         self._remove(found.about, found.world)
         if self.found is not None and self.found.name == found.name:
             self.found = None
@@ -136,7 +139,7 @@ class Autosave:
             self._mark_discarded(self.found.about)
             self.found = None
 
-    def set_aside(self) -> None:
+    def save_as_discarded(self) -> None:
         """The present changes are about to be discarded: keep them to be recovered."""
         with self._lock:
             if not self._history.dirty:
@@ -144,14 +147,14 @@ class Autosave:
             self._write()
             self._mark_discarded(self._path(".json"))
             self._name = f"{os.getpid()}-{time.time_ns():x}"
-            self._kept = None
+            self._saved_state = None
 
-    def _entry(self, name: str) -> Entry:
+    def _entry(self, name: str) -> AutosaveEntry:
         if not name:
             if self.found is None:
                 raise CommandError("no unsaved changes of an earlier session were found")
             return self.found
-        for entry in self._left():
+        for entry in self._recoverable():
             if entry.name == name:
                 return entry
         raise EditRefusedError("not-found", "these changes can no longer be recovered")
@@ -184,21 +187,21 @@ class Autosave:
             with contextlib.suppress(FileNotFoundError):
                 os.unlink(path)
 
-    def _left(self) -> List[Entry]:
+    def _recoverable(self) -> List[AutosaveEntry]:
         """Entries that were discarded, or whose process is gone."""
         entries = [entry for entry in map(self._read, self._listed()) if entry is not None]
         return [entry for entry in entries
-                if entry.discarded_at or not _lives(entry.process)]
+                if entry.discarded_at or not _is_alive(entry.process)]
 
-    def _offered(self) -> Optional[Entry]:
+    def _newest_recoverable(self) -> Optional[AutosaveEntry]:
         """The newest entry of this world's file that was not discarded."""
-        mine = [entry for entry in self._left()
+        mine = [entry for entry in self._recoverable()
                 if entry.file == self._files.file and not entry.discarded_at]
         return max(mine, key=lambda entry: entry.saved_at) if mine else None
 
     def _purge(self) -> None:
         """Remove what has been kept for long enough."""
-        for entry in self._left():
+        for entry in self._recoverable():
             if entry.age_limit < time.time():
                 self._remove(entry.about, entry.world)
 
@@ -208,7 +211,7 @@ class Autosave:
         except OSError:
             return []
 
-    def _read(self, name: str) -> Optional[Entry]:
+    def _read(self, name: str) -> Optional[AutosaveEntry]:
         path = os.path.join(self._folder, name)
         try:
             with open(path, encoding="utf-8") as stream:
@@ -216,7 +219,7 @@ class Autosave:
             world = os.path.join(self._folder, os.path.basename(str(about["world"])))
             if not os.path.isfile(world):
                 return None
-            return Entry(path, world, str(about["file"]), float(about["time"]),
+            return AutosaveEntry(path, world, str(about["file"]), float(about["time"]),
                          str(about["process"]), tuple(map(str, about.get("launched", ()))),
                          float(about.get("discarded", 0.0)))
         except (OSError, ValueError, KeyError, TypeError):
@@ -234,6 +237,6 @@ def process_id(pid: int) -> str:
         return ""
 
 
-def _lives(process: str) -> bool:
+def _is_alive(process: str) -> bool:
     pid = process.partition("/")[0]
     return pid.isdigit() and process_id(int(pid)) == process

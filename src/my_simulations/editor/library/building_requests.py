@@ -38,18 +38,18 @@ class BuildingRequests:
         model, text, issues = building.building_sdf(message["plan"],
                                                     message.get("text") is not False)
         return {"model": self._hub.documents.model(flattened(model), model.pose), "sdf": text,
-                "issues": _told(issues)}
+                "issues": _issue_documents(issues)}
 
     def _save(self, _client: Client, message: Dict[str, Any]) -> Dict[str, Any]:
         done = building.building_save(message["plan"], message["name"],
                                       message.get("options") or {}, self._files.roots())
         folder = done["path"].rpartition("/")[0]
         self._library.add(folder)
-        return {**done, "issues": _told(done["issues"])}
+        return {**done, "issues": _issue_documents(done["issues"])}
 
     def _load(self, _client: Client, message: Dict[str, Any]) -> Dict[str, Any]:
         done = building.building_load(message["name"], self._places())
-        return {**done, "issues": _told(done["issues"])}
+        return {**done, "issues": _issue_documents(done["issues"])}
 
     def _list(self, _client: Client, _message: Dict[str, Any]) -> List[Dict[str, str]]:
         return building.building_list(self._places())
@@ -58,5 +58,5 @@ class BuildingRequests:
         return [*self._files.roots(), default_folder(), *self._library.added]
 
 
-def _told(issues: List[Issue]) -> List[Dict[str, Any]]:
+def _issue_documents(issues: List[Issue]) -> List[Dict[str, Any]]:
     return [issue_document(issue) for issue in issues]

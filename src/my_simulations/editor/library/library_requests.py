@@ -30,18 +30,18 @@ class LibraryRequests:
         resolver: finds models.
         library: knows them.
         pool: where requests run.
-        tell: hears of what is odd about a model.
+        report: receives warnings about models.
     """
 
     def __init__(self, hub: Hub, resolver: Resolver, library: Library, pool: Executor,
-                 tell: Callable[[Issue], None]) -> None:
+                 report: Callable[[Issue], None]) -> None:
         self._hub = hub
         self._resolver = resolver
         self._library = library
         self._pool = pool
-        self._tell = tell
+        self._report = report
         self._asked = False
-        self._told: Optional[Any] = None
+        self._signature: Optional[Any] = None
 
     def routes(self) -> Dict[str, Route]:
         """By type of request."""
@@ -61,14 +61,14 @@ class LibraryRequests:
             if not self._asked or not self._hub.clients:
                 continue
             signature = await loop.run_in_executor(self._pool, self._library.signature)
-            if signature != self._told:
+            if signature != self._signature:
                 self._hub.push(await loop.run_in_executor(self._pool, self._push))
 
     def _push(self) -> Dict[str, Any]:
         return {"type": "library", **self._locations()}
 
     def _locations(self) -> Dict[str, Any]:
-        self._told = self._library.signature()  # first: what changes meanwhile is told again
+        self._signature = self._library.signature()  # first: what changes meanwhile is told again
         return {"locations": self._library.locations()}
 
     def _list(self, _client: Client, _message: Dict[str, Any]) -> Dict[str, Any]:
@@ -97,19 +97,19 @@ class LibraryRequests:
         entity, issues = entity_of_uri(uri, self._resolver)
         # The gallery's pictures load models that the user did not request.
         for issue in () if message.get("quiet") else issues:
-            self._tell(issue)
-        return shown(entity, self._hub.documents)
+            self._report(issue)
+        return preview_document(entity, self._hub.documents)
 
     def _import(self, _client: Client, message: Dict[str, Any]) -> Dict[str, Any]:
         reply, issues = import_model(message, self._resolver)
         for issue in issues:
-            self._tell(issue)
+            self._report(issue)
         return reply
 
     def _save(self, _client: Client, message: Dict[str, Any]) -> Dict[str, Any]:
         reply, issues = save_model(message, self._hub.simulator, self._resolver)
         for issue in issues:
-            self._tell(issue)
+            self._report(issue)
         return reply
 
     @staticmethod
@@ -118,14 +118,14 @@ class LibraryRequests:
 
     def _template(self, _client: Client, message: Dict[str, Any]) -> Dict[str, Any]:
         sdf, model = model_of_template(message["name"], message["values"], self._resolver)
-        return {"sdf": sdf, "model": shown(model, self._hub.documents)["model"]}
+        return {"sdf": sdf, "model": preview_document(model, self._hub.documents)["model"]}
 
     def _preview(self, _client: Client, message: Dict[str, Any]) -> Dict[str, Any]:
         entity, _ = entity_of_text(message["sdf"], self._resolver, message.get("source"))
-        return shown(entity, self._hub.documents)
+        return preview_document(entity, self._hub.documents)
 
 
-def shown(entity: Entity, documents: Documents) -> Dict[str, Any]:
+def preview_document(entity: Entity, documents: Documents) -> Dict[str, Any]:
     """The document of a model or light that is not in the world."""
     from ...description.model import Model
 

@@ -73,15 +73,16 @@ def _stored(files: Dict[str, bytes], name: str, target: str, density: float,
                 _write(folder, files)
             else:
                 issues += _mesh_model(folder, name, files, density)
-            issues += tried(folder, resolver)
+            issues += check_loading(folder, resolver)
             _name_meshes(folder, name)
         except InputError as fault:
-            raise InputError([placed(issue, folder, target) for issue in fault.issues]) from fault
-        _take_place(folder, target, os.path.join(scratch, "former"))
-    return [placed(issue, folder, target) for issue in issues]
+            raise InputError([relocated(issue, folder, target)
+                              for issue in fault.issues]) from fault
+        _replace_folder(folder, target, os.path.join(scratch, "former"))
+    return [relocated(issue, folder, target) for issue in issues]
 
 
-def _take_place(folder: str, target: str, former: str) -> None:
+def _replace_folder(folder: str, target: str, former: str) -> None:
     """Move a folder to `target`; an existing folder or link there moves to `former`."""
     if not os.path.lexists(target):
         os.rename(folder, target)
@@ -228,7 +229,7 @@ def config_text(name: str, described: str,
     return bytes(etree.tostring(root, xml_declaration=True, encoding="UTF-8"))
 
 
-def tried(folder: str, resolver: Resolver) -> List[Issue]:
+def check_loading(folder: str, resolver: Resolver) -> List[Issue]:
     """What the simulator says of the model. Raises InputError, CommandError."""
     # The model names its own files by model://, and is not among the models yet.
     entity, issues = entity_of_uri(f"file://{folder}",
@@ -238,7 +239,7 @@ def tried(folder: str, resolver: Resolver) -> List[Issue]:
     return issues
 
 
-def placed(issue: Issue, scratch: str, target: str) -> Issue:
+def relocated(issue: Issue, scratch: str, target: str) -> Issue:
     """An issue that names the files where they end up."""
     return replace(issue, file=issue.file.replace(scratch, target),
                    message=issue.message.replace(scratch, target))

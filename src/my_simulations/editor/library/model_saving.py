@@ -15,7 +15,7 @@ from ...resources.resolver import Resolver
 from ...simulator.safe_file import write_whole
 from ...simulator.simulator import Simulator
 from ..transport.error_messages import EditRefusedError
-from .model_import import checked_folder_name, config_text, default_folder, placed, tried
+from .model_import import check_loading, checked_folder_name, config_text, default_folder, relocated
 
 
 def save_model(message: Dict[str, Any], world: Simulator,
@@ -63,4 +63,4 @@ def _readable(files: Dict[str, bytes], name: str, target: str,
         for file, data in files.items():
             with open(os.path.join(folder, file), "wb") as stream:
                 stream.write(data)
-        return [placed(issue, folder, target) for issue in tried(folder, resolver)]
+        return [relocated(issue, folder, target) for issue in check_loading(folder, resolver)]

@@ -39,13 +39,13 @@ class WorldFiles:
     """
 
     def __init__(self, simulator: Simulator, resolver: Resolver, history: History,
-                 options: EditorOptions, tell: Callable[[Issue], None]) -> None:
+                 options: EditorOptions, report: Callable[[Issue], None]) -> None:
         self._world = simulator
         self._resolver = resolver
         self._history = history
         self._options = options
         self._chosen: Dict[str, bool] = {"state": False, "launched": False}
-        self._tell = tell
+        self._report = report
         self._lock = threading.RLock()
         self._ours: Set[str] = set()   # files that were opened or saved here: Save replaces them
         self.file = simulator.world.file
@@ -171,7 +171,7 @@ class WorldFiles:
     def _load(self, name: str, changed: Callable[[World], World]) -> None:
         self.opening = os.path.basename(name)
         try:
-            loaded = load_world(name, self._resolver, self._tell)
+            loaded = load_world(name, self._resolver, self._report)
             world = loaded.world
             self._options.log(Issue(Severity.NOTE, "world-file",
                                     f"the world file is {world.file}"))

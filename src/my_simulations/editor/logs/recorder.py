@@ -15,10 +15,10 @@ from ..scene.scene_changes import Mirror
 from ..scene.scene_json import Documents
 from ..topic_source import TopicSource
 from ..transport.pose_reader import PoseReader
-from .log_notes import notes_of
+from .log_channels import log_channels_of
 from .state_log import FILE, LogWriter, new_name
 
-_USUAL_HZ = 60.0
+_DEFAULT_HZ = 60.0
 _MOST_HZ = 1000.0
 _FLUSH_S = 1.0
 _DOCUMENT_SHARE = 0.1
@@ -55,7 +55,7 @@ class Recorder:
         simulator, resolver: the world.
         path: the file, which must not be there.
         period: least sim time between states, s; 0 or less for 60 states in a second of wall time.
-        tell: hears of a log that ended before the world.
+        report: called if the log ends before the world.
         source: the ROS topics; None if there are none.
         topics: names of topics whose messages are recorded.
 
@@ -64,31 +64,31 @@ class Recorder:
     """
 
     def __init__(self, simulator: Simulator, resolver: Resolver, path: str, period: float,
-                 tell: Callable[[Issue], None], source: Optional[TopicSource] = None,
+                 report: Callable[[Issue], None], source: Optional[TopicSource] = None,
                  topics: Sequence[str] = ()) -> None:
         self.path = path
         self._simulator = simulator
         self._period = max(0.0, period)
-        self._tell = tell
+        self._report = report
         self._mirror = Mirror(simulator, Documents(resolver))
         self._reader = PoseReader(simulator)
-        self._notes = notes_of(simulator, source, topics)
+        self._channels = log_channels_of(simulator, source, topics)
         self._revision = self._sequence = -1
         self._turn = -1
         self._described = float("-inf")
         self._pause = 0.0
         self._flushed = time.monotonic()
         self._ended = threading.Event()
-        self._hz = min(max(_USUAL_HZ, 1.0 / self._period if self._period else 0.0), _MOST_HZ)
-        self._writer: Optional[LogWriter] = self._begun(path)
+        self._hz = min(max(_DEFAULT_HZ, 1.0 / self._period if self._period else 0.0), _MOST_HZ)
+        self._writer: Optional[LogWriter] = self._begin(path)
         simulator.feed.request(_DEMAND, poses_hz=self._hz)
         self._thread = threading.Thread(target=self._run, name="state log", daemon=True)
         self._thread.start()
 
-    def _begun(self, path: str) -> LogWriter:
+    def _begin(self, path: str) -> LogWriter:
         writer = LogWriter(path)
         try:
-            self._look(writer)
+            self._write_state(writer)
             writer.flush()
         except CommandError:
             with contextlib.suppress(CommandError):  # that is what is raised
@@ -106,17 +106,17 @@ class Recorder:
         # The last state is written whether or not its time has come, or anything has moved.
         self._turn = self._sequence = -1
         try:
-            self._look(writer)
+            self._write_state(writer)
         finally:
             writer.close()
-            for notes in self._notes:
-                notes.close()
+            for channel in self._channels:
+                channel.close()
 
     def _run(self) -> None:
         writer = self._writer
         while writer is not None and not self._ended.wait(1.0 / self._hz):
             try:
-                self._look(writer)
+                self._write_state(writer)
                 self._flush(writer)
             except CommandError as fault:
                 self._fail(writer, str(fault))
@@ -125,7 +125,7 @@ class Recorder:
                 self._fail(writer, f"{type(defect).__name__}: {defect}")
                 return
 
-    def _look(self, writer: LogWriter) -> None:
+    def _write_state(self, writer: LogWriter) -> None:
         """Write what has changed. Raises CommandError."""
         if self._simulator.models.revision != self._revision and not self._describe(writer):
             return
@@ -137,8 +137,8 @@ class Recorder:
         if poses is not None:
             self._sequence, self._turn = sequence, turn
             writer.poses(poses)
-            for notes in self._notes:
-                notes.look(writer, poses.sim_time)
+            for channel in self._channels:
+                channel.write(writer, poses.sim_time)
 
     def _describe(self, writer: LogWriter) -> bool:
         """Write the world's description, unless the last one was but now and took long."""
@@ -146,7 +146,7 @@ class Recorder:
         if started < self._described + self._pause and not self._ended.is_set():
             return False
         try:
-            message = self._mirror.whole()
+            message = self._mirror.world_push()
         except CommandError:  # the engine is being started again
             return False
         writer.document(self._now(), message["document"])
@@ -163,9 +163,9 @@ class Recorder:
     def _fail(self, writer: LogWriter, reason: str) -> None:
         self._writer = None
         self._simulator.feed.request(_DEMAND)
-        with contextlib.suppress(CommandError):  # that is what is told
+        with contextlib.suppress(CommandError):  # this fault is reported below
             writer.close()
-        self._tell(error("log", f"the state log ends here, the world goes on: {reason}"))
+        self._report(error("log", f"the state log ends here, the world goes on: {reason}"))
 
     def _now(self) -> float:
         return self._simulator.clock.sim_ns * 1e-9

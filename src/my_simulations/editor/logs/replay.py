@@ -44,17 +44,17 @@ class Logs:
     Args:
         hub: the clients.
         folder: where logs are, each in a folder of its name.
-        tell: hears of faults.
+        report: receives faults.
         more: log files that lie elsewhere.
     """
 
-    def __init__(self, hub: Hub, folder: str, tell: Callable[[Issue], None],
+    def __init__(self, hub: Hub, folder: str, report: Callable[[Issue], None],
                  more: Iterable[str] = ()) -> None:
         self._hub = hub
         self._folder = folder
         self._more = {os.path.basename(os.path.dirname(path)): path for path in more
                       if os.path.dirname(os.path.dirname(path)) != os.path.abspath(folder)}
-        self._tell = tell
+        self._report = report
         self._writer: Optional[LogWriter] = None
         self._name = ""
         self._revision = -1
@@ -111,21 +111,21 @@ class Logs:
         if os.path.lexists(path):
             raise EditRefusedError("exists", f"log {name!r} already exists")
         self._writer, self._name, self._revision = LogWriter(path), name, -1
-        self._hub.listen(1)
+        self._hub.add_listeners(1)
         self._hub.push(self.state())
         return {"name": name}
 
     async def _stop(self, _client: Client, _message: Dict[str, Any]) -> Dict[str, Any]:
         if self._writer is None:
             raise CommandError("no log is being recorded")
-        self._tick(*self._hub.now())  # steps made since the last look may have been many
+        self._tick(*self._hub.current_poses())  # steps made since the last look may have been many
         if self._fetching is not None:
             await self._fetching
-            self._tick(*self._hub.now())
+            self._tick(*self._hub.current_poses())
         try:
             self.close()
         finally:
-            self._hub.listen(-1)
+            self._hub.add_listeners(-1)
             self._hub.push(self.state())
         return {"name": self._name}
 
@@ -147,10 +147,10 @@ class Logs:
     async def _describe(self, writer: LogWriter) -> None:
         """Write the world's description into the log."""
         try:
-            message = await self._hub.whole()
+            message = await self._hub.world_push()
             writer.document(self._hub.simulator.clock.sim_ns * 1e-9, message["document"])
             self._revision = message["revision"]
-            self._hub.again()
+            self._hub.resend_poses()
         except (CommandError, ValueError) as fault:  # ValueError: it was closed meanwhile
             if self._writer is writer:
                 self._fail(CommandError(str(fault)))
@@ -158,10 +158,10 @@ class Logs:
             self._fetching = None
 
     def _fail(self, fault: CommandError) -> None:
-        self._tell(warning("log", f"the log {self._name!r} ends here: {fault}"))
-        with contextlib.suppress(CommandError):  # that is what was told
+        self._report(warning("log", f"the log {self._name!r} ends here: {fault}"))
+        with contextlib.suppress(CommandError):  # this fault was reported
             self.close()
-        self._hub.listen(-1)
+        self._hub.add_listeners(-1)
         self._hub.push(self.state())
 
     def _list(self, _client: Client, _message: Dict[str, Any]) -> Dict[str, Any]:
@@ -220,7 +220,7 @@ class Logs:
     async def _close(self, client: Client, _message: Dict[str, Any]) -> Dict[str, Any]:
         self._replay(client)
         self.leave(client)
-        await self._hub.welcome(client, new=False)
+        await self._hub.add_client(client, new=False)
         self._hub.push(self.state(), [client])
         return {}
 
@@ -237,7 +237,7 @@ class Logs:
             replay.time = min(max(wanted, replay.reader.begin), replay.reader.end)
             if wanted != replay.time:
                 replay.rate = 0.0
-            if client.free or not replay.rate:
+            if client.is_free or not replay.rate:
                 await self._show(client, replay)
 
     async def _show(self, client: Client, replay: Replay) -> None:

@@ -82,7 +82,7 @@ def _thinned(log: str, states_hz: float, last: float, files: ReplayFiles) -> byt
         with tempfile.TemporaryDirectory(prefix="my_simulations_replay_") as folder:
             writer = LogWriter(os.path.join(folder, "state.log"))
             known, noted = -2, -1
-            notes = _ThinNotes(writer)
+            notes = _ThinRecords(writer)
             for time in reader.times(1.0 / states_hz):
                 if time < reader.end - last:
                     continue
@@ -92,7 +92,7 @@ def _thinned(log: str, states_hz: float, last: float, files: ReplayFiles) -> byt
                     known = number
                 values = np.round(poses.values / _GRID) * _GRID
                 writer.poses(Poses(poses.ids, values.astype(np.float32), 0, time, time))
-                notes.add(time, reader.notes(noted, poses.step))
+                notes.add(time, reader.records(noted, poses.step))
                 noted = poses.step
             writer.close()
             with open(writer.path, "rb") as stream:
@@ -101,7 +101,7 @@ def _thinned(log: str, states_hz: float, last: float, files: ReplayFiles) -> byt
         reader.close()
 
 
-class _ThinNotes:
+class _ThinRecords:
     """Writes the newest contacts and messages, and rounds what compresses badly."""
 
     def __init__(self, writer: LogWriter) -> None:
@@ -116,15 +116,15 @@ class _ThinNotes:
             if kind == CONTACTS:
                 contacts = data
             elif kind == TOPICS:
-                self._writer.note(TOPICS, time, data)
+                self._writer.add_record(TOPICS, time, data)
             else:
                 self._waiting[parts_of(data)[0]["topic"]] = data
         if contacts:
-            self._writer.note(CONTACTS, time, contacts)
+            self._writer.add_record(CONTACTS, time, contacts)
         for topic in list(self._waiting):
             if time >= self._due.get(topic, time) - 1e-9:
                 self._due[topic] = time + _MESSAGES_S
-                self._writer.note(MESSAGE, time, _rounded(self._waiting.pop(topic)))
+                self._writer.add_record(MESSAGE, time, _rounded(self._waiting.pop(topic)))
 
 
 def _rounded(frame: bytes) -> bytes:

@@ -74,7 +74,7 @@ class LogWriter:
         self.begin = time if self.begin is None else self.begin
         self.end = time
 
-    def note(self, kind: int, time: float, data: bytes) -> None:
+    def add_record(self, kind: int, time: float, data: bytes) -> None:
         """Add contacts, a list of topics or a message to the last state; s of sim time.
 
         Contacts and lists are written only if they differ from the last ones.
@@ -180,7 +180,7 @@ class LogReader:
         shown = min(max(time, self.begin), self.end)
         return self._document_at(target), Poses(ids, values, position, shown, shown)
 
-    def notes(self, after: int, upto: int) -> Iterator[Tuple[int, bytes]]:
+    def records(self, after: int, upto: int) -> Iterator[Tuple[int, bytes]]:
         """Kind and content of all contacts, lists of topics and messages of some states.
 
         Args:

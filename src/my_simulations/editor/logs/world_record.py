@@ -10,7 +10,7 @@ from ...resources.resolver import Resolver
 from ..scene.scene_changes import Mirror
 from ..scene.scene_json import Documents
 from ..transport.pose_reader import PoseReader
-from .log_notes import ContactNotes
+from .log_channels import ContactChannel
 from .state_log import LogWriter
 
 
@@ -30,7 +30,7 @@ class LogRecord:
         self._writer = LogWriter(os.path.abspath(path))
         self._documents = Documents(Resolver.from_environment())
         self._reader: Optional[PoseReader] = None
-        self._contacts: Optional[ContactNotes] = None
+        self._contacts: Optional[ContactChannel] = None
         self._revision = -1
 
     def look(self, world: OpenWorld) -> None:
@@ -38,14 +38,14 @@ class LogRecord:
         simulator = world.simulator
         self._reader = self._reader or PoseReader(simulator)
         if simulator.models.revision != self._revision:
-            message = Mirror(simulator, self._documents).whole()
+            message = Mirror(simulator, self._documents).world_push()
             self._writer.document(simulator.clock.sim_ns * 1e-9, message["document"])
             self._revision = message["revision"]
         poses = self._reader.read(self._revision, 0.0)
         if poses is not None:
             self._writer.poses(poses)
-            self._contacts = self._contacts or ContactNotes(simulator)
-            self._contacts.look(self._writer, poses.sim_time)
+            self._contacts = self._contacts or ContactChannel(simulator)
+            self._contacts.write(self._writer, poses.sim_time)
 
     def close(self) -> None:
         """Finish the file."""

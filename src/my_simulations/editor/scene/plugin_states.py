@@ -22,7 +22,7 @@ class PluginStates:
         self._sent: Sequence[PluginState] = ()
         self._due = 0.0
 
-    def news(self) -> Optional[Dict[str, Any]]:
+    def changes(self) -> Optional[Dict[str, Any]]:
         """Return the push if a state has changed, at most twice a second; else None."""
         if time.monotonic() < self._due:
             return None

@@ -1,4 +1,4 @@
-"""What the clients know of the world, and what they must be told next."""
+"""What has changed in the world since it was last sent to the clients."""
 from __future__ import annotations
 
 from dataclasses import dataclass, field
@@ -12,7 +12,7 @@ from .scene_json import Documents
 
 
 @dataclass
-class News:
+class SceneChange:
     """A push, and the links whose poses every client must receive again (None: all)."""
 
     push: Dict[str, Any]
@@ -20,7 +20,7 @@ class News:
 
 
 class Mirror:
-    """Compares the world with what was last told. For one thread at a time."""
+    """Compares the world with what was last sent. For one thread at a time."""
 
     def __init__(self, simulator: Simulator, documents: Documents) -> None:
         self._simulator = simulator
@@ -33,14 +33,14 @@ class Mirror:
         self._around: Dict[str, Any] = {}
         self._rest: Any = None
 
-    def whole(self) -> Dict[str, Any]:
-        """The push `world`, of now; what it says counts as told to everybody only after `news`."""
+    def world_push(self) -> Dict[str, Any]:
+        """Return the push `world`; `changes` still reports what is new in it."""
         revision, _ = self._simulator.models.inventory()
         entities, snapshot = self._simulator.states.latest()
         return {"type": "world", "revision": revision,
                 "document": self._document(entities, snapshot)}
 
-    def news(self) -> Optional[News]:
+    def changes(self) -> Optional[SceneChange]:
         """What has changed since the last call; None when nothing has."""
         revision, _ = self._simulator.models.inventory()
         if revision == self.revision:
@@ -50,12 +50,13 @@ class Mirror:
         rest = (world.plugins, world.roads, world.actors, world.file)
         if self.revision < 0 or rest != self._rest:
             document = self._document(entities, snapshot)
-            news = News({"type": "world", "revision": revision, "document": document}, None)
-            self._remember(revision, entities, document, self._ordered(entities))
+            change = SceneChange({"type": "world", "revision": revision, "document": document},
+                                 None)
+            self._store(revision, entities, document, self._ordered(entities))
         else:
-            news = self._difference(revision, entities, snapshot)
+            change = self._difference(revision, entities, snapshot)
         self._rest = rest
-        return news
+        return change
 
     def _document(self, entities: List[Entity], snapshot: Snapshot) -> Dict[str, Any]:
         simulator = self._simulator
@@ -73,7 +74,7 @@ class Mirror:
         return [*(entity.model.name for entity in entities),
                 *(light.name for light in self._simulator.lights.all())]
 
-    def _remember(self, revision: int, entities: List[Entity], document: Dict[str, Any],
+    def _store(self, revision: int, entities: List[Entity], document: Dict[str, Any],
                   order: List[str]) -> None:
         self.revision = revision
         self._entities = {entity.model.name: entity for entity in entities}
@@ -83,7 +84,7 @@ class Mirror:
         self._around = {name: value for name, value in document.items()
                         if name not in ("models", "lights", "roads", "actors")}
 
-    def _difference(self, revision: int, entities: List[Entity], snapshot: Snapshot) -> News:
+    def _difference(self, revision: int, entities: List[Entity], snapshot: Snapshot) -> SceneChange:
         push: Dict[str, Any] = {"type": "change", "revision": revision}
         models: Dict[str, Any] = {name: None for name in self._entities}
         links: List[int] = []
@@ -109,5 +110,5 @@ class Mirror:
             push["order"] = order
         push.update({name: value for name, value in (
             ("models", models), ("lights", lights), ("world", world)) if value})
-        self._remember(revision, entities, around, order)
-        return News(push, links)
+        self._store(revision, entities, around, order)
+        return SceneChange(push, links)

@@ -27,7 +27,7 @@ class Transforms:
         self._lock = threading.Lock()
         self._known: Dict[str, Tuple[str, Any]] = {}
 
-    def take(self, message: Any) -> None:
+    def receive(self, message: Any) -> None:
         """A tf2_msgs/TFMessage."""
         with self._lock:
             for one in message.transforms:
@@ -59,7 +59,7 @@ class Markers:
         self._lock = threading.Lock()
         self._known: Dict[str, _Kept] = {}
 
-    def take(self, message: Any) -> None:
+    def receive(self, message: Any) -> None:
         """A visualization_msgs/Marker or MarkerArray."""
         markers = getattr(message, "markers", None) or [message]
         with self._lock:
@@ -67,9 +67,9 @@ class Markers:
             if len(self._known) + len(markers) > _MOST_MARKERS:
                 self._drop_expired(now)
             for one in markers:
-                self._take(one, now)
+                self._receive(one, now)
 
-    def _take(self, marker: Any, now: float) -> None:
+    def _receive(self, marker: Any, now: float) -> None:
         if not hasattr(marker, "action"):
             return  # an empty array
         name = f"{marker.ns}/{marker.id}"

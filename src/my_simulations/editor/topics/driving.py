@@ -116,10 +116,10 @@ def velocity_topic(topics: List[ListedTopic], model: str) -> str:
     That of a plugin of the model, else one below the model's name, else the only one there is that
     belongs to no other model.
     """
-    heard = [one for one in topics if one.kind == KIND and one.subscribers > 0]
-    own = [one.name for one in heard if one.model == model and one.driven]
-    below = [one.name for one in heard if one.name.startswith(f"/{model}/")]
-    free = [one.name for one in heard if not one.model]
+    subscribed = [one for one in topics if one.kind == KIND and one.subscribers > 0]
+    own = [one.name for one in subscribed if one.model == model and one.driven]
+    below = [one.name for one in subscribed if one.name.startswith(f"/{model}/")]
+    free = [one.name for one in subscribed if not one.model]
     for found in (own, below):
         if found:
             return min(found, key=lambda name: ("cmd_vel" not in name, len(name), name))

@@ -24,9 +24,9 @@ _LOOK_S = 1.0
 
 
 class LiveTopic:
-    """One topic, and who looks at it. Of the loop, but for `take`."""
+    """One topic, and who looks at it. Of the loop, but for `receive`."""
 
-    def __init__(self, name: str, ring: Callable[["LiveTopic"], None]) -> None:
+    def __init__(self, name: str, notify: Callable[["LiveTopic"], None]) -> None:
         self.name = name
         self.clients: Dict[int, int] = {}
         self.unshown: Set[int] = set()
@@ -43,20 +43,20 @@ class LiveTopic:
         self.hz, self.bytes_per_s = 0.0, 0.0
         self._counted = (0.0, 0, 0)
         self._rung = False
-        self._ring = ring
+        self._notify = notify
 
-    def take(self, message: Any) -> None:
-        """A message has come; from any thread."""
+    def receive(self, message: Any) -> None:
+        """Pass a message to the viewer; from any thread."""
         if self.viewer is None:
             return
-        self.viewer.take(message)
+        self.viewer.receive(message)
         self.received += 1
         if not self._rung:
             self._rung = True
-            self._ring(self)
+            self._notify(self)
 
-    def answer(self) -> None:
-        """The ring was heard."""
+    def clear_notification(self) -> None:
+        """Allow the next notification."""
         self._rung = False
 
     def count(self, now: float) -> None:
@@ -84,7 +84,7 @@ class LiveTopics:
         self._topics: Dict[str, LiveTopic] = {}
         self._period = 1.0 / hub.protocol.limits["view_hz"]
 
-    def want(self, client: Client, names: Set[str], plotted: Set[str]) -> None:
+    def subscribe(self, client: Client, names: Set[str], plotted: Set[str]) -> None:
         """Subscribe a page to the views of topics, and to numbers of topics.
 
         Replaces what the page wanted before. Raises CommandError without ROS.
@@ -98,13 +98,13 @@ class LiveTopics:
             if client.number not in topic.clients:
                 topic.clients[client.number] = 0
                 if topic.problem:
-                    self._tell_problem(topic, [client])
+                    self._send_problem(topic, [client])
                 self._serve(topic)
         for topic in list(self._topics.values()):
             if topic.name not in plotted:
                 topic.plotters.discard(client.number)
             if topic.name not in names:
-                self._unwant(topic, client)
+                self._remove_client(topic, client)
 
     def newest(self, name: str) -> Any:
         """The newest message of a topic that a page wants; None before the first. Of any thread.
@@ -131,7 +131,7 @@ class LiveTopics:
         """A page has gone."""
         for topic in list(self._topics.values()):
             topic.plotters.discard(client.number)
-            self._unwant(topic, client)
+            self._remove_client(topic, client)
 
     def viewed(self, client: Client, name: str) -> None:
         """A page has shown what it was sent of a topic."""
@@ -148,13 +148,13 @@ class LiveTopics:
         return self._topics
 
     def close(self) -> None:
-        """Hear nothing any more."""
+        """End all subscriptions."""
         for topic in list(self._topics.values()):
             self._drop(topic)
 
     # -- subscribing -----------------------------------------------------------------------------
 
-    def _unwant(self, topic: LiveTopic, client: Client) -> None:
+    def _remove_client(self, topic: LiveTopic, client: Client) -> None:
         topic.clients.pop(client.number, None)
         topic.unshown.discard(client.number)
         if not topic.clients and not topic.plotters:
@@ -174,10 +174,10 @@ class LiveTopics:
         return topic
 
     async def _subscribe(self, topic: LiveTopic) -> None:
-        """Look for the topic's type until it is known, then hear it."""
+        """Look for the topic's type until it is known, then subscribe to it."""
         while not topic.closed:
             try:
-                found = await self._loop.run_in_executor(self._pool, self._heard, topic)
+                found = await self._loop.run_in_executor(self._pool, self._open, topic)
             except OSError as fault:
                 self._fail(topic, f"the ROS master does not respond: {fault}")
             except SimulationError as fault:
@@ -189,17 +189,17 @@ class LiveTopics:
                     if topic.closed:
                         self._pool.submit(found.close)
                     return
-                self._fail(topic, "nobody publishes it yet")
+                self._fail(topic, "no node publishes it yet")
             await asyncio.sleep(_LOOK_S)
 
-    def _heard(self, topic: LiveTopic) -> Optional[Subscription]:
+    def _open(self, topic: LiveTopic) -> Optional[Subscription]:
         """In a thread of the pool."""
         assert self._source is not None
         kind = type_of(self._source, topic.name)
         if not kind:
             return None
         topic.viewer = Viewer(kind, self._sim_time)
-        return self._source.hear(topic.name, kind, topic.take)
+        return self._source.receive(topic.name, kind, topic.receive)
 
     def _sim_time(self) -> float:
         return self._hub.simulator.clock.sim_ns * 1e-9
@@ -207,9 +207,9 @@ class LiveTopics:
     def _fail(self, topic: LiveTopic, problem: str) -> None:
         if topic.problem != problem:
             topic.problem = problem
-            self._tell_problem(topic, self._clients_of(topic))
+            self._send_problem(topic, self._clients_of(topic))
 
-    def _tell_problem(self, topic: LiveTopic, clients: List[Client]) -> None:
+    def _send_problem(self, topic: LiveTopic, clients: List[Client]) -> None:
         push = {"type": "watch", "topic": PREFIX + topic.name, "time": 0.0,
                 "problem": topic.problem}
         self._hub.check([push])
@@ -224,10 +224,10 @@ class LiveTopics:
 
     def _rung(self, topic: LiveTopic) -> None:
         with contextlib.suppress(RuntimeError):  # the server has ended
-            self._loop.call_soon_threadsafe(self._heard_ring, topic)
+            self._loop.call_soon_threadsafe(self._serve_message, topic)
 
-    def _heard_ring(self, topic: LiveTopic) -> None:
-        topic.answer()
+    def _serve_message(self, topic: LiveTopic) -> None:
+        topic.clear_notification()
         self._serve(topic)
 
     def _serve(self, topic: LiveTopic) -> None:
@@ -239,7 +239,7 @@ class LiveTopics:
 
     def _ready(self, topic: LiveTopic) -> List[Client]:
         return [client for client in self._clients_of(topic)
-                if client.number not in topic.unshown and not client.full]
+                if client.number not in topic.unshown and not client.is_full]
 
     async def _send(self, topic: LiveTopic) -> None:
         await asyncio.sleep(max(0.0, topic.due - self._loop.time()))

@@ -22,7 +22,7 @@ class UnviewableError(SimulationError):
 class Viewer:
     """Makes views of one topic's messages.
 
-    `take` may be called from any thread, `view` from another one. A view shows the newest
+    `receive` may be called from any thread, `view` from another one. A view shows the newest
     message, or, of topics that send parts (tf, markers), all parts received so far.
 
     Args:
@@ -38,10 +38,10 @@ class Viewer:
         self._kept = ACCUMULATED[kind](now) if kind in ACCUMULATED else None
         self.newest: Any = None
 
-    def take(self, message: Any) -> None:
+    def receive(self, message: Any) -> None:
         """A message has come."""
         if self._kept is not None:
-            self._kept.take(message)
+            self._kept.receive(message)
         self.newest = message
 
     def view(self) -> Tuple[str, float, View]:

@@ -42,7 +42,7 @@ class TopicRequests:
         self._driving.leave(client)
 
     def close(self) -> None:
-        """Stop what is driven; hear nothing any more."""
+        """Stop all driven models, and end all subscriptions."""
         self._driving.close()
         self.live.close()
         self._pool.shutdown(wait=False)
@@ -54,9 +54,9 @@ class TopicRequests:
         if self._source is None:
             return {"available": False, "topics": []}
         listed = await self._in_pool(self._source.topics)
-        heard = self.live.traffic()
+        subscribed = self.live.traffic()
         return {"available": True,
-                "topics": [_document(one, heard.get(one.name)) for one in _ordered(listed)]}
+                "topics": [_document(one, subscribed.get(one.name)) for one in _ordered(listed)]}
 
     async def _fields(self, _client: Client, message: Dict[str, Any]) -> Dict[str, Any]:
         return {"fields": await self._in_pool(lambda: self._fields_of(message["topic"]))}
@@ -84,8 +84,8 @@ def _ordered(listed: List[ListedTopic]) -> List[ListedTopic]:
     return sorted(listed, key=lambda one: one.name)
 
 
-def _document(one: ListedTopic, heard: Optional[LiveTopic]) -> Dict[str, Any]:
+def _document(one: ListedTopic, subscribed: Optional[LiveTopic]) -> Dict[str, Any]:
     found = document_of(one)
-    if heard is not None and heard.subscription is not None:
-        found.update(hz=heard.hz, bytes_per_s=heard.bytes_per_s)
+    if subscribed is not None and subscribed.subscription is not None:
+        found.update(hz=subscribed.hz, bytes_per_s=subscribed.bytes_per_s)
     return found

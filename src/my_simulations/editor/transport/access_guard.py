@@ -54,7 +54,7 @@ class Guard:
         try:
             if problem:
                 raise web.HTTPForbidden(text=problem + "\n")
-            self.silent.heard(request.protocol)
+            self.silent.request_received(request.protocol)
             response = await handler(request)
         except web.HTTPException as refusal:
             if problem:

@@ -22,7 +22,7 @@ def without_token(address: str) -> str:
 
 
 def write(address: str, cache_dir: str = "") -> List[str]:
-    """Keep an address for `whole` and `page`; returns the files, for `remove`.
+    """Keep an address for `with_token` and `page`; returns the files, for `remove`.
 
     Raises OSError.
     """
@@ -46,7 +46,7 @@ def remove(paths: List[str]) -> None:
             os.unlink(path)
 
 
-def whole(address: str, cache_dir: str = "") -> str:
+def with_token(address: str, cache_dir: str = "") -> str:
     """The address with its token, where this user runs that editor; else the address as given."""
     try:
         with open(_path(address, ".json", cache_dir), encoding="utf-8") as stream:

@@ -46,17 +46,17 @@ class Client:
         self._news = asyncio.Event()
 
     @property
-    def free(self) -> bool:
+    def is_free(self) -> bool:
         """Whether a frame would go out at once; else better send a newer one later."""
         return not self._queue and not self._sending
 
     @property
-    def full(self) -> bool:
+    def is_full(self) -> bool:
         """Whether data sent many times a second should be left out."""
         return self._waiting > _FULL
 
     @property
-    def stuck(self) -> bool:
+    def is_stuck(self) -> bool:
         """Whether it is so far behind that it is to be disconnected."""
         return self._waiting > _MOST_WAITING
 
@@ -82,7 +82,7 @@ class Client:
             self._sending = True
             try:
                 while self._queue:
-                    if self.stuck:
+                    if self.is_stuck:
                         await self._socket.close(code=1013, message=b"too slow")
                         return
                     data = self._queue.popleft()

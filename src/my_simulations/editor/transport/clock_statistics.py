@@ -11,7 +11,7 @@ _WINDOW = 20
 """Readings the real-time factor is a mean of (Gazebo behaviour)."""
 
 
-class RealTime:
+class ClockStatistics:
     """Counts wall time while the world runs."""
 
     def __init__(self, simulator: Simulator) -> None:
@@ -22,7 +22,7 @@ class RealTime:
         self._sim_ns = simulator.clock.sim_ns
         self._paused = simulator.clock.paused
         self._readings: Deque[Tuple[int, int]] = deque(maxlen=_WINDOW)
-        self._told: Optional[Tuple[int, bool]] = None
+        self._last_sent: Optional[Tuple[int, bool]] = None
 
     @property
     def real_ns(self) -> int:
@@ -53,13 +53,13 @@ class RealTime:
         return {"type": "stats", "sim_ns": sim_ns, "real_ns": self._real_ns,
                 "factor": self._factor(), "iterations": step, "paused": paused}
 
-    def news(self) -> Optional[Dict[str, Any]]:
+    def changes(self) -> Optional[Dict[str, Any]]:
         """As `read`; None when nothing has changed since it was last told."""
         found = self.read()
-        told = (found["sim_ns"], found["paused"])
-        if told == self._told:
+        current = (found["sim_ns"], found["paused"])
+        if current == self._last_sent:
             return None
-        self._told = told
+        self._last_sent = current
         return found
 
     def _factor(self) -> float:

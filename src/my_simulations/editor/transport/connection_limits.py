@@ -17,7 +17,7 @@ class SilentConnections:
     def __init__(self) -> None:
         self._waiting: Dict[Any, None] = {}  # in the order of their beginning
 
-    def watched(self, factory: Callable[[], Any],
+    def with_deadline(self, factory: Callable[[], Any],
                 loop: asyncio.AbstractEventLoop) -> Callable[[], asyncio.Protocol]:
         """The factory of a server's protocols, each of them with a deadline."""
         def make() -> Any:
@@ -31,7 +31,7 @@ class SilentConnections:
 
         return make
 
-    def heard(self, protocol: Any) -> None:
+    def request_received(self, protocol: Any) -> None:
         """A right request came."""
         self._waiting.pop(protocol, None)
 

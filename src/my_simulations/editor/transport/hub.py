@@ -15,17 +15,17 @@ from ...simulator.simulator import Simulator
 from ..scene.scene_changes import Mirror
 from ..scene.scene_json import Documents
 from .browser_client import Client, encoded
-from .clock_statistics import RealTime
+from .clock_statistics import ClockStatistics
 from .error_messages import issue_document
 from .pose_messages import LIVE, Poses
 from .pose_reader import PoseReader
 from .protocol import Protocol
 
-_KEPT_ISSUES = 100
+_MOST_ISSUES = 100
 _DEMAND = "editor"
-_QUIET_S = 1.0
-_QUIET_PERIOD_S = 0.2
-"""How often a world that stands still, and has for `_QUIET_S`, is looked at.
+_IDLE_S = 1.0
+_IDLE_PERIOD_S = 0.2
+"""How often a world that stands still, and has for `_IDLE_S`, is looked at.
 
 Waking a sleeping processor costs more than the look does. What pages do ends the quiet at once.
 """
@@ -54,18 +54,18 @@ class Hub:
         self.clients: Dict[int, Client] = {}
         self.on_tick: List[Callable[[Optional[Poses], int], None]] = []
         self.greetings: List[Callable[[], Dict[str, Any]]] = []
-        self.clock = RealTime(simulator)
+        self.clock = ClockStatistics(simulator)
         self._check = check
         self._mirror = Mirror(simulator, documents)
         self._loop = asyncio.get_running_loop()
         self._writer = ThreadPoolExecutor(1, "editor documents")
-        self._nudged = asyncio.Event()
-        self._news_at = 0.0
+        self._woken = asyncio.Event()
+        self._changed_at = 0.0
         self._sequence = -1
         self._listeners = 0
         self._states_hz = 0.0
         self._stats_due = 0.0
-        self._issues: Deque[Issue] = deque(maxlen=_KEPT_ISSUES)
+        self._issues: Deque[Issue] = deque(maxlen=_MOST_ISSUES)
         self._poses: Optional[Poses] = None
         self._reader = PoseReader(simulator)
 
@@ -92,29 +92,29 @@ class Hub:
         """As `push` to all; safe from any thread."""
         self._soon(self.push, message)
 
-    def tell(self, issue: Issue) -> None:
+    def show_issue(self, issue: Issue) -> None:
         """Show an issue to everybody, and to who comes later; safe from any thread."""
-        self._soon(self._tell, issue)
+        self._soon(self._show_issue, issue)
 
-    def tell_some(self, issue: Issue, numbers: Iterable[int]) -> None:
+    def show_issue_to(self, issue: Issue, numbers: Iterable[int]) -> None:
         """Show an issue to these clients alone; safe from any thread."""
         message = {"type": "issue", "issue": issue_document(issue)}
         self._soon(self._push_some, message, list(numbers))
 
-    def nudge(self) -> None:
+    def wake(self) -> None:
         """Something may have changed: look now; safe from any thread."""
-        self._soon(self._nudged.set)
+        self._soon(self._woken.set)
 
-    def stir(self) -> None:
+    def note_activity(self) -> None:
         """A page does something: look often again."""
-        quiet, self._news_at = self._quiet(), self._loop.time()
+        quiet, self._changed_at = self._is_idle(), self._loop.time()
         if quiet:
-            self._nudged.set()
+            self._woken.set()
 
     def stats_soon(self) -> None:
         """Send the statistics as soon as possible; safe from any thread."""
         self._stats_due = 0.0
-        self.nudge()
+        self.wake()
 
     def _soon(self, call: Callable[..., object], *arguments: Any) -> None:
         try:
@@ -126,17 +126,17 @@ class Hub:
         self.push(message, [self.clients[number] for number in numbers
                             if number in self.clients])
 
-    def _tell(self, issue: Issue) -> None:
+    def _show_issue(self, issue: Issue) -> None:
         self._issues.append(issue)
         self.push({"type": "issue", "issue": issue_document(issue)})
 
     # -- coming and going ------------------------------------------------------------------------
 
-    async def welcome(self, client: Client, new: bool) -> None:
+    async def add_client(self, client: Client, new: bool) -> None:
         """Give a client the world, and from then on all of its changes."""
         if self._mirror.revision < 0:
-            await self._look()
-        world = await self._loop.run_in_executor(self._writer, self._whole)
+            await self._push_changes()
+        world = await self._loop.run_in_executor(self._writer, self._encoded_world)
         client.append(world)
         client.sent.forget()
         client.live = True
@@ -146,36 +146,36 @@ class Hub:
             self.push({"type": "issue", "issue": issue_document(issue)}, [client])
         for greeting in self.greetings:
             self.push(greeting(), [client])
-        self._nudged.set()
+        self._woken.set()
 
-    async def whole(self) -> Dict[str, Any]:
+    async def world_push(self) -> Dict[str, Any]:
         """The push `world`, of now."""
-        return await self._loop.run_in_executor(self._writer, self._mirror.whole)
+        return await self._loop.run_in_executor(self._writer, self._mirror.world_push)
 
-    def again(self) -> None:
+    def resend_poses(self) -> None:
         """Let the next tick come with all poses, moved or not."""
         self._sequence = -1
-        self._nudged.set()
+        self._woken.set()
 
-    def listen(self, more: int) -> None:
+    def add_listeners(self, more: int) -> None:
         """So many more (fewer) want poses."""
         self._listeners += more
-        self._ask()
+        self._request_rates()
         self._sequence = -1
-        self._nudged.set()
+        self._woken.set()
 
-    def want(self, states_hz: float) -> None:
+    def request_states(self, states_hz: float) -> None:
         """Set how often the engine reads whole states, not only poses, for connected clients."""
         if states_hz != self._states_hz:
             self._states_hz = states_hz
-            self._ask()
+            self._request_rates()
 
-    def _ask(self) -> None:
+    def _request_rates(self) -> None:
         rate = self.protocol.limits["frames_hz"]
         self.simulator.feed.request(_DEMAND, poses_hz=rate if self._listeners else 0.0,
                                   states_hz=self._states_hz if self._listeners else 0.0)
 
-    def now(self) -> Tuple[Optional[Poses], int]:
+    def current_poses(self) -> Tuple[Optional[Poses], int]:
         """All poses of now, and the revision of the world that clients know.
 
         None for the poses while names have changed that clients have not heard of.
@@ -190,48 +190,48 @@ class Hub:
         period = 1.0 / self.protocol.limits["frames_hz"]
         while True:
             if not self._listeners:
-                await self._nudged.wait()
-                self._nudged.clear()
+                await self._woken.wait()
+                self._woken.clear()
                 continue
             started = self._loop.time()
-            self._nudged.clear()
+            self._woken.clear()
             try:
                 await self._tick()
             except CommandError as fault:
-                self._tell(error("editor-view", str(fault)))
+                self._show_issue(error("editor-view", str(fault)))
                 await asyncio.sleep(1.0)
             except Exception as defect:
                 # Whatever is wrong with one look at the world, the next one may go well.
-                self._tell(error("editor-defect", "the editor failed to follow the world: "
+                self._show_issue(error("editor-defect", "the editor failed to follow the world: "
                                  f"{type(defect).__name__}: {defect}"))
                 self._loop.call_exception_handler(
                     {"message": "the editor failed to follow the world", "exception": defect})
                 await asyncio.sleep(1.0)
-            await self._pause(started + (_QUIET_PERIOD_S if self._quiet() else period))
+            await self._pause(started + (_IDLE_PERIOD_S if self._is_idle() else period))
 
-    def _quiet(self) -> bool:
+    def _is_idle(self) -> bool:
         """Whether nothing has happened for a while, and nothing will by itself."""
-        return self.simulator.clock.paused and self._loop.time() > self._news_at + _QUIET_S
+        return self.simulator.clock.paused and self._loop.time() > self._changed_at + _IDLE_S
 
     async def _pause(self, until: float) -> None:
         left = until - self._loop.time()
         if left <= 0.0:
             await asyncio.sleep(0)
             return
-        timer = self._loop.call_later(left, self._nudged.set)
-        await self._nudged.wait()
+        timer = self._loop.call_later(left, self._woken.set)
+        await self._woken.wait()
         timer.cancel()
 
     async def _tick(self) -> None:
         if self.simulator.models.revision != self._mirror.revision:
-            await self._look()
+            await self._push_changes()
         sequence = self.simulator.feed.changes
-        moved = sequence != self._sequence or self._behind()
+        moved = sequence != self._sequence or self._has_late_client()
         if moved:
-            self._news_at = self._loop.time()
+            self._changed_at = self._loop.time()
             self._sequence = sequence
             # None: names have changed that clients have not heard of.
-            self._poses, _ = self.now()
+            self._poses, _ = self.current_poses()
             if self._poses is None:
                 self._sequence = -1
             self._send_poses()
@@ -239,30 +239,30 @@ class Hub:
             listener(self._poses if moved else None, self._mirror.revision)
         if self._loop.time() >= self._stats_due:
             self._stats_due = self._loop.time() + 1.0 / self.protocol.limits["stats_hz"]
-            news = self.clock.news()
-            if news is not None:
-                self.push(news, self._live())
+            change = self.clock.changes()
+            if change is not None:
+                self.push(change, self._live_clients())
 
-    def _live(self) -> List[Client]:
+    def _live_clients(self) -> List[Client]:
         return [client for client in self.clients.values() if client.live]
 
-    def _behind(self) -> bool:
+    def _has_late_client(self) -> bool:
         """Whether some client could not take its last frame."""
         return any(client.live and client.sent.late for client in self.clients.values())
 
-    async def _look(self) -> None:
+    async def _push_changes(self) -> None:
         """Tell everybody what has changed in the description."""
-        news = await self._loop.run_in_executor(self._writer, self._mirror.news)
-        if news is None:
+        change = await self._loop.run_in_executor(self._writer, self._mirror.changes)
+        if change is None:
             return
-        live = self._live()
-        self.push(news.push, live)
+        live = self._live_clients()
+        self.push(change.push, live)
         for client in live:
-            client.sent.forget(news.links)
+            client.sent.forget(change.links)
         self._sequence = -1
 
-    def _whole(self) -> str:
-        message = self._mirror.whole()
+    def _encoded_world(self) -> str:
+        message = self._mirror.world_push()
         self.check([message])
         return encoded(message)
 
@@ -271,8 +271,8 @@ class Hub:
         for client in self.clients.values():
             if not client.live:
                 continue
-            client.sent.late = poses is None or not client.free
-            if poses is not None and client.free:
+            client.sent.late = poses is None or not client.is_free
+            if poses is not None and client.is_free:
                 frame = client.sent.frame(LIVE, self._mirror.revision, poses)
                 if frame:
                     client.append(frame)

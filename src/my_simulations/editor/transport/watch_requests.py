@@ -9,7 +9,7 @@ from ...errors import CommandError
 from .browser_client import Client, encoded
 from .hub import Hub
 from .pose_messages import Poses
-from .watched_values import MOST_TOPICS, PLOT, Watches, check_topic
+from .watched_values import MOST_TOPICS, PLOT, WatchedValues, check_topic
 from .web_socket import Route
 
 PREFIX = "ros:"
@@ -19,14 +19,14 @@ PREFIX = "ros:"
 class RosTopics(Protocol):
     """What of ROS pages watch (`editor.topics`)."""
 
-    def want(self, client: Client, names: Set[str], plotted: Set[str]) -> None:
+    def subscribe(self, client: Client, names: Set[str], plotted: Set[str]) -> None:
         """Subscribe a page to views and to numbers of topics. Raises CommandError."""
 
     def number_of(self, variable: str) -> Optional[float]:
         """The number of a field now; None before the first message. Raises CommandError."""
 
 
-class Watching:
+class WatchRequests:
     """Reads each topic once for all clients, in a thread of its own, as often as it can.
 
     Topics of ROS are handed on to `live`.
@@ -34,11 +34,11 @@ class Watching:
 
     def __init__(self, hub: Hub, live: RosTopics) -> None:
         self._hub, self._live = hub, live
-        self._watches = Watches(hub.simulator, hub.clock, live.number_of)
+        self._watches = WatchedValues(hub.simulator, hub.clock, live.number_of)
         self._thread = ThreadPoolExecutor(1, "editor watches")
         self._due = 0.0
         self._task: "Optional[asyncio.Future[None]]" = None
-        self._told: Tuple[int, int] = (-1, -1)
+        self._last_sent: Tuple[int, int] = (-1, -1)
         self._fresh = False
         hub.on_tick.append(self._tick)
 
@@ -56,10 +56,10 @@ class Watching:
                 check_topic(topic)
         plotted = {topic[len(PLOT):].partition(".")[0] for topic in topics
                    if topic.startswith(f"{PLOT}/")}
-        self._live.want(client, {topic[len(PREFIX):] for topic in of_ros}, plotted)
+        self._live.subscribe(client, {topic[len(PREFIX):] for topic in of_ros}, plotted)
         client.topics = set(topics) - of_ros
         self._fresh = True
-        self._hub.nudge()
+        self._hub.wake()
         return {"topics": topics}
 
     def _tick(self, _poses: Optional[Poses], _revision: int) -> None:
@@ -71,12 +71,12 @@ class Watching:
             if client.live:
                 topics |= client.topics
         # Twists and joints are read for frames only when they happen to be.
-        self._hub.want(self._hub.protocol.limits["watch_hz"] if topics else 0.0)
+        self._hub.request_states(self._hub.protocol.limits["watch_hz"] if topics else 0.0)
         simulator = self._hub.simulator
         now = (simulator.clock.step, simulator.feed.latest)
-        if not topics or (now == self._told and not self._fresh):
+        if not topics or (now == self._last_sent and not self._fresh):
             return
-        self._told, self._fresh = now, False
+        self._last_sent, self._fresh = now, False
         self._due = loop.time() + 1.0 / self._hub.protocol.limits["watch_hz"]
         self._task = asyncio.ensure_future(self._send(topics))
 
@@ -89,5 +89,5 @@ class Watching:
         texts = {topic: encoded(push) for topic, push in pushes.items()}
         self._hub.check(pushes.values())
         for client in self._hub.clients.values():
-            for topic in client.topics & topics if client.live and not client.full else ():
+            for topic in client.topics & topics if client.live and not client.is_full else ():
                 client.append(texts[topic])

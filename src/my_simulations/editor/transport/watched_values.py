@@ -12,7 +12,7 @@ from ...simulator.entity import Entity
 from ...simulator.joint_gains import default_gains
 from ...simulator.simulator import Simulator
 from ...simulator.wrenches import Effort
-from .clock_statistics import RealTime
+from .clock_statistics import ClockStatistics
 
 MOST_TOPICS = 200
 PLOT = "plot:"
@@ -24,7 +24,7 @@ _JOINT = {"position": (0, 0), "rate": (0, 1), "position2": (1, 0), "rate2": (1, 
 _WORLD = ("sim_time", "real_time", "real_time_factor", "iterations")
 
 
-class WatchedEntityGoneError(SimulationError):
+class WatchedEntityMissingError(SimulationError):
     """What a topic is about is not there (any more)."""
 
 
@@ -45,7 +45,7 @@ def check_topic(topic: str) -> None:
                        " ros:/NAME")
 
 
-class Watches:
+class WatchedValues:
     """Makes the pushes of topics, of one moment each. For one thread at a time.
 
     Args:
@@ -54,7 +54,7 @@ class Watches:
         ros_number: the number of `/TOPIC.FIELD` now, or None. Raises CommandError.
     """
 
-    def __init__(self, simulator: Simulator, clock: RealTime,
+    def __init__(self, simulator: Simulator, clock: ClockStatistics,
                  ros_number: Callable[[str], Optional[float]]) -> None:
         self._ros_number = ros_number
         self._world = simulator
@@ -77,7 +77,7 @@ class Watches:
             push: Dict[str, Any] = {"type": "watch", "topic": topic, "time": time}
             try:
                 push.update(self._read(topic, names, snapshot))
-            except (WatchedEntityGoneError, CommandError) as fault:
+            except (WatchedEntityMissingError, CommandError) as fault:
                 push["problem"] = str(fault)
             found[topic] = push
         return found
@@ -140,14 +140,14 @@ class Watches:
 def _owner(names: Dict[str, Entity], name: str) -> Entity:
     found = names.get(name)
     if found is None:
-        raise WatchedEntityGoneError(f"unknown model {name!r}")
+        raise WatchedEntityMissingError(f"unknown model {name!r}")
     return found
 
 
 def _split(names: Dict[str, Entity], scoped: str) -> Tuple[Entity, str]:
     model, rest = split_scoped(scoped, names.__contains__)
     if not model:
-        raise WatchedEntityGoneError(f"unknown name {scoped!r}")
+        raise WatchedEntityMissingError(f"unknown name {scoped!r}")
     return names[model], rest
 
 
@@ -156,7 +156,7 @@ def _state(names: Dict[str, Entity], name: str, snapshot: Snapshot) -> Tuple[Pos
         return names[name].state(snapshot)
     entity, link = _split(names, name)
     if link not in entity.link_names:
-        raise WatchedEntityGoneError(f"unknown link {name!r}")
+        raise WatchedEntityMissingError(f"unknown link {name!r}")
     return entity.link_state(snapshot, link)
 
 
@@ -166,7 +166,7 @@ def _joint_value(names: Dict[str, Entity], name: str, axis: int, which: int,
     for state in _joints(entity, snapshot):
         if state["name"] == joint and state["axis"] == axis:
             return float(state["rate" if which else "position"])
-    raise WatchedEntityGoneError(f"joint {name!r} does not exist or has no axis {axis}")
+    raise WatchedEntityMissingError(f"joint {name!r} does not exist or has no axis {axis}")
 
 
 def _drive(efforts: Sequence[Effort]) -> Optional[Dict[str, Any]]:

@@ -59,15 +59,15 @@ class Sockets:
         self._count += 1
         client = Client(self._count, socket)
         self._hub.clients[client.number] = client
-        self._hub.listen(1)
+        self._hub.add_listeners(1)
         pump = asyncio.ensure_future(client.pump())
         tasks: "set[asyncio.Future[None]]" = set()
         try:
             async for message in socket:
                 if message.type == WSMsgType.TEXT:
-                    if client.stuck:
+                    if client.is_stuck:
                         break  # it sends, and does not read
-                    self._hub.stir()
+                    self._hub.note_activity()
                     busy = len(tasks) >= MOST_REQUESTS
                     task = asyncio.ensure_future(self._handle(client, message.data, busy))
                     tasks.add(task)
@@ -77,7 +77,7 @@ class Sockets:
         finally:
             pump.cancel()
             del self._hub.clients[client.number]
-            self._hub.listen(-1)
+            self._hub.add_listeners(-1)
             try:
                 # What came with the farewell is carried out, before what its client held falls.
                 if tasks:

@@ -27,7 +27,7 @@ class RunningEditor(Protocol):
     def stop(self, reason: str = "") -> None:
         """Stop it; `reason` is shown on open pages."""
 
-    def tell(self, issue: Issue) -> None:
+    def show_issue(self, issue: Issue) -> None:
         """Show an issue."""
 
 
@@ -119,7 +119,7 @@ class EditorLauncher:
                 self._editor = self._start(*self.world, {
                     **_settings(), "log": log_issue, "caller": self._caller,
                     "topics": self.topics(), "plugins": self.plugins}, early)
-                self._listen(self._editor.tell)
+                self._listen(self._editor.show_issue)
                 if early is None:
                     self._publish(self._editor.public_url)
             return self._editor.public_url

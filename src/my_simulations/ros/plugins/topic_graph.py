@@ -39,7 +39,7 @@ class ListedTopic(NamedTuple):
     pose: Pose = IDENTITY
 
 
-class Heard:
+class TopicSubscription:
     """A subscription."""
 
     def __init__(self, subscriber: rospy.Subscriber) -> None:
@@ -77,11 +77,12 @@ class TopicGraph(RosGraph):
         kinds: Dict[str, str] = dict(self._ask("getTopicTypes") or ())
         return listed(state, kinds, self._uses(), rospy.resolve_name)
 
-    def hear(self, name: str, kind: str, call: Callable[[Any], None]) -> Heard:
+    def receive(self, name: str, kind: str, call: Callable[[Any], None]) -> TopicSubscription:
         """Subscribe. Raises MissingTypeError."""
         # rospy shares one connection among the subscribers of a process: its queue is left as the
         # one who came first has made it, so a plugin that hears the topic loses nothing.
-        return Heard(rospy.Subscriber(name, self._type(kind, "msg"), call, tcp_nodelay=True))
+        return TopicSubscription(rospy.Subscriber(name, self._type(kind, "msg"), call,
+                                                  tcp_nodelay=True))
 
 
 def listed(state: Tuple[Any, Any, Any], kinds: Dict[str, str], uses: Iterable[TopicUse],

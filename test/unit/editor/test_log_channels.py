@@ -12,7 +12,7 @@ from test_replay_page import content, modules  # noqa: F401
 
 import my_simulations
 from my_simulations.description.world import World
-from my_simulations.editor.logs.log_notes import ContactNotes, TopicNotes
+from my_simulations.editor.logs.log_channels import ContactChannel, TopicChannel
 from my_simulations.editor.logs.recorder import Recorder
 from my_simulations.editor.logs.replay_page import write_replay
 from my_simulations.editor.logs.state_log import CONTACTS, MESSAGE, TOPICS, LogReader, LogWriter
@@ -38,7 +38,7 @@ class Source:
                                 model="robo", driven=False, link="base", pose=IDENTITY)
                 for name in self.names]
 
-    def hear(self, name, kind, call):
+    def receive(self, name, kind, call):
         self.calls[name] = call
         return SimpleNamespace(received_bytes=0, close=lambda: self.closed.append(name))
 
@@ -76,16 +76,16 @@ def test_contacts_are_written_when_they_change(writer):
     found = [("a::link", "b::link", contact((1.0, 2.0, 3.0)))]
     calls = []
     world = SimpleNamespace(states=SimpleNamespace(contacts=lambda: calls.append(1) or found))
-    notes = ContactNotes(world)
+    notes = ContactChannel(world)
     for step in range(101):
         if step == 50:
             found.clear()
         state(writer, step / 100.0)
-        notes.look(writer, step / 100.0)
+        notes.write(writer, step / 100.0)
     assert len(calls) == 26   # 100 Hz, at least 1/30 s apart
     log = finished(writer)
     times = [(upto, json.loads(data)) for upto in range(101)
-             for kind, data in log.notes(upto - 1, upto) if kind == CONTACTS]
+             for kind, data in log.records(upto - 1, upto) if kind == CONTACTS]
     assert times[0] == (0, [{"a": "a::link", "b": "b::link", "position": [1.0, 2.0, 3.0],
                              "normal": [0.0, 0.0, 1.0], "depth": 0.0, "force": 2.0}])
     assert [(50 <= upto <= 54, rows) for upto, rows in times[1:]] == [(True, [])]
@@ -97,22 +97,22 @@ def test_an_engine_that_starts_again_has_no_contacts(writer):
         raise EngineLostError("lost")
 
     state(writer, 0.0)
-    ContactNotes(SimpleNamespace(states=SimpleNamespace(contacts=lost))).look(writer, 0.0)
-    assert list(finished(writer).notes(-1, 0)) == []
+    ContactChannel(SimpleNamespace(states=SimpleNamespace(contacts=lost))).write(writer, 0.0)
+    assert list(finished(writer).records(-1, 0)) == []
 
 
 def test_messages_of_a_topic_are_written_as_pages_show_them(writer):
     source = Source("/sonar", "/other")
-    notes = TopicNotes(source, ["/sonar"], lambda: 0.0)
+    notes = TopicChannel(source, ["/sonar"], lambda: 0.0)
     for step in range(11):
         state(writer, step / 100.0)
         if step:   # the first look subscribes
             source.calls["/sonar"](range_message(float(step) / 2.0))
-        notes.look(writer, step / 100.0)
+        notes.write(writer, step / 100.0)
     notes.close()
     assert source.closed == ["/sonar"]
     log = finished(writer)
-    found = list(log.notes(-1, 10))
+    found = list(log.records(-1, 10))
     assert ranges(found) == [0.5, 4.0]   # at most 15 a second
     (listed,) = [json.loads(data) for kind, data in found if kind == TOPICS and data != b"[]"]
     assert (listed[0]["name"], listed[0]["model"]) == ("/sonar", "robo")
@@ -131,7 +131,7 @@ def test_a_recorder_subscribes_to_the_topics_of_its_options(tmp_path):
     recorder.stop()
     sim.close()
     assert (issues, source.closed) == ([], ["/sonar"])
-    assert ranges(LogReader(recorder.path).notes(-1, 99)) == [3.0]
+    assert ranges(LogReader(recorder.path).records(-1, 99)) == [3.0]
 
 
 def test_topics_are_named_by_option_or_variable(monkeypatch):
@@ -147,9 +147,9 @@ def test_a_replay_has_the_end_of_a_log_with_its_notes(modules, tmp_path, writer)
     for step in range(101):
         time = step / 100.0
         state(writer, time)
-        writer.note(CONTACTS, time, json.dumps([step]).encode())
+        writer.add_record(CONTACTS, time, json.dumps([step]).encode())
         payload = np.array([1.0 / 3.0, math.nan], dtype="<f4").tobytes()
-        writer.note(MESSAGE, time, frame_of({"topic": "/scan", "frame": "", "stamp": time,
+        writer.add_record(MESSAGE, time, frame_of({"topic": "/scan", "frame": "", "stamp": time,
                                              "view": scan}, payload))
     writer.close()
     assert my_simulations.replay(str(tmp_path / "run"), str(tmp_path / "run.html"), rate=20.0,
@@ -157,7 +157,7 @@ def test_a_replay_has_the_end_of_a_log_with_its_notes(modules, tmp_path, writer)
     (tmp_path / "thin.log").write_bytes(content(tmp_path / "run.html")[1])
     thin = LogReader(str(tmp_path / "thin.log"))
     assert thin.times(0.0) == pytest.approx([0.5 + step / 20.0 for step in range(11)])
-    notes = list(thin.notes(-1, 10))
+    notes = list(thin.records(-1, 10))
     assert [json.loads(data)[0] for kind, data in notes if kind == CONTACTS] == list(
         range(50, 101, 5))
     frames = [parts_of(data) for kind, data in notes if kind == MESSAGE]

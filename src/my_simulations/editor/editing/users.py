@@ -10,83 +10,83 @@ _MOST_SELECTED = 50
 
 
 @dataclass
-class Person:
+class User:
     """A user of a page.
 
     Attributes:
         key: stays the same when the page is loaded again.
-        name: told to the others.
+        name: shown to other users.
         selected: what they have selected.
-        held: what they drag.
+        dragged: what they drag.
     """
 
     key: str
     name: str
     selected: List[str] = field(default_factory=list)
-    held: List[str] = field(default_factory=list)
+    dragged: List[str] = field(default_factory=list)
 
 
-class People:
-    """By number of the client. Safe from any thread."""
+class Users:
+    """The connected users, by number of the client. Safe from any thread."""
 
     def __init__(self) -> None:
         self._lock = threading.Lock()
-        self._here: Dict[int, Person] = {}
+        self._connected: Dict[int, User] = {}
         self._names: Dict[str, str] = {}
 
     def join(self, client: int, key: str, name: str) -> None:
         """A page has greeted; without a name it gets one, or the one it had."""
         with self._lock:
-            known = _tidy(name) or self._names.get(key, "")
+            known = _cleaned(name) or self._names.get(key, "")
             number = 1
             while not known or self._is_taken(known, key):
                 known = f"Guest {number}"
                 number += 1
             self._names[key] = known
-            self._here[client] = Person(key, known)
+            self._connected[client] = User(key, known)
 
     def leave(self, client: int) -> None:
         """A page has gone."""
         with self._lock:
-            self._here.pop(client, None)
+            self._connected.pop(client, None)
 
     def rename(self, client: int, name: str) -> None:
         """Rename a user; an invalid name, or that of another user, changes nothing."""
         with self._lock:
-            person = self._here.get(client)
-            name = _tidy(name)
+            person = self._connected.get(client)
+            name = _cleaned(name)
             if person is None or not name or self._is_taken(name, person.key):
                 return
             self._names[person.key] = name
-            for one in self._here.values():
+            for one in self._connected.values():
                 if one.key == person.key:
                     one.name = name
 
     def select(self, client: int, names: List[str]) -> None:
         """Store the selection of a user."""
         with self._lock:
-            if client in self._here:
-                self._here[client].selected = names[:_MOST_SELECTED]
+            if client in self._connected:
+                self._connected[client].selected = names[:_MOST_SELECTED]
 
-    def hold(self, held: Dict[int, List[str]]) -> bool:
-        """Who drags what now, by number of the client; returns whether that is news."""
+    def set_dragged(self, dragged: Dict[int, List[str]]) -> bool:
+        """Store who drags what, by number of the client; returns whether it has changed."""
         with self._lock:
             changed = False
-            for client, person in self._here.items():
-                now = held.get(client, [])
-                changed = changed or now != person.held
-                person.held = now
+            for client, person in self._connected.items():
+                now = dragged.get(client, [])
+                changed = changed or now != person.dragged
+                person.dragged = now
             return changed
 
     def key_of(self, client: int) -> str:
         """The key under which this client's edits are recorded; "" for an unknown client."""
         with self._lock:
-            return self._here[client].key if client in self._here else ""
+            return self._connected[client].key if client in self._connected else ""
 
     def name_of(self, client: int) -> str:
         """What the others call this client."""
         with self._lock:
-            return self._here[client].name if client in self._here else "Somebody"
+            return self._connected[client].name if client in self._connected else "Another user"
 
     def names(self, keys: Iterable[str]) -> List[str]:
         """Names of the authors of edits; "" for what no page did."""
@@ -96,20 +96,20 @@ class People:
     def clients_of(self, key: str) -> List[int]:
         """The clients of one author."""
         with self._lock:
-            return [client for client, person in self._here.items() if person.key == key]
+            return [client for client, person in self._connected.items() if person.key == key]
 
     def push(self) -> Dict[str, Any]:
         """The push `people`."""
         with self._lock:
             return {"type": "people", "people": [
                 {"number": client, "name": person.name, "selected": person.selected,
-                 "held": person.held} for client, person in sorted(self._here.items())]}
+                 "held": person.dragged} for client, person in sorted(self._connected.items())]}
 
     def _is_taken(self, name: str, key: str) -> bool:
-        return any(person.name == name and person.key != key for person in self._here.values()
+        return any(person.name == name and person.key != key for person in self._connected.values()
                    ) or any(known == name and other != key for other, known in self._names.items())
 
 
-def _tidy(name: str) -> str:
+def _cleaned(name: str) -> str:
     """A name in one line, of a length that fits."""
     return " ".join(name.split())[:_LONGEST_NAME].strip()

@@ -1,4 +1,4 @@
-"""What a state log holds besides states: contacts, and messages of chosen topics."""
+"""The records of a state log besides states: contacts, and messages of chosen topics."""
 from __future__ import annotations
 
 import contextlib
@@ -24,24 +24,24 @@ _SEARCH_S = 0.5   # wall time between two searches for topics that do not exist 
 _DECIMALS = 4     # of positions and depths, m, and of normals
 
 
-class Notes(Protocol):
-    """Adds to a log what belongs to the state that was just written."""
+class LogChannel(Protocol):
+    """Writes additional records to a log, after each state."""
 
-    def look(self, writer: LogWriter, time: float) -> None:
+    def write(self, writer: LogWriter, time: float) -> None:
         """Add what is new; s of sim time. Raises CommandError: the log cannot be written."""
 
     def close(self) -> None:
         """Stop."""
 
 
-class ContactNotes:
+class ContactChannel:
     """Adds the contacts of a world."""
 
     def __init__(self, simulator: Simulator) -> None:
         self._simulator = simulator
         self._next = float("-inf")
 
-    def look(self, writer: LogWriter, time: float) -> None:
+    def write(self, writer: LogWriter, time: float) -> None:
         """Add the contacts if they are due and have changed; s of sim time."""
         if time >= self._next - 1e-9 or time < self._next - 1.0:   # the latter: time was reset
             self._next = time + 1.0 / CONTACTS_HZ
@@ -52,13 +52,13 @@ class ContactNotes:
             rows = [{"a": a, "b": b, "position": _rounded(one.position),
                      "normal": _rounded(one.normal), "depth": round(one.depth, _DECIMALS),
                      "force": float(f"{one.force:.3g}")} for a, b, one in found]
-            writer.note(CONTACTS, time, json.dumps(rows, separators=(",", ":")).encode())
+            writer.add_record(CONTACTS, time, json.dumps(rows, separators=(",", ":")).encode())
 
     def close(self) -> None:
         """Nothing is open."""
 
 
-class TopicNotes:
+class TopicChannel:
     """Adds messages of topics, as pages show them.
 
     Args:
@@ -72,23 +72,23 @@ class TopicNotes:
         self._source = source
         self._now = now
         self._missing: List[str] = list(dict.fromkeys(names))
-        self._heard: Dict[str, "_Heard"] = {}
+        self._recorded: Dict[str, "_RecordedTopic"] = {}
         self._listed: List[Dict[str, Any]] = []
         self._searched = float("-inf")
 
-    def look(self, writer: LogWriter, time: float) -> None:
+    def write(self, writer: LogWriter, time: float) -> None:
         """Add the newest message of each topic that is due; s of sim time."""
         self._search()
-        writer.note(TOPICS, time, json.dumps(self._listed, separators=(",", ":")).encode())
-        for heard in self._heard.values():
-            frame = heard.frame(time)
+        writer.add_record(TOPICS, time, json.dumps(self._listed, separators=(",", ":")).encode())
+        for topic in self._recorded.values():
+            frame = topic.frame(time)
             if frame:
-                writer.note(MESSAGE, time, frame)
+                writer.add_record(MESSAGE, time, frame)
 
     def close(self) -> None:
         """End all subscriptions."""
-        for heard in self._heard.values():
-            heard.subscription.close()
+        for topic in self._recorded.values():
+            topic.subscription.close()
 
     def _search(self) -> None:
         """Subscribe to topics that have come to exist."""
@@ -100,12 +100,12 @@ class TopicNotes:
             for name in list(self._missing):
                 one = listed.get(name)
                 if one is not None and one.kind not in ("", "*"):
-                    self._heard[name] = _Heard(self._source, one, self._now)
+                    self._recorded[name] = _RecordedTopic(self._source, one, self._now)
                     self._listed.append(document_of(one))
                     self._missing.remove(name)
 
 
-class _Heard:
+class _RecordedTopic:
     """A topic that is recorded."""
 
     def __init__(self, source: TopicSource, topic: ListedTopic, now: Callable[[], float]) -> None:
@@ -114,11 +114,11 @@ class _Heard:
         self._lock = threading.Lock()
         self._is_new = False
         self._next = float("-inf")
-        self.subscription: Subscription = source.hear(topic.name, topic.kind, self._take)
+        self.subscription: Subscription = source.receive(topic.name, topic.kind, self._receive)
 
-    def _take(self, message: Any) -> None:
+    def _receive(self, message: Any) -> None:
         with self._lock:
-            self._viewer.take(message)
+            self._viewer.receive(message)
             self._is_new = True
 
     def frame(self, time: float) -> bytes:
@@ -136,13 +136,13 @@ class _Heard:
                         payload)
 
 
-def notes_of(simulator: Simulator, source: Optional[TopicSource],
-             names: Sequence[str]) -> Tuple[Notes, ...]:
-    """The notes of a log: contacts, and topics if there is a source of them."""
-    contacts = ContactNotes(simulator)
+def log_channels_of(simulator: Simulator, source: Optional[TopicSource],
+             names: Sequence[str]) -> Tuple[LogChannel, ...]:
+    """The channels of a log: contacts, and topics if there is a source of them."""
+    contacts = ContactChannel(simulator)
     if source is None or not names:
         return (contacts,)
-    return (contacts, TopicNotes(source, names, lambda: simulator.clock.sim_ns * 1e-9))
+    return (contacts, TopicChannel(source, names, lambda: simulator.clock.sim_ns * 1e-9))
 
 
 def _rounded(values: Sequence[float]) -> List[float]:
