@@ -217,6 +217,19 @@ def test_a_ply_mesh_has_its_colors(node, editor, kind):
         assert all(red > 90 and green < 60 and blue < 45 for red, green, blue in pixels)
 
 
+def test_a_large_mesh_is_drawn_with_fewer_triangles_without_a_graphics_card(node, editor):
+    ball = trimesh.creation.icosphere(7, 1.0)
+    write_model(node, "large", "<mesh><uri>model://large/mesh.stl</uri></mesh>",
+                {"mesh.stl": ball.export(file_type="stl")})
+    editor.get("editor.request('edit', {op: {kind: 'insert', uri: 'model://large', name: 'large',"
+               " pose: [0, 0, 1, 0, 0, 0, 1]}})")
+    editor.until("editor.view.meshTriangles > 0 && editor.view.waiting === 0", "the mesh")
+    assert len(ball.faces) > 300000
+    assert 10000 < editor.get("editor.view.meshTriangles") < 120000
+    bounds = editor.get("(({min, max}) => [...min, ...max])(editor.view.bounds('large'))")
+    assert bounds == pytest.approx([-1.0, -1.0, 0.0, 1.0, 1.0, 2.0], abs=0.03)
+
+
 def test_the_picture_of_a_terrain_shows_all_of_it(node, editor):
     slope = Image.linear_gradient("L").resize((129, 129))
     write_model(node, "terrain", "<heightmap><uri>model://terrain/slope.png</uri>"

@@ -2,6 +2,7 @@ import assert from 'node:assert/strict';
 import {test} from 'node:test';
 import './with_plain_three.mjs';
 
+const {coarse, limitFor} = await import('../../web/js/view/coarse_mesh.js');
 const {fillNormals} = await import('../../web/js/view/facet_normals.js');
 const {Meshes, asGazeboReads} = await import('../../web/js/view/mesh_files.js');
 
@@ -53,4 +54,36 @@ test('facets of an STL file without normals get them from their corners', () => 
   assert.deepEqual([...normal.slice(9, 18)], [1, 0, 0, 1, 0, 0, 1, 0, 0]);
   assert.deepEqual([...normal.slice(18, 27)], given);
   assert.deepEqual([...normal.slice(27)], Array(9).fill(0));
+});
+
+/** A sphere of radius 1 as triangles: corners, which are their own normals. @param {number} steps */
+function sphere(steps) {
+  const corner = (i, j) => {
+    const [yaw, pitch] = [2 * Math.PI * i / steps, Math.PI * (j / steps - 0.5)];
+    return [Math.cos(yaw) * Math.cos(pitch), Math.sin(yaw) * Math.cos(pitch), Math.sin(pitch)];
+  };
+  const corners = [];
+  for (let i = 0; i < steps; i += 1) {
+    for (let j = 0; j < steps; j += 1) {
+      for (const [x, y] of [[0, 0], [1, 0], [1, 1], [0, 0], [1, 1], [0, 1]]) corners.push(...corner(i + x, j + y));
+    }
+  }
+  return Float32Array.from(corners);
+}
+
+test('a large mesh keeps its form with fewer triangles, a small one is left as it is', () => {
+  const corners = sphere(100);
+  assert.equal(coarse(corners, corners, null, corners.length / 9), null);
+  const {position, normal} = coarse(corners, corners, null, 2000);
+  const triangles = position.length / 9;
+  assert.ok(triangles > 500 && triangles <= 2400, `${triangles} triangles`);
+  for (let at = 0; at < position.length; at += 3) {
+    const radius = Math.hypot(position[at], position[at + 1], position[at + 2]);
+    assert.ok(radius > 0.9 && radius <= 1 + 1e-6, `radius ${radius}`);
+    const outwards = [0, 1, 2].reduce((sum, axis) => sum + normal[at + axis] * position[at + axis], 0);
+    assert.ok(outwards > 0.5, 'normals outwards');
+  }
+  const index = Uint32Array.from({length: corners.length / 3}, (_, at) => at);
+  assert.deepEqual(coarse(corners, corners, index, 2000).position, position);
+  assert.ok(limitFor(1) > limitFor(200) && limitFor(1e6) >= 500);
 });

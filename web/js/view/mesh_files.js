@@ -5,6 +5,7 @@ import {
   BufferAttribute, BufferGeometry, Camera, DoubleSide, Light, LoadingManager, Mesh, MeshPhongMaterial,
   MeshStandardMaterial, SkinnedMesh,
 } from 'three';
+import {coarse, limitFor} from './coarse_mesh.js';
 import {fillNormals} from './facet_normals.js';
 /** @import {Color, Material, Matrix4, Object3D, Texture} from 'three' */
 /** @import {Geometry} from '../protocol.js' */
@@ -262,7 +263,28 @@ function figureOf(root) {
   return root;
 }
 
+/**
+ * A part with fewer triangles; the same one where it is small, or has textures, colours, several
+ * materials or bones.
+ * @param {MeshPart} part
+ * @param {number} limit
+ * @returns {MeshPart}
+ */
+function coarser(part, limit) {
+  const {attributes, groups, index} = part.geometry;
+  const plain = !groups.length && Object.keys(attributes).every((name) => name === 'position' || name === 'normal');
+  const {position, normal} = attributes;
+  if (!plain || !(position instanceof BufferAttribute) || !(normal instanceof BufferAttribute)) return part;
+  const found = coarse(position.array, normal.array, index?.array ?? null, limit);
+  if (!found) return part;
+  part.geometry.dispose();
+  return {...part, geometry: new BufferGeometry().setAttribute('position', new BufferAttribute(found.position, 3))
+    .setAttribute('normal', new BufferAttribute(found.normal, 3))};
+}
+
 export class Meshes {
+  /** Whether large meshes are simplified, for browsers without a graphics card. */
+  simplified = false;
   /** Reports pictures that arrive after their mesh. */
   manager = new LoadingManager();
   #busy = false;
@@ -312,6 +334,12 @@ export class Meshes {
     this.onCount(this.#meshes[0] + this.#textures[0], this.#meshes[1] + this.#textures[1]);
   }
 
+  /** Triangles of all meshes that are there. */
+  get triangles() {
+    return [...this.#ready.values()].flat().reduce((sum, {geometry}) =>
+      sum + (geometry.index ?? geometry.getAttribute('position')).count / 3, 0);
+  }
+
   /** How many meshes and pictures are under way. */
   get waiting() {
     return this.#meshes[1] + this.#textures[1] - this.#meshes[0] - this.#textures[0];
@@ -346,7 +374,9 @@ export class Meshes {
       .then(({found, whole}) => {
         this.#meshes[0] += 1;
         this.#count();
-        const ready = (found ?? []).map((part) => (whole ? {...part, whole} : part));
+        const limit = limitFor(this.#meshes[1]);
+        const ready = (found ?? []).map((part) => (whole ? {...part, whole} : part))
+          .map((part) => (this.simplified ? coarser(part, limit) : part));
         this.#ready.set(url, ready);
         return ready;
       });

@@ -89,6 +89,7 @@ export class View {
     this.#stage = stage;
     const meshes = new Meshes((message) =>
       store.addIssue({severity: 'warning', code: 'resource', message}), resolveUrl);
+    meshes.simplified = stage.software;
     meshes.onArrived = () => stage.invalidate();
     meshes.onCount = counted((done, of) => store.emit('loading', {
       type: 'loading', title: 'Loading meshes and textures', text: '', done, of}));
@@ -154,6 +155,9 @@ export class View {
 
   /** Meshes and textures that are on their way. */
   get waiting() { return this.#stock.meshes.waiting; }
+
+  /** Triangles of all mesh files, for tests. */
+  get meshTriangles() { return this.#stock.meshes.triangles; }
 
   /** Pictures drawn since the page began, for the benchmark. */
   get pictures() { return this.#stage.pictures; }
