@@ -20,7 +20,8 @@ from my_simulations.classroom.class_file import read_class
 from my_simulations.classroom.class_marks import mark_shown
 from my_simulations.classroom.class_plan import FIRST_USER
 from my_simulations.classroom.class_state import ClassState
-from my_simulations.classroom.local_world import ENDED, LocalWorld, log_file, make_home
+from my_simulations.classroom.local_world import LocalWorld, log_file, make_home
+from my_simulations.classroom.world_states import ENDED
 from my_simulations.grading.box import descendants
 from my_simulations.grading.box_support import isolation
 

@@ -8,9 +8,10 @@ from typing import Any, List, Mapping, Optional, Sequence, Tuple
 from ..errors import Issue
 from ..studies.value_reader import ValueReader, kind_of, read_document
 from .class_plan import ClassLimits, ClassPlan, Student
+from .containers import PROGRAMS
 
 _KEYS = ("class", "students", "folder", "host", "port", "launch", "args", "limits",
-         "idle_minutes", "submission", "image")
+         "idle_minutes", "submission", "image", "containers")
 _LIMITS = ("memory_mb", "processors", "processes", "file_mb")
 _NAME = re.compile(r"[a-z][a-z0-9_-]{0,31}\Z")
 _MOST_STUDENTS = 500
@@ -62,7 +63,8 @@ class _ClassReader(ValueReader):
             self.number(top.get("idle_minutes", 60.0), ("idle_minutes",), least=0.0,
                         most=_LONGEST_MINUTES),
             self._inside(top.get("submission", "submission"), ("submission",)),
-            self.text(top.get("image", "my_simulations"), ("image",)))
+            self.text(top.get("image", "my_simulations"), ("image",)),
+            self._containers(top.get("containers")))
 
     def _students(self, value: Any, port: int) -> Tuple[Student, ...]:
         path = ("students",)
@@ -109,6 +111,13 @@ class _ClassReader(ValueReader):
         processors, processes = (self.whole(inside.get(name, default[name]), ("limits", name), 1,
                                             100000) for name in ("processors", "processes"))
         return ClassLimits(memory, processors, processes, size)
+
+    def _containers(self, value: Any) -> str:
+        if value is None or value in PROGRAMS:
+            return value or ""
+        self.fault(("containers",), f"'containers' must be one of {', '.join(PROGRAMS)}, is"
+                                    f" {value!r}")
+        return ""
 
     def _inside(self, value: Any, path: Tuple[str, ...]) -> str:
         """A path below the home folder."""

@@ -12,9 +12,11 @@ from typing import Any, Callable, Dict, List, Optional
 from ..errors import CommandError
 from .class_plan import ClassPlan, Student
 from .class_state import TUTOR, ClassState
-from .local_world import ENDED, RUNNING, STARTING, STOPPED, LocalWorld
+from .container_world import ContainerWorld
+from .local_world import LocalWorld
 from .monitor import Monitor
 from .tutor_page import TutorPage
+from .world_states import ENDED, RUNNING, STARTING, STOPPED, World
 
 _LOOK_S = 1.0
 _STARTING_S = 90.0       # until the next world may start although this one has not
@@ -25,7 +27,7 @@ IDLE = "no browser was connected"
 class Place:
     """A student's world with its monitor."""
 
-    def __init__(self, world: LocalWorld, monitor: Monitor) -> None:
+    def __init__(self, world: World, monitor: Monitor) -> None:
         self.world = world
         self.monitor = monitor
         self.task: "Optional[asyncio.Task[None]]" = None
@@ -50,12 +52,8 @@ class ClassManager:
         self._state = ClassState(plan)
         self._state.hold()
         tokens = self._state.tokens(plan)
-        self._listening = {student.name: _listen(plan.host, student.port)
-                           for student in plan.students}
-        self._places = {
-            student.name: Place(LocalWorld(plan, student, tokens[student.name],
-                                           self._listening[student.name]), Monitor(version))
-            for student in plan.students}
+        self._places = {student.name: Place(_world(plan, student, tokens[student.name]),
+                                            Monitor(version)) for student in plan.students}
         self._page = TutorPage(plan, tokens[TUTOR], self)
         self._ended: Optional[asyncio.Event] = None
 
@@ -86,8 +84,9 @@ class ClassManager:
             await asyncio.gather(*(self._stop(place, "the class ended")
                                    for place in self._places.values()))
             await self._page.close()
-            for one in self._listening.values():
-                one.close()
+            for place in self._places.values():
+                if place.world.listening is not None:
+                    place.world.listening.close()
 
     def link(self, student: Student) -> str:
         """Address of a student's editor, with its token."""
@@ -126,6 +125,8 @@ class ClassManager:
             world.look()
             if world.state == STARTING and place.monitor.is_connected:
                 world.state = RUNNING
+            if place.monitor.people:
+                world.active = time.monotonic()
             if world.is_alive and idle_s and time.monotonic() > world.active + idle_s:
                 asyncio.ensure_future(self._sleep(place))
             if world.state == ENDED or (world.state == STOPPED and world.reason == IDLE):
@@ -139,13 +140,14 @@ class ClassManager:
 
     def _wait(self, place: Place) -> None:
         """Start the world again when a browser connects; the relay answers it then."""
-        if not place.waits and time.monotonic() > place.started + _AGAIN_S:
+        listening = place.world.listening
+        if (listening is not None and not place.waits
+                and time.monotonic() > place.started + _AGAIN_S):
             place.waits = True
-            asyncio.get_running_loop().add_reader(place.world.listening.fileno(), self._start,
-                                                  place)
+            asyncio.get_running_loop().add_reader(listening.fileno(), self._start, place)
 
     def _unwait(self, place: Place) -> None:
-        if place.waits:
+        if place.waits and place.world.listening is not None:
             place.waits = False
             asyncio.get_running_loop().remove_reader(place.world.listening.fileno())
 
@@ -185,6 +187,12 @@ def _tile(place: Place, link: str) -> Dict[str, Any]:
             "time": monitor.time, "paused": monitor.is_paused, "error": monitor.error,
             "people": monitor.people, "memory_mb": world.memory_mb,
             "processor_s": world.processor_s, "link": link}
+
+
+def _world(plan: ClassPlan, student: Student, token: str) -> World:
+    if plan.containers:
+        return ContainerWorld(plan, student, token)
+    return LocalWorld(plan, student, token, _listen(plan.host, student.port))
 
 
 def _listen(host: str, port: int) -> socket.socket:

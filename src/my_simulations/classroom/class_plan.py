@@ -64,6 +64,8 @@ class ClassPlan:
         idle_minutes: wall time without a browser after which a world is stopped; 0 for never.
         submission: folder in each home that is collected.
         image: container image of the manifests.
+        containers: program that manages the containers of the class, `docker`, `podman` or
+            `kubectl`; "" for a class of processes of this machine.
     """
 
     name: str
@@ -78,6 +80,7 @@ class ClassPlan:
     idle_minutes: float
     submission: str
     image: str
+    containers: str = ""
 
     def home(self, student: Student) -> str:
         """Home folder of a student."""

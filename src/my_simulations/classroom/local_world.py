@@ -18,8 +18,8 @@ from ..grading.program import workspace_paths
 from ..simulator.watchdog import process_time
 from . import relay, student_box
 from .class_plan import ClassPlan, Student, launch_text
+from .world_states import ENDED, STARTING, STOPPED
 
-STARTING, RUNNING, STOPPED, ENDED = "starting", "running", "stopped", "ended"
 _RELAY_USER = 62999
 _END_S = 30.0
 _MEASURE_S = 3.0

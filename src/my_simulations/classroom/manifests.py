@@ -9,9 +9,12 @@ from .class_plan import ClassPlan, Student, launch_text
 
 _PORT = 11346           # of the editor in each container
 _USER = 1000            # of the image (docker/Dockerfile)
-_WORLD = "/gazebo/get_world_properties"
+WORLD = "/gazebo/get_world_properties"
+"""Service that answers while the world runs."""
+
 _COMMAND = ["sh", "-c", "printenv LAUNCH | exec roslaunch -"]
-_ENTRY = "/home/student/simulation_ws/src/my_simulations/docker/entrypoint"
+ENTRY = "/home/student/simulation_ws/src/my_simulations/docker/entrypoint"
+"""Program of the image that runs a command of ROS."""
 
 
 def compose(plan: ClassPlan, tokens: Mapping[str, str]) -> str:
@@ -24,7 +27,8 @@ def compose(plan: ClassPlan, tokens: Mapping[str, str]) -> str:
     services: Dict[str, Any] = {}
     for student in plan.students:
         services[student.name] = {
-            "image": plan.image, "hostname": student.name, "init": True,
+            "image": plan.image, "container_name": container_name(plan, student),
+            "hostname": student.name, "init": True,
             "restart": "unless-stopped", "command": _COMMAND,
             "environment": {"MY_SIMULATIONS_EDITOR_TOKEN": tokens[student.name],
                             "LAUNCH": launch_text(plan, _PORT).replace("$", "$$")},
@@ -36,14 +40,14 @@ def compose(plan: ClassPlan, tokens: Mapping[str, str]) -> str:
             "volumes": [f"{student.name}:/home/student/{plan.submission}"]}
     names = [student.name for student in plan.students]
     # No container reaches another one: each has a network of its own.
-    return _text({"name": _label(plan.name), "services": services,
+    return _text({"name": label(plan.name), "services": services,
                   "networks": {name: {} for name in names},
                   "volumes": {name: {} for name in names}})
 
 
 def kubernetes(plan: ClassPlan, tokens: Mapping[str, str]) -> str:
     """Manifests for `kubectl apply -f`: a namespace, and four objects for each student."""
-    namespace = {"apiVersion": "v1", "kind": "Namespace", "metadata": {"name": _label(plan.name)}}
+    namespace = {"apiVersion": "v1", "kind": "Namespace", "metadata": {"name": label(plan.name)}}
     objects: List[Dict[str, Any]] = [namespace, _network_policy(plan)]
     for student in plan.students:
         objects += [_secret(plan, student, tokens[student.name]), _claim(plan, student),
@@ -52,8 +56,8 @@ def kubernetes(plan: ClassPlan, tokens: Mapping[str, str]) -> str:
 
 
 def _meta(plan: ClassPlan, name: str) -> Dict[str, Any]:
-    return {"name": _label(name), "namespace": _label(plan.name),
-            "labels": {"app": "my-simulations", "class": _label(plan.name)}}
+    return {"name": label(name), "namespace": label(plan.name),
+            "labels": {"app": "my-simulations", "class": label(plan.name)}}
 
 
 def _secret(plan: ClassPlan, student: Student, token: str) -> Dict[str, Any]:
@@ -69,26 +73,26 @@ def _claim(plan: ClassPlan, student: Student) -> Dict[str, Any]:
 
 
 def _deployment(plan: ClassPlan, student: Student) -> Dict[str, Any]:
-    selector = {"app": "my-simulations", "student": _label(student.name)}
+    selector = {"app": "my-simulations", "student": label(student.name)}
     limits = {"cpu": str(plan.limits.processors), "memory": f"{plan.limits.memory_mb:.0f}M"}
-    token = {"secretKeyRef": {"name": _label(student.name), "key": "token"}}
+    token = {"secretKeyRef": {"name": label(student.name), "key": "token"}}
     container = {
         "name": "world", "image": plan.image, "args": _COMMAND,
         "env": [{"name": "MY_SIMULATIONS_EDITOR_TOKEN", "valueFrom": token},
                 {"name": "LAUNCH", "value": launch_text(plan, _PORT).replace("$(", "$$(")}],
         "ports": [{"containerPort": _PORT, "name": "editor"}],
         "resources": {"limits": limits, "requests": {"cpu": "250m", "memory": limits["memory"]}},
-        "readinessProbe": {"exec": {"command": [_ENTRY, "rosservice", "call", _WORLD]},
+        "readinessProbe": {"exec": {"command": [ENTRY, "rosservice", "call", WORLD]},
                            "periodSeconds": 10, "timeoutSeconds": 10},
         "securityContext": {"allowPrivilegeEscalation": False, "capabilities": {"drop": ["ALL"]}},
         "volumeMounts": [{"name": "submission", "mountPath": f"/home/student/{plan.submission}"}]}
     pod = {"automountServiceAccountToken": False, "enableServiceLinks": False,
-           "hostname": _label(student.name),
+           "hostname": label(student.name),
            "securityContext": {"runAsNonRoot": True, "runAsUser": _USER, "fsGroup": _USER,
                                "seccompProfile": {"type": "RuntimeDefault"}},
            "containers": [container],
            "volumes": [{"name": "submission",
-                        "persistentVolumeClaim": {"claimName": _label(student.name)}}]}
+                        "persistentVolumeClaim": {"claimName": label(student.name)}}]}
     return {"apiVersion": "apps/v1", "kind": "Deployment", "metadata": _meta(plan, student.name),
             "spec": {"replicas": 1, "strategy": {"type": "Recreate"},
                      "selector": {"matchLabels": selector},
@@ -97,7 +101,7 @@ def _deployment(plan: ClassPlan, student: Student) -> Dict[str, Any]:
 
 def _service(plan: ClassPlan, student: Student) -> Dict[str, Any]:
     return {"apiVersion": "v1", "kind": "Service", "metadata": _meta(plan, student.name),
-            "spec": {"selector": {"app": "my-simulations", "student": _label(student.name)},
+            "spec": {"selector": {"app": "my-simulations", "student": label(student.name)},
                      "ports": [{"name": "editor", "port": student.port, "targetPort": "editor"}]}}
 
 
@@ -110,7 +114,12 @@ def _network_policy(plan: ClassPlan) -> Dict[str, Any]:
                      "ingress": [{"ports": [{"port": _PORT, "protocol": "TCP"}]}]}}
 
 
-def _label(name: str) -> str:
+def container_name(plan: ClassPlan, student: Student) -> str:
+    """Name of a student's container for docker and podman."""
+    return f"{label(plan.name)}-{student.name}"
+
+
+def label(name: str) -> str:
     """A name as Kubernetes accepts it (RFC 1123)."""
     kept = "".join(letter if letter.isalnum() and letter.isascii() else "-"
                    for letter in name.lower()).strip("-")

@@ -22,7 +22,11 @@ RECEIVED = "received"
 
 _HEAD = struct.Struct("<HIQ")     # bytes of the name, permissions, bytes of the content
 _CHUNK = 1 << 16
-_MOST_FILES = 20000
+MOST_FILES = 20000
+"""Files of a submission; more are left out."""
+
+Store = Callable[[str, int, bytes], None]
+"""Stores a file of a submission: path in it, permissions to execute, content."""
 
 
 def send_file(plan: ClassPlan, student: Student, name: str, content: bytes) -> str:
@@ -43,8 +47,27 @@ def collect(plan: ClassPlan, student: Student, out: str) -> int:
     Raises:
         CommandError: the files cannot be read or written.
     """
-    folder = os.path.join(out, student.name)
     limit = int(plan.limits.file_mb * 1e6)
+
+    def copy(store: Store) -> None:
+        def receive(reading: int) -> None:
+            with os.fdopen(os.dup(reading), "rb") as stream:
+                for name, mode, content in _received(stream.read, limit):
+                    store(name, mode, content)
+
+        _as_student(plan, student, lambda home, writing: _send_all(
+            home, plan.submission, limit, writing), receive)
+
+    return store_collection(student, out, copy)
+
+
+def store_collection(student: Student, out: str, copy: Callable[[Store], None]) -> int:
+    """Replace OUT/NAME by the files that `copy` stores; returns their number.
+
+    Raises:
+        CommandError: they cannot be written.
+    """
+    folder = os.path.join(out, student.name)
     count = [0]
     try:
         os.makedirs(out, exist_ok=True)
@@ -52,14 +75,11 @@ def collect(plan: ClassPlan, student: Student, out: str) -> int:
             made = os.path.join(temporary, student.name)
             os.mkdir(made)
 
-            def receive(reading: int) -> None:
-                with os.fdopen(os.dup(reading), "rb") as stream:
-                    for name, mode, content in _received(stream.read, limit):
-                        _store(made, name, mode, content)
-                        count[0] += 1
+            def store(name: str, mode: int, content: bytes) -> None:
+                _store(made, name, mode, content)
+                count[0] += 1
 
-            _as_student(plan, student, lambda home, writing: _send_all(
-                home, plan.submission, limit, writing), receive)
+            copy(store)
             if os.path.isdir(folder):
                 os.rename(folder, os.path.join(temporary, "before"))
             if count[0]:
@@ -143,7 +163,7 @@ def _send_all(home: int, inside: str, limit: int, writing: int) -> None:
                     content = source.read(left + 1)
                 relative = os.fsencode(os.path.normpath(os.path.join(path, name)))
                 files += 1
-                if len(content) > left or files > _MOST_FILES or len(relative) > 4000:
+                if len(content) > left or files > MOST_FILES or len(relative) > 4000:
                     return
                 left -= len(content)
                 stream.write(_HEAD.pack(len(relative), status.st_mode & 0o111, len(content)))

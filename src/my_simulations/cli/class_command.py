@@ -16,6 +16,7 @@ from ..classroom.class_file import read_class
 from ..classroom.class_marks import marks_folder
 from ..classroom.class_plan import ClassPlan, Student
 from ..classroom.class_state import ClassState
+from ..classroom.containers import KUBECTL, Containers
 from ..classroom.manifests import compose, kubernetes
 from ..classroom.student_files import collect, send_file
 from ..errors import CommandError, InputError
@@ -91,7 +92,10 @@ def main(argv: Optional[Sequence[str]] = None) -> int:
 
 
 def _start(plan: ClassPlan, _options: argparse.Namespace) -> int:
-    problem = isolation()
+    if plan.containers == KUBECTL:
+        raise CommandError("a class in Kubernetes has no tutor's page: use status, broadcast and"
+                           " collect; see doc/classroom.md")
+    problem = "" if plan.containers else isolation()
     if problem:
         raise CommandError(f"students cannot be isolated: {problem}; see doc/classroom.md")
     from ..classroom.class_manager import ClassManager
@@ -104,6 +108,8 @@ def _start(plan: ClassPlan, _options: argparse.Namespace) -> int:
 
 
 def _status(plan: ClassPlan, options: argparse.Namespace) -> int:
+    if plan.containers:
+        return _container_status(plan, options)
     found = _ask(ClassState(plan).manager(), "status.json")
     if options.json:
         print(json.dumps(found))
@@ -111,6 +117,19 @@ def _status(plan: ClassPlan, options: argparse.Namespace) -> int:
     for one in found["students"]:
         shown = [one["name"], one["state"], one["world"] or "-", f"{one['factor']:.2f}",
                  f"{one['memory_mb']:.0f} MB", one["error"] or one["reason"]]
+        print("  ".join(shown).rstrip())
+    return OK
+
+
+def _container_status(plan: ClassPlan, options: argparse.Namespace) -> int:
+    containers = Containers(plan)
+    found = [containers.status(student) for student in plan.students]
+    if options.json:
+        print(json.dumps({"class": plan.name, "students": found}))
+        return OK
+    for one in found:
+        shown = [one["name"], one["state"], f"{one['models']} models", f"{one['time']:.0f} s",
+                 f"{one['memory_mb']:.0f} MB", one["reason"]]
         print("  ".join(shown).rstrip())
     return OK
 
@@ -133,8 +152,13 @@ def _stop(plan: ClassPlan, options: argparse.Namespace) -> int:
 
 
 def _collect(plan: ClassPlan, options: argparse.Namespace) -> int:
+    def copy(student: Student) -> int:
+        if plan.containers:
+            return Containers(plan).collect(student, options.out)
+        return collect(plan, student, options.out)
+
     status = _for_each(plan.students, lambda student: (
-        f"{student.name}: {collect(plan, student, options.out)} files"))
+        f"{student.name}: {copy(student)} files"))
     if not options.grade:
         return status
     from .grade_command import main as grade
@@ -156,8 +180,14 @@ def _broadcast(plan: ClassPlan, options: argparse.Namespace) -> int:
     except OSError as fault:
         raise CommandError(f"{options.data} cannot be read: {fault.strerror}") from None
     name = os.path.basename(options.data)
+
+    def send(student: Student) -> str:
+        if plan.containers:
+            return Containers(plan).send(student, name, content)
+        return send_file(plan, student, name, content)
+
     return _for_each(_chosen(plan, options.to) or list(plan.students), lambda student: (
-        f"{student.name}: {send_file(plan, student, name, content)}"))
+        f"{student.name}: {send(student)}"))
 
 
 def _for_each(students: Sequence[Student], work: Callable[[Student], str]) -> int:
