@@ -367,14 +367,14 @@ def test_an_instructor_grades_five_submissions_by_a_shipped_assignment(tmp_path)
     rows = graded(submissions, "stop_before_wall", "--jobs", "2")
     assert points(rows["right"], *WALL) == [2, 4, 2, 2]
     for name in ("typo", "loop", "idle"):
-        commanded, near, _, stopped = points(rows[name], *WALL)
-        assert commanded == 0 and near < 0.5 and stopped == 0, name
+        commanded, near, apart, stopped = points(rows[name], *WALL)
+        assert commanded == 0 and near < 0.5 and apart == 0 and stopped == 0, name
     assert points(rows["crash"], *WALL)[::2] == [2, 0]
     pages = {name: (tmp_path / "marks" / "students" / name / "index.html").read_text()
              for name in rows}
     assert "SyntaxError" in (tmp_path / "marks" / "students" / "typo" / "output.txt").read_text()
     assert all("replay.html" in page for page in pages.values())
-    assert "touches" in pages["crash"]
+    assert "contact(robo, walls)" in pages["crash"]
 
 
 def test_the_program_of_the_course_drives_the_square_of_the_assignment(tmp_path):

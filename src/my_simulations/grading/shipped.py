@@ -19,6 +19,6 @@ def names() -> List[str]:
 
 
 def shipped_assignment(name: str) -> str:
-    """The path of an assignment file: `name` itself if there is such a file or it is a path."""
+    """The path of an assignment file: `name` itself if there is such a file or no shipped one."""
     found = os.path.join(folder(), f"{name}.yaml")
-    return found if not os.path.exists(name) and os.path.isfile(found) else name
+    return found if not os.path.isfile(name) and os.path.isfile(found) else name

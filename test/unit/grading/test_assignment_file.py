@@ -114,6 +114,14 @@ def test_programs_change_a_world_with_models_of_the_assignment_only_if_it_says_s
     assert "'services' must be read or all" in faults(tmp_path, "services: no\n" + checks)[0][2]
 
 
+def test_a_folder_of_submissions_may_have_the_name_of_a_shipped_assignment(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "lab_sheet").mkdir()
+    assert shipped_assignment("lab_sheet").endswith("assignments/lab_sheet.yaml")
+    (tmp_path / "drive_square").write_text("lab: own\n")
+    assert shipped_assignment("drive_square") == "drive_square"
+
+
 @pytest.mark.parametrize("name", names())
 def test_shipped_assignments_are_valid(name):
     found, issues = read_assignment(shipped_assignment(name))

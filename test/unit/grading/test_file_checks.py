@@ -53,6 +53,10 @@ def test_faults_of_a_file_are_told_with_line(tmp_path):
                               "{points: 1, check_model: strict, name: s}")
     assert strict.points == 0 and strict.file == "a.world" and strict.line == 4
     assert "one" in strict.reason
+    repaired = models("a").replace("</box>", "</bx>\n</box>")
+    lenient, strict = results(tmp_path, repaired, "{points: 1, check_model: lenient, name: l}",
+                              "{points: 1, check_model: strict, name: s}")
+    assert (lenient.points, strict.points) == (1, 0) and "</bx> closes nothing" in strict.reason
     broken, counted = results(tmp_path, "<sdf><world>", "{points: 1, check_model: lenient}",
                               "{points: 1, count: model, at_least: 1}")
     assert (broken.points, counted.points) == (0, 0)

@@ -107,7 +107,7 @@ def _without_bad_characters(text: str, file: str, log: IssueCollector) -> str:
     plain = _COMMENT.sub(lambda found: without_forbidden(found.group()), text)
     _refuse_bad_characters(plain, file)
     log.add(warning("xml-malformed", "not well formed: a comment contains a character that XML "
-                    "cannot hold", file=file))
+                    "cannot hold", file=file, tolerated=True))
     return plain
 
 
@@ -250,13 +250,13 @@ def _recover(text: str, fault: Any, file: str, log: IssueCollector) -> Any:
         raise _fault("xml-malformed", f"not well formed: {message}", file, line, column)
     for repair in result.repairs:
         log.add(warning("xml-malformed", repair.message, file=file, line=repair.line,
-                        column=repair.column, hint="read as if it were closed there"
+                        column=repair.column, tolerated=True, hint="read as if it were closed there"
                         if repair.unclosed else ""))
     if faults:
         first = faults[0]
         more = f" (and {len(faults) - 1} more)" if len(faults) > 1 else ""
         log.add(warning("xml-malformed", f"not well formed: {first.message}{more}", file=file,
-                        line=first.line, column=first.column))
+                        line=first.line, column=first.column, tolerated=True))
     return root
 
 
