@@ -351,6 +351,14 @@ def test_a_moved_robot_earns_no_points_for_driving(tmp_path):
         assert f"/gazebo/{name}" in page, name
 
 
+STOP = f"""submission: {{run: go.py}}
+world: {REPOSITORY / "world" / "exercises.world"}
+models: {{robo: {{file: {REPOSITORY / "urdf" / "robo.urdf"}}}}}
+checks:
+  - {{points: 1, name: stops, within: 15,
+     require: "abs(2.5 - 0.1 - final(pose.robo.x) - 0.6) < 0.03"}}
+  - {{points: 1, name: rests, within: 15, require: final(speed.robo) < 0.01}}
+"""
 WALL = ("the program commands the robot", "the robot comes near the wall",
         "the robot touches no wall", "the robot stops before the wall")
 
@@ -375,6 +383,16 @@ def test_an_instructor_grades_five_submissions_by_a_shipped_assignment(tmp_path)
     assert "SyntaxError" in (tmp_path / "marks" / "students" / "typo" / "output.txt").read_text()
     assert all("replay.html" in page for page in pages.values())
     assert "contact(robo, walls)" in pages["crash"]
+
+
+def test_the_program_of_the_course_stops_at_the_distance_that_it_was_given(tmp_path):
+    # In lockstep: in real time, a busy machine lets the robot roll on.
+    program = (REPOSITORY / "scripts" / "stop_before_wall.py").read_text()
+    rows, students = grade(tmp_path, STOP, {
+        name: f"import sys\nsys.argv += ['_distance:={distance}', '_speed:=0.5']\n{program}"
+        for name, distance in (("right", 0.6), ("early", 0.7))}, "--jobs", "2")
+    assert [points(rows[name], "stops", "rests") for name in ("right", "early")] == [
+        [1, 1], [0, 1]], (students / "right" / "output.txt").read_text()
 
 
 def test_the_program_of_the_course_drives_the_square_of_the_assignment(tmp_path):

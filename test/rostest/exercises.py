@@ -10,7 +10,7 @@ sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 
 from support import Gazebo, run, wait_for
 
-ROBOT, LASER_X = "robo", 0.1
+ROBOT = "robo"
 
 
 class Exercises(unittest.TestCase):
@@ -38,10 +38,6 @@ class Exercises(unittest.TestCase):
         x, y, yaw = self.pose()
         self.assertLess(math.hypot(x, y), 0.06)
         self.assertAlmostEqual(math.remainder(yaw, 2.0 * math.pi), 0.0, delta=0.08)
-
-    def test_it_stops_before_the_wall(self):
-        self.exercise("stop_before_wall.py", "_distance:=0.6", "_speed:=0.5")
-        self.assertAlmostEqual(2.5 - (self.pose()[0] + LASER_X), 0.6, delta=0.03)
 
     def test_it_follows_the_walls_around_a_corner(self):
         said = self.exercise("follow_wall.py", "_distance:=0.5", "_way:=6", "_speed:=0.4")
