@@ -67,9 +67,9 @@ def page_file(tmp_path, monkeypatch):
         world.spawn(BALL, "ball")
         record = LogRecord(str(log))
         for _ in range(100):
-            record.look(world)
+            record.record_state(world)
             world.step(10)
-        record.look(world)
+        record.record_state(world)
         record.close()
     file = tmp_path / "away" / "run.html"
     assert main(["replay", str(log.parent), "-o", str(file)]) == 0

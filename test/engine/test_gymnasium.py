@@ -27,7 +27,7 @@ from my_simulations.description.model import Link, Model
 from my_simulations.description.shapes import Box, Visual
 from my_simulations.errors import CommandError
 from my_simulations.geometry import Pose
-from my_simulations.gym import Judgement, View, WorldEnv, push_box, stack_boxes
+from my_simulations.gym import Evaluation, View, WorldEnv, push_box, stack_boxes
 from my_simulations.python_api import OpenWorld, Randomisation, RobotOptions, WorldChoice
 
 REPOSITORY = Path(__file__).resolve().parents[2]
@@ -288,8 +288,8 @@ class _Explore:
     def observe(self, world):
         return np.clip(np.nan_to_num(self.scan.latest.ranges, posinf=10.0), 0.0, 10.0)
 
-    def judge(self, world, action):
-        return Judgement(reward=float(self.scan.latest.ranges.min()))
+    def evaluate(self, world, action):
+        return Evaluation(reward=float(self.scan.latest.ranges.min()))
 
 
 def test_a_task_drives_a_robot_by_its_laser_and_repeats():

@@ -38,10 +38,10 @@ from my_simulations.sensing.api import (
     RayFan,
     RemoveBody,
     RenderCamera,
+    SensingEndedError,
     SensingError,
-    SensingGoneError,
     SensingUnavailableError,
-    SnapshotGoneError,
+    SnapshotOverwrittenError,
 )
 from my_simulations.sensing.process import SensingProcess
 from my_simulations.simulator.simulator import Simulator
@@ -64,7 +64,7 @@ def start():
         sensing = SensingProcess(*arguments, **options)
         made.append(sensing)
         sensing.said = []
-        sensing.on_trouble(sensing.said.append)
+        sensing.on_problem(sensing.said.append)
         return sensing
 
     yield begin
@@ -155,7 +155,7 @@ def test_what_waits_fails_when_the_process_dies_and_says_why(start):
     os.kill(sensing.pid, signal.SIGSTOP)
     waiting = sensing.cast(CastRays(MOUNT, AHEAD, at=PLACES))
     os.kill(sensing.pid, signal.SIGKILL)
-    with pytest.raises(SensingGoneError, match="SIGKILL"):
+    with pytest.raises(SensingEndedError, match="SIGKILL"):
         waiting.result(DEADLINE_S)
 
 
@@ -166,7 +166,7 @@ def test_what_waits_fails_when_no_process_can_be_started_and_a_later_one_answers
 
     with monkeypatch.context() as patched:
         patched.setattr(subprocess, "Popen", refused)
-        with pytest.raises(SensingGoneError, match="cannot be started .*Cannot allocate memory"):
+        with pytest.raises(SensingEndedError, match="cannot be started .*Cannot allocate memory"):
             ahead(sensing)
     assert len(sensing.said) == 1 and "physics goes on" in sensing.said[0]
     assert ahead(sensing) == pytest.approx(5.0, abs=1e-6)
@@ -179,7 +179,7 @@ def test_what_waits_fails_when_all_ends_before_a_process_is_started(monkeypatch)
     waiting = sensing.cast(CastRays(MOUNT, AHEAD))
     monkeypatch.setattr(sensing, "_hang_up", begin.set)  # called once it is closing
     sensing.close()
-    with pytest.raises(SensingGoneError, match="ended"):
+    with pytest.raises(SensingEndedError, match="ended"):
         waiting.result(DEADLINE_S)
 
 
@@ -191,7 +191,7 @@ def test_a_process_that_hangs_holds_nobody_up_and_is_replaced(start):
     futures = [sensing.cast(CastRays(MOUNT, FAN, at=PLACES * 100)) for _ in range(300)]
     with pytest.raises(SensingError, match="waiting already"):
         futures[-1].result(0.0)
-    with pytest.raises(SensingGoneError, match="has not answered"):
+    with pytest.raises(SensingEndedError, match="has not answered"):
         futures[0].result(DEADLINE_S)
     until(lambda: _answers(sensing), "no other process came")
 
@@ -211,7 +211,7 @@ def test_a_process_that_dies_again_and_again_is_left_alone_until_the_world_chang
         broken.setattr("my_simulations.sensing.process.child_command",
                        lambda *words: [sys.executable, "-c", "import sys; sys.exit(3)"])
         for _ in range(3):
-            with pytest.raises(SensingGoneError, match="code 3"):
+            with pytest.raises(SensingEndedError, match="code 3"):
                 ahead(sensing)
         with pytest.raises(SensingUnavailableError, match="until the world changes"):
             ahead(sensing)
@@ -230,7 +230,7 @@ def test_pictures_that_end_the_process_are_given_up_though_rays_are_answered(sta
                         lambda module, *words: [sys.executable, "-c", code, *words])
     for _ in range(3):
         assert ahead(sensing) == pytest.approx(5.0, abs=1e-6)
-        with pytest.raises(SensingGoneError, match="code 4"):
+        with pytest.raises(SensingEndedError, match="code 4"):
             picture(sensing)
     with pytest.raises(SensingUnavailableError, match="cameras stay off until the world changes"):
         picture(sensing)
@@ -248,7 +248,7 @@ def test_a_camera_with_impossible_numbers_is_refused_and_the_process_stays(sensi
     with pytest.raises(SensingError, match=said) as refused:
         sensing.render(RenderCamera(MOUNT, replace(SPEC, **change), (RGB, DEPTH),
                                     at=PLACES)).result(DEADLINE_S)
-    assert not isinstance(refused.value, SensingGoneError)
+    assert not isinstance(refused.value, SensingEndedError)
     assert np.isfinite(picture(sensing).depth).any()
     assert sensing.pid == before
 
@@ -338,7 +338,7 @@ def test_requests_name_a_state_of_the_running_engine(start):
         assert newest.ranges[0] == pytest.approx(0.5, abs=1e-6)  # from inside the ball
         for _ in range(17):
             sim.clock.advance(1)
-        with pytest.raises(SnapshotGoneError):
+        with pytest.raises(SnapshotOverwrittenError):
             sensing.cast(request).result(DEADLINE_S)
     finally:
         sim.close()

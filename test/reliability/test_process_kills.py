@@ -31,7 +31,7 @@ from my_simulations.description.world import World
 from my_simulations.engine.process_engine import ProcessEngine
 from my_simulations.formats.sdf.writer.entities import write_entity
 from my_simulations.ros.lifecycle import master_api
-from my_simulations.sensing.api import Body, CastRays, LoadScene, Mount, RayFan, SensingGoneError
+from my_simulations.sensing.api import Body, CastRays, LoadScene, Mount, RayFan, SensingEndedError
 from my_simulations.sensing.process import SensingProcess
 from my_simulations.simulator.simulator import Simulator
 
@@ -274,7 +274,7 @@ def test_a_killed_sensing_process_costs_its_requests_only(record):
     simulator.start()
     sensing = SensingProcess()
     deaths = []
-    sensing.on_trouble(deaths.append)
+    sensing.on_problem(deaths.append)
     kills, lost, answers = scaled(4, 200), 0, 0
     fan, mount = RayFan(31, -math.pi / 2, math.pi / 2, far=20.0), Mount()
     try:
@@ -292,7 +292,7 @@ def test_a_killed_sensing_process_costs_its_requests_only(record):
                 try:
                     assert list(one.result(LONGEST_CALL_S).ranges) == list(expected)
                     answers += 1
-                except SensingGoneError:
+                except SensingEndedError:
                     lost += 1
             # All may have been answered before the kill: then its death was not seen yet.
             until(lambda n=n: len(deaths) > n, "the death to be seen")

@@ -38,7 +38,7 @@ class BagRecord:
         except OSError as fault:
             raise CommandError(f"{path} cannot be written: {fault.strerror}") from None
 
-    def look(self, world: OpenWorld) -> None:
+    def record_state(self, world: OpenWorld) -> None:
         """Add the present state."""
         layout, sequence, rows = world.simulator.feed.states()
         now = world.simulator.clock.sim_ns

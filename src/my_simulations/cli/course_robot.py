@@ -34,18 +34,18 @@ class Robot:
         self._odometry: Optional[Any] = None
         self._scan: Optional[Any] = None
         self._command = rospy.Publisher("cmd_vel", Twist, queue_size=1)
-        rospy.Subscriber("odom", Odometry, self._hear_odometry, queue_size=1)
-        rospy.Subscriber("scan", LaserScan, self._hear_scan, queue_size=1)
+        rospy.Subscriber("odom", Odometry, self._receive_odometry, queue_size=1)
+        rospy.Subscriber("scan", LaserScan, self._receive_scan, queue_size=1)
         self._wait(lambda: self._odometry is not None, "odometry on odom")
         self._wait(lambda: self._scan is not None, "a laser scan on scan")
         self._wait(lambda: self._command.get_num_connections() > 0, "a robot that hears cmd_vel")
         self._rate = rospy.Rate(hertz, reset=True)  # goes on when the world's time is reset
         rospy.on_shutdown(self.stop)
 
-    def _hear_odometry(self, message: Any) -> None:
+    def _receive_odometry(self, message: Any) -> None:
         self._odometry = message
 
-    def _hear_scan(self, message: Any) -> None:
+    def _receive_scan(self, message: Any) -> None:
         self._scan = message
 
     def _wait(self, condition: Callable[[], bool], what: str) -> None:

@@ -85,14 +85,14 @@ def _grade(assignment: Assignment, options: argparse.Namespace) -> int:
     lock = threading.Lock()
     count: List[Mark] = []
 
-    def told(mark: Mark, kept: bool) -> None:
+    def describe(mark: Mark, kept: bool) -> None:
         with lock:
             count.append(mark)
             ending = ", unchanged" if kept else "" if mark.status == GRADED else f", {mark.status}"
             print(f"{len(count)}/{len(submissions)} {mark.student}: {mark.points:g} of"
                   f" {mark.most:g}{ending}", file=sys.stderr, flush=True)
 
-    grader = Grader(assignment, options.out, options.jobs, namespaces, told)
+    grader = Grader(assignment, options.out, options.jobs, namespaces, describe)
     marks = grader.run(submissions)
     files = [*write_lists(assignment, marks, options.out),
              write_pages(assignment, marks, options.out)]

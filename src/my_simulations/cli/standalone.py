@@ -58,7 +58,7 @@ def main(words: List[str], program: str) -> int:
         say(fault)
         engines.close()
         return FAILED
-    log.also(lambda issue: page.say(issue.message) if issue.code == "meshes" else None)
+    log.add_receiver(lambda issue: page.say(issue.message) if issue.code == "meshes" else None)
     # A world that cannot be read is no reason to open a browser; one that takes long is.
     opening = Opening(page.url, program)
     try:
@@ -77,7 +77,7 @@ def main(words: List[str], program: str) -> int:
         if not options.paused:
             simulator.clock.unpause()
         editor = front_ends.edit(simulator, resolver, settings, page)
-        log.also(editor.show_issue)
+        log.add_receiver(editor.show_issue)
         opening.now()
         ended.wait()
         editor.stop()

@@ -11,7 +11,7 @@ from typing import Any, Dict, Iterator, List, Optional, Tuple
 
 from .flatten import flattened
 from .model import WORLD, Model
-from .self_collision import asks
+from .self_collision import requests_self_collision
 from .shapes import SOLIDS, MeshTable, mesh_key
 from .validate import Fault
 
@@ -26,28 +26,28 @@ class Cost:
         triangles: triangles of all collision meshes; a mesh counts for each collision that uses it.
         pairs: pairs of links of one model of which the engine stores whether they collide. Links
             that joints connect to one tree count only if one of them has self_collide.
-        meeting_pairs: those of them that collide because of self_collide.
+        colliding_pairs: those of them that collide because of self_collide.
     """
 
     links: int = 0
     shapes: int = 0
     triangles: int = 0
     pairs: int = 0
-    meeting_pairs: int = 0
+    colliding_pairs: int = 0
 
     def __add__(self, other: "Cost") -> "Cost":
         return Cost(self.links + other.links, self.shapes + other.shapes,
                     self.triangles + other.triangles, self.pairs + other.pairs,
-                    self.meeting_pairs + other.meeting_pairs)
+                    self.colliding_pairs + other.colliding_pairs)
 
     def __sub__(self, other: "Cost") -> "Cost":
         return Cost(self.links - other.links, self.shapes - other.shapes,
                     self.triangles - other.triangles, self.pairs - other.pairs,
-                    self.meeting_pairs - other.meeting_pairs)
+                    self.colliding_pairs - other.colliding_pairs)
 
 
 MODEL_BUDGET = Cost(links=2000, shapes=10_000, triangles=2_500_000, pairs=100_000,
-                    meeting_pairs=50_000)
+                    colliding_pairs=50_000)
 """Limits of one model.
 
 Processor time of a load at each limit: 2000 links 0.3 s, 10 000 shapes of a moving link 0.35 s,
@@ -58,7 +58,7 @@ Processor time of a load at each limit: 2000 links 0.3 s, 10 000 shapes of a mov
 """
 
 WORLD_BUDGET = Cost(links=16_384, shapes=100_000, triangles=5_000_000, pairs=1_000_000,
-                    meeting_pairs=200_000)
+                    colliding_pairs=200_000)
 """Limits of all models of a world together.
 
 The first is the number of rows for links in the shared memory. A million triangles take about
@@ -70,12 +70,12 @@ _HINTS: Dict[str, str] = {
     "shapes": "use fewer or larger collisions",
     "triangles": "use a simpler mesh for <collision>; <visual> may keep the detailed one",
     "pairs": "connect the links by joints, or divide the model into several models",
-    "meeting_pairs": "set self_collide for the links that need it only",
+    "colliding_pairs": "set self_collide for the links that need it only",
 }
 _NAMES: Dict[str, str] = {
     "links": "links", "shapes": "collisions", "triangles": "triangles in its collision meshes",
     "pairs": "pairs of links that the engine has to tell apart",
-    "meeting_pairs": "pairs of links that collide because of self_collide"}
+    "colliding_pairs": "pairs of links that collide because of self_collide"}
 
 
 def cost_of(model: Model, meshes: Optional[MeshTable] = None) -> Cost:
@@ -115,7 +115,7 @@ def _exceeded(cost: Cost, budget: Cost) -> List[str]:
 
 
 def _pairs(model: Model) -> Tuple[int, int]:
-    """`Cost.pairs` and `Cost.meeting_pairs` of a flattened model."""
+    """`Cost.pairs` and `Cost.colliding_pairs` of a flattened model."""
     if model.static:
         return 0, 0
     solid = [link for link in model.links if link.collisions]
@@ -125,7 +125,7 @@ def _pairs(model: Model) -> Tuple[int, int]:
     for link in solid:
         tree = root[link.name]
         counts[tree] = counts.get(tree, 0) + 1
-        if asks(link, model):
+        if requests_self_collision(link, model):
             asking[tree] = asking.get(tree, 0) + 1
     pairs = _of_two(len(solid)) - sum(
         _of_two(count) for tree, count in counts.items() if tree not in asking)

@@ -9,7 +9,7 @@ from __future__ import annotations
 from .model import Link, Model
 
 
-def asks(link: Link, model: Model) -> bool:
+def requests_self_collision(link: Link, model: Model) -> bool:
     """Whether a link is to collide with the others of its model."""
     return model.self_collide if link.self_collide is None else link.self_collide
 
@@ -18,7 +18,7 @@ class SelfCollision:
     """Answers for pairs of links of a flattened model, by their positions in `Model.links`."""
 
     def __init__(self, model: Model) -> None:
-        self._asking = [asks(link, model) for link in model.links]
+        self._asking = [requests_self_collision(link, model) for link in model.links]
         numbers = {link.name: n for n, link in enumerate(model.links)}
         self._joined = {frozenset((numbers.get(joint.parent), numbers.get(joint.child)))
                         for joint in model.joints}

@@ -1,4 +1,4 @@
-"""The engine process: `python -m my_simulations.engine COMMANDS RING BELL NOTICES`, descriptors."""
+"""The engine process: `python -m my_simulations.engine COMMANDS RING WAKE NOTICES`, descriptors."""
 from __future__ import annotations
 
 import contextlib
@@ -34,7 +34,7 @@ class _Pipes:
     def event(self, event: Event) -> None:
         self._send((-1, event))
 
-    def bell(self) -> None:
+    def wake_host_thread(self) -> None:
         ring(self._bell)
 
     def notify(self) -> None:
@@ -70,9 +70,9 @@ def main(argv: List[str]) -> int:
     commands, states, bell, notices = (int(word) for word in argv[1:5])
     with _silent_stderr():
         from .bullet.backend import BulletBackend
-        from .spare_memory import made_sparingly
+        from .spare_memory import made_without_zero_pages
 
-    backend = made_sparingly(BulletBackend)
+    backend = made_without_zero_pages(BulletBackend)
     keep_freed_memory()
     wire = Wire(socket.socket(fileno=commands))
     try:

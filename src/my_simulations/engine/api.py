@@ -96,7 +96,7 @@ class Engine(Protocol):
         whose effect no snapshot shows. It must not submit commands: `submit` waits for it.
         """
 
-    def wait_bell(self, timeout: float) -> bool:
+    def wait_for_wake(self, timeout: float) -> bool:
         """Wait for a notification of the engine (if requested, about steps and changes).
 
         False after `timeout` s.
@@ -160,7 +160,7 @@ class CommandChannel(Protocol):
     def event(self, event: Event) -> None:
         """Send an event."""
 
-    def bell(self) -> None:
+    def wake_host_thread(self) -> None:
         """Wake the thread that waits for the next step."""
 
     def notify(self) -> None:

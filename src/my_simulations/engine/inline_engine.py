@@ -39,7 +39,7 @@ class _Queues:
     def event(self, event: Event) -> None:
         self._engine.report(event)
 
-    def bell(self) -> None:
+    def wake_host_thread(self) -> None:
         self._engine.rung.set()
 
     def notify(self) -> None:
@@ -143,7 +143,7 @@ class InlineEngine:
         """Called by the engine: an event occurred."""
         self._on_event(event)
 
-    def wait_bell(self, timeout: float) -> bool:
+    def wait_for_wake(self, timeout: float) -> bool:
         """Wait for the bell and take it."""
         rung = self.rung.wait(timeout)
         self.rung.clear()
@@ -156,7 +156,7 @@ class InlineEngine:
             self._stop()
             with self._lock:
                 waiting, self._waiting = self._waiting, {}
-                lost: Dict[int, Command] = dict(self._posts.take_unshown())
+                lost: Dict[int, Command] = dict(self._posts.take_unapplied())
             lost.update((number, command) for number, (command, _) in waiting.items())
             is_suspect = self._on_death(reason, [lost[number] for number in sorted(lost)])
         for number, (_, future) in waiting.items():

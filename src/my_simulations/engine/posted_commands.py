@@ -29,17 +29,17 @@ class PostedCommands:
     def full(self) -> bool:
         """Whether so many commands wait that another one must wait for its reply."""
         if self._unshown:
-            self._forget_shown()
+            self._drop_applied()
         return len(self._unshown) >= MOST_POSTED
 
-    def take_unshown(self) -> List[Tuple[int, Post]]:
+    def take_unapplied(self) -> List[Tuple[int, Post]]:
         """Remove and return the commands, with their numbers, that the last snapshot lacks."""
-        self._forget_shown()
+        self._drop_applied()
         found = list(self._unshown)
         self._unshown.clear()
         return found
 
-    def _forget_shown(self) -> None:
+    def _drop_applied(self) -> None:
         applied, unshown = self._ring.applied, self._unshown
         while unshown and unshown[0][0] <= applied:
             unshown.popleft()

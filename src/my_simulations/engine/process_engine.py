@@ -182,7 +182,7 @@ class ProcessEngine:
         """Wait for the child or `notify_host`; False after `timeout` s."""
         return self._notices.wait(timeout)
 
-    def wait_bell(self, timeout: float) -> bool:
+    def wait_for_wake(self, timeout: float) -> bool:
         """Wait for the bell and empty it; False after `timeout` s."""
         return self._bell.wait(timeout)
 
@@ -231,16 +231,16 @@ class ProcessEngine:
                     waiting[1].set_result(message)
         await_end(process, wire)
         sweep()  # what a killed child could not take along
-        self._bury(process, wire)
+        self._reap(process, wire)
 
-    def _bury(self, process: "subprocess.Popen[bytes]", wire: Wire) -> None:
+    def _reap(self, process: "subprocess.Popen[bytes]", wire: Wire) -> None:
         first, is_suspect = 0, False
         with self._send_lock:   # a sender that finds no engine comes after the listener
             with self._lock:
                 if self._wire is wire:
                     self._wire = None
                 waiting, self._waiting = self._waiting, OrderedDict()
-                lost: Dict[int, Command] = dict(self._posts.take_unshown())
+                lost: Dict[int, Command] = dict(self._posts.take_unapplied())
             wire.sock.close()
             shown = answer_shown(self._ring, waiting)
             reason = self._verdict or _reason(process.returncode)

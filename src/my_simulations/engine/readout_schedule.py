@@ -4,14 +4,14 @@ from __future__ import annotations
 import time
 from typing import Callable
 
-from .ring import BELL, DEMAND_NS, POSE_DEMAND_NS
+from .ring import DEMAND_NS, POSE_DEMAND_NS, WAKE_REQUESTED
 
 NOTHING, POSES, STATES = range(3)
 
 _MAKE_UP_S = 0.05        # of read-outs on demand, after a delay
 _MOST_OWED_S = 0.01      # or the last read-out, if that took longer: its cost is made up for
 _MOST_SAVED_S = 0.01
-_BELL_S = 0.0005
+_WAKE_PERIOD_S = 0.0005
 _HEAVY_S = 0.0003        # a late world with steps like this serves clients that ask in a row first
 _PATIENCE_S = 0.0015     # how long it waits for a second command
 _MOST_PATIENCE_S = 0.005 # and for the third and further ones: a step's time, but no longer
@@ -30,7 +30,7 @@ class ReadoutSchedule:
         self._words = words
         self._allowance = 0.0
         self._allowed_at = time.perf_counter()
-        self._demanded_at = self._posed_at = self._rung_at = 0.0
+        self._demanded_at = self._posed_at = self._woken_at = 0.0
 
     def next(self, now: float, share: float) -> int:
         """What is to be read after a step: STATES, POSES or NOTHING.
@@ -56,11 +56,11 @@ class ReadoutSchedule:
         """Count the wall time of a read-out of states."""
         self._allowance = max(self._allowance - seconds, -max(seconds, _MOST_OWED_S))
 
-    def take_bell(self, now: float) -> bool:
+    def is_wake_due(self, now: float) -> bool:
         """Whether the bell is to be rung after a step."""
-        if not self._words[BELL] or now - self._rung_at < _BELL_S:
+        if not self._words[WAKE_REQUESTED] or now - self._woken_at < _WAKE_PERIOD_S:
             return False
-        self._rung_at = now
+        self._woken_at = now
         return True
 
 

@@ -52,7 +52,7 @@ SIZE = (FIRST_RECORD + RECORD_WORDS) * 8
 
 # Words of the control page. The first group is the engine's, the second the simulator's.
 (STEP, LATEST, HEARTBEAT, STATUS, LATEST_POSES, POSES_ARE_NEWER, PROGRESS, CLOCK_SETS) = range(8)
-DEMAND_NS, BELL, POSE_DEMAND_NS = 8, 9, 10
+DEMAND_NS, WAKE_REQUESTED, POSE_DEMAND_NS = 8, 9, 10
 HELD_STEP = 11   # the engine's: the step at which nothing had moved since the newest slot; or 0
 # The engine's: settings of the world, the step + 1 at which it waits (0: it does not), records, and
 # whether it waits for room for one.

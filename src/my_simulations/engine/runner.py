@@ -37,7 +37,6 @@ from .commands import (
 from .host_sync import HostSync
 from .readout_schedule import NOTHING, POSES, STATES, CommandRows, ReadoutSchedule
 from .ring import (
-    BELL,
     CLOCK_SETS,
     HEARTBEAT,
     LATEST,
@@ -46,6 +45,7 @@ from .ring import (
     STATUS,
     STATUS_PAUSED,
     STATUS_RUNNING,
+    WAKE_REQUESTED,
     Clock,
     RingWriter,
     picoseconds,
@@ -53,7 +53,7 @@ from .ring import (
 from .timed_forces import AddTimedForces
 
 _BURST_S = 0.0008        # bursts between two looks at the commands
-_MAX_DEBT_S = 0.2        # a world that is later than this has given up the rest
+_MAX_LAG_S = 0.2        # a world that is later than this has given up the rest
 _IDLE_S = 2.0            # heartbeat while paused
 _SYNC_S = 0.02           # between two looks at the budget while the host works; it notifies earlier
 _SHARE_ON_TIME = 0.25    # of the wall time for read-outs that no reader waits for, if on schedule
@@ -327,7 +327,7 @@ class Runner:
         cost = (time.perf_counter() - now) / made
         self._step_cost += 0.1 * (cost - self._step_cost)
         self._least_cost = min(cost, 1.02 * self._least_cost)
-        self._due = max(self._due + made / self._settings.rate, now - _MAX_DEBT_S)
+        self._due = max(self._due + made / self._settings.rate, now - _MAX_LAG_S)
         self._after_steps(_SHARE_LATE if self._due < time.perf_counter() else _SHARE_ON_TIME)
 
     def _late_steps(self, now: float) -> int:
@@ -399,8 +399,8 @@ class Runner:
                 self._writer.hold(self._step)
         if wanted != NOTHING:
             self._report_events()
-        if self._readouts.take_bell(now):
-            self._channel.bell()
+        if self._readouts.is_wake_due(now):
+            self._channel.wake_host_thread()
 
     def _write(self, force: bool = False) -> int:
         """Write a snapshot if anything may have changed; returns the newest one's sequence."""
@@ -414,8 +414,8 @@ class Runner:
         sequence = self._writer.write(self._step, self._clock, links, joints, self._applied)
         self._shown = (self._clock_sets, self._step)
         self._words[CLOCK_SETS] = self._clock_sets
-        if force and self._words[BELL]:
-            self._channel.bell()
+        if force and self._words[WAKE_REQUESTED]:
+            self._channel.wake_host_thread()
         return sequence
 
     def _write_at_horizon(self) -> None:

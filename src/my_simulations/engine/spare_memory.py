@@ -21,7 +21,7 @@ _MADV_DONTNEED = 4
 _IS_MMAPPED = 2
 
 
-def made_sparingly(make: Callable[[], Made]) -> Made:
+def made_without_zero_pages(make: Callable[[], Made]) -> Made:
     """What `make` makes; whole pages of zeros in the large blocks it allocates are given back.
 
     Call it while the process has one thread: no other thread may write to these blocks. Other

@@ -233,7 +233,7 @@ def read_any(text: Text, resolver: Resolver,
     actor = root.find("actor")
     if actor is not None and not any(root.find(tag) is not None
                                      for tag in ("model", "light", "include")):
-        source.tell_unused(actor)
+        source.report_unused(actor)
         return read_actor(actor, source), issues
     entity = _entity_in(root, source)
     if isinstance(entity, Model):

@@ -11,7 +11,7 @@ from typing import Callable, Dict, List, Optional, Sequence
 
 from .. import __version__
 from ..errors import CommandError
-from ..simulator.safe_file import write_whole
+from ..simulator.safe_file import write_atomically
 from .assignment import Assignment, Rostest
 from .box_process import GradingStoppedError, grade_in_box
 from .mark import FAILED, GRADED, Mark, all_failed, mark_of
@@ -109,7 +109,7 @@ class Grader:
             self._slots.put(slot)
         mark = Mark(**{**vars(mark), "key": key})
         os.makedirs(folder, exist_ok=True)
-        write_whole(os.path.join(folder, MARK), mark.to_json().encode(), overwrite=True)
+        write_atomically(os.path.join(folder, MARK), mark.to_json().encode(), overwrite=True)
         self._told(mark, False)
         return mark
 

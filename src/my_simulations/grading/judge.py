@@ -54,10 +54,10 @@ class ThinRecord:
         self._record = record
         self._next = 0.0
 
-    def look(self, world: OpenWorld) -> None:
+    def record_state(self, world: OpenWorld) -> None:
         """Add the present state if it is due."""
         if world.time >= self._next - 1e-9:
-            self._record.look(world)
+            self._record.record_state(world)
             self._next = world.time + _EVERY_S
 
 

@@ -9,7 +9,7 @@ from typing import Any, Dict, List, Sequence
 
 from lxml import etree
 
-from ..simulator.safe_file import write_whole
+from ..simulator.safe_file import write_atomically
 from .assignment import Assignment
 from .grader import STUDENTS
 from .mark import GRADED, CheckResult, Mark
@@ -31,7 +31,7 @@ def write_lists(assignment: Assignment, marks: Sequence[Mark], out: str) -> List
         texts[os.path.join(STUDENTS, mark.student, "results.json")] = json.dumps(
             gradescope(mark), indent=1).encode() + b"\n"
     for name, text in texts.items():
-        write_whole(os.path.join(os.path.abspath(out), name), text, overwrite=True)
+        write_atomically(os.path.join(os.path.abspath(out), name), text, overwrite=True)
     return [os.path.join(os.path.abspath(out), name)
             for name in ("marks.csv", "nbgrader.csv", "junit.xml")]
 

@@ -6,7 +6,7 @@ from html import escape
 from typing import List, Sequence
 from urllib.parse import quote
 
-from ..simulator.safe_file import write_whole
+from ..simulator.safe_file import write_atomically
 from .assignment import Assignment
 from .grader import STUDENTS
 from .lists import said
@@ -28,9 +28,10 @@ def write_pages(assignment: Assignment, marks: Sequence[Mark], out: str) -> str:
     """
     for mark in marks:
         path = os.path.join(os.path.abspath(out), STUDENTS, mark.student, "index.html")
-        write_whole(path, _student(assignment, mark).encode("utf-8", "replace"), overwrite=True)
+        write_atomically(path, _student(assignment, mark).encode("utf-8", "replace"),
+                         overwrite=True)
     path = os.path.join(os.path.abspath(out), "index.html")
-    write_whole(path, _overview(assignment, marks).encode("utf-8", "replace"), overwrite=True)
+    write_atomically(path, _overview(assignment, marks).encode("utf-8", "replace"), overwrite=True)
     return path
 
 

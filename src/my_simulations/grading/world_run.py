@@ -27,7 +27,7 @@ _SHOWN = 3   # decimals of a length, m
 class Recorder(Protocol):
     """Records the world for the replay."""
 
-    def look(self, world: OpenWorld) -> None:
+    def record_state(self, world: OpenWorld) -> None:
         """Add the present state."""
 
 
@@ -70,7 +70,7 @@ class WorldRun:
             try:
                 self._sample(checks)
                 if recorder is not None:
-                    recorder.look(self._world)
+                    recorder.record_state(self._world)
                 while checks and made >= round(checks[0].within / size):
                     done(self._decided(checks[0]))
                     del checks[0]

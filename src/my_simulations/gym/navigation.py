@@ -12,7 +12,7 @@ from ..geometry import Pose, rpy_from_quat
 from ..python_api import OpenWorld, Randomisation, WorldChoice
 from ..resources.package_files import own_directory
 from .task_models import box, disc
-from .world_env import Judgement, View, WorldEnv, seen
+from .world_env import Evaluation, View, WorldEnv, clipped_observation
 
 FASTEST = 0.5      # m/s
 TURNS = 1.5        # rad/s
@@ -96,14 +96,15 @@ class Navigate:
         self._left = float(np.hypot(*to_mark))
         bearing = math.remainder(math.atan2(to_mark[1], to_mark[0]) - yaw, 2.0 * math.pi)
         forward = vx * math.cos(yaw) + vy * math.sin(yaw)
-        return seen(self.observation_space, [*ranges, self._left, bearing, forward, turn])
+        return clipped_observation(self.observation_space,
+                                   [*ranges, self._left, bearing, forward, turn])
 
-    def judge(self, world: OpenWorld, action: Any) -> Judgement:
+    def evaluate(self, world: OpenWorld, action: Any) -> Evaluation:
         """See the class."""
         nearer, self._before = self._before - self._left, self._left
         collided = self._nearest < _SAFE and _collides(world)
         arrived = self._left < NEAR and not collided
-        return Judgement(nearer + arrived - collided, arrived or collided,
+        return Evaluation(nearer + arrived - collided, arrived or collided,
                          {"is_success": arrived, "collision": collided})
 
 

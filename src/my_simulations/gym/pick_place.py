@@ -12,7 +12,7 @@ from ..geometry import Pose
 from ..python_api import OpenWorld, Randomisation, RobotOptions, WorldChoice
 from . import arm_scene
 from .task_models import box, disc
-from .world_env import Judgement, View, WorldEnv, seen, within
+from .world_env import Evaluation, View, WorldEnv, clipped_observation, within
 
 SIZE = 0.04          # m, of the cube
 FASTEST = 0.3        # m/s, of the tool
@@ -95,16 +95,16 @@ class PickAndPlace:
                        links.twist["cube::link"], self._mark)
         self._before = (self._scene or scene).distance()
         self._scene = scene
-        numbers = seen(self._numbers, [
+        numbers = clipped_observation(self._numbers, [
             *scene.arm.tool, *scene.arm.fingers, *scene.cube, *scene.mark,
             *(scene.cube - scene.arm.tool), *(scene.mark - scene.cube)])
         return arm_scene.observation(world, numbers, self._camera)
 
-    def judge(self, world: OpenWorld, action: Any) -> Judgement:
+    def evaluate(self, world: OpenWorld, action: Any) -> Evaluation:
         """See the class."""
         assert self._scene is not None, "observe is called before judge"
         placed = self._scene.rests() and not _held(world)
-        return Judgement(self._before - self._scene.distance() + placed, placed,
+        return Evaluation(self._before - self._scene.distance() + placed, placed,
                          {"is_success": placed})
 
 

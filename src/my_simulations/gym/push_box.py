@@ -11,7 +11,7 @@ import numpy as np
 from ..geometry import Pose, rpy_from_quat
 from ..python_api import OpenWorld, Randomisation, WorldChoice
 from ..resources.package_files import own_directory
-from .world_env import Judgement, View, WorldEnv, seen, within
+from .world_env import Evaluation, View, WorldEnv, clipped_observation, within
 
 FASTEST = 0.5     # m/s
 TURNS = 2.0       # rad/s
@@ -83,18 +83,18 @@ class PushBox:
         forward = vx * math.cos(yaw) + vy * math.sin(yaw)
         self._apart = math.dist(box[:2], mark[:2]), math.dist(box[:2], robot[:2])
         self._before = self._before or self._apart
-        return seen(self.observation_space, [
+        return clipped_observation(self.observation_space, [
             robot[0], robot[1], math.cos(yaw), math.sin(yaw), forward, turn,
             box[0], box[1], mark[0], mark[1], self._apart[0]])
 
-    def judge(self, world: OpenWorld, action: Any) -> Judgement:
+    def evaluate(self, world: OpenWorld, action: Any) -> Evaluation:
         """See the class."""
         to_mark, to_box = self._apart
         before, self._before = self._before or self._apart, self._apart
         reward = before[0] - to_mark + 0.1 * (before[1] - to_box)
         arrived = to_mark < NEAR
         lost = max(to_mark, to_box) > _FARTHEST
-        return Judgement(reward + arrived, arrived or lost, {"is_success": arrived})
+        return Evaluation(reward + arrived, arrived or lost, {"is_success": arrived})
 
 
 def make(render_mode: Optional[str] = None,

@@ -11,7 +11,7 @@ from ..geometry import Pose
 from ..python_api import OpenWorld, Randomisation, RobotOptions, WorldChoice
 from . import arm_scene
 from .task_models import ball
-from .world_env import Judgement, View, WorldEnv, seen, within
+from .world_env import Evaluation, View, WorldEnv, clipped_observation, within
 
 NEAR = 0.03         # m: the tool has arrived
 _FAR, _FAST = 10.0, 20.0  # bounds of observations, m or rad, rad/s
@@ -61,14 +61,15 @@ class Reach:
         arm = arm_scene.read_arm(world)
         left = math.dist(arm.tool, self._target)
         self._before, self._left = left if self._left is None else self._left, left
-        numbers = seen(self._numbers, [*arm.positions, *arm.rates, *arm.tool, *self._target])
+        numbers = clipped_observation(self._numbers,
+                                      [*arm.positions, *arm.rates, *arm.tool, *self._target])
         return arm_scene.observation(world, numbers, self._camera)
 
-    def judge(self, world: OpenWorld, action: Any) -> Judgement:
+    def evaluate(self, world: OpenWorld, action: Any) -> Evaluation:
         """See the class."""
         left = math.inf if self._left is None else self._left
         arrived = left < NEAR
-        return Judgement(self._before - left + arrived, arrived, {"is_success": arrived})
+        return Evaluation(self._before - left + arrived, arrived, {"is_success": arrived})
 
 
 def make(render_mode: Optional[str] = None, camera: bool = False,

@@ -12,7 +12,7 @@ import numpy as np
 from ..geometry import Pose
 from ..python_api import OpenWorld, Randomisation, WorldChoice
 from ..resources.package_files import own_directory
-from .world_env import Judgement, View, WorldEnv, seen, within
+from .world_env import Evaluation, View, WorldEnv, clipped_observation, within
 
 SIZE = 0.05       # m, of a box
 FASTEST = 0.25    # m/s, of an axis
@@ -113,17 +113,17 @@ class StackBoxes:
             self._left = scene.distance()
         position = world.joints().position
         axes = [float(position[f"gripper::{joint}"]) for joint in (*AXES, *FINGERS)]
-        return seen(self.observation_space,
+        return clipped_observation(self.observation_space,
                     [*axes, *scene.red, *scene.blue, *(scene.red - scene.blue)])
 
-    def judge(self, world: OpenWorld, action: Any) -> Judgement:
+    def evaluate(self, world: OpenWorld, action: Any) -> Evaluation:
         """See the class."""
         scene = self._scene or _scene_of(world)
         left = scene.distance()
         nearer = 0.0 if self._left is None else self._left - left
         self._left = left
         stands = scene.rests() and not self._held(world)
-        return Judgement(nearer + stands, stands, {"is_success": stands})
+        return Evaluation(nearer + stands, stands, {"is_success": stands})
 
     @staticmethod
     def _held(world: OpenWorld) -> bool:

@@ -49,7 +49,7 @@ class Viewer:
         self.url = self._server.url
         show(self.url, "gymnasium")
 
-    def keep_pace(self, period: float) -> None:
+    def wait_for_real_time(self, period: float) -> None:
         """Wait until a step of `period` s may end; time that was lost is not made up for."""
         self._due = max(self._due + period, time.monotonic())
         time.sleep(max(0.0, self._due - time.monotonic()))

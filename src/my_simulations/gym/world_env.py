@@ -23,7 +23,7 @@ class View:
 
 
 @dataclass(frozen=True)
-class Judgement:
+class Evaluation:
     """What a step was worth.
 
     Attributes:
@@ -64,7 +64,7 @@ class Task(Protocol):
     def observe(self, world: OpenWorld) -> Any:
         """The observation, a member of the space; asked for once after `begin` and each step."""
 
-    def judge(self, world: OpenWorld, action: Any) -> Judgement:
+    def evaluate(self, world: OpenWorld, action: Any) -> Evaluation:
         """What the step was worth; asked for after `observe`, which may keep what it has read."""
 
 
@@ -136,9 +136,9 @@ class WorldEnv(gymnasium.Env[Any, Any]):
             self.task.act(world, action)
             world.step(max(1, round(self.task.period / world.step_size)))
             if self.viewer is not None:
-                self.viewer.keep_pace(self.task.period)
+                self.viewer.wait_for_real_time(self.task.period)
             self._last = self.task.observe(world)
-            judged = self.task.judge(world, action)
+            judged = self.task.evaluate(world, action)
         except EngineLostError as fault:
             return self._last, 0.0, False, True, {"fault": str(fault)}
         return self._last, float(judged.reward), judged.terminated, False, judged.info
@@ -166,6 +166,6 @@ def within(bounds: Sequence[float]) -> gymnasium.spaces.Box:
     return gymnasium.spaces.Box(-high, high, dtype=np.float32)
 
 
-def seen(space: gymnasium.spaces.Box, values: Sequence[float]) -> np.ndarray:
+def clipped_observation(space: gymnasium.spaces.Box, values: Sequence[float]) -> np.ndarray:
     """An observation of `within`, cut to its bounds."""
     return np.clip(np.asarray(values, dtype=np.float32), space.low, space.high)

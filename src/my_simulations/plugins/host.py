@@ -16,7 +16,7 @@ from ..errors import CommandError, Issue, error, warning
 from ..simulator.entity import Entity
 from ..simulator.scene_sensing import SceneSensing
 from ..simulator.simulator import Simulator
-from ..simulator.sync_points import Moment
+from ..simulator.sync_points import SimTimeStep
 from .barrier import Barrier
 from .base import Plugin
 from .call_watch import CALL_LIMITS, CallLimits, ThreadAbandoned
@@ -97,7 +97,7 @@ class PluginHost:
         self._was_stepped_manually = simulator.clock.is_stepped_manually
         self._delivering = False     # input was handed over, and its commands are not sent yet
         self._settings: Optional[int] = None
-        self._moment: Optional[Moment] = None
+        self._time_step: Optional[SimTimeStep] = None
         self._limits = limits
         self._processes = PluginProcesses() if isolate else None
         self._guard = PluginGuard(log, limits, self._mark_output, self._go_on_without)
@@ -248,13 +248,13 @@ class PluginHost:
         if self._was_stepped_manually != self._simulator.clock.is_stepped_manually:
             self._was_stepped_manually = not self._was_stepped_manually
             self._observations.changed = True
-        settings, moment = self._sync.settings, self._sync.now()
-        if self._settings is None and not self._sync.waits_at(moment):
+        settings, time_step = self._sync.settings, self._sync.now()
+        if self._settings is None and not self._sync.waits_at(time_step):
             return   # until the engine has stopped, for the first time
         turn = self._turns = self._turns + 1
         for act in (self._take_records, self._finish_changes, self._notice_resets,
                     self._deliver_input, self._serve):
-            act(settings, moment)
+            act(settings, time_step)
             if self._turns != turn:   # a nested turn: these values are old
                 self.wake()
                 return
@@ -273,7 +273,7 @@ class PluginHost:
                 self._revision = self._models.revision
             self._loaded.notify_all()
 
-    def _take_records(self, _settings: int, _moment: Moment) -> None:
+    def _take_records(self, _settings: int, _time_step: SimTimeStep) -> None:
         self._records.hand_over(self._hand_over)
 
     def _hand_over(self, observation: Observation) -> None:
@@ -281,7 +281,7 @@ class PluginHost:
         if running is not None and running.is_callable:
             self._guard.call(running, observation.call)
 
-    def _finish_changes(self, settings: int, _moment: Moment) -> None:
+    def _finish_changes(self, settings: int, _time_step: SimTimeStep) -> None:
         if settings != self._settings:
             self._sync.finish_changes()
         self._follow_models()
@@ -289,9 +289,9 @@ class PluginHost:
     def _at_work(self) -> List[RunningPlugin]:
         return [one for one in self._models.all() if one.plugin is not None]
 
-    def _serve(self, _settings: int, moment: Moment) -> None:
+    def _serve(self, _settings: int, time_step: SimTimeStep) -> None:
         """Make the calls that are due."""
-        if not self._sync.waits_at(moment):
+        if not self._sync.waits_at(time_step):
             return
         self._due += self._schedule.take_due()
         while self._due:
@@ -355,7 +355,7 @@ class PluginHost:
             self._mark_input(running)
         return fail
 
-    def _deliver_input(self, _settings: int, _moment: Moment) -> None:
+    def _deliver_input(self, _settings: int, _time_step: SimTimeStep) -> None:
         while self._with_input:
             self._delivering = True
             self._deliver(self._with_input.popleft())
@@ -367,19 +367,19 @@ class PluginHost:
             if running.plugin is not None:   # else it was switched off: nothing waits for this
                 self._guard.call(running, call)
 
-    def _notice_resets(self, _settings: int, moment: Moment) -> None:
+    def _notice_resets(self, _settings: int, time_step: SimTimeStep) -> None:
         """Notify plugins of resets and of sim time that was set back."""
-        self._schedule.set_moment(moment)
-        before, self._moment = self._moment, moment
+        self._schedule.set_time_step(time_step)
+        before, self._time_step = self._time_step, time_step
         resets = self._simulator.resets
         calls: List[str] = []
-        if before is not None and moment.clock_sets != before.clock_sets:
-            self._schedule.reschedule(moment.sim_ns < before.sim_ns)
+        if before is not None and time_step.clock_sets != before.clock_sets:
+            self._schedule.reschedule(time_step.sim_ns < before.sim_ns)
             for running in self._at_work():
                 running.context.sensing.forget()
             if resets.simulation_resets != self._simulation_resets:
                 calls.append("reset")
-            elif moment.sim_ns < before.sim_ns:
+            elif time_step.sim_ns < before.sim_ns:
                 calls.append("clock_set")
             self._simulation_resets = resets.simulation_resets
         if resets.world_resets != self._world_resets:
@@ -432,7 +432,7 @@ class PluginHost:
                                 limits=limits):
             return
         running.plugin = made[0]
-        self._schedule.set_moment(self._sync.now())
+        self._schedule.set_time_step(self._sync.now())
         self._guard.call(running, running.plugin.load, limits=limits)
 
     def _made(self, running: RunningPlugin, where: str) -> Plugin:

@@ -6,7 +6,7 @@ from typing import Callable, Deque, Optional
 
 from ..engine.ring import RECORDS
 from ..engine.step_records import Part, StepRecord
-from ..simulator.sync_points import Moment, SyncPoints
+from ..simulator.sync_points import SimTimeStep, SyncPoints
 from .observations import Observation, Observations, StepView
 from .schedule import Schedule
 
@@ -50,7 +50,7 @@ class RecordHandover:
         self._sync.make_room()
 
     def _hand_over(self, record: StepRecord, call: Callable[[Observation], None]) -> None:
-        self._schedule.set_moment(Moment(record.clock_sets, record.step, record.clock))
+        self._schedule.set_time_step(SimTimeStep(record.clock_sets, record.step, record.clock))
         while self._parts:
             part = self._parts.popleft()
             observation = self._observations.find(part.number)

@@ -5,7 +5,7 @@ import heapq
 from typing import Any, Callable, List, Optional, Tuple
 
 from ..engine.rates import Rate
-from ..simulator.sync_points import Moment
+from ..simulator.sync_points import SimTimeStep
 from ..simulator.wrenches import first_step
 
 
@@ -26,11 +26,11 @@ class ScheduledCall:
         self.ended = False
         self.single = rate is None
 
-    def next(self, moment: Moment) -> int:
+    def next(self, time_step: SimTimeStep) -> int:
         """Return the first step after a moment at which the call is due."""
         if self._rate is not None:
-            return self._rate.after(moment.step, moment.clock)
-        return max(moment.step + 1, first_step(moment.clock, self._ns))
+            return self._rate.after(time_step.step, time_step.clock)
+        return max(time_step.step + 1, first_step(time_step.clock, self._ns))
 
     def end(self) -> None:
         """End the calls."""
@@ -41,19 +41,19 @@ class Schedule:
     """Future calls, ordered by step, then by the order in which they were requested.
 
     Attributes:
-        moment: the present step and sim time; None before the first `set_moment`.
-        sim_ns: sim time at `moment`, ns.
+        time_step: the present step and sim time; None before the first `set_time_step`.
+        sim_ns: sim time at `time_step`, ns.
     """
 
     def __init__(self) -> None:
-        self.moment: Optional[Moment] = None
+        self.time_step: Optional[SimTimeStep] = None
         self.sim_ns = 0
         self._heap: List[Tuple[int, int, ScheduledCall]] = []
         self._made = 0
 
-    def set_moment(self, moment: Moment) -> None:
+    def set_time_step(self, time_step: SimTimeStep) -> None:
         """Set the present step and sim time."""
-        self.moment, self.sim_ns = moment, moment.sim_ns
+        self.time_step, self.sim_ns = time_step, time_step.sim_ns
 
     def every(self, owner: Any, hertz: float, call: Callable[[], None]) -> ScheduledCall:
         """Schedule calls at a rate in Hz; 0 or less is every step."""
@@ -69,14 +69,14 @@ class Schedule:
         return made
 
     def _put(self, number: int, scheduled: ScheduledCall) -> None:
-        due = scheduled.next(self.moment) if self.moment is not None else 0
+        due = scheduled.next(self.time_step) if self.time_step is not None else 0
         heapq.heappush(self._heap, (due, number, scheduled))
 
     def take_due(self) -> List[ScheduledCall]:
         """Those that are due now; those of a rate are due again when that says so."""
-        assert self.moment is not None
+        assert self.time_step is not None
         found: List[Tuple[int, ScheduledCall]] = []
-        while self._heap and self._heap[0][0] <= self.moment.step:
+        while self._heap and self._heap[0][0] <= self.time_step.step:
             _, number, scheduled = heapq.heappop(self._heap)
             if not scheduled.ended:
                 found.append((number, scheduled))
@@ -93,7 +93,7 @@ class Schedule:
         return self._heap[0][0] if self._heap else None
 
     def reschedule(self, was_set_back: bool) -> None:
-        """Schedule all calls again from `moment`; drop single calls if sim time was set back."""
+        """Schedule all calls again from `time_step`; drop single calls if sim time was set back."""
         before, self._heap = self._heap, []
         for _, number, scheduled in before:
             if scheduled.single and was_set_back:

@@ -149,8 +149,8 @@ class SimulatedContext(GraphUser):
     @property
     def step(self) -> int:
         """The step count."""
-        moment = self._schedule.moment
-        return moment.step if moment is not None else self.simulator.clock.step
+        time_step = self._schedule.time_step
+        return time_step.step if time_step is not None else self.simulator.clock.step
 
     def every(self, hertz: float, call: Callable[[], None]) -> ScheduledCall:
         """Call a function at a rate."""

@@ -68,8 +68,8 @@ class StepReadings:
         return found
 
     def _look(self) -> None:
-        moment = self._schedule.moment
-        step = None if moment is None else (moment.clock_sets, moment.step)
+        time_step = self._schedule.time_step
+        step = None if time_step is None else (time_step.clock_sets, time_step.step)
         if step is None or step != self._step:
             self._step, self._efforts, self._contacts = step, {}, None
 

@@ -8,8 +8,8 @@ from ..errors import InputError, Issue, errors_of
 from ..formats.reading import LoadedWorld, Text
 from ..geometry import Pose, compose
 from ..simulator.simulator import Simulator
-from .kept_files import KeptFiles, Log
-from .object_placement import Alter
+from .kept_files import FileCache, Log
+from .object_placement import WorldEdit
 from .world_choice import WorldChoice
 
 
@@ -21,7 +21,7 @@ class Furnisher:
         log: hears of every issue.
     """
 
-    def __init__(self, files: KeptFiles, log: Log) -> None:
+    def __init__(self, files: FileCache, log: Log) -> None:
         self._files = files
         self._log = log
 
@@ -46,7 +46,7 @@ class Furnisher:
             self.spawn(simulator, file, name, pose, choice.alter_model)
 
     def spawn(self, simulator: Simulator, document: Text, name: Optional[str], pose: Pose,
-              alter: Alter) -> str:
+              alter: WorldEdit) -> str:
         """Spawn the model of a document; returns its name. Raises as `furnish`."""
         found, meshes, issues = self._files.model(document)
         model = alter(replace(found, name=found.name if name is None else name,

@@ -23,7 +23,7 @@ ReadModel = Tuple[Model, MeshTable, List[Issue]]
 """A model as its document says, its collision meshes, and all faults and advice."""
 
 
-class KeptFiles:
+class FileCache:
     """Reads files, or gives what it has read of them before.
 
     Callers may change the returned copy, except meshes and issues. Changed files are read again

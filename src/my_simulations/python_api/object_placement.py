@@ -19,7 +19,7 @@ from ..objects.yaml_source import read_yaml
 from ..resources.package_files import PACKAGE, package_directories
 from ..resources.resolver import Resolver
 
-Alter = Callable[[Model], Model]
+WorldEdit = Callable[[Model], Model]
 """Makes another model of one that is about to be spawned; `Model.pose` is its place."""
 
 _XACRO_SECONDS = 60.0

@@ -19,7 +19,7 @@ from ..simulator.simulator import Simulator
 from ..workspace_python import require
 from .controllers import Controllers, Parameters, read_parameters
 from .furnishing import Furnisher
-from .kept_files import KeptFiles
+from .kept_files import FileCache
 from .plain_values import pose_of, vector_of, whole_number
 from .ray_casts import RayReading, cast_rays
 from .readings import (
@@ -105,7 +105,7 @@ class OpenWorld(WorldChanges):
 
     def __init__(self, choice: WorldChoice, *, resolver: Optional[Resolver] = None,
                  log: Optional[Log] = None, engine: Callable[[], Engine] = ProcessEngine,
-                 files: Optional[KeptFiles] = None,
+                 files: Optional[FileCache] = None,
                  robots: RobotOptions = RobotOptions()) -> None:  # noqa: B008
         """See `open_world`; `files` reads the files instead of a reader of its own."""
         self.issues: List[Issue] = []
@@ -113,7 +113,7 @@ class OpenWorld(WorldChanges):
         self._lost: Optional[str] = None  # how the engine was lost
         self._furnished = 0  # the revision of the models when the world was opened
         self._choice = choice
-        self._files = files or KeptFiles(resolver or Resolver.from_environment())
+        self._files = files or FileCache(resolver or Resolver.from_environment())
         self._furnisher = Furnisher(self._files, self._log)
         self._new_engine = engine
         self._robots = Robots(robots, self._log, self.step, lambda: self.step_size)
@@ -155,7 +155,7 @@ class OpenWorld(WorldChanges):
         steps = whole_number(steps, "steps")
         if not 0 <= steps <= _MOST_STEPS:
             raise CommandError(f"steps must be between 0 and {_MOST_STEPS}, is {steps}")
-        self._whole()
+        self._running_simulator()
         if steps:
             try:
                 self._robots.wait_until_loaded()
@@ -168,7 +168,7 @@ class OpenWorld(WorldChanges):
             except BaseException:
                 self.simulator.clock.end_advance()
                 raise
-        self._whole()
+        self._running_simulator()
 
     def reset(self, seed: Optional[int] = None) -> None:
         """Open the world again, with another seed if one is given.
@@ -204,7 +204,7 @@ class OpenWorld(WorldChanges):
             self._choice = before
             raise
         try:
-            if self.simulator.over:
+            if self.simulator.is_over:
                 self.close()
                 self._start(loaded)
             else:
@@ -225,15 +225,15 @@ class OpenWorld(WorldChanges):
 
     def states(self) -> Readings:
         """Where the models are, and how they move."""
-        return model_readings(*self._whole().states.latest())
+        return model_readings(*self._running_simulator().states.latest())
 
     def links(self) -> Readings:
         """Where all links are, and how they move."""
-        return link_readings(*self._whole().states.latest())
+        return link_readings(*self._running_simulator().states.latest())
 
     def joints(self) -> JointReadings:
         """Positions and rates of all joint axes."""
-        return joint_readings(*self._whole().states.latest())
+        return joint_readings(*self._running_simulator().states.latest())
 
     def render(self, pose: Sequence[float], *, frame: str = "",
                look_at: Optional[Sequence[float]] = None, width: int = 320, height: int = 240,
@@ -259,7 +259,7 @@ class OpenWorld(WorldChanges):
         Raises:
             CommandError: also if nothing is installed to draw with; it says what is missing.
         """
-        self._whole()
+        self._running_simulator()
         at = pose_of(pose)
         if look_at is not None:
             at = camera_pose(at.position, vector_of(look_at, "look_at"))
@@ -268,7 +268,7 @@ class OpenWorld(WorldChanges):
 
     def contacts(self) -> List[ContactReading]:
         """The contact points of the last step."""
-        return [contact_reading(*found) for found in self._whole().states.contacts()]
+        return [contact_reading(*found) for found in self._running_simulator().states.contacts()]
 
     def contact_forces(self) -> Dict[Tuple[str, str], np.ndarray]:
         """The forces between links in the last step: what the second pushes the first with.
@@ -289,7 +289,8 @@ class OpenWorld(WorldChanges):
             frame: model or link whose frame these are given in; "" for the world.
             visuals: meet what is drawn instead of what collides.
         """
-        return cast_rays(self._whole(), self._scene, origins, directions, far, frame, visuals)
+        return cast_rays(self._running_simulator(), self._scene, origins, directions, far, frame,
+                         visuals)
 
     def description(self, name: str) -> Model:
         """The description of a model, with all links and joints."""
@@ -324,7 +325,7 @@ class OpenWorld(WorldChanges):
             topic: its name.
             message: of `my_simulations.messages` or of ROS, or a dictionary of its fields.
         """
-        self._whole()
+        self._running_simulator()
         self._robots.publish(topic, message)
 
     def call(self, service: str, request: Any = None, **fields: Any) -> Any:
@@ -335,21 +336,21 @@ class OpenWorld(WorldChanges):
             request: a message, or a dictionary of its fields.
             fields: instead of `request`.
         """
-        self._whole()
+        self._running_simulator()
         return self._robots.call(service, fields if request is None else request)
 
     # -- keeping -----------------------------------------------------------------------------------
 
     def save(self) -> SavedState:
         """Return the state of the world, and build the world again from it; see `SavedState`."""
-        return SavedState(self.time, self._whole().exact_states.save())
+        return SavedState(self.time, self._running_simulator().exact_states.save())
 
     def restore(self, saved: SavedState) -> None:
         """Put the world back to a state, which any world returned; see `SavedState`.
 
         Models that were spawned since are removed, and removed ones come back. Raises CommandError.
         """
-        self._whole().exact_states.restore(saved.state)
+        self._running_simulator().exact_states.restore(saved.state)
 
     def save_world(self, path: FilePath, *, overwrite: bool = False, state: bool = False) -> str:
         """Write the world to a .world file; returns its absolute path.
@@ -360,7 +361,7 @@ class OpenWorld(WorldChanges):
             state: with sim time and velocities.
         """
         target = os.path.abspath(os.path.expanduser(path))
-        return save_world(self._whole(), target, roots=[os.path.dirname(target)],
+        return save_world(self._running_simulator(), target, roots=[os.path.dirname(target)],
                           resolver=self._files.resolver, overwrite=overwrite, state=state)
 
     # -- helpers -----------------------------------------------------------------------------------
@@ -391,7 +392,7 @@ class OpenWorld(WorldChanges):
         if self._listener is not None:
             self._listener(issue)
 
-    def _whole(self) -> Simulator:
+    def _running_simulator(self) -> Simulator:
         """The simulator, whose engine was not lost. Raises EngineLostError."""
         if self._lost is not None:
             raise EngineLostError(f"the world has lost its state, call reset: {self._lost}")

@@ -26,7 +26,7 @@ class Robot:
     """
 
     def __init__(self, whole: Callable[[], Simulator], name: str) -> None:
-        self._whole, self.name = whole, name
+        self._running_simulator, self.name = whole, name
         whole().models.get(name)
 
     @property
@@ -47,13 +47,13 @@ class Robot:
     @property
     def efforts(self) -> NamedRows:
         """What motors, servos and controllers applied to the axes in the last step, N m or N."""
-        simulator, names = self._whole(), self.joints
+        simulator, names = self._running_simulator(), self.joints
         rows = [simulator.joints.row(self._scoped(name)) for name in names]
         return NamedRows(names, np.array(simulator.drives.efforts(rows), float))
 
     def limits(self, joint: str) -> JointLimits:
         """The limits of an axis in the robot's file."""
-        return limits_of(self._whole(), self._scoped(joint))
+        return limits_of(self._running_simulator(), self._scoped(joint))
 
     # -- changing ----------------------------------------------------------------------------------
 
@@ -68,7 +68,7 @@ class Robot:
         unknown = sorted(set(rates) - set(positions))
         if unknown:
             raise CommandError(f"a rate needs a position of the same joint: {', '.join(unknown)}")
-        self._whole().joints.set_positions(
+        self._running_simulator().joints.set_positions(
             {self._scoped(name): float(value) for name, value in positions.items()},
             {self._scoped(name): float(value) for name, value in rates.items()})
 
@@ -82,7 +82,8 @@ class Robot:
             rate: fastest that each axis moves, rad/s or m/s; None for the limit of the file.
         """
         for name, position in positions.items():
-            move_within_limits(self._whole(), self._scoped(name), position, effort, rate)
+            move_within_limits(self._running_simulator(), self._scoped(name), position, effort,
+                               rate)
 
     def drive(self, rates: Mapping[str, float], *, effort: Optional[float] = None) -> None:
         """Drive axes at rates, until another call.
@@ -96,7 +97,7 @@ class Robot:
             if most == float("inf"):
                 raise CommandError(f"the file of joint '{name}' has no limit of effort: give an"
                                    " effort")
-            self._whole().drives.drive_axis(self._scoped(name), float(rate), most)
+            self._running_simulator().drives.drive_axis(self._scoped(name), float(rate), most)
 
     def apply_efforts(self, efforts: Mapping[str, float], *, duration: Optional[float] = None
                       ) -> None:
@@ -107,13 +108,13 @@ class Robot:
             duration: s of sim time; None for until the world is reset.
         """
         for name, effort in efforts.items():
-            self._whole().wrenches.apply_effort(self._scoped(name), float(effort),
+            self._running_simulator().wrenches.apply_effort(self._scoped(name), float(effort),
                                                 duration_ns=nanoseconds_of(duration))
 
     def release(self, joints: Iterable[str] = ()) -> None:
         """Switch off what `move` and `drive` have set, for some joints or for all."""
         for name in tuple(joints) or self.joints:
-            self._whole().drives.release_axis(self._scoped(name))
+            self._running_simulator().drives.release_axis(self._scoped(name))
 
     # -- kinematics --------------------------------------------------------------------------------
 
@@ -130,7 +131,7 @@ class Robot:
             Shape (6, joints), in the order of `joints`: m/s of the point and rad/s, along the axes
             of the world.
         """
-        chain = Chain(self._whole().models.get(self.name), link)
+        chain = Chain(self._running_simulator().models.get(self.name), link)
         positions, names = self._positions(), self.joints
         found = np.zeros((6, len(names)))
         found[:, [names.index(name) for name in chain.joints]] = chain.jacobian(
@@ -154,7 +155,7 @@ class Robot:
         Raises:
             CommandError: no positions are found; the message has the smallest error.
         """
-        model = self._whole().models.get(self.name)
+        model = self._running_simulator().models.get(self.name)
         chain, positions = Chain(model, link), self._positions()
         wanted = pose_of(pose)
         target = Target(wanted.position, wanted.orientation if len(pose) > 3 else None,
@@ -166,7 +167,7 @@ class Robot:
 
     def _root(self, chain: Chain, link: str, positions: Mapping[str, float]) -> Pose:
         """The pose of the root of a chain, from that of its last link now."""
-        links = link_readings(*self._whole().states.latest())
+        links = link_readings(*self._running_simulator().states.latest())
         now = pose_of(links.pose[self._scoped(link)].tolist())
         return compose(now, inverse(chain.pose(IDENTITY, positions)))
 
@@ -174,7 +175,7 @@ class Robot:
         return {name: float(value) for name, value in self.positions.items()}
 
     def _read(self) -> JointReadings:
-        return joint_readings(*self._whole().states.latest())
+        return joint_readings(*self._running_simulator().states.latest())
 
     def _mine(self, rows: NamedRows) -> NamedRows:
         begin = f"{self.name}::"

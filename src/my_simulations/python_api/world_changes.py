@@ -24,7 +24,7 @@ class WorldChanges:
     _furnisher: Furnisher
     _robots: Robots
 
-    def _whole(self) -> Simulator:
+    def _running_simulator(self) -> Simulator:
         """The simulator, whose engine was not lost. Raises EngineLostError."""
         raise NotImplementedError
 
@@ -41,13 +41,14 @@ class WorldChanges:
             InputError: the document has no usable model.
         """
         text = os.fspath(document)  # which leaves texts as they are
-        name = self._furnisher.spawn(self._whole(), text, name, pose_of(pose), lambda model: model)
+        name = self._furnisher.spawn(self._running_simulator(), text, name, pose_of(pose),
+                                     lambda model: model)
         self._robots.wait_until_loaded()
         return name
 
     def remove(self, name: str) -> None:
         """Take a model out of the world."""
-        self._whole().models.delete(name)
+        self._running_simulator().models.delete(name)
 
     def set_pose(self, name: str, pose: Sequence[float], twist: Optional[Sequence[float]] = None
                  ) -> None:
@@ -59,7 +60,7 @@ class WorldChanges:
             twist: m/s and rad/s (vx vy vz wx wy wz) that it then has; None for at rest.
         """
         speed = Twist() if twist is None else twist_of(twist)
-        states = self._whole().states
+        states = self._running_simulator().states
         if self.simulator.models.has(name):
             states.set_model_state(name, pose_of(pose), speed)
         else:
@@ -79,7 +80,7 @@ class WorldChanges:
                 for the world.
             point: m from the centre of mass, or from the frame's origin where one is given.
         """
-        self._whole().wrenches.apply_wrench(
+        self._running_simulator().wrenches.apply_wrench(
             link, vector_of(force, "force"), vector_of(torque, "torque"), frame=frame,
             point=vector_of(point, "point"), duration_ns=nanoseconds_of(duration))
 
@@ -91,7 +92,7 @@ class WorldChanges:
             effort: adds to others on the same axis.
             duration: s of sim time; None for until the world is reset.
         """
-        self._whole().wrenches.apply_effort(joint, float(effort),
+        self._running_simulator().wrenches.apply_effort(joint, float(effort),
                                              duration_ns=nanoseconds_of(duration))
 
     def drive_joint(self, joint: str, rate: float, effort: float) -> None:
@@ -102,7 +103,7 @@ class WorldChanges:
             rate: rad/s or m/s.
             effort: most that the motor spends, N m or N.
         """
-        self._whole().drives.drive_axis(joint, float(rate), float(effort))
+        self._running_simulator().drives.drive_axis(joint, float(rate), float(effort))
 
     def move_joint(self, joint: str, position: float, effort: Optional[float] = None,
                    rate: Optional[float] = None) -> None:
@@ -115,15 +116,15 @@ class WorldChanges:
             rate: fastest that it moves, rad/s or m/s; None for the limit of the file, if it has
                 one.
         """
-        move_within_limits(self._whole(), joint, position, effort, rate)
+        move_within_limits(self._running_simulator(), joint, position, effort, rate)
 
     def release_joint(self, joint: str) -> None:
         """Switch off what `drive_joint` or `move_joint` has set."""
-        self._whole().drives.release_axis(joint)
+        self._running_simulator().drives.release_axis(joint)
 
     def robot(self, name: str) -> Robot:
         """The joints of a model: positions, efforts, motors, Jacobians, inverse kinematics."""
-        return Robot(self._whole, name)
+        return Robot(self._running_simulator, name)
 
     def attach(self, name: str, parent: str, child: str) -> None:
         """Fix a link to another one, or to the `world`, as they are now.
@@ -133,9 +134,9 @@ class WorldChanges:
             parent: the link, as `model::link`; or `world`.
             child: a link of another model.
         """
-        self._whole().models.attach(name, parent, child)
+        self._running_simulator().models.attach(name, parent, child)
 
     def detach(self, name: str) -> None:
         """Remove a joint that `attach` has made."""
-        if not self._whole().models.detach(name):
+        if not self._running_simulator().models.detach(name):
             raise CommandError(f"nothing is attached by a joint '{name}'")

@@ -6,7 +6,7 @@ from typing import Callable, Tuple
 
 from ..description.world import World
 from ..geometry import Pose
-from .object_placement import Alter
+from .object_placement import WorldEdit
 
 
 @dataclass(frozen=True)
@@ -28,4 +28,4 @@ class WorldChoice:
     object_list: str = ""
     models: Tuple[Tuple[str, str, Pose], ...] = ()
     alter: Callable[[World], World] = lambda world: world
-    alter_model: Alter = lambda model: model
+    alter_model: WorldEdit = lambda model: model

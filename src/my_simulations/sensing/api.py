@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 WORLD_ROW = -1
 """`Mount.row` of a sensor that stands still; its pose is in the world."""
 
-TROUBLE = -1
+PROBLEM = -1
 """Between the processes: the number of a message that is a sentence about what is left out."""
 
 READY = -2
@@ -45,8 +45,9 @@ RGB, DEPTH, LABELS = "rgb", "depth", "labels"
 At = Union[None, int, bytes]
 """The state to look at: a ring sequence, link rows as `RingReader.raw_links` gives them, or None.
 
-A sequence is copied when the request arrives at the process, and fails with `SnapshotGoneError`
-when it has been overwritten (16 snapshots later). Rows never fail. None is the newest state.
+A sequence is copied when the request arrives at the process, and fails with
+`SnapshotOverwrittenError` when it has been overwritten (16 snapshots later). Rows never fail. None
+is the newest state.
 """
 
 
@@ -54,11 +55,11 @@ class SensingError(SimulationError):
     """A request without an answer; the message is one sentence for the user."""
 
 
-class SnapshotGoneError(SensingError):
+class SnapshotOverwrittenError(SensingError):
     """The state was overwritten before the process could copy it: this sample is left out."""
 
 
-class SensingGoneError(SensingError):
+class SensingEndedError(SensingError):
     """The sensing process ended before it answered. The next request finds a new one."""
 
 
@@ -375,7 +376,7 @@ class Sensing(Protocol):
     def render(self, request: RenderCamera) -> "Future[Pictures]":
         """Pictures; rays do not wait for them. The future fails with a `SensingError`."""
 
-    def on_trouble(self, listener: Callable[[str], None]) -> None:
+    def on_problem(self, listener: Callable[[str], None]) -> None:
         """Set who hears one sentence of each death and of each shape or texture left out."""
 
     def close(self) -> None:

@@ -69,7 +69,7 @@ class Noise:
         import numpy as np
 
         spec = self.spec
-        self._wander(sample, elapsed)
+        self._drift(sample, elapsed)
         plain = np.asarray(values, dtype=np.float64)
         noisy = plain + (self._wandering + spec.mean)
         if spec.stddev > 0.0:
@@ -80,7 +80,7 @@ class Noise:
         noisy = np.where(np.isfinite(plain), noisy, plain)
         return noisy if plain.ndim else float(noisy)
 
-    def _wander(self, sample: int, elapsed: float) -> None:
+    def _drift(self, sample: int, elapsed: float) -> None:
         """An Ornstein-Uhlenbeck step, exact for any length."""
         spec, tau = self.spec, self.spec.dynamic_bias_correlation_time
         if spec.dynamic_bias_stddev <= 0.0 or tau <= 0.0 or elapsed <= 0.0:

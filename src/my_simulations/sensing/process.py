@@ -21,8 +21,8 @@ from ..child_process import (
 )
 from ..engine.message_pipe import Wire
 from .api import (
+    PROBLEM,
     READY,
-    TROUBLE,
     CastBatch,
     CastRays,
     Change,
@@ -30,8 +30,8 @@ from .api import (
     RayReturns,
     RenderCamera,
     Request,
+    SensingEndedError,
     SensingError,
-    SensingGoneError,
     SensingUnavailableError,
 )
 from .scene import SceneState
@@ -94,7 +94,7 @@ class SensingProcess:
         child = self._child
         return child.pid if child is not None and child.poll() is None else 0
 
-    def on_trouble(self, listener: Callable[[str], None]) -> None:
+    def on_problem(self, listener: Callable[[str], None]) -> None:
         """Set who hears one sentence of each death and of what is left out of the scene."""
         self._listener = listener
 
@@ -138,7 +138,7 @@ class SensingProcess:
 
     def _fault(self, kind: str) -> Optional[SensingError]:
         if self._closing:
-            return SensingGoneError("the sensing process is being closed")
+            return SensingEndedError("the sensing process is being closed")
         if kind in self._refusals:
             return SensingUnavailableError(self._refusals[kind])
         if len(self._waiting) >= _MOST_WAITING:
@@ -261,7 +261,7 @@ class SensingProcess:
         self._fail_all(self._verdict or _reason(child.returncode), wire)
 
     def _answer(self, number: int, message: Any) -> None:
-        if number == TROUBLE:
+        if number == PROBLEM:
             self._listener(message)
             return
         with self._lock:
@@ -297,7 +297,7 @@ class SensingProcess:
             self._listener(given_up or f"{reason}; physics goes on, and the next ray or picture "
                            "starts another")
         for one in waiting.values():
-            one.future.set_exception(SensingGoneError(reason))
+            one.future.set_exception(SensingEndedError(reason))
 
     def _give_up(self, reason: str, kinds: Set[str]) -> str:
         """Count a death with such requests pending; returns the message if a kind is given up."""

@@ -37,7 +37,7 @@ class Scenery:
 
     Args:
         scenery: roads and actors.
-        trouble: is told of skins that cannot be read.
+        report_problem: is told of skins that cannot be read.
         viewers: who does not see them, for that sentence.
     """
 

@@ -14,8 +14,8 @@ from ..engine.message_pipe import Wire
 from ..engine.ring import RingReader
 from .api import (
     COLLISIONS,
+    PROBLEM,
     READY,
-    TROUBLE,
     VISUALS,
     WORLD_ROW,
     At,
@@ -29,7 +29,7 @@ from .api import (
     RayReturns,
     RenderCamera,
     SensingError,
-    SnapshotGoneError,
+    SnapshotOverwrittenError,
 )
 from .poses import matrices, matrix, rows_of
 from .scene import SceneState
@@ -49,8 +49,8 @@ class Service:
         self._sending = threading.Lock()
         # Rays are short: a request that brings its rows is spared the way to another thread. One
         # that names a state of the ring is copied from there while others are cast.
-        self._rays = _Worker("rays", _Rays(self.trouble), self._reply, at_once=ring is None)
-        self._camera = _Worker("camera", _Camera(self.trouble), self._reply)
+        self._rays = _Worker("rays", _Rays(self.report_problem), self._reply, at_once=ring is None)
+        self._camera = _Worker("camera", _Camera(self.report_problem), self._reply)
 
     def run(self) -> None:
         """Receive; what each request is to see is copied before the next is looked at."""
@@ -86,7 +86,7 @@ class Service:
             return rows_of(rows), step
         found = self._ring.earlier_links(at)
         if found is None:
-            raise SnapshotGoneError(f"state {at} is gone, the simulation runs too far ahead")
+            raise SnapshotOverwrittenError(f"state {at} is gone, the simulation runs too far ahead")
         return rows_of(found[1]), found[0]
 
     def _reply(self, number: int, answer: object) -> None:
@@ -96,9 +96,9 @@ class Service:
             except OSError:
                 return  # the parent is gone: `run` sees it, too
 
-    def trouble(self, text: str) -> None:
+    def report_problem(self, text: str) -> None:
         """Report to the parent what is left out."""
-        self._reply(TROUBLE, text)
+        self._reply(PROBLEM, text)
 
 
 class _Worker:

@@ -124,7 +124,7 @@ class SimClock:
         """
         if self._session.ring.step != after_step:
             return True
-        return self._session.supervisor.engine.wait_bell(timeout)
+        return self._session.supervisor.engine.wait_for_wake(timeout)
 
     # -- for the other parts -----------------------------------------------------------------------
 

@@ -9,7 +9,7 @@ from ..engine.commands import Batch, DisconnectModels
 from ..errors import CommandError
 from ..geometry import compose, inverse
 from .known_models import KnownModels
-from .model_links import ModelLinks
+from .model_links import ModelConnections
 from .session import Session
 
 
@@ -21,7 +21,7 @@ class ConnectedModels(KnownModels):
 
     def __init__(self, session: Session) -> None:
         super().__init__(session)
-        self._links = ModelLinks()
+        self._links = ModelConnections()
 
     @property
     def inter_model_joints(self) -> List[Joint]:
@@ -32,11 +32,11 @@ class ConnectedModels(KnownModels):
         return self._links.lasting_joints.joints
 
     @property
-    def links(self) -> ModelLinks:
+    def links(self) -> ModelConnections:
         """Joints between models and pins, as they are now."""
         return self._links
 
-    def adopt_links(self, links: ModelLinks) -> None:
+    def adopt_connections(self, links: ModelConnections) -> None:
         """Keep other joints and pins, which the engine has now."""
         self._links = links
 
@@ -62,7 +62,7 @@ class ConnectedModels(KnownModels):
             others = tuple(one for one in self._links.held if one != name)
             self._set_pins(replace(self._links, held=(*others, name) if held else others))
 
-    def _set_pins(self, links: ModelLinks) -> None:
+    def _set_pins(self, links: ModelConnections) -> None:
         with self._session.registry_lock:
             command = links.pin_command(self._session.registry)
         self._session.call(command)

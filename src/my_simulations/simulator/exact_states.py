@@ -13,7 +13,7 @@ from ..geometry import Vec3
 from .clock import SimClock
 from .drives import Drives, DriveSettings
 from .entity import Entity
-from .model_links import ModelLinks
+from .model_links import ModelConnections
 from .models import Models, load_command
 from .physics import WorldPhysics
 from .registry import Registry
@@ -43,7 +43,7 @@ class ExactState:
     gravity: Vec3
     entities: Tuple[Entity, ...]
     states: Tuple[ModelState, ...]
-    links: ModelLinks
+    links: ModelConnections
     drives: DriveSettings
     forces: Tuple[TimedForce, ...]
     run: RunState
@@ -120,7 +120,7 @@ class ExactStates:
                 session.replace_entities(entities)
             session.reserve_ids([entity.model_id for entity in entities]
                                 + [force.force_id for force in state.forces])
-        self._models.adopt_links(state.links)
+        self._models.adopt_connections(state.links)
         self._drives.replace_all(state.drives)
         self._wrenches.replace_all(state.forces)
         self._physics.adopt(state.physics, state.gravity)

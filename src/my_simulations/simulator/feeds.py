@@ -3,7 +3,7 @@ from __future__ import annotations
 
 from typing import Dict, Optional, Tuple
 
-from ..engine.ring import BELL, DEMAND_NS, LINK_WIDTH, POSE_DEMAND_NS, Clock
+from ..engine.ring import DEMAND_NS, LINK_WIDTH, POSE_DEMAND_NS, WAKE_REQUESTED, Clock
 from .row_layout import RowLayout, layout_of
 from .session import Session
 
@@ -38,7 +38,7 @@ class StateFeed:
             for n, word in enumerate((DEMAND_NS, POSE_DEMAND_NS)):
                 most = max(request[n] for request in self._requests.values())
                 words[word] = int(1e9 / most) if most > 0.0 else 0
-            words[BELL] = int(any(notified for _, _, notified in self._requests.values()))
+            words[WAKE_REQUESTED] = int(any(notified for _, _, notified in self._requests.values()))
 
     def states(self) -> Tuple[RowLayout, int, bytes]:
         """The layout, the snapshot's sequence number, and its rows of `ROW_WIDTH` doubles.

@@ -11,7 +11,7 @@ RECENT_ISSUES = 100
 
 
 class IssueLog:
-    """Buffers issues until `open` is called, and keeps recent ones for `also`."""
+    """Buffers issues until `open` is called, and keeps recent ones for `add_receiver`."""
 
     def __init__(self) -> None:
         self._lock = threading.Lock()
@@ -30,7 +30,7 @@ class IssueLog:
             if receiver is not None:
                 receiver(issue)
 
-    def also(self, sink: Callable[[Issue], None]) -> None:
+    def add_receiver(self, sink: Callable[[Issue], None]) -> None:
         """Add a second receiver; it also gets the last `RECENT_ISSUES` issues."""
         with self._lock:
             self._also, recent = sink, list(self._recent)

@@ -12,7 +12,7 @@ from .registry import Registry
 
 
 @dataclass(frozen=True)
-class ModelLinks:
+class ModelConnections:
     """Joints between models, and the models that are pinned.
 
     Attributes:
@@ -31,28 +31,28 @@ class ModelLinks:
         """The joints that the world has of its own, without those that `Models.attach` made."""
         return self.between.removed(self.attached)
 
-    def without(self, model: str) -> "ModelLinks":
+    def without(self, model: str) -> "ModelConnections":
         """After a model was deleted."""
         return replace(self, between=self.between.without(model),
                        pinned=_others(self.pinned, model), held=_others(self.held, model))
 
-    def renamed(self, old: str, new: str, registry: Registry) -> "ModelLinks":
+    def renamed(self, old: str, new: str, registry: Registry) -> "ModelConnections":
         """After a model was edited, and perhaps renamed."""
-        return ModelLinks(
+        return ModelConnections(
             self.between.renamed(old, new, self.attached).present(registry), self.attached,
             *(tuple(new if name == old else name for name in names)
               for names in (self.pinned, self.held)))
 
-    def with_joint(self, joints: InterModelJoints, name: str) -> "ModelLinks":
+    def with_joint(self, joints: InterModelJoints, name: str) -> "ModelConnections":
         """After `Models.attach` made the joint `name`; `joints`: all there are now."""
         return replace(self, between=joints, attached=(*_others(self.attached, name), name))
 
-    def without_joint(self, name: str) -> "ModelLinks":
+    def without_joint(self, name: str) -> "ModelConnections":
         """After the joint `name` was removed."""
         return replace(self, between=self.between.removed((name,)),
                        attached=_others(self.attached, name))
 
-    def detached(self) -> "ModelLinks":
+    def detached(self) -> "ModelConnections":
         """After everything that `Models.attach` joined was detached."""
         return replace(self, between=self.lasting_joints, attached=())
 

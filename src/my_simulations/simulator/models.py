@@ -28,7 +28,7 @@ from .entity import Entity
 from .initial_state import initial_commands
 from .inter_model_joints import DeletedModel, InterModelJoints
 from .load_groups import small_groups
-from .model_links import ModelLinks
+from .model_links import ModelConnections
 from .model_preparation import prepare_shapes
 from .order_slot import OrderSlot
 from .registry import NameTakenError
@@ -332,7 +332,7 @@ class Models(ConnectedModels):
             for entity in session.registry.entities():
                 session.registry.remove(entity.model.name)
                 self._forget(entity)
-        self._links = ModelLinks(self._links.between)
+        self._links = ModelConnections(self._links.between)
 
     def restore_commands(self, snapshot: Snapshot) -> List[Command]:
         """Commands that load every model into a new engine, in the states of a snapshot."""

@@ -301,7 +301,7 @@ class Registry:
         return None
 
     def _nearest(self, name: str) -> str:
-        return _meant(name, self._entities)
+        return _closest_name(name, self._entities)
 
     def _nearest_link(self, name: str) -> str:
         """Suggestions for an unknown link: those of a model of that name, else similar names."""
@@ -320,7 +320,7 @@ class Registry:
             for entity in self._entities.values()})
 
 
-def _meant(name: str, known: Iterable[str]) -> str:
+def _closest_name(name: str, known: Iterable[str]) -> str:
     near = difflib.get_close_matches(name, list(known), n=_FEW)
     return f"; did you mean {' or '.join(near)}?" if near else ""
 
@@ -329,7 +329,8 @@ def _scoped_meant(name: str, owned: Mapping[str, Sequence[str]]) -> str:
     """Scoped names (`model::part`) similar to an unknown one."""
     model, _, part = name.partition("::")
     if part and model not in owned:
-        return _meant(name, [f"{owner}::{one}" for owner, names in owned.items() for one in names])
+        return _closest_name(name,
+                             [f"{owner}::{one}" for owner, names in owned.items() for one in names])
     scopes = [model] if part else list(owned)
     plain = {one: f"{owner}::{one}" for owner in reversed(scopes) for one in owned[owner]}
     near = difflib.get_close_matches(part or name, plain, n=_FEW)

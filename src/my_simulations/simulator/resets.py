@@ -56,7 +56,7 @@ class Resets:
             session.call(Batch((*self._models.links.detach_commands(), *(
                 SetModelState(entity.model_id, entity.initial_pose, STILL)
                 for entity in entities if entity.link_names), Synchronize())))
-            self._models.adopt_links(self._models.links.detached())
+            self._models.adopt_connections(self._models.links.detached())
             self._move_linkless_models(entities)
             self.world_resets += 1
 
@@ -88,7 +88,7 @@ class Resets:
             except CommandError:
                 self.simulation_resets -= 1
                 raise
-            self._models.adopt_links(self._models.links.detached())
+            self._models.adopt_connections(self._models.links.detached())
             self._move_linkless_models(entities)
             dropped = self._wrenches.ids
             self._wrenches.replace_all()

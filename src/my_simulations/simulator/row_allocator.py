@@ -15,7 +15,7 @@ class RowAllocator:
     def __init__(self, size: int) -> None:
         self._free: List[Tuple[int, int]] = [(0, size)]
 
-    def take(self, count: int) -> Optional[int]:
+    def allocate(self, count: int) -> Optional[int]:
         """The first of `count` contiguous free rows; None if there are none."""
         if count == 0:
             return 0
@@ -34,7 +34,7 @@ class RowAllocator:
                 self._free[n:n + 1] = [part for part in around if part[1]]
                 return
 
-    def give(self, start: int, count: int) -> None:
+    def free(self, start: int, count: int) -> None:
         """Free `count` rows from `start` on."""
         if count == 0:
             return

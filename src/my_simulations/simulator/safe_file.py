@@ -11,7 +11,7 @@ from ..errors import CommandError
 from ..resources.private_folder import make_private
 
 
-def write_whole(path: str, data: bytes, overwrite: bool, private: bool = False) -> None:
+def write_atomically(path: str, data: bytes, overwrite: bool, private: bool = False) -> None:
     """Write a file atomically; creates missing folders.
 
     On any error an existing file is unchanged, and no partial file is left. If `private`, only the

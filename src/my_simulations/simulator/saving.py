@@ -26,7 +26,7 @@ from ..resources.resolver import Resolver, ResourceNotFoundError
 from ..resources.world_lookup import ENDINGS, folder_of_users, ships, users_folder
 from ..xml_characters import check_file_name
 from .entity import Entity
-from .safe_file import write_whole
+from .safe_file import write_atomically
 from .simulator import Simulator
 
 EXTENSIONS = ENDINGS
@@ -156,7 +156,7 @@ def save_world(simulator: Simulator, path: str, *, roots: Sequence[str],
         _refuse_losses(simulator, target)
     world = present_world(simulator, state=state, launched=launched)
     included = None if inline or resolver is None else _Includes(resolver)
-    write_whole(target, write_world(world, world.state, included), overwrite)
+    write_atomically(target, write_world(world, world.state, included), overwrite)
     return target
 
 

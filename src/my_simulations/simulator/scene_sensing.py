@@ -110,7 +110,7 @@ class SceneSensing:
             resolver = self._resolver = Resolver.from_environment()
             self._materials = Materials(resolver, TextureFiles(resolver))
             process = self._process = SensingProcess()
-            process.on_trouble(lambda text: self._log(warning("sensing", text)))
+            process.on_problem(lambda text: self._log(warning("sensing", text)))
         revision, entities = self._simulator.models.inventory()
         if revision != self._revision:
             self._revision = revision

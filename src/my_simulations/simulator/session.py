@@ -153,11 +153,11 @@ class Session:
         if excess:
             raise CommandError(excess)
         links, joints = len(model.links), len(axis_rows(model))
-        first_link = self._link_rows.take(links)
-        first_joint = self._joint_rows.take(joints)
+        first_link = self._link_rows.allocate(links)
+        first_joint = self._joint_rows.allocate(joints)
         if first_link is None or first_joint is None:
             if first_link is not None:
-                self._link_rows.give(first_link, links)
+                self._link_rows.free(first_link, links)
             raise CommandError(f"limit of {LINKS} links and {JOINTS} joint axes per world "
                                "exceeded")
         self._cost += cost
@@ -167,8 +167,8 @@ class Session:
     def free_rows(self, entity: Entity) -> None:
         """Free the rows of an entity that was deleted from the engine. Requires both locks."""
         self._cost -= entity.cost
-        self._link_rows.give(entity.first_link_row, len(entity.link_names))
-        self._joint_rows.give(entity.first_joint_row, len(entity.joint_names))
+        self._link_rows.free(entity.first_link_row, len(entity.link_names))
+        self._joint_rows.free(entity.first_joint_row, len(entity.joint_names))
 
     def replace_entities(self, entities: Sequence[Entity]) -> None:
         """Replace all entities by others with ids and rows of this or another session.

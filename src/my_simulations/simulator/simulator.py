@@ -83,9 +83,9 @@ class Simulator:
         self.feed = StateFeed(session)
 
     @property
-    def over(self) -> bool:
+    def is_over(self) -> bool:
         """Whether it was closed, or has lost its engine for good."""
-        return self._session.supervisor.over
+        return self._session.supervisor.is_over
 
     @property
     def world(self) -> World:

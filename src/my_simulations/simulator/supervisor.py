@@ -35,7 +35,7 @@ _RAPID_DEATHS = 3
 _TRIES = 2            # a command that crashes this many engines is not sent again
 
 
-class _Death(NamedTuple):
+class _EngineEnd(NamedTuple):
     """The end of an engine.
 
     Attributes:
@@ -75,7 +75,7 @@ class Supervisor:
         self._is_replacing = False  # the engine was killed to undo a part of a change
         self._ready = threading.Event()
         self._closing = False
-        self._deaths: "queue.Queue[Optional[_Death]]" = queue.Queue()
+        self._deaths: "queue.Queue[Optional[_EngineEnd]]" = queue.Queue()
         self._lost: Deque[Command] = deque()  # posted commands that no engine has applied
         self._ping_lock = threading.Lock()
         self._shown = 0                       # number of a posted command that snapshots show
@@ -97,7 +97,7 @@ class Supervisor:
         return self._engine
 
     @property
-    def over(self) -> bool:
+    def is_over(self) -> bool:
         """Whether no command will be carried out any more."""
         return self._closing or self._failure is not None
 
@@ -157,7 +157,7 @@ class Supervisor:
         Do not call it from a thread of the engine or the supervisor. Raises as `call`.
         """
         engine = self._engine
-        if engine is None or engine.posted <= self._shown or self.over:
+        if engine is None or engine.posted <= self._shown or self.is_over:
             return
         wanted = engine.posted
         with self._ping_lock:  # one ping serves all who wait meanwhile
@@ -200,15 +200,15 @@ class Supervisor:
             try:
                 death = self._deaths.get(timeout=PERIOD_S)
             except queue.Empty:
-                self._look_after(self._engine)
+                self._watch_engine(self._engine)
                 continue
             if death is None or self._closing:
                 break
-            self._revive(death)
+            self._restart_engine(death)
         if self._engine is not None:
             self._engine.close()
 
-    def _look_after(self, engine: Engine) -> None:
+    def _watch_engine(self, engine: Engine) -> None:
         words = engine.ring.words
         silence = self._watchdog.look(engine.pid, (words[HEARTBEAT], words[PROGRESS]))
         if silence:
@@ -223,14 +223,14 @@ class Supervisor:
             return False
         self._ready.clear()
         self._lost.extend(one.command for one in unanswered if isinstance(one, Post))
-        death = _Death(reason, self._is_replacing, bool(unanswered) and not self._restoring
+        death = _EngineEnd(reason, self._is_replacing, bool(unanswered) and not self._restoring
                        and _brings_models(unanswered[0]))
         self._is_replacing = False
         self._deaths.put(death)
         return bool(unanswered) and not isinstance(unanswered[0], Post) \
             and not death.is_replaced and not self._restoring
 
-    def _revive(self, death: _Death) -> None:
+    def _restart_engine(self, death: _EngineEnd) -> None:
         now = time.monotonic()
         self._recent = [at for at in self._recent if now - at < _RAPID_S]
         if not (death.is_replaced or death.at_a_load):  # otherwise the world is not the cause

@@ -25,7 +25,7 @@ from .session import Session, do_nothing
 _CHANGE_S = 1.0   # how long a change of models that is under way is waited for
 
 
-class Moment(NamedTuple):
+class SimTimeStep(NamedTuple):
     """Position of the engine in time.
 
     Attributes:
@@ -71,11 +71,11 @@ class SyncPoints:
         """
         return self._session.ring.words[SETTINGS]
 
-    def now(self) -> Moment:
+    def now(self) -> SimTimeStep:
         """Position of the engine."""
-        return Moment(*self._session.ring.clock_now())
+        return SimTimeStep(*self._session.ring.clock_now())
 
-    def waits_at(self, moment: Moment) -> bool:
+    def waits_at(self, moment: SimTimeStep) -> bool:
         """Whether the engine waits there; the newest states are those of that step then."""
         return self._session.ring.words[WAITS_AT] == moment.step + 1
 

@@ -32,7 +32,7 @@ def choice_of(plan: CasePlan, case: Case) -> Tuple[WorldChoice, CaseChanges]:
         changes.world, changes.model), changes
 
 
-def opened(plan: CasePlan, case: Case) -> OpenWorld:
+def open_case(plan: CasePlan, case: Case) -> OpenWorld:
     """The world of a case, before its first step. Raises InputError if it cannot be used."""
     world = OpenWorld(choice_of(plan, case)[0])
     if errors_of(world.issues):
@@ -41,7 +41,7 @@ def opened(plan: CasePlan, case: Case) -> OpenWorld:
     return world
 
 
-def play(world: OpenWorld, duration: float, every: float,
+def run_case(world: OpenWorld, duration: float, every: float,
          watchers: Sequence[Callable[[OpenWorld], None]]) -> None:
     """Make the steps of a case; watchers see the start, every so many s of sim time, and the end.
 

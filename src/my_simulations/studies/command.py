@@ -15,12 +15,12 @@ from typing import Callable, List, Mapping, Optional, Sequence, Set, Tuple
 from ..errors import CommandError, InputError, SimulationError
 from ..program_end import is_disk_full
 from . import slurm
-from .case_world import opened, play
+from .case_world import open_case, run_case
 from .cluster_address import SLURM, TlsFiles, scheduler_address
 from .command_line import parser
 from .folder import REPORT, StudyFolder, shard_of
 from .journal import Journal, finished_cases
-from .plan import WHOLE, Case, CasePlan, Shard, number_of
+from .plan import ALL_CASES, Case, CasePlan, Shard, number_of
 from .replacing import replaced
 from .replays import Record, WriteReplay, keep_replays
 from .report import write_report
@@ -31,7 +31,7 @@ from .show import can_launch, launch_command, write_world
 from .slot import Hook, final_hash
 from .study_file import read_study
 from .study_progress import Progress
-from .study_runner import Rate, StudyRunner, Told
+from .study_runner import Rate, Report, StudyRunner
 from .table import rows_in_order
 
 NOT_ALL_OK, INVALID, INTERRUPTED = 1, 2, 130
@@ -169,7 +169,7 @@ def _work(options: argparse.Namespace, folder: StudyFolder, plan: CasePlan, shar
         if options.keep_replays is not None:
             files += options.keep_replays(plan, folder, options.replays, _tell)
         files.append(_report(folder, plan))
-    return _tell_status(folder, plan, shard, options.json, files)
+    return _print_status(folder, plan, shard, options.json, files)
 
 
 def _finished(plan: CasePlan, shard: Shard, journal: str, retried: Sequence[str]) -> Set[int]:
@@ -180,7 +180,7 @@ def _finished(plan: CasePlan, shard: Shard, journal: str, retried: Sequence[str]
 
 
 def _run_on_dask(options: argparse.Namespace, plan: CasePlan, recorder: Recorder,
-                 finished: Set[int], address: str, told: Told, shard: Shard) -> None:
+                 finished: Set[int], address: str, told: Report, shard: Shard) -> None:
     try:
         from .dask_runner import DaskRunner
     except ImportError as fault:
@@ -197,13 +197,13 @@ def _interrupt(_: int, __: Optional[FrameType]) -> None:
 
 def _status(options: argparse.Namespace, _: Optional[Hook]) -> int:
     folder, plan = _opened(options.dir)
-    return _tell_status(folder, plan, WHOLE, options.json, [])
+    return _print_status(folder, plan, ALL_CASES, options.json, [])
 
 
-def _tell_status(folder: StudyFolder, plan: CasePlan, shard: Shard, as_json: bool,
+def _print_status(folder: StudyFolder, plan: CasePlan, shard: Shard, as_json: bool,
                  files: List[str]) -> int:
     """Report the results of the cases of a shard, or of all; returns the exit code."""
-    total = folder.became(plan, shard)
+    total = folder.status_counts(plan, shard)
     cases, name = _count(plan, shard), plan.study.name
     done = sum(total.values())
     if as_json:
@@ -223,7 +223,7 @@ def _count(plan: CasePlan, shard: Shard) -> int:
 
 def _report(folder: StudyFolder, plan: CasePlan) -> str:
     path = os.path.join(folder.path, REPORT)
-    write_report(path, plan.study, folder.journals(), sum(folder.became(plan).values()),
+    write_report(path, plan.study, folder.journals(), sum(folder.status_counts(plan).values()),
                  f"study show --in {folder.path}")
     return path
 
@@ -287,12 +287,12 @@ def _record(options: argparse.Namespace, records: Records) -> int:
             raise CommandError(f"{path} is a folder, not the name of a file")
     with contextlib.ExitStack() as stack:
         # A file that is there is replaced at the end, not lost to a case that cannot be run.
-        world = stack.enter_context(opened(plan, case))
+        world = stack.enter_context(open_case(plan, case))
         files = []
         for kind, path in wanted.items():
             part = stack.enter_context(replaced(path))
             files.append(stack.enter_context(contextlib.closing(records[kind](part))))
-        play(world, plan.study.duration, options.every, [file.look for file in files])
+        run_case(world, plan.study.duration, options.every, [file.record_state for file in files])
         found = final_hash(world)
     known = next((row for row in rows_in_order(folder.journals()) if row.case == case.id), None)
     if known is not None and known.hash and known.hash != found:

@@ -5,7 +5,7 @@ import argparse
 import re
 
 from ..program_end import ArgumentParser
-from .plan import WHOLE, Shard
+from .plan import ALL_CASES, Shard
 from .row import STATUSES
 
 _SHARDS = 100
@@ -24,7 +24,7 @@ def parser() -> argparse.ArgumentParser:
     run.add_argument("file", metavar="FILE", help="study file (doc/studies.md)")
     run.add_argument("--out", metavar="DIR", help="folder of the results; default: the name of the"
                      " file, in the working directory")
-    run.add_argument("--shard", type=_shard, default=WHOLE, metavar="I/N",
+    run.add_argument("--shard", type=_shard, default=ALL_CASES, metavar="I/N",
                      help="run every Nth case only, beginning with number I")
     resume = actions.add_parser("resume", help="go on with a study that was interrupted")
     others = {

@@ -23,12 +23,12 @@ from distributed.security import Security
 from ..errors import CommandError
 from .cluster_address import TlsFiles
 from .kept import Kept
-from .plan import WHOLE, Case, CasePlan, Shard
+from .plan import ALL_CASES, Case, CasePlan, Shard
 from .row import NODE_LOST, Row
 from .row_recorder import Recorder
 from .slot_pool import SlotPool
 from .study import Study
-from .study_runner import Told, waiting_cases
+from .study_runner import Report, waiting_cases
 
 _WINDOW = 2        # shards in flight on a worker
 _SHARD_S = 10.0    # that a shard should take
@@ -165,7 +165,7 @@ class DaskRunner:
     """
 
     def __init__(self, plan: CasePlan, recorder: Recorder, finished: Set[int], slots: int,
-                 address: str, tls: TlsFiles, told: Told, say: Callable[[str], None]) -> None:
+                 address: str, tls: TlsFiles, told: Report, say: Callable[[str], None]) -> None:
         self._plan = plan
         self._recorder = recorder
         self._finished = finished
@@ -182,7 +182,7 @@ class DaskRunner:
         self._losses: Dict[str, int] = {}  # of a case that ran alone
         self._left = 0
 
-    def run(self, shard: Shard = WHOLE) -> None:
+    def run(self, shard: Shard = ALL_CASES) -> None:
         """Run the cases of a shard; returns when all are done.
 
         Raises:

@@ -10,7 +10,7 @@ from typing import Any, Callable, Dict, List
 from ..errors import CommandError
 from ..program_end import is_disk_full
 from .journal import has_header, header_of, statuses
-from .plan import WHOLE, CasePlan, Shard, number_of
+from .plan import ALL_CASES, CasePlan, Shard, number_of
 from .replacing import replaced
 from .row import STATUSES
 from .table import parquet_fault, write_csv, write_parquet
@@ -22,7 +22,7 @@ REPORT = "report.html"
 def shard_of(journal: str) -> Shard:
     """Which shard a journal is of, by its name."""
     found = re.search(r"-(\d+)-of-(\d+)\.jsonl$", journal)
-    return Shard(int(found[1]), int(found[2])) if found else WHOLE
+    return Shard(int(found[1]), int(found[2])) if found else ALL_CASES
 
 
 class StudyFolder:
@@ -85,12 +85,12 @@ class StudyFolder:
         return len(found) >= len(plan) and all(number_of(case.id) in found
                                                for case in plan.cases())
 
-    def became(self, plan: CasePlan, shard: Shard = WHOLE) -> Dict[str, int]:
+    def status_counts(self, plan: CasePlan, shard: Shard = ALL_CASES) -> Dict[str, int]:
         """How many cases of a shard of the plan, or of all, have each status.
 
         Rows of former ids, which the plan does not have any more, do not count.
         """
-        paths = self.journals() if shard == WHOLE else [self.journal_of(shard)]
+        paths = self.journals() if shard == ALL_CASES else [self.journal_of(shard)]
         found = statuses(paths)
         count = dict.fromkeys(STATUSES, 0)
         for case in plan.cases(shard) if found else ():

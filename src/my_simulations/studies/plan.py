@@ -22,7 +22,7 @@ class Shard:
     of: int = 1
 
 
-WHOLE = Shard()
+ALL_CASES = Shard()
 
 
 @dataclass(frozen=True)
@@ -71,7 +71,7 @@ class CasePlan:
     def __len__(self) -> int:
         return self.study.count
 
-    def cases(self, shard: Shard = WHOLE) -> Iterator[Case]:
+    def cases(self, shard: Shard = ALL_CASES) -> Iterator[Case]:
         """The cases of a shard, in order."""
         for index in range(shard.index - 1, len(self), shard.of):
             yield self.case(index)

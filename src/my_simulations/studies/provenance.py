@@ -19,7 +19,7 @@ from ..resources.world_lookup import find_world
 _XACRO_SECONDS = 60.0
 
 
-class NotingResolver(Resolver):
+class RecordingResolver(Resolver):
     """A resolver that notes every file that it finds.
 
     Attributes:
@@ -81,8 +81,8 @@ def digest_of_world(world: str, profile: str, objects: Sequence[str], object_lis
     Included models, meshes and the documents of objects (after xacro) count. A file that cannot
     be read counts by its fault.
     """
-    resolver = NotingResolver.from_environment()
-    assert isinstance(resolver, NotingResolver)
+    resolver = RecordingResolver.from_environment()
+    assert isinstance(resolver, RecordingResolver)
     parts: List[object] = []
     try:
         path = find_world(world, resolver, "")
@@ -105,7 +105,7 @@ def digest_of_world(world: str, profile: str, objects: Sequence[str], object_lis
 
 
 def _object_texts(objects: Sequence[str], object_list: str, world: str,
-                  resolver: NotingResolver) -> List[object]:
+                  resolver: RecordingResolver) -> List[object]:
     parts: List[object] = []
     try:
         selection, issues = selected_objects(objects, object_list, world)

@@ -9,7 +9,7 @@ from typing import Callable, List, Protocol
 
 from ..errors import SimulationError
 from ..python_api import OpenWorld
-from .case_world import opened, play
+from .case_world import open_case, run_case
 from .folder import StudyFolder
 from .plan import Case, CasePlan
 from .row import FAILED, OK, Row
@@ -31,7 +31,7 @@ time.
 class Record(Protocol):
     """A file that records what happens in a world."""
 
-    def look(self, world: OpenWorld) -> None:
+    def record_state(self, world: OpenWorld) -> None:
         """Add the present state."""
 
     def close(self) -> None:
@@ -105,6 +105,6 @@ def _record_again(plan: CasePlan, case: Case, path: str, title: str,
                   record: Callable[[str], Record], write: WriteReplay) -> None:
     with tempfile.TemporaryDirectory(prefix="my_simulations_replay_") as folder:
         log = os.path.join(folder, "state.log")
-        with opened(plan, case) as world, contextlib.closing(record(log)) as file:
-            play(world, plan.study.duration, _EVERY_S, [file.look])
+        with open_case(plan, case) as world, contextlib.closing(record(log)) as file:
+            run_case(world, plan.study.duration, _EVERY_S, [file.record_state])
         write(log, path, title, math.inf)

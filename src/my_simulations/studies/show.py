@@ -5,7 +5,7 @@ import os
 import shutil
 from typing import List
 
-from .case_world import opened
+from .case_world import open_case
 from .plan import Case, CasePlan
 
 
@@ -16,7 +16,7 @@ def write_world(plan: CasePlan, case: Case, path: str) -> str:
         InputError: the world cannot be used.
         CommandError: it cannot be written.
     """
-    with opened(plan, case) as world:
+    with open_case(plan, case) as world:
         return world.save_world(path, overwrite=True)
 
 

@@ -16,7 +16,7 @@ from ..engine.commands import Command
 from ..engine.process_engine import ProcessEngine
 from ..errors import CommandError, InputError, Severity, SimulationError
 from ..python_api import OpenWorld
-from ..python_api.kept_files import KeptFiles
+from ..python_api.kept_files import FileCache
 from ..python_api.world_choice import WorldChoice
 from ..simulator.watchdog import process_time
 from .attempts import until_no_crash
@@ -100,7 +100,7 @@ class Slot:
         hook: for tests.
     """
 
-    def __init__(self, plan: CasePlan, processor: str, stop: threading.Event, files: KeptFiles,
+    def __init__(self, plan: CasePlan, processor: str, stop: threading.Event, files: FileCache,
                  hook: Optional[Hook] = None) -> None:
         self._plan = plan
         self._study: Study = plan.study

@@ -7,7 +7,7 @@ from concurrent.futures import FIRST_EXCEPTION, ThreadPoolExecutor, wait
 from queue import SimpleQueue
 from typing import Callable, Iterator, List, Optional, Protocol, Tuple
 
-from ..python_api.kept_files import KeptFiles
+from ..python_api.kept_files import FileCache
 from ..resources.resolver import Resolver
 from .kept import Kept
 from .plan import Case, CasePlan
@@ -135,5 +135,5 @@ def _made(plan: CasePlan, count: int, stop: threading.Event, hook: Optional[Hook
     processor = processor_type()
     if plan.study.scenarios:
         return [ScenarioSlot(plan, processor, stop) for _ in range(count)]
-    files = KeptFiles(Resolver.from_environment(), _KEPT_FILES)
+    files = FileCache(Resolver.from_environment(), _KEPT_FILES)
     return [Slot(plan, processor, stop, files, hook) for _ in range(count)]

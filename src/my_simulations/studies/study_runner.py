@@ -6,13 +6,13 @@ import time
 from typing import Callable, Dict, Iterator, List, Optional, Set
 
 from .kept import Kept
-from .plan import WHOLE, Case, CasePlan, Shard, number_of
+from .plan import ALL_CASES, Case, CasePlan, Shard, number_of
 from .row import Row
 from .row_recorder import Recorder
 from .slot import Hook
 from .slot_pool import SlotPool
 
-Told = Callable[[Row], None]
+Report = Callable[[Row], None]
 
 
 def waiting_cases(plan: CasePlan, shard: Shard, finished: Set[int]) -> Iterator[Case]:
@@ -35,7 +35,7 @@ class StudyRunner:
     """
 
     def __init__(self, plan: CasePlan, recorder: Recorder, finished: Set[int], slots: int,
-                 told: Told = lambda row: None, hook: Optional[Hook] = None) -> None:
+                 told: Report = lambda row: None, hook: Optional[Hook] = None) -> None:
         self._plan = plan
         self._recorder = recorder
         self._finished = finished
@@ -44,7 +44,7 @@ class StudyRunner:
         self._slots = slots
         self._ready = threading.Lock()
 
-    def run(self, shard: Shard = WHOLE) -> None:
+    def run(self, shard: Shard = ALL_CASES) -> None:
         """Run the cases of a shard; returns when all are done.
 
         The first exception that is no result of a case, such as that of a full disk, ends the run.

@@ -30,7 +30,7 @@ class Target:
     part: str = ""
 
     @property
-    def wants(self) -> str:
+    def value_kind(self) -> str:
         """What its values are: NUMBER, POSE, NAME, NAMES or TEXT."""
         if self.kind == "pose" and not self.part:
             return POSE

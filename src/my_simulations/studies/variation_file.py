@@ -52,8 +52,8 @@ def parameter_of(reader: ValueReader, name: str, value: Any, path: KeyPath,
         return None
     (key,) = sources
     below = (*path, key)
-    if key != "values" and target.wants not in (NUMBER, TEXT):
-        reader.fault(below, f"'{name}' takes {target.wants}: list its values")
+    if key != "values" and target.value_kind not in (NUMBER, TEXT):
+        reader.fault(below, f"'{name}' takes {target.value_kind}: list its values")
         return None
     if key == "values":
         values = _listed(reader, target, inside[key], below)
@@ -97,13 +97,13 @@ def _listed(reader: ValueReader, target: Target, value: Any, path: KeyPath
         return ()
     found: List[Setting] = []
     for item in value:
-        if target.wants == POSE:
+        if target.value_kind == POSE:
             found.append(reader.numbers(item, path, (3, 6)))
-        elif target.wants == NAMES:
+        elif target.value_kind == NAMES:
             found.append(reader.names(item, path))
-        elif target.wants == NAME:
+        elif target.value_kind == NAME:
             found.append(reader.world(item, path))
-        elif target.wants == TEXT:
+        elif target.value_kind == TEXT:
             found.append(_argument(reader, item, path))
         elif target.kind == "none" and isinstance(item, str):
             found.append(item)

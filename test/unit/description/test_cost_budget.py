@@ -36,11 +36,11 @@ def test_pairs_of_a_tree_count_only_if_it_collides_with_itself():
     links = [link(f"l{n}") for n in range(4)]
     joints = [Joint("a", "revolute", "l0", "l1"), Joint("b", "fixed", "l1", "l2")]
     assert cost_of(Model("m", links=links, joints=joints)).pairs == 3
-    assert cost_of(Model("m", links=links, joints=joints)).meeting_pairs == 0
+    assert cost_of(Model("m", links=links, joints=joints)).colliding_pairs == 0
     asking = cost_of(Model("m", links=links, joints=joints, self_collide=True))
-    assert (asking.pairs, asking.meeting_pairs) == (6, 6)
+    assert (asking.pairs, asking.colliding_pairs) == (6, 6)
     one = [*links[:3], dataclasses.replace(links[3], self_collide=True)]
-    assert cost_of(Model("m", links=one, joints=joints)).meeting_pairs == 3
+    assert cost_of(Model("m", links=one, joints=joints)).colliding_pairs == 3
     assert cost_of(Model("m", links=links, joints=joints, static=True)).pairs == 0
 
 
@@ -76,7 +76,7 @@ def test_each_limit_is_reported_with_both_numbers(name):
 
 def test_large_useful_models_are_within_the_limits():
     assert not list(budget_faults(Cost(links=300, shapes=1000, triangles=500_000, pairs=44_850,
-                                  meeting_pairs=44_850),
+                                  colliding_pairs=44_850),
                                   Model("robot")))
     assert not world_excess(Cost(links=10_000, shapes=40_000, triangles=2_000_000, pairs=500_000,
-                                 meeting_pairs=50_000))
+                                 colliding_pairs=50_000))

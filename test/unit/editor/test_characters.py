@@ -145,7 +145,7 @@ def test_autosave_survives_whatever_goes_wrong_and_says_so(case, monkeypatch):
     made = case(box("a"))
     kept = made.worlds.parent
     faults = [ValueError("first"), MemoryError(), PermissionError(13, "Permission denied")]
-    true_write = autosave.write_whole
+    true_write = autosave.write_atomically
 
     def failing(*args, **options):
         if faults:

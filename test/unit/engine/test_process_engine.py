@@ -66,7 +66,7 @@ def test_replies_are_taken_while_a_large_command_is_being_sent(engine):
 
 def test_a_closed_engine_leaves_no_descriptors_and_wakes_who_waits_for_the_bell(engine):
     descriptors = (engine._ring_fd, engine._bell.input, engine._bell.output, engine._notices.input)
-    waiting = threading.Thread(target=engine.wait_bell, args=(WAIT,))
+    waiting = threading.Thread(target=engine.wait_for_wake, args=(WAIT,))
     waiting.start()
     engine.close()
     waiting.join(WAIT / 2)
@@ -74,7 +74,7 @@ def test_a_closed_engine_leaves_no_descriptors_and_wakes_who_waits_for_the_bell(
     for descriptor in descriptors:
         with pytest.raises(OSError):
             os.fstat(descriptor)
-    assert not engine.wait_bell(0.0) and engine.ring.step == 0
+    assert not engine.wait_for_wake(0.0) and engine.ring.step == 0
     engine.close()
 
 

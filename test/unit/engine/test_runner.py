@@ -234,11 +234,11 @@ def test_states_are_published_while_bodies_move(engine):
 
 
 def test_the_bell_rings_for_steps_only_when_asked_to(engine):
-    from my_simulations.engine.ring import BELL
+    from my_simulations.engine.ring import WAKE_REQUESTED
     ask(engine, Run(FOREVER))
-    assert not engine.wait_bell(0.05)
-    engine.ring.words[BELL] = 1
-    assert engine.wait_bell(WAIT)
+    assert not engine.wait_for_wake(0.05)
+    engine.ring.words[WAKE_REQUESTED] = 1
+    assert engine.wait_for_wake(WAIT)
 
 
 def test_a_killed_engine_fails_what_it_has_not_answered(engine):

@@ -9,7 +9,7 @@ from my_simulations.geometry import Pose
 from my_simulations.plugins.context import View
 from my_simulations.plugins.message_maker import MessageMaker, PendingMessage
 from my_simulations.plugins.sensing_requests import SensingRequests
-from my_simulations.sensing.api import CameraSpec, Mount, SensingGoneError
+from my_simulations.sensing.api import CameraSpec, Mount, SensingEndedError
 
 VIEW = (Mount(), View("head", Pose(), CameraSpec(), ("rgb",)))
 
@@ -103,7 +103,7 @@ def test_after_a_loss_the_first_picture_is_taken_anew():
     case = Case()
     before = case.again
     case.shoot(1)
-    case.sensing.asked[-1][0].set_exception(SensingGoneError("it was killed"))
+    case.sensing.asked[-1][0].set_exception(SensingEndedError("it was killed"))
     case.deliver()
     case.shoot(2)
     case.answer("too old")
@@ -152,7 +152,7 @@ def test_a_lost_picture_is_told_and_the_next_is_taken():
     case = Case()
     for ns in (1, 2):
         case.shoot(ns)
-        case.sensing.asked[-1][0].set_exception(SensingGoneError("it was killed"))
+        case.sensing.asked[-1][0].set_exception(SensingEndedError("it was killed"))
         case.deliver()
     assert case.said == ["a picture is left out: it was killed"] and case.shoot(3)
 

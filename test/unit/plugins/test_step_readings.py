@@ -9,7 +9,7 @@ from my_simulations.engine.ring import Clock
 from my_simulations.plugins.observations import StepView
 from my_simulations.plugins.schedule import Schedule
 from my_simulations.plugins.step_readings import StepReadings
-from my_simulations.simulator.sync_points import Moment
+from my_simulations.simulator.sync_points import SimTimeStep
 
 
 class Engine:
@@ -22,11 +22,11 @@ class Engine:
 
     def _efforts(self, rows):
         self.asked.append(list(rows))
-        return [10.0 * self._schedule.moment.step + row for row in rows]
+        return [10.0 * self._schedule.time_step.step + row for row in rows]
 
     def _contacts(self):
         self.looks += 1
-        return [self._schedule.moment.step]
+        return [self._schedule.time_step.step]
 
 
 @pytest.fixture
@@ -37,7 +37,7 @@ def schedule():
 
 
 def stand_at(schedule, step, clock_sets=0):
-    schedule.set_moment(Moment(clock_sets, step, Clock(0, 0, 10 ** 9)))
+    schedule.set_time_step(SimTimeStep(clock_sets, step, Clock(0, 0, 10 ** 9)))
 
 
 def test_rows_that_two_robots_ask_for_are_read_together_from_the_second_step_on(schedule):

@@ -5,7 +5,7 @@ import os
 import stat
 
 from my_simulations.resources.private_folder import make_private
-from my_simulations.simulator.safe_file import write_whole
+from my_simulations.simulator.safe_file import write_atomically
 
 
 def mode(path):
@@ -23,10 +23,10 @@ def test_a_private_folder_is_closed_to_others_also_if_it_existed(tmp_path):
 def test_private_files_are_readable_by_their_user_alone(tmp_path):
     path = tmp_path / "new" / "file"
     for _ in range(2):
-        write_whole(str(path), b"x", overwrite=True, private=True)
+        write_atomically(str(path), b"x", overwrite=True, private=True)
         assert mode(path) == 0o600 and mode(path.parent) == 0o700
         os.chmod(path, 0o644)
-    write_whole(str(tmp_path / "public" / "file"), b"x", overwrite=False)
+    write_atomically(str(tmp_path / "public" / "file"), b"x", overwrite=False)
     mask = os.umask(0)
     os.umask(mask)
     assert mode(tmp_path / "public" / "file") == 0o666 & ~mask

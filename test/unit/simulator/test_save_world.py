@@ -293,7 +293,7 @@ def test_a_full_disk_leaves_the_old_file_and_nothing_else(call, tmp_path, monkey
 
     monkeypatch.setattr(safe_file.os, call, full)
     with pytest.raises(CommandError, match="No space left"):
-        safe_file.write_whole(str(path), b"new", True)
+        safe_file.write_atomically(str(path), b"new", True)
     assert path.read_bytes() == b"old"
     assert os.listdir(tmp_path) == ["s.world"]
 
@@ -301,14 +301,14 @@ def test_a_full_disk_leaves_the_old_file_and_nothing_else(call, tmp_path, monkey
 def test_a_folder_that_cannot_be_is_reported(tmp_path):
     (tmp_path / "file").write_text("no folder")
     with pytest.raises(CommandError, match="cannot write"):
-        safe_file.write_whole(str(tmp_path / "file" / "s.world"), b"new", True)
+        safe_file.write_atomically(str(tmp_path / "file" / "s.world"), b"new", True)
 
 
 def test_a_replaced_file_keeps_its_mode(tmp_path):
     path = tmp_path / "s.world"
     path.write_bytes(b"old")
     path.chmod(0o640)
-    safe_file.write_whole(str(path), b"new", True)
+    safe_file.write_atomically(str(path), b"new", True)
     assert stat.S_IMODE(path.stat().st_mode) == 0o640
 
 
@@ -363,5 +363,5 @@ def test_a_file_is_saved_in_a_folder_that_cannot_be_forced_to_the_disk(tmp_path,
         force(handle)
 
     monkeypatch.setattr(os, "fsync", forced)
-    safe_file.write_whole(str(tmp_path / "file"), b"content", overwrite=False)
+    safe_file.write_atomically(str(tmp_path / "file"), b"content", overwrite=False)
     assert (tmp_path / "file").read_bytes() == b"content"

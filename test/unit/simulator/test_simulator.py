@@ -374,10 +374,10 @@ def test_many_threads_may_spawn_move_and_delete_at_once(case):
 
 def test_rows_are_handed_out_first_fit_and_merge_when_freed():
     rows = RowAllocator(10)
-    assert [rows.take(4), rows.take(4), rows.take(4)] == [0, 4, None]
-    rows.give(0, 4)
-    rows.give(4, 4)
-    assert rows.take(10) == 0
+    assert [rows.allocate(4), rows.allocate(4), rows.allocate(4)] == [0, 4, None]
+    rows.free(0, 4)
+    rows.free(4, 4)
+    assert rows.allocate(10) == 0
 
 
 def test_a_collision_without_its_mesh_stays_in_the_description_and_out_of_the_engine(case):

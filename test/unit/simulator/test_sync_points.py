@@ -18,7 +18,7 @@ from my_simulations.engine.step_records import RecordRule
 from my_simulations.errors import CommandError
 from my_simulations.geometry import Pose
 from my_simulations.simulator.simulator import Simulator
-from my_simulations.simulator.sync_points import Moment
+from my_simulations.simulator.sync_points import SimTimeStep
 
 WAIT = 60.0
 
@@ -77,7 +77,7 @@ class Host:
         reader = self._sync.records
         while self.reads and reader.first() is not None:
             record = reader.first()
-            moment = Moment(record.clock_sets, record.step, record.clock)
+            moment = SimTimeStep(record.clock_sets, record.step, record.clock)
             for part in record.parts():
                 self.records.append((moment.sim_ns, part.number, bytes(part.raw)))
             reader.release()

@@ -7,7 +7,7 @@ import pytest
 
 from my_simulations.errors import InputError
 from my_simulations.python_api import WorldChoice
-from my_simulations.python_api.kept_files import KeptFiles
+from my_simulations.python_api.kept_files import FileCache
 from my_simulations.resources.resolver import Resolver
 
 BOX = """<sdf version="1.7"><model name="box"><link name="link"><collision name="c">
@@ -20,7 +20,7 @@ POPULATION = """<population name="p"><model name="can"><link name="l"/></model>
 
 
 def files(keep):
-    return KeptFiles(Resolver.from_environment(), keep)
+    return FileCache(Resolver.from_environment(), keep)
 
 
 def silent(issue):

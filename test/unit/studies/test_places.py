@@ -7,7 +7,7 @@ from my_simulations.errors import CommandError
 from my_simulations.studies.cluster_address import scheduler_address
 from my_simulations.studies.folder import StudyFolder, shard_of
 from my_simulations.studies.journal import Journal
-from my_simulations.studies.plan import WHOLE, CasePlan, Shard
+from my_simulations.studies.plan import ALL_CASES, CasePlan, Shard
 from my_simulations.studies.row import OK, Row
 from my_simulations.studies.slurm import job_script
 from my_simulations.studies.study_file import read_study
@@ -56,7 +56,8 @@ def test_a_folder_keeps_its_number_of_shards(tmp_path):
     folder.check_shards(3)
     with pytest.raises(CommandError, match="in 3 shards, not in 1"):
         folder.check_shards(1)
-    assert shard_of("x/journal-2-of-3.jsonl") == Shard(2, 3) and shard_of("journal.jsonl") == WHOLE
+    assert shard_of("x/journal-2-of-3.jsonl") == Shard(2,
+                                                       3) and shard_of("journal.jsonl") == ALL_CASES
 
 
 def row(case):
@@ -75,12 +76,12 @@ def test_a_folder_is_complete_once_each_case_of_the_plan_has_a_row(tmp_path):
         journal.append(found)
         journal.close()
         assert not folder.is_complete(plan)
-    assert folder.became(plan)[OK] == 3
-    assert folder.became(plan, Shard(2, 2))[OK] == 1
+    assert folder.status_counts(plan)[OK] == 3
+    assert folder.status_counts(plan, Shard(2, 2))[OK] == 1
     journal = Journal(folder.journal_of(Shard(2, 2)), header)
     journal.append([row(plan.case(3))])
     journal.close()
-    assert folder.is_complete(plan) and folder.became(plan)[OK] == 4
+    assert folder.is_complete(plan) and folder.status_counts(plan)[OK] == 4
 
 
 @pytest.mark.parametrize("left", ["", '{"journal": 1, "stu'])

@@ -7,7 +7,7 @@ from my_simulations.errors import InputError
 from my_simulations.studies.study_file import read_study
 from my_simulations.studies.variation import Target, target_of
 
-WHOLE = """study: slide
+ALL_CASES = """study: slide
 world: worlds/empty.world
 models:
   box: {file: box.sdf, pose: [0, 0, 1]}
@@ -42,7 +42,7 @@ def faults(tmp_path, text):
 
 
 def test_a_whole_study_is_read(tmp_path):
-    study, issues = read(tmp_path, WHOLE)
+    study, issues = read(tmp_path, ALL_CASES)
     assert issues == [] and study.name == "slide" and study.count == 3 * 5 * 2 * 2 * 4
     mu, place, what, push = study.parameters
     assert mu.values == pytest.approx((0.2, 0.4, 0.6, 0.8, 1.0))

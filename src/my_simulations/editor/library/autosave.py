@@ -16,7 +16,7 @@ from typing import Any, Callable, Dict, List, Optional, Tuple
 
 from ...errors import CommandError, Issue, warning
 from ...simulator.history import History
-from ...simulator.safe_file import write_whole
+from ...simulator.safe_file import write_atomically
 from ..transport.error_messages import EditRefusedError
 from .world_files import WorldFiles
 
@@ -170,13 +170,14 @@ class Autosave:
         except (OSError, ValueError) as fault:
             raise CommandError(f"{about}: {fault}") from fault
         data["discarded"] = time.time()
-        write_whole(about, json.dumps(data).encode(), overwrite=True, private=True)
+        write_atomically(about, json.dumps(data).encode(), overwrite=True, private=True)
 
     def _write(self) -> None:
-        write_whole(self._path(".world"), self._files.text(), overwrite=True, private=True)
+        write_atomically(self._path(".world"), self._files.text(), overwrite=True, private=True)
         about = {"file": self._files.file, "time": time.time(), "process": self._process,
                  "world": self._name + ".world", "launched": self._files.launched()}
-        write_whole(self._path(".json"), json.dumps(about).encode(), overwrite=True, private=True)
+        write_atomically(self._path(".json"), json.dumps(about).encode(), overwrite=True,
+                         private=True)
 
     def _path(self, extension: str) -> str:
         return os.path.join(self._folder, self._name + extension)

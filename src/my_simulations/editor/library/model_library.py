@@ -17,7 +17,7 @@ from ...resources.database.model_database import ModelDatabase
 from ...resources.model_provider import ModelNotProvidedError
 from ...resources.package_files import own_directory
 from ...resources.resolver import Resolver, ResourceNotFoundError
-from ...simulator.safe_file import write_whole
+from ...simulator.safe_file import write_atomically
 from ..scene.served_files import ServedFiles
 
 _DOWNLOAD_S = 300.0
@@ -172,7 +172,7 @@ class Library:
 
     def _write_added(self) -> None:
         data = json.dumps({"folders": self._added}, indent=1).encode()
-        write_whole(self._file, data, overwrite=True)
+        write_atomically(self._file, data, overwrite=True)
 
     def _places(self) -> List[_Place]:
         own = own_directory()

@@ -12,7 +12,7 @@ from ...errors import Issue
 from ...formats.sdf.writer.entities import write_entity
 from ...geometry import Pose
 from ...resources.resolver import Resolver
-from ...simulator.safe_file import write_whole
+from ...simulator.safe_file import write_atomically
 from ...simulator.simulator import Simulator
 from ..transport.error_messages import EditRefusedError
 from .model_import import check_loading, checked_folder_name, config_text, default_folder, relocated
@@ -45,7 +45,7 @@ def save_model(message: Dict[str, Any], world: Simulator,
     }
     issues = _readable(files, name, target, resolver)
     for file, data in files.items():
-        write_whole(os.path.join(target, file), data, overwrite=True)
+        write_atomically(os.path.join(target, file), data, overwrite=True)
     return {"uri": f"model://{name}", "path": target}, issues
 
 

@@ -12,7 +12,7 @@ from typing import Any, Dict, Iterable, List, Tuple
 
 from ...errors import CommandError
 from ...resources.resolver import Resolver
-from ...simulator.safe_file import write_whole
+from ...simulator.safe_file import write_atomically
 from ..scene.content_types import resource_type
 from ..topics.topic_frame import frame_of, parts_of
 from ..transport.page_bundle import FOLDER, sources_of
@@ -60,7 +60,7 @@ def write_replay(log: str, path: str, resolver: Resolver, name: str = "",
     data = _packed(_container(name or _name_of(log), states, files.found))
     page = (_template().replace("/*STYLE*/", _styles()).replace("/*PROGRAM*/", _program())
             .replace("/*DATA*/", data))
-    write_whole(os.path.abspath(path), page.encode(), overwrite=True)
+    write_atomically(os.path.abspath(path), page.encode(), overwrite=True)
     return files.missing
 
 

@@ -21,7 +21,7 @@ class LogRecord:
         path: the file; one that is there is replaced.
 
     Raises:
-        CommandError: it cannot be written; also from `look` and `close`.
+        CommandError: it cannot be written; also from `record_state` and `close`.
     """
 
     def __init__(self, path: str) -> None:
@@ -33,7 +33,7 @@ class LogRecord:
         self._contacts: Optional[ContactChannel] = None
         self._revision = -1
 
-    def look(self, world: OpenWorld) -> None:
+    def record_state(self, world: OpenWorld) -> None:
         """Add the present state; of one world only."""
         simulator = world.simulator
         self._reader = self._reader or PoseReader(simulator)

@@ -8,7 +8,7 @@ from typing import Callable, List
 from aiohttp import hdrs, web
 
 from ...errors import CommandError, InputError
-from ...simulator.safe_file import write_whole
+from ...simulator.safe_file import write_atomically
 from ..editor_options import EditorOptions
 from ..scene.content_types import BYTES
 from ..scene.scene_json import Documents
@@ -132,7 +132,7 @@ async def _body(request: web.Request, largest: int) -> bytes:
 
 def _written(path: str, data: bytes, overwrite: bool) -> web.StreamResponse:
     try:
-        write_whole(path, data, overwrite, private=True)
+        write_atomically(path, data, overwrite, private=True)
     except CommandError as fault:
         raise web.HTTPInsufficientStorage(text=f"{fault}\n") from None
     return web.Response(status=204)

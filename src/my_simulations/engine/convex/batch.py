@@ -79,7 +79,7 @@ class _Work:
         for thread in threads:
             thread.start()
         while len(self._made) < count:
-            self._hear()
+            self._receive()
         for thread in threads:  # until their workers have ended
             thread.join()
         self._progress(f"convex parts are ready after {self._seconds(self._began)}")
@@ -100,7 +100,7 @@ class _Work:
                 finally:  # any exception must reach the waiting thread
                     self._told.put((n, made))
 
-    def _hear(self) -> None:
+    def _receive(self) -> None:
         try:
             n, made = self._told.get(timeout=WORD_EVERY_S)
         except queue.Empty:

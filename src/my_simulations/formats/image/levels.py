@@ -170,18 +170,18 @@ def _extent(tags: Any, columns: int, rows: int) -> Optional[Tuple[float, float]]
 
 
 def _costly(path: str) -> bool:
-    with _told(path):
+    with _as_input_error(path):
         return is_costly(path)
 
 
 @contextmanager
 def _opened(path: str) -> Iterator[Any]:
-    with _told(path), opened(path) as image:
+    with _as_input_error(path), opened(path) as image:
         yield image
 
 
 @contextmanager
-def _told(path: str) -> Iterator[None]:
+def _as_input_error(path: str) -> Iterator[None]:
     """Raises faults of an image as InputError."""
     from PIL import UnidentifiedImageError
 

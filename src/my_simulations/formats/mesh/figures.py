@@ -124,7 +124,7 @@ def _changed(path: str) -> Tuple[int, int]:
 def _figure(path: str, _changed_at: Tuple[int, int]) -> Optional[FigureFile]:
     """Kept, as a crowd wears a few skins."""
     root = _root_of(path)
-    with _told():
+    with _as_input_error():
         found = _Reader(root, os.path.dirname(path)).figure()
     if found is not None:
         found.tree.release()
@@ -136,7 +136,7 @@ def _moves(path: str, _changed_at: Tuple[int, int]) -> Optional[Movement]:
     if _is_bvh(path):
         return Movement(*read_bvh(_bytes_of(path)), 1.0)
     root = _root_of(path)
-    with _told():
+    with _as_input_error():
         tree = NodeTree(root)
         clip = clip_of(root, tree)
         unit = unit_of(root)
@@ -157,7 +157,7 @@ def _bytes_of(path: str) -> bytes:
 
 
 @contextmanager
-def _told() -> Iterator[None]:
+def _as_input_error() -> Iterator[None]:
     """Faults of the file, which is not checked before it is read, as what they are."""
     try:
         yield

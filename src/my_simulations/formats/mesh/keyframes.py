@@ -65,7 +65,7 @@ def clip_of(root: Any, tree: NodeTree) -> Optional[Clip]:
                 channels.setdefault(made.node, []).append(made)
     groups: Dict[bytes, List[_NodeKeys]] = {}
     for node, found in channels.items():
-        keys = _NodeKeys(node, found, tree.placings(node))
+        keys = _NodeKeys(node, found, tree.transform_elements(node))
         groups.setdefault(keys.times.tobytes(), []).append(keys)
     if not groups:
         return None

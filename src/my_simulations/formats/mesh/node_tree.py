@@ -9,7 +9,7 @@ import numpy as np
 from .part import MeshError
 
 MOST_NODES, _DEEPEST = 20_000, 100
-PLACINGS = ("matrix", "translate", "rotate", "scale")
+TRANSFORM_TAGS = ("matrix", "translate", "rotate", "scale")
 """Elements that say where a node is; others (lookat, skew) are ignored."""
 
 Array = Any  # a NumPy array; its shape is documented at each use
@@ -95,7 +95,7 @@ class NodeTree(Bones):
                  else next(root.iter("{*}visual_scene"), None))
         for child in () if scene is None else scene.iterchildren("{*}node"):
             self._walk(child, -1, 0)
-        self.rest: Array = np.array([local_matrix(self.placings(n))
+        self.rest: Array = np.array([local_matrix(self.transform_elements(n))
                                      for n in range(len(self.elements))]).reshape(-1, 4, 4)
 
     def release(self) -> None:
@@ -138,11 +138,11 @@ class NodeTree(Bones):
             number = self.parents[number]
         return False
 
-    def placings(self, number: int) -> List[Placing]:
+    def transform_elements(self, number: int) -> List[Placing]:
         """What says where a node is, in its order."""
         return [(one.get("sid") or "", one.tag.rsplit("}", 1)[-1], floats(one))
                 for one in self.elements[number].iterchildren(*(f"{{*}}{kind}"
-                                                                for kind in PLACINGS))]
+                                                                for kind in TRANSFORM_TAGS))]
 
 
 def local_matrix(placings: Sequence[Placing]) -> Array:

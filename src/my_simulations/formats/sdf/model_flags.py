@@ -76,9 +76,9 @@ def _take_over(model: Model, flag: str, value: bool, element: Any, source: Sourc
         return
     setattr(model, flag, value)
     kind = f"include-flag {flag} {value}"
-    if kind in source.log.told:
+    if kind in source.log.reported:
         return  # one note per flag: a world may contain many such models
-    source.log.told.add(kind)
+    source.log.reported.add(kind)
     what = {"static": "static" if value else "able to move",
             "self_collide": "made of links that collide with each other" if value
             else "made of links that pass through each other",

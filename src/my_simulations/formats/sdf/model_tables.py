@@ -55,7 +55,7 @@ def _kept(*names: str, since: str = "") -> Dict[str, Entry]:
 
 def _told(*names: str, since: str = "") -> Dict[str, Entry]:
     """Elements that are kept with a note, because their authors expect an effect."""
-    return {name: Kept(since, told=True) for name in names}
+    return {name: Kept(since, reported=True) for name in names}
 
 
 TERRAIN_TEXTURE = Table("texture", TerrainTexture, {

@@ -23,7 +23,7 @@ def read_sensor(element: Any, source: Source) -> Sensor:
     sensor = Sensor(element.get("name", ""), file=source.file, line=element.sourceline or 0)
     found = fill(sensor, element, SENSOR, source, [])
     if sensor.type not in ACTING:
-        source.tell_unused(element)
+        source.report_unused(element)
     for tag, table in BLOCKS.items():
         for child in found.get(tag, ())[:1]:
             block = table.of()

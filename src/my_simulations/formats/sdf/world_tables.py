@@ -61,7 +61,7 @@ SCENE = Table("scene", Scene, {
 }, level=WARNING, use=SHOWN)
 
 GUI = Table("gui", Gui, {
-    "camera": Part(), "plugin": Part(use=KEPT, told=True),
+    "camera": Part(), "plugin": Part(use=KEPT, reported=True),
 }, attributes={"fullscreen": Value("fullscreen", BOOL, use=KEPT)}, level=WARNING, use=SHOWN)
 
 GUI_CAMERA = Table("camera", GuiCamera, {
@@ -92,7 +92,7 @@ SPHERICAL = Table("spherical_coordinates", SphericalCoordinates, {
 SURROUNDINGS: Mapping[str, Entry] = {
     "gui": Part(use=SHOWN),
     "scene": Nested("scene", SCENE, required=("ambient", "background", "shadows"), use=SHOWN),
-    "actor": Part(use=SHOWN, told=True), "road": Part(use=SHOWN, told=True),
+    "actor": Part(use=SHOWN, reported=True), "road": Part(use=SHOWN, reported=True),
     "wind": Nested("wind", WIND, required=("linear_velocity",), use=PLUGINS),
     "atmosphere": Nested("atmosphere", ATMOSPHERE, required=("@type",), use=KEPT),
     "spherical_coordinates": Nested("spherical_coordinates", SPHERICAL, required=(

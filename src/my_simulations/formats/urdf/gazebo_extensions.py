@@ -93,9 +93,9 @@ class Extensions:
             for _, collision in body.collisions:
                 self._set(collision, GAZEBO_COLLISION[tag], child)
         elif tag in GAZEBO_LINK:
-            if tag == "dampingFactor" and tag in body.said:
+            if tag == "dampingFactor" and tag in body.set_tags:
                 return True     # sdformat writes an element each time, and the first one counts
-            body.said.add(tag)
+            body.set_tags.add(tag)
             for value in GAZEBO_LINK[tag]:
                 self._set(link, value, child)
         elif tag == "material":
@@ -138,7 +138,7 @@ class Extensions:
                               " kept without effect", child, closest(tag, known))
         body.link.extra.append(to_xml(child))
         if tag in _TOLD:
-            self._source.tell_unused(child)
+            self._source.report_unused(child)
 
     def _to_joint(self, child: Any, connection: Connection) -> None:
         tag, joint = child.tag, connection.joint

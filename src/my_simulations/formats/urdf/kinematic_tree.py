@@ -24,7 +24,7 @@ class Body:
         down: connections to the children, sorted by joint name.
         into: the body it was lumped into, which itself was not lumped; None if it is kept.
         offset: pose of its link frame in the body it was lumped into.
-        said: tags of its `<gazebo>` blocks that set the link.
+        set_tags: tags of its `<gazebo>` blocks that set the link.
     """
 
     link: Link
@@ -36,7 +36,7 @@ class Body:
     down: List["Connection"] = field(default_factory=list)
     into: Optional["Body"] = None
     offset: Pose = IDENTITY
-    said: Set[str] = field(default_factory=set)
+    set_tags: Set[str] = field(default_factory=set)
 
 
 @dataclass

@@ -263,15 +263,18 @@ class _RobotReader:
         link, whole = body.link, lumped_into(body)
         to = whole.link
         to.extra += [moved(xml, body.offset) for xml in link.extra]
-        if to.self_collide is None or "selfCollide" in body.said:
+        if to.self_collide is None or "selfCollide" in body.set_tags:
             to.self_collide = link.self_collide if link.self_collide is not None \
                 else to.self_collide
-        to.gravity = link.gravity if "turnGravityOff" in body.said else to.gravity and link.gravity
+        if "turnGravityOff" in body.set_tags:
+            to.gravity = link.gravity
+        else:
+            to.gravity = to.gravity and link.gravity
         to.kinematic = to.kinematic or link.kinematic
-        if "dampingFactor" not in whole.said:
+        if "dampingFactor" not in whole.set_tags:
             to.linear_decay = to.linear_decay or link.linear_decay
             to.angular_decay = to.angular_decay or link.angular_decay
-        whole.said |= body.said
+        whole.set_tags |= body.set_tags
 
     def _warn_about_world(self, body: Body) -> None:
         if body.collisions or body.visuals:

@@ -171,7 +171,7 @@ GAZEBO_MODEL = Table("gazebo", Model, {
     "allow_auto_disable": Value("allow_auto_disable", BOOL),
     "enable_wind": Value("enable_wind", BOOL, use=Use.PLUGINS),
     "plugin": Part(use=Use.PLUGINS), "link": Part(), "joint": Part(),
-    "gripper": Kept(told=True),
+    "gripper": Kept(reported=True),
     **_kept("frame", "canonicalBody", "selfCollide", "turnGravityOff"),
 })
 """`<gazebo>` without a reference."""

@@ -152,9 +152,9 @@ class _Filler:
             elif isinstance(entry, Nested):
                 self._nested(target, child, entry, seen)
             elif entry is not None:
-                self._aside(child, entry, wrap)  # type: ignore[arg-type]
+                self._keep_or_delegate(child, entry, wrap)  # type: ignore[arg-type]
             elif isinstance(tag, str):
-                self._stranger(child, children, wrap)
+                self._unknown_child(child, children, wrap)
 
     def _attributes(self, target: Any, element: Any, attributes: Mapping[str, Value],
                     more: Tuple[str, ...]) -> None:
@@ -177,10 +177,10 @@ class _Filler:
         else:
             setattr(target, entry.field, inner)
             seen.add(child.tag)
-        if entry.told:
-            self._source.tell_unused(child)
+        if entry.reported:
+            self._source.report_unused(child)
 
-    def _stranger(self, child: Any, known: Mapping[str, Entry], wrap: Tuple[str, ...]) -> None:
+    def _unknown_child(self, child: Any, known: Mapping[str, Entry], wrap: Tuple[str, ...]) -> None:
         tag = child.tag
         self._extra.append(to_xml(child, wrap))
         if ":" not in tag and tag[0] != "{":
@@ -191,14 +191,15 @@ class _Filler:
         self._source.tolerate("element-repeated", f"<{child.tag}> is repeated in"
                               f" <{parent.tag}>; the first one is used", child)
 
-    def _aside(self, child: Any, entry: Union[Part, Kept], wrap: Tuple[str, ...]) -> None:
+    def _keep_or_delegate(self, child: Any, entry: Union[Part, Kept],
+                          wrap: Tuple[str, ...]) -> None:
         """Handle a child that has its own reader, or is kept, or both."""
         if isinstance(entry, Part):
             self._found.setdefault(child.tag, []).append(child)
         if isinstance(entry, Kept) or entry.kept:
             self._extra.append(to_xml(child, wrap))
-        if entry.told:
-            self._source.tell_unused(child)
+        if entry.reported:
+            self._source.report_unused(child)
 
     def _set(self, target: Any, value: Value, text: str, element: Any, name: str) -> None:
         level = self._level or value.level or self._table.level

@@ -224,8 +224,9 @@ def _recover(text: str, fault: Any, file: str, log: IssueCollector) -> Any:
     text, retypings = retyped(text)
     result = balanced(text)
     result.repairs[:0] = retypings
-    if result.hopeless:
-        raise _fault("xml-malformed", f"not well formed: {result.hopeless}", file, line, column)
+    if result.is_unrepairable:
+        raise _fault("xml-malformed", f"not well formed: {result.is_unrepairable}", file, line,
+                     column)
     if result.elements == 0:
         raise _fault("xml-no-root", "the document contains no element", file, line, column)
     if result.cut_off:

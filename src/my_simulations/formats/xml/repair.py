@@ -38,7 +38,7 @@ class Balanced:
     Attributes:
         text: the repaired text; line numbers are those of the original.
         elements: number of start tags.
-        hopeless: why repairing was given up; "" if it was not.
+        is_unrepairable: why repairing was given up; "" if it was not.
         repairs: the changes.
         cut_off: the part missing at the end of a truncated text; "" if it is complete.
         cut_off_line: line where the incomplete part begins.
@@ -46,7 +46,7 @@ class Balanced:
 
     text: str = ""
     elements: int = 0
-    hopeless: str = ""
+    is_unrepairable: str = ""
     repairs: List[Repair] = field(default_factory=list)
     cut_off: str = ""
     cut_off_line: int = 0
@@ -73,7 +73,7 @@ class _Balancer:
             self._parts.append("\n" * text.count("\n", 0, at))
             self._kept = at
             self._repair("what precedes the first element is ignored", 0, unclosed=False)
-        while at >= 0 and not result.cut_off and not result.hopeless:
+        while at >= 0 and not result.cut_off and not result.is_unrepairable:
             after = self._one(at)
             if result.elements and not self._open:
                 self._drop_rest(after)
@@ -108,7 +108,7 @@ class _Balancer:
         if name is None:
             self._strays += 1  # reported by libxml2
             if self._strays > _MAX_REPAIRS:
-                self._result.hopeless = f"more than {_MAX_REPAIRS} mistakes in its markup"
+                self._result.is_unrepairable = f"more than {_MAX_REPAIRS} mistakes in its markup"
             return at + 1
         return self._start_tag(name.group(), at, name.end())
 
@@ -130,7 +130,7 @@ class _Balancer:
         if self._text[end - 1] != "/":
             self._open.append((name, at))
             if len(self._open) > MAX_DEPTH:
-                self._result.hopeless = "elements are nested too deeply"
+                self._result.is_unrepairable = "elements are nested too deeply"
         return end + 1
 
     def _quote(self, at: int, position: int, end: int) -> None:
@@ -138,7 +138,7 @@ class _Balancer:
         inside = self._text[position:end]
         found = list(_ATTRIBUTE.finditer(inside))
         if len(found) > MOST_ATTRIBUTES:
-            self._result.hopeless = f"an element has more than {MOST_ATTRIBUTES} attributes"
+            self._result.is_unrepairable = f"an element has more than {MOST_ATTRIBUTES} attributes"
             return
         bare = [a for a in found if a.group(2)[0] not in "\"'"]
         tight = [a for a in found if a.start() and not inside[a.start() - 1].isspace()]
@@ -206,7 +206,7 @@ class _Balancer:
         line, column = self._place(at)
         self._result.repairs.append(Repair(message, line, column, unclosed))
         if len(self._result.repairs) > _MAX_REPAIRS:
-            self._result.hopeless = f"more than {_MAX_REPAIRS} mistakes in its markup"
+            self._result.is_unrepairable = f"more than {_MAX_REPAIRS} mistakes in its markup"
 
     def _cut_off(self, message: str, at: int) -> None:
         self._result.cut_off = message

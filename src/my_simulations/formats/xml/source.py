@@ -38,7 +38,7 @@ class IssueCollector:
         fatal: number of issues that make their entity unusable.
         includes: number of includes followed for the model that is being read.
         nested: number of nested models of the models that were begun.
-        told: kinds of elements that were already reported as not simulated.
+        reported: kinds of elements that were already reported as not simulated.
         unknown: number of unknown elements and attributes.
     """
 
@@ -47,7 +47,7 @@ class IssueCollector:
         self.fatal = 0
         self.includes = 0
         self.nested = 0
-        self.told: Set[str] = set()
+        self.reported: Set[str] = set()
         self.unknown = 0
         self._seen: Set[Issue] = set()
 
@@ -130,14 +130,14 @@ class Source:
         self.log.add(Issue(Severity.WARNING, code, message, hint=hint, tolerated=True,
                            **self.where(element)))
 
-    def tell_unused(self, element: Any) -> None:
+    def report_unused(self, element: Any) -> None:
         """Note once per kind that elements of this kind are saved but not simulated."""
         told_apart_by = _TOLD_APART_BY.get(element.tag)
         which = (element.get(told_apart_by) or "") if told_apart_by else ""
         kind = f"{element.tag} {which}".strip()
-        if kind in self.log.told:
+        if kind in self.log.reported:
             return
-        self.log.told.add(kind)
+        self.log.reported.add(kind)
         what = ("shown, but not simulated" if element.tag in _ONLY_SHOWN
                 else "kept, but not simulated")
         self.log.add(Issue(Severity.NOTE, "not-simulated", f"<{kind}> is {what}",

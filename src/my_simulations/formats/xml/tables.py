@@ -67,13 +67,13 @@ class Part:
 
     Attributes:
         since, use: see `Value`.
-        told: note once per kind that the element is not simulated.
+        reported: note once per kind that the element is not simulated.
         kept: also keep its XML.
     """
 
     since: str = ""
     use: Optional[Use] = None
-    told: bool = False
+    reported: bool = False
     kept: bool = False
 
 
@@ -88,7 +88,7 @@ class Nested:
         table: the table of the element.
         required: paths in the element that are written even with their default value.
         since, use: see `Value`.
-        told: note once per kind that the element is not simulated.
+        reported: note once per kind that the element is not simulated.
     """
 
     field: str
@@ -96,7 +96,7 @@ class Nested:
     required: Tuple[str, ...] = ()
     since: str = ""
     use: Optional[Use] = None
-    told: bool = False
+    reported: bool = False
 
 
 @dataclass(frozen=True)
@@ -105,12 +105,12 @@ class Kept:
 
     Attributes:
         since, use: see `Value`.
-        told: note once per kind that the element is not simulated.
+        reported: note once per kind that the element is not simulated.
     """
 
     since: str = ""
     use: Use = Use.KEPT
-    told: bool = False
+    reported: bool = False
 
 
 Entry = Union[Value, Group, Part, Nested, Kept]

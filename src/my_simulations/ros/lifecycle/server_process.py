@@ -338,7 +338,7 @@ class Server:
             return None
         from .editor_launcher import EditorLauncher
 
-        self._editor_launcher = EditorLauncher(self._start_editor, self._log.also,
+        self._editor_launcher = EditorLauncher(self._start_editor, self._log.add_receiver,
                                                self._launch.folder)
         return self._editor_launcher
 

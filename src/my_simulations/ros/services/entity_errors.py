@@ -31,7 +31,7 @@ def gazebo_prefix(entity: str, frame: str = "") -> Iterator[None]:
 
 
 @contextmanager
-def told_if_taken(entity: str) -> Iterator[None]:
+def name_taken_message(entity: str) -> Iterator[None]:
     """Gazebo's status message where a name is taken; `entity` as "model 'x'".
 
     Raises:

@@ -16,7 +16,7 @@ from ...resources.resolver import Resolver
 from ...simulator.simulator import Simulator
 from ...simulator.spawn_advice import arrival_advice
 from ..message_conversion import LENGTH, pose_from_message, within
-from .entity_errors import gazebo_prefix, told_if_taken
+from .entity_errors import gazebo_prefix, name_taken_message
 from .spawn_request import (
     FILE_ATTRIBUTE,
     LAUNCH_ATTRIBUTE,
@@ -153,7 +153,7 @@ class ModelServices:
             return self._adopt(model)
         where = compose(initial, model.pose)
         within(where.position, LENGTH, "m", "position of the model")
-        with gazebo_prefix("", NO_FRAME), told_if_taken(f"model {model.name!r}"):
+        with gazebo_prefix("", NO_FRAME), name_taken_message(f"model {model.name!r}"):
             self._simulator.models.spawn(model, where, frame, meshes, replace, launched=launched)
         faults = self._changed(model.name)   # the plugin host has logged them
         self._report(arrival_advice(self._simulator, model.name, meshes,
@@ -182,7 +182,7 @@ class ModelServices:
     def _spawn_light(self, light: Light, name: Optional[str], initial: Pose, frame: str) -> str:
         light = with_changes(light, name=light.name if name is None else name,
                              pose=compose(initial, light.pose))
-        with gazebo_prefix("", NO_FRAME), told_if_taken(f"light {light.name!r}"):
+        with gazebo_prefix("", NO_FRAME), name_taken_message(f"light {light.name!r}"):
             self._simulator.lights.add(light, frame)
         return "Successfully spawned entity"
 

@@ -26,7 +26,7 @@ class FigureShape:
 
     Args:
         figure: the actor and its files.
-        trouble: is told of a skin that cannot be read; the actor is not seen then.
+        report_problem: is told of a skin that cannot be read; the actor is not seen then.
         viewers: who does not see it, for that sentence.
     """
 

@@ -30,7 +30,7 @@ def projection(spec: CameraSpec) -> np.ndarray:
                      [0, 0, -1.0, 0]])
 
 
-def in_sight(centers: np.ndarray, radius: Union[float, np.ndarray], spec: CameraSpec,
+def is_in_view(centers: np.ndarray, radius: Union[float, np.ndarray], spec: CameraSpec,
              ) -> np.ndarray:
     """Which balls (view frame), of one radius or of one each, the camera's pyramid may touch."""
     seen = (centers[:, 2] < radius - spec.near) & (centers[:, 2] > -spec.far - radius)

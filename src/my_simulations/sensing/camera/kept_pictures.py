@@ -11,7 +11,7 @@ Drawn = Tuple[Optional[np.ndarray], Optional[np.ndarray], Optional[np.ndarray]]
 """Colours, depth and labels, as in `Pictures`; read-only."""
 
 
-class KeptPictures:
+class PictureCache:
     """Draws a view again only when something may look otherwise.
 
     A world that rests, or is paused, or is asked for two pictures of the same step, costs nothing;

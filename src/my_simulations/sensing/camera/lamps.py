@@ -10,7 +10,7 @@ import numpy as np
 from ...description.light import Light
 from ...geometry import rotate
 from ..api import CameraSpec
-from .frustum import in_sight
+from .frustum import is_in_view
 from .shaders import MOST_LIGHTS, MOST_SHADOWS
 
 SHADOW_SIZE = 1024
@@ -45,7 +45,7 @@ def chosen_lights(lights: List[Light], view: np.ndarray, spec: CameraSpec) -> Li
     ranges = np.array([light.range for light in lights])
     local = np.array([is_local(light) for light in lights])
     order = np.lexsort((np.linalg.norm(places, axis=1) - ranges,
-                        ~in_sight(places, ranges, spec), local))
+                        ~is_in_view(places, ranges, spec), local))
     # By type, so that one choice has few other programs than the next one.
     return sorted((lights[n] for n in sorted(order[:MOST_LIGHTS])), key=lambda one: one.type)
 

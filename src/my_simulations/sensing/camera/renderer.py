@@ -17,8 +17,8 @@ from ..surfaces import pieces_of
 from . import distortion, shaders
 from .batches import Batch
 from .context import draws_with_a_card, finisher, new_context
-from .frustum import check, in_sight, projection
-from .kept_pictures import Drawn, KeptPictures
+from .frustum import check, is_in_view, projection
+from .kept_pictures import Drawn, PictureCache
 from .lamps import (
     SHADOW_SIZE,
     ShadowView,
@@ -38,7 +38,7 @@ _VIEW_FROM_SENSOR = np.array([[0.0, -1, 0, 0], [0, 0, 1, 0], [-1, 0, 0, 0], [0, 
 class Renderer:
     """One scene and one context; all calls from the thread that made it.
 
-    `trouble` is told of meshes and textures that cannot be read.
+    `report_problem` is told of meshes and textures that cannot be read.
 
     Raises:
         SensingUnavailableError: there is no OpenGL.
@@ -73,7 +73,7 @@ class Renderer:
         self._lit = LitSurfaces(self._context, self._programs, self._textures, self._maps)
         self._map_targets = [self._context.framebuffer(depth_attachment=one) for one in self._maps]
         self._map_keys: List[Any] = [None] * len(self._maps)
-        self._kept = KeptPictures()
+        self._kept = PictureCache()
         self._wide: Dict[CameraSpec, LensMap] = {}
         self._lenses: Dict[CameraSpec, Tuple[np.ndarray, np.ndarray]] = {}
 
@@ -196,7 +196,7 @@ class Renderer:
                 frames, here = frames[:0], here[:0]
             if spec is not None:
                 center = frames[:, :3, :3] @ batch.center + frames[:, :3, 3]
-                near_enough = in_sight(center, batch.radius, spec)
+                near_enough = is_in_view(center, batch.radius, spec)
                 frames, here = frames[near_enough], here[near_enough]
             if batch.surface.clear and len(frames):
                 ahead = frames[:, 2, :3] @ batch.center + frames[:, 2, 3]

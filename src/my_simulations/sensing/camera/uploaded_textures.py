@@ -20,7 +20,7 @@ class Textures:
 
     Args:
         context: of moderngl.
-        trouble: is told of pictures that cannot be read.
+        report_problem: is told of pictures that cannot be read.
     """
 
     def __init__(self, context: Any, trouble: Callable[[str], None]) -> None:

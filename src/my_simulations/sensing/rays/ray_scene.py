@@ -82,7 +82,7 @@ class _Model:
 class RayScene:
     """A top-level scene. Not thread safe.
 
-    `trouble` is told of shapes that cannot be read, which rays then pass through.
+    `report_problem` is told of shapes that cannot be read, which rays then pass through.
     """
 
     def __init__(self, embree: Embree, trouble: Callable[[str], None]) -> None:
