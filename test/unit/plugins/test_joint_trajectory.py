@@ -8,6 +8,7 @@ from robot_control import Arm, Client, Message, Span, tolerance, trajectory
 
 from my_simulations.description.model import JointAxis
 from my_simulations.plugins.actions import ABORTED, ACTIVE, PREEMPTED, RECALLED, REJECTED, SUCCEEDED
+from my_simulations.plugins.context import RequestError
 
 NAMES = ("one", "two")
 POSITION = {"type": "position_controllers/JointTrajectoryController", "joints": list(NAMES)}
@@ -186,6 +187,10 @@ def test_a_stop_may_take_its_time():
     (trajectory(("one", "three"), (1.0, (1.0, 1.0))), -2, "'three' is not a joint"),
     (trajectory(NAMES, (1.0, (1.0,))), -1, "positions of 2 joints"),
     (trajectory(NAMES, (1.0, (1.0, 1.0), (0.0,))), -1, "velocities of 2 joints"),
+    (trajectory(NAMES, (1.0, (1.0, 1.0, 1.0), (0.0, 0.0))), -1, "velocities of 3 joints"),
+    (trajectory((), (1.0, (1.0, 1.0))), -2, "joint 'one' is missing"),
+    (trajectory(()), -2, "joint 'one' is missing"),
+    (trajectory(("one",)), -2, "joint 'two' is missing"),
     (trajectory(NAMES, (1.0, (1.0, 1.0)), (0.5, (1.0, 1.0))), -1, "do not increase"),
     (trajectory(NAMES, (1.0, (math.nan, 1.0))), -1, "not finite"),
     (trajectory(NAMES, (1.0, (1.0, 1.0)), stamp=-5.0), -3, "lie in the past"),
@@ -226,6 +231,35 @@ def test_some_joints_may_move_alone_where_that_is_allowed():
     assert (arm.at("one"), arm.at("two")) == pytest.approx((1.0, 0.0), abs=1e-6)
 
 
+def test_values_of_joints_that_a_partial_trajectory_does_not_name_are_ignored():
+    arm, client = arm_with({"allow_partial_joints_goal": True})
+    goal = client.send(trajectory(("two",), (0.5, (1.0, 9.0), (0.0, 9.0), (0.0, 9.0))))
+    arm.context.advance(0.6)
+    assert [one[:3] for one in client.results] == [(goal, SUCCEEDED, 0)]
+    assert (arm.at("one"), arm.at("two")) == pytest.approx((0.0, 1.0), abs=1e-6)
+    assert "ignores the last 1 positions" in arm.context.said[-1]
+
+
+def test_a_partial_goal_does_not_judge_the_other_joints():
+    slow = JointAxis((0.0, 0.0, 1.0), lower=-3.0, upper=3.0, effort=100.0, velocity=0.5)
+    arm, client = arm_with({"allow_partial_joints_goal": True, "constraints": {
+        "one": {"trajectory": 0.1, "goal": 0.1}}}, axis=slow)
+    command(arm, trajectory(("one",), (0.2, (2.0,))))   # joint one stays behind
+    goal = client.send(trajectory(("two",), (0.5, (0.1,))))
+    arm.context.advance(0.6)
+    assert [one[:3] for one in client.results] == [(goal, SUCCEEDED, 0)]
+    assert arm.at("one") < 0.5
+
+
+def test_path_tolerances_count_from_the_start_of_the_goals_trajectory():
+    slow = JointAxis((0.0, 0.0, 1.0), lower=-3.0, upper=3.0, effort=100.0, velocity=0.5)
+    arm, client = arm_with({"constraints": {"one": {"trajectory": 0.1}}}, axis=slow)
+    command(arm, trajectory(NAMES, (0.4, (0.5, 0.0)), (1.5, (0.5, 0.0))))   # too fast for it
+    goal = client.send(trajectory(NAMES, (1.0, (0.6, 0.0)), stamp=1.2))
+    arm.context.advance(2.5)
+    assert [one[:3] for one in client.results] == [(goal, SUCCEEDED, 0)]
+
+
 def test_a_trajectory_may_begin_later_and_what_moves_goes_on_until_then():
     arm, _ = arm_with()
     command(arm, trajectory(NAMES, (1.0, (1.0, 1.0))))
@@ -254,6 +288,24 @@ def test_an_empty_trajectory_stops():
     command(arm, trajectory(NAMES))
     arm.context.advance(1.0)
     assert arm.at() == pytest.approx(0.4, abs=2e-3)
+
+
+def test_a_goal_without_points_stops_and_succeeds_whatever_its_tolerances():
+    arm, client = arm_with({"constraints": {"one": {"trajectory": 1e-9, "goal": 1e-9}}})
+    command(arm, trajectory(NAMES, (1.0, (1.0, 1.0))))
+    arm.context.advance(0.4)
+    goal = client.send(trajectory(NAMES))
+    arm.context.advance(0.1)
+    assert [one[:3] for one in client.results] == [(goal, SUCCEEDED, 0)]
+    arm.context.advance(0.5)
+    assert arm.at() == pytest.approx(0.4, abs=2e-3)
+
+
+def test_the_state_of_a_stopped_controller_cannot_be_asked_for():
+    arm, _ = arm_with()
+    arm.switch((), ["arm"])
+    with pytest.raises(RequestError, match="'arm' is not running"):
+        arm.context.services["robot/arm/query_state"](Message(time=Span(0.0)), Message())
 
 
 def test_a_joint_without_limits_takes_the_shorter_way():

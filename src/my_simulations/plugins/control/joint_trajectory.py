@@ -6,13 +6,13 @@ looked at 100 times a second of sim time, or as often as `controlPeriod` says.
 from __future__ import annotations
 
 from functools import partial
-from typing import Any, List, NamedTuple, Optional, Set, Tuple
+from typing import Any, List, NamedTuple, Optional, Sequence, Set, Tuple
 
 from ...engine.drive_commands import PidGains
 from ...engine.servo_law import shortest
 from ...engine.spline import Spline, segment_between, standing
 from ..actions import ActionServer, Goal
-from ..context import Ending
+from ..context import Ending, RequestError
 from .controller import RUNNING, Controller
 from .hardware import EFFORT, POSITION, VELOCITY, HardwareJoint
 from .trajectory import (
@@ -101,6 +101,7 @@ class JointTrajectory(Controller):
         try:
             if self.state != RUNNING:
                 raise TrajectoryError("the controller is not running")
+            named = self._read_joints(wanted.trajectory)   # also of a goal without points
             self._take_over(wanted.trajectory)
         except TrajectoryError as fault:
             result.error_code, result.error_string = fault.code, str(fault)
@@ -109,9 +110,10 @@ class JointTrajectory(Controller):
             return
         self._preempt("another goal came")
         late = float(wanted.goal_time_tolerance.to_sec())
+        followed = named if wanted.trajectory.points else []
         self._goal = _Following(
-            goal, updated(self._path, self._names, wanted.path_tolerance),
-            updated(self._end, self._names, wanted.goal_tolerance),
+            goal, _of_joints(followed, updated(self._path, self._names, wanted.path_tolerance)),
+            _of_joints(followed, updated(self._end, self._names, wanted.goal_tolerance)),
             self._late if late == 0.0 else max(0.0, late))
         goal.accept()
         self._look()
@@ -132,8 +134,12 @@ class JointTrajectory(Controller):
         if not message.points:
             self._hold()
             return
-        places = read_joints(list(message.joint_names), self._names, self._partial)
+        places = self._read_joints(message)
         points = read_points(message.points, len(places))
+        surplus = len(message.points[0].positions) - len(places)
+        if surplus > 0:
+            self.context.warn(f"controller '{self.name}' ignores the last {surplus} positions of"
+                              f" each point: the trajectory names {len(places)} joints only")
         now, stamp = self._now, message.header.stamp.to_nsec()
         start = now if stamp == 0 else now + (stamp - self.context.now_ns) * 1e-9
         made = {place: joined(self._splines[place], start, now, points, n,
@@ -142,6 +148,10 @@ class JointTrajectory(Controller):
         self._splines = [made.get(place, spline) for place, spline in enumerate(self._splines)]
         self._begun = max(start, now)
         self._send()
+
+    def _read_joints(self, message: Any) -> List[int]:
+        """Return the place of each joint of a message. Raises TrajectoryError."""
+        return read_joints(list(message.joint_names), self._names, self._partial)
 
     def _hold(self) -> None:
         """Stay where the joints are, or come to a stop within `stop_trajectory_duration`."""
@@ -197,7 +207,9 @@ class JointTrajectory(Controller):
         for n, (axis, spline) in enumerate(zip(axes, self._splines)):
             end = spline.segments[-1].end
             if axis.now < end:
-                if not following.path[n].holds(axis.error, axis.rate_error):
+                # Until the goal's trajectory starts, the joint follows the previous one.
+                if axis.now >= self._begun and not following.path[n].holds(
+                        axis.error, axis.rate_error):
                     self._fail(following, PATH_TOLERANCE_VIOLATED,
                                f"{self._names[n]} path error {axis.error:.6f}")
                     return
@@ -260,7 +272,7 @@ class JointTrajectory(Controller):
 
     def _query(self, request: Any, response: Any) -> None:
         if self.state != RUNNING:
-            return
+            raise RequestError(f"controller '{self.name}' is not running")
         ahead = (request.time.to_nsec() - self.context.now_ns) * 1e-9
         found = [spline.at(self._time(spline) + ahead) for spline in self._splines]
         response.name = list(self._names)
@@ -319,6 +331,12 @@ class EffortTrajectory(JointTrajectory):
     """effort_controllers/JointTrajectoryController."""
 
     interface = EFFORT
+
+
+def _of_joints(places: Sequence[int], tolerances: Sequence[Tolerance]) -> List[Tolerance]:
+    """Keep the tolerances of the joints that a goal moves; the others may be anywhere."""
+    return [tolerance if place in places else Tolerance()
+            for place, tolerance in enumerate(tolerances)]
 
 
 def _follow(joint: HardwareJoint, spline: Spline, gains: Optional[PidGains], ahead: float,

@@ -45,18 +45,23 @@ def read_joints(named: Sequence[str], joints: Sequence[str], partial: bool) -> L
 
 
 def read_points(points: Sequence[Any], count: int) -> List[Waypoint]:
-    """The points of a trajectory_msgs/JointTrajectory of `count` joints. Raises TrajectoryError."""
+    """Return the points of a trajectory_msgs/JointTrajectory of `count` joints.
+
+    As in ros_controllers a point can have more values than joints are named, the same number of
+    positions, velocities and accelerations; the first ones count. Raises TrajectoryError.
+    """
     found: List[Waypoint] = []
     for number, point in enumerate(points):
         known = [list(point.positions), list(point.velocities), list(point.accelerations)]
+        size = max(count, len(known[0]))
         for what, values in zip(("positions", "velocities", "accelerations"), known):
-            if len(values) != count and (values or what == "positions"):
-                raise TrajectoryError(f"point {number} has {len(values)} {what} of {count} joints")
+            if len(values) != size and (values or what == "positions"):
+                raise TrajectoryError(f"point {number} has {len(values)} {what} of {size} joints")
             if not all(map(math.isfinite, values)):
                 raise TrajectoryError(f"point {number} has {what} that are not finite")
         if not known[1]:
             known = known[:1]
-        states = tuple(zip(*(values for values in known if values)))
+        states = tuple(zip(*(values[:count] for values in known if values)))
         time = float(point.time_from_start.to_sec())
         if found and time <= found[-1].time:
             raise TrajectoryError("the times of the points do not increase")
