@@ -101,7 +101,8 @@ def test_a_model_without_wheels_is_said_to_be_undriven(editor):
     editor.row("crate").click()
     editor.page.locator("#view").focus()
     editor.page.keyboard.press("ArrowUp")
-    editor.until("editor.store.issues.some(({message}) => message.includes('cannot be driven'))",
+    editor.until("editor.store.issues.some(({message, severity}) => severity === 'note'"
+                 " && message.includes('cannot be driven'))",
                  "a word about the crate")
     editor.get("editor.actions.undo()")
 

@@ -271,7 +271,12 @@ export function createActions({store, connection}) {
      * @param {string} model
      * @param {{linear: number[], angular: number[]}} velocity
      */
-    drive: (model, {linear, angular}) => ask('drive', {model, linear, angular}),
+    async drive(model, {linear, angular}) {
+      const outcome = await ask('drive', {model, linear, angular}, {quiet: true});
+      // An arrow key beside a model that is not a robot is no error.
+      for (const issue of outcome.issues) store.addIssue({...issue, severity: 'note'});
+      return outcome;
+    },
     topics: () => dialog('topics'),
 
     // ---- windows of the panels
