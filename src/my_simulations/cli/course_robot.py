@@ -8,10 +8,12 @@ robot.stop()
 from __future__ import annotations
 
 import math
+import threading
 import time
 from typing import Any, Callable, List, Optional, Tuple
 
 _FIRST_S = 60.0   # of wall time until odometry and a scan are there
+_LOOK_S = 1.0     # of wall time between two looks for a shutdown
 _STANDS = 1e-3    # m/s or rad/s
 
 
@@ -33,7 +35,10 @@ class Robot:
         self._rospy, self._twist = rospy, Twist
         self._odometry: Optional[Any] = None
         self._scan: Optional[Any] = None
-        self._command = rospy.Publisher("cmd_vel", Twist, queue_size=1)
+        self._changed = threading.Condition()
+        listener = rospy.SubscribeListener()
+        listener.peer_subscribe = lambda *_: self._notify()
+        self._command = rospy.Publisher("cmd_vel", Twist, listener, queue_size=1)
         rospy.Subscriber("odom", Odometry, self._receive_odometry, queue_size=1)
         rospy.Subscriber("scan", LaserScan, self._receive_scan, queue_size=1)
         self._wait(lambda: self._odometry is not None, "odometry on odom")
@@ -44,16 +49,24 @@ class Robot:
 
     def _receive_odometry(self, message: Any) -> None:
         self._odometry = message
+        self._notify()
 
     def _receive_scan(self, message: Any) -> None:
         self._scan = message
+        self._notify()
+
+    def _notify(self) -> None:
+        with self._changed:
+            self._changed.notify_all()
 
     def _wait(self, condition: Callable[[], bool], what: str) -> None:
+        # Messages end the wait, not a period of wall time: in lockstep, each run begins alike.
         deadline = time.monotonic() + _FIRST_S
-        while not condition():
-            if time.monotonic() > deadline or self._rospy.is_shutdown():
-                raise SystemExit(f"{self._rospy.get_name()}: there is no {what}")
-            time.sleep(0.02)
+        with self._changed:
+            while not condition():
+                if time.monotonic() > deadline or self._rospy.is_shutdown():
+                    raise SystemExit(f"{self._rospy.get_name()}: there is no {what}")
+                self._changed.wait(_LOOK_S)
 
     # -- moving ------------------------------------------------------------------------------------
 
