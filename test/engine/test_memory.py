@@ -7,7 +7,7 @@ import sys
 
 _CODE = """
 import sys
-from my_simulations.engine.spare_memory import made_sparingly
+from my_simulations.engine.spare_memory import made_without_zero_pages
 from my_simulations.engine.bullet.backend import BulletBackend
 
 def resident():
@@ -15,7 +15,7 @@ def resident():
         return next(int(line.split()[1]) for line in stream if line.startswith("VmRSS:"))
 
 before = resident()
-backend = made_sparingly(BulletBackend) if sys.argv[1] == "sparingly" else BulletBackend()
+backend = made_without_zero_pages(BulletBackend) if sys.argv[1] == "sparingly" else BulletBackend()
 print(resident() - before)
 backend.step(0, 10)
 backend.close()
@@ -35,7 +35,7 @@ def test_buffers_of_zeros_take_no_memory() -> None:
 
 _ZEROS = """
 import ctypes, json, mmap
-from my_simulations.engine.spare_memory import made_sparingly
+from my_simulations.engine.spare_memory import made_without_zero_pages
 
 SIZE = 8 << 20
 malloc = ctypes.CDLL(None).malloc
@@ -57,7 +57,7 @@ def blocks():
         ctypes.memset(address, 0, SIZE)
     return mapped, kept, ctypes.addressof(kept), allocated
 
-made = made_sparingly(blocks)
+made = made_without_zero_pages(blocks)
 print(json.dumps([resident(address) for address in made[2:]]))
 """
 

@@ -152,7 +152,7 @@ def test_autosave_survives_whatever_goes_wrong_and_says_so(case, monkeypatch):
             raise faults.pop()
         true_write(*args, **options)
 
-    monkeypatch.setattr(autosave, "write_whole", failing)
+    monkeypatch.setattr(autosave, "write_atomically", failing)
 
     async def edit(browser):
         await browser.edit("insert", shape="box")
