@@ -120,6 +120,7 @@ class Materials:
             self._folders[name] = [os.path.dirname(path)]
 
     def _path(self, uri: str) -> str:
+        """Return the path of a URI; "" if there is no such file."""
         try:
             return self._resolver.resolve(uri)
         except ResourceNotFoundError:

@@ -57,7 +57,7 @@ def links_of(model: Model, above: Pose = IDENTITY, scope: str = "",
     name = f"{scope}{model.name}::"
     base = compose(above, model.pose)
     static = static or model.static
-    held = _held(model) if model.joints else set()
+    held = _links_fixed_to_world(model) if model.joints else set()
     for link in model.links:
         still = static or link.kinematic or link.name in held
         yield name + link.name, link, compose(base, link.pose), still
@@ -71,7 +71,7 @@ def _count_pieces(model: Model) -> int:
                 for link in model.links) + sum(map(_count_pieces, model.models)))
 
 
-def _held(model: Model) -> Set[str]:
+def _links_fixed_to_world(model: Model) -> Set[str]:
     """Names of the links that fixed joints connect to the world."""
     rigid = [joint for joint in model.joints if joint.type == "fixed" or (
         joint.axis is not None and joint.axis.lower == joint.axis.upper and joint.axis2 is None)]

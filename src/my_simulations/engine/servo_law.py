@@ -156,9 +156,9 @@ class ServoLaw:
         if servo.drive == "effort":
             self.last = self.limited(command, position, rate)
         elif servo.drive == "velocity":
-            self.last = self._velocity(command, position, rate)
+            self.last = self._velocity_output(command, position, rate)
         else:
-            self.last = self._position(command, position, step)
+            self.last = self._position_output(command, position, step)
         return self.last
 
     def limited(self, effort: float, position: float, rate: float) -> float:
@@ -178,7 +178,8 @@ class ServoLaw:
                 most = 0.0
         return max(least, min(most, effort))
 
-    def _velocity(self, command: float, position: float, rate: float) -> float:
+    def _velocity_output(self, command: float, position: float, rate: float) -> float:
+        """Return a rate within the limits, or the effort of the inner loop that follows it."""
         servo = self.servo
         slow, fast = -servo.most_rate, servo.most_rate
         if servo.soft is not None:
@@ -189,7 +190,7 @@ class ServoLaw:
         return max(-servo.most_effort, min(servo.most_effort,
                                            self._inner.command(command - rate, self._dt)))
 
-    def _position(self, command: float, position: float, step: int) -> float:
+    def _position_output(self, command: float, position: float, step: int) -> float:
         servo, dt = self.servo, self._dt
         before = position if self.before is None else self.before
         slow, fast = -servo.most_rate, servo.most_rate

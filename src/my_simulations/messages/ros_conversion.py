@@ -16,7 +16,7 @@ def to_ros(message: Message) -> Any:
 
     Raises UnknownTypeError: the package of its type is not installed for this Python.
     """
-    made = _class(message.KIND)()
+    made = _message_class(message.KIND)()
     for one in message.DEFINITION.fields:
         setattr(made, one.name, _value_to_ros(getattr(message, one.name)))
     return made
@@ -49,7 +49,7 @@ def _value_to_ros(value: Any) -> Any:
     return value
 
 
-def _class(kind: str) -> Any:
+def _message_class(kind: str) -> Any:
     package, _, name = kind.partition("/")
     sort = "srv" if name.endswith(("Request", "Response")) else "msg"
     try:

@@ -46,13 +46,14 @@ def _inside(text: str, name: str) -> str:
 
 
 def _product(found: "re.Match[str]") -> float:
-    value = _value(found.group(1))
+    value = _parse_factor(found.group(1))
     for sign, factor in _FACTOR.findall(found.group(2)):
-        value = value * _value(factor) if sign == "*" else value / _value(factor)
+        value = value * _parse_factor(factor) if sign == "*" else value / _parse_factor(factor)
     return value
 
 
-def _value(text: str) -> float:
+def _parse_factor(text: str) -> float:
+    """Parse `pi` or a number, with a sign."""
     plain = text.lstrip("+- ")
     value = math.pi if plain == "pi" else float(plain)
     return -value if text.startswith("-") else value

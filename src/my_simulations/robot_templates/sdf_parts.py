@@ -12,19 +12,19 @@ PAINT: Mapping[str, Triple] = {
 """Diffuse colors, 0 to 1."""
 
 
-def numbers(values: Sequence[float]) -> str:
+def format_numbers(values: Sequence[float]) -> str:
     """Numbers with six significant digits, separated by blanks."""
     return " ".join(f"{value:.6g}" for value in values)
 
 
 def pose(position: Triple, angles: Triple = (0.0, 0.0, 0.0)) -> str:
     """A pose element: m, and roll, pitch, yaw in rad."""
-    return f"<pose>{numbers((*position, *angles))}</pose>"
+    return f"<pose>{format_numbers((*position, *angles))}</pose>"
 
 
 def box(size: Triple) -> str:
     """The geometry of a box; m."""
-    return f"<geometry><box><size>{numbers(size)}</size></box></geometry>"
+    return f"<geometry><box><size>{format_numbers(size)}</size></box></geometry>"
 
 
 def cylinder(radius: float, length: float) -> str:
@@ -71,7 +71,7 @@ def collision(name: str, geometry: str, at: str = "", surface: str = "") -> str:
 
 def visual(name: str, geometry: str, color: str, at: str = "") -> str:
     """A visual in one of the colors of PAINT; `at` is a pose element."""
-    rgb = numbers((*PAINT[color], 1.0))
+    rgb = format_numbers((*PAINT[color], 1.0))
     return (f'<visual name="{name}">{at}{geometry}<material><ambient>{rgb}</ambient><diffuse>{rgb}'
             "</diffuse><specular>0.1 0.1 0.1 1</specular></material></visual>")
 
@@ -107,8 +107,9 @@ def moving(name: str, kind: str, parent: str, child: str, axis: Triple,
         damping: N m s/rad or N s/m.
     """
     lower, upper, effort, velocity = limits
+    xyz = format_numbers(axis)
     return (f'<joint name="{name}" type="{kind}"><parent>{parent}</parent><child>{child}</child>'
-            f"<axis><xyz>{numbers(axis)}</xyz><limit><lower>{lower:.6g}</lower><upper>{upper:.6g}"
+            f"<axis><xyz>{xyz}</xyz><limit><lower>{lower:.6g}</lower><upper>{upper:.6g}"
             f"</upper><effort>{effort:.6g}</effort><velocity>{velocity:.6g}</velocity></limit>"
             f"<dynamics><damping>{damping:.6g}</damping></dynamics></axis></joint>")
 

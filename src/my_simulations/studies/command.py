@@ -63,18 +63,18 @@ def main(argv: Optional[Sequence[str]] = None, hook: Optional[Hook] = None,
         return _ACTIONS[options.action](options, hook)
     except InputError as fault:
         for issue in fault.issues:
-            _tell(str(issue))
+            _print_error(str(issue))
         return INVALID
     except SimulationError as fault:
-        _tell(f"study: {fault}")
+        _print_error(f"study: {fault}")
         return INVALID
     except BrokenPipeError:  # the reader of the output has ended: no fault of the study
         raise
     except OSError as fault:  # what has finished is in the journal
-        _tell(f"study: {fault}; `study resume` goes on")
+        _print_error(f"study: {fault}; `study resume` goes on")
         return os.EX_IOERR if is_disk_full(fault) else INVALID
     except KeyboardInterrupt:
-        _tell("study: interrupted; `study resume` goes on")
+        _print_error("study: interrupted; `study resume` goes on")
         return INTERRUPTED
 
 
@@ -98,9 +98,9 @@ def _resume(options: argparse.Namespace, hook: Optional[Hook]) -> int:
         return _on_slurm(options, folder, plan)
     code = max([_work(options, folder, plan, shard_of(path), hook) for path in folder.journals()])
     for shard in folder.missing_shards():
-        _tell(f"study: shard {shard.index} of {shard.of} has not begun in {folder.path}: study run"
-              f" {shlex.quote(plan.study.file)} --shard {shard.index}/{shard.of} --out"
-              f" {shlex.quote(folder.path)}")
+        _print_error(f"study: shard {shard.index} of {shard.of} has not begun in {folder.path}:"
+                     f" study run {shlex.quote(plan.study.file)} --shard"
+                     f" {shard.index}/{shard.of} --out {shlex.quote(folder.path)}")
         code = max(code, NOT_ALL_OK)
     return code
 
@@ -115,10 +115,10 @@ def _on_slurm(options: argparse.Namespace, folder: StudyFolder, plan: CasePlan) 
         options.sbatch))
     told = slurm.submit(path) if slurm.can_submit() else ""
     if options.json:
-        _say(json.dumps({"script": path, "shards": shards, "submitted": bool(told)}))
+        _print(json.dumps({"script": path, "shards": shards, "submitted": bool(told)}))
     else:
-        _say(path)
-        _tell(told or f"sbatch is not on this machine: submit it where it is, sbatch {path}")
+        _print(path)
+        _print_error(told or f"sbatch is not on this machine: submit it where it is, sbatch {path}")
     return 0
 
 
@@ -131,7 +131,7 @@ def _slots(options: argparse.Namespace, default: int) -> int:
 def _plan(file: str) -> CasePlan:
     study, issues = read_study(file)
     for issue in issues:
-        _tell(str(issue))
+        _print_error(str(issue))
     return CasePlan(study)
 
 
@@ -165,9 +165,9 @@ def _work(options: argparse.Namespace, folder: StudyFolder, plan: CasePlan, shar
         journal.close()
     files = []
     if shard.of == 1 or folder.is_complete(plan):  # of many, the last one writes the table
-        files = folder.write_tables(plan, _tell)
+        files = folder.write_tables(plan, _print_error)
         if options.keep_replays is not None:
-            files += options.keep_replays(plan, folder, options.replays, _tell)
+            files += options.keep_replays(plan, folder, options.replays, _print_error)
         files.append(_report(folder, plan))
     return _print_status(folder, plan, shard, options.json, files)
 
@@ -188,7 +188,7 @@ def _run_on_dask(options: argparse.Namespace, plan: CasePlan, recorder: Recorder
                            ) from None
     tls = TlsFiles(options.tls_ca, options.tls_cert, options.tls_key)
     DaskRunner(plan, recorder, finished, _slots(options, 0), address, tls, told,
-               lambda text: _tell(f"study: {text}")).run(shard)
+               lambda text: _print_error(f"study: {text}")).run(shard)
 
 
 def _interrupt(_: int, __: Optional[FrameType]) -> None:
@@ -207,13 +207,13 @@ def _print_status(folder: StudyFolder, plan: CasePlan, shard: Shard, as_json: bo
     cases, name = _count(plan, shard), plan.study.name
     done = sum(total.values())
     if as_json:
-        _say(json.dumps({"study": name, "folder": folder.path, "cases": cases,
-                         "done": done, **total, "files": files}))
+        _print(json.dumps({"study": name, "folder": folder.path, "cases": cases,
+                           "done": done, **total, "files": files}))
     else:
         became = ", ".join(f"{count} {status}" for status, count in total.items() if count)
-        _say(f"{name}: {done} of {cases} cases" + (f": {became}" if became else ""))
+        _print(f"{name}: {done} of {cases} cases" + (f": {became}" if became else ""))
         for file in files:
-            _say(f"  {file}")
+            _print(f"  {file}")
     return 0 if total[OK] == cases else NOT_ALL_OK
 
 
@@ -230,10 +230,10 @@ def _report(folder: StudyFolder, plan: CasePlan) -> str:
 
 def _write(options: argparse.Namespace, _: Optional[Hook]) -> int:
     folder, plan = _opened(options.dir)
-    files = folder.write_tables(plan, _tell)
+    files = folder.write_tables(plan, _print_error)
     if options.action == "report":
         files.append(_report(folder, plan))
-    _say(json.dumps({"files": files}) if options.json else "\n".join(files))
+    _print(json.dumps({"files": files}) if options.json else "\n".join(files))
     return 0
 
 
@@ -253,16 +253,16 @@ def _show(options: argparse.Namespace, _: Optional[Hook]) -> int:
     path = options.write or os.path.join(folder.path, f"case-{case.id}.world")
     path = write_world(plan, case, path)
     if options.write or not can_launch():
-        _say(path)
+        _print(path)
     return _show_command(launch_command(path), bool(options.write))
 
 
 def _show_command(command: List[str], only_tell: bool) -> int:
     text = " ".join(map(shlex.quote, command))
     if only_tell or not can_launch():
-        _tell("to open it: " + text)
+        _print_error("to open it: " + text)
         return 0
-    _tell(text)
+    _print_error(text)
     os.execvp(command[0], command)
 
 
@@ -296,18 +296,18 @@ def _record(options: argparse.Namespace, records: Records) -> int:
         found = final_hash(world)
     known = next((row for row in rows_in_order(folder.journals()) if row.case == case.id), None)
     if known is not None and known.hash and known.hash != found:
-        _tell(f"study: the final state differs from that of the study, which ran on"
-              f" {known.processor}")
+        _print_error(f"study: the final state differs from that of the study, which ran on"
+                     f" {known.processor}")
     paths = [os.path.abspath(path) for path in wanted.values()]
-    _say(json.dumps({"files": paths}) if options.json else "\n".join(paths))
+    _print(json.dumps({"files": paths}) if options.json else "\n".join(paths))
     return 0
 
 
 def _case(plan: CasePlan, start_of_id: str) -> Optional[Case]:
     case = plan.find(start_of_id)
     if case is None:
-        _tell(f"study: no case has an id that begins with {start_of_id}; ids change with the study"
-              " file and the files it names")
+        _print_error(f"study: no case has an id that begins with {start_of_id}; ids change with"
+                     " the study file and the files it names")
     return case
 
 
@@ -315,10 +315,10 @@ _ACTIONS = {"run": _run, "resume": _resume, "status": _status, "report": _write,
             "export": _write, "show": _show}
 
 
-def _say(text: str) -> None:
+def _print(text: str) -> None:
     sys.stdout.write(text + "\n")
     sys.stdout.flush()
 
 
-def _tell(text: str) -> None:
+def _print_error(text: str) -> None:
     sys.stderr.write(text + "\n")

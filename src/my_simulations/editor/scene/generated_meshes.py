@@ -75,7 +75,7 @@ def _binary_file(solid: Solid) -> bytes:
 
 
 def _binary_ply(mesh: Mesh, corners: Any) -> bytes:
-    """Triangles that share no corners, with colours if the file has them, sRGB from 0 to 1."""
+    """Return a binary PLY file with three vertices for each triangle, and the colours if any."""
     import numpy as np
 
     from ...formats.mesh.painted import colored_corners

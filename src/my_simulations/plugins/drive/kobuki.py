@@ -120,7 +120,7 @@ class Kobuki(Plugin):
         return True
 
     def _publish_odometry(self, dt: float) -> None:
-        """The way is that of the wheels, the heading that of the gyroscope, as on the real base."""
+        """Publish odometry; the heading is that of the gyroscope, as on the real base."""
         way = sum(self._turns.since(dt)) * self._radius / 2.0
         last, self._heading = self._heading, self._yaw()
         turn = math.remainder(self._heading - last, 2.0 * math.pi)

@@ -165,6 +165,7 @@ class Publishers(WorkerThread):
             self._pace(began, selector.step - before, selector.step)
 
     def _set_demand(self, clock_wanted: bool, states_wanted: bool) -> None:
+        """Request the rate of states, and a notification of each step, from the engine."""
         hz = 0.0
         if states_wanted:
             hz = self._states_hz or 1.0 / self._simulator.physics.settings.max_step_size

@@ -48,15 +48,15 @@ class FigureShape:
             return []
         parts: List[PaintedPart] = []
         try:
-            parts = self._hung(figure)
+            parts = self._skinned_parts(figure)
         except MeshError as fault:
             trouble(f"{viewers} see the actor {figure.actor.name!r} in one shape: {fault}")
         return [piece_of(part.vertices, part.normals, part.uv, part.triangles,
                          own_surface(part, 1.0))
                 for part in parts or painted_parts(figure.skin)]
 
-    def _hung(self, figure: Figure) -> List[PaintedPart]:
-        """The parts that bones carry; none of a file without."""
+    def _skinned_parts(self, figure: Figure) -> List[PaintedPart]:
+        """Return the parts of a skin that bones move; none if the file has no bones."""
         found = read_figure(figure.skin.path)
         if found is None:
             return []
