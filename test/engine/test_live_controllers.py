@@ -44,6 +44,22 @@ def test_a_trajectory_is_followed_as_the_parameters_say(world):
     assert world.joints().position["arm::elbow"] == pytest.approx(reached["elbow"], abs=1e-3)
 
 
+def test_a_robot_without_transmissions_keeps_its_controller_manager(tmp_path):
+    path = tmp_path / "box.urdf"
+    path.write_text("""<robot name="box"><link name="base"><inertial><mass value="1"/>
+        <inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial></link>
+        <gazebo><plugin name="control" filename="libgazebo_ros_control.so"/></gazebo></robot>""")
+    kind = "joint_state_controller/JointStateController"
+    with my_simulations.open_world() as world:
+        world.spawn(path, "box")
+        world.controllers.load("states", {"type": kind, "publish_rate": 50})
+        world.controllers.start("states")
+        found = world.topics["/box/joint_states"]
+        world.step(200)
+        assert found.latest.name == []
+        assert world.controllers.states()["states"].state == "running"
+
+
 def test_a_controller_is_loaded_with_parameters_of_the_call(world):
     controllers = world.controllers
     controllers.load("loop", LOOP, robot="arm")

@@ -37,6 +37,8 @@ class StepReadings:
         Those that others asked for at earlier steps are read along. Raises CommandError,
         PluginError.
         """
+        if not rows:
+            return []   # an observation of no efforts records no query
         if self._view.is_record:
             query, values = self._view.answer(ReadEfforts)
             return [_value(query.rows, values, row) for row in rows]

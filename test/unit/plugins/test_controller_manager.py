@@ -4,8 +4,6 @@ from __future__ import annotations
 import pytest
 from robot_control import Arm
 
-from my_simulations.plugins.context import PluginError
-
 FORWARD = {"type": "position_controllers/JointPositionController", "joint": "one"}
 GROUP = {"type": "position_controllers/JointGroupPositionController", "joints": ["one", "two"]}
 STATE = {"type": "joint_state_controller/JointStateController", "publish_rate": 50}
@@ -275,8 +273,11 @@ def test_a_reset_starts_controllers_anew_where_joints_are():
 
 
 def test_a_robot_without_transmissions_is_told_so():
-    with pytest.raises(PluginError, match="no <transmission>"):
-        Arm(interfaces=())
+    arm = Arm(interfaces=(), joint_state_controller=STATE)
+    assert "no <transmission>" in arm.context.said[0]
+    arm.run("joint_state_controller")
+    arm.context.advance(0.1)
+    assert [one.name for one in arm.published("joint_states")] == [[]] * 5
 
 
 def test_what_comes_while_a_controller_does_not_run_is_told_once():

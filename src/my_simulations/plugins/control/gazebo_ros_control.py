@@ -5,7 +5,6 @@ from typing import Any, List, Mapping, Type
 
 from ...description.transmission import Transmission
 from ..base import Plugin
-from ..context import PluginError
 from .hardware import Hardware, SwitchingHardware
 from .initial_hold import InitialHold
 from .manager import ControllerManager
@@ -41,7 +40,7 @@ class GazeboRosControl(Plugin):
         transmissions = context.transmissions(p.text("robotParam") or "robot_description") \
             if hardware.needs_transmissions else []
         if hardware.needs_transmissions and not transmissions:
-            raise PluginError("the robot has no <transmission>: no joint can be controlled")
+            context.warn("the robot has no <transmission>: no joint can be controlled")
         self._hardware = hardware(context, self.controllable(transmissions))
         period = p.number("controlPeriod", 0.0)
         self._hold = InitialHold(context, self._hardware, lambda: self._manager.claimed)
