@@ -1,14 +1,14 @@
 #!/usr/bin/env node
 /**
- * Writes web/js/protocol.js, the page's side of web/protocol.json: the numbers that the page needs
- * and a JSDoc type for everything that is sent. Run it after an edit of the protocol; a test
+ * Writes web/js/protocol.ts, the page's side of web/protocol.json: the numbers that the page needs
+ * and a type for everything that is sent. Run it after an edit of the protocol; a test
  * compares the file with what this makes.
  */
 import {readFileSync, writeFileSync} from 'node:fs';
 import {fileURLToPath} from 'node:url';
 
 const SOURCE = new URL('../web/protocol.json', import.meta.url);
-const TARGET = new URL('../web/js/protocol.js', import.meta.url);
+const TARGET = new URL('../web/js/protocol.ts', import.meta.url);
 
 const BASIC = {
   string: 'string', number: 'number', integer: 'number', boolean: 'boolean',
@@ -30,7 +30,7 @@ export function typeOf(expression) {
 }
 
 /** An object type; what may be absent is optional. */
-function objectOf(fields, indent = ' *  ') {
+function objectOf(fields, indent = '  ') {
   const members = Object.entries(fields).map(([name, expression]) =>
     `${name}${expression.endsWith('?') ? '?' : ''}: ${typeOf(expression)}`);
   return wrapped(members, ', ', indent, '{}');
@@ -53,7 +53,7 @@ function wrapped(members, separator, indent, [open = '', close = ''] = '') {
   return `${open}\n${indent}${lines.join(`${separator.trimEnd()}\n${indent}`)}\n${outer}${close}`;
 }
 
-const typedef = (name, type) => `/** @typedef {${type}} ${name} */`;
+const typedef = (name, type) => `export type ${name} = ${type};`;
 
 function pascal(name) {
   return name.split('_').map((word) => word[0].toUpperCase() + word.slice(1)).join('');
@@ -75,19 +75,19 @@ function constant(about, name, value) {
   return `${about ? `/** ${about} */\n` : ''}export const ${name} = ${text};`;
 }
 
-/** The text of web/js/protocol.js for a protocol. */
+/** The text of web/js/protocol.ts for a protocol. */
 export function moduleOf(protocol) {
   const {version, limits, types, operations, requests, notices, pushes, frames} = protocol;
   const named = Object.entries(types).map(([name, type]) => typedef(name,
-    typeof type === 'string' ? wrapped(typeOf(type).split('|'), '|', ' *  ') : objectOf(type)));
+    typeof type === 'string' ? wrapped(typeOf(type).split('|'), '|', '  ') : objectOf(type)));
   const unions = (entries, suffix, tag) => Object.entries(entries).map(([name, fields]) =>
     typedef(`${pascal(name)}${suffix}`, objectOf({[tag]: `'${name}'`, ...fields})));
   const union = (entries, suffix) => typedef(suffix === 'Push' ? 'Push' : 'Operation',
-    wrapped(Object.keys(entries).map((name) => `${pascal(name)}${suffix}`), '|', ' *  '));
+    wrapped(Object.keys(entries).map((name) => `${pascal(name)}${suffix}`), '|', '  '));
   const map = (entries, of) => `{\n${Object.entries(entries).map(([name, entry]) =>
-    ` *  ${name}: ${of(entry)}`).join(',\n')}}`;
-  const replyOf = ({fields, reply}) => `{fields: ${objectOf(fields, ' *      ')},\n *    reply: ${
-    typeof reply === 'string' ? typeOf(reply) : objectOf(reply, ' *      ')}}`;
+    `  ${name}: ${of(entry)}`).join(',\n')},\n}`;
+  const replyOf = ({fields, reply}) => `{fields: ${objectOf(fields, '      ')},\n    reply: ${
+    typeof reply === 'string' ? typeOf(reply) : objectOf(reply, '      ')}}`;
   return `${[
     '/**\n * The messages between page and simulator. Written by tools/protocol_module.mjs from\n' +
     ' * web/protocol.json: edit that file, not this one.\n */',
@@ -105,7 +105,7 @@ export function moduleOf(protocol) {
     ...unions(operations, 'Operation', 'kind'), union(operations, 'Operation'),
     ...unions(pushes, 'Push', 'type'), union(pushes, 'Push'),
     typedef('Requests', map(requests, replyOf)),
-    typedef('Notices', map(notices, (fields) => objectOf(fields, ' *    '))),
+    typedef('Notices', map(notices, (fields) => objectOf(fields, '    '))),
   ].join('\n\n')}\n`;
 }
 

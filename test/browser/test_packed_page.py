@@ -1,11 +1,5 @@
-"""The page whose modules the set-up has packed, and the page as it is written."""
+"""The page whose modules the set-up has packed."""
 from __future__ import annotations
-
-import os
-
-import pytest
-
-from my_simulations.editor.transport.page_files import PageFiles, node_modules
 
 SCRIPTS = """performance.getEntriesByType('resource').map(({name}) => new URL(name).pathname)
   .filter((path) => path.endsWith('.js')).length"""
@@ -15,16 +9,10 @@ BYTES = """[...performance.getEntriesByType('navigation'),
 PALETTE = "document.querySelector('.model-palette')"
 
 
-@pytest.mark.parametrize("packed", [True, False], ids=["packed", "module by module"])
-def test_it_draws_edits_and_opens_what_comes_later(launch, browser, tmp_path, monkeypatch, packed):
-    if not packed:
-        modules = tmp_path / "modules"
-        modules.mkdir()
-        (modules / "three").symlink_to(os.path.join(node_modules(PageFiles.own_folder()), "three"))
-        monkeypatch.setenv("MY_SIMULATIONS_NODE_MODULES", str(modules))
+def test_it_draws_edits_and_opens_what_comes_later(launch, browser):
     editor = browser.open(launch("worlds/empty.world").url)
-    assert (editor.get(SCRIPTS) < 30) == packed
-    assert not packed or 0 < editor.get(BYTES) < 450_000
+    assert editor.get(SCRIPTS) < 30
+    assert 0 < editor.get(BYTES) < 450_000
     assert editor.place("Box", (0.0, 0.0, 0.0)) == "unit_box"
     editor.page.keyboard.press("Control+m")
     editor.until(f"{PALETTE} && getComputedStyle({PALETTE}).position === 'absolute'",

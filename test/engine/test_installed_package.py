@@ -62,7 +62,7 @@ def test_a_source_archive_has_all_files_of_the_repository_and_the_page(source):
     assert {path.name for path in (folder / "page").iterdir()} == {"three", "my_simulations_page"}
     assert "MIT" in (folder / "page" / "three" / "LICENSE").read_text()
     made = (folder / "page" / "my_simulations_page" / "meta.json").read_text()
-    assert ROOT.name + "/web" not in made and '"../web/js/main.js"' in made
+    assert ROOT.name + "/web" not in made and '"../web/js/main.ts"' in made
 
 
 def test_a_world_and_its_editor_open_from_an_installation_without_ros(source, tmp_path):

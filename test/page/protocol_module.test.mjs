@@ -5,8 +5,8 @@ import {moduleOf, typeOf} from '../../tools/protocol_module.mjs';
 import * as made from '../../web/js/protocol.js';
 import {protocol} from './protocol.mjs';
 
-test('web/js/protocol.js is what tools/protocol_module.mjs makes of web/protocol.json', () => {
-  const text = readFileSync(new URL('../../web/js/protocol.js', import.meta.url), 'utf8');
+test('web/js/protocol.ts is what tools/protocol_module.mjs makes of web/protocol.json', () => {
+  const text = readFileSync(new URL('../../web/js/protocol.ts', import.meta.url), 'utf8');
   assert.equal(text, moduleOf(protocol), 'run tools/protocol_module.mjs');
 });
 

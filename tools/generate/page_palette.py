@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
-"""Write web/js/view/palette.js, the page's copy of my_simulations.appearance.palette."""
+"""Write web/js/view/palette.ts, the page's copy of my_simulations.appearance.palette."""
 from __future__ import annotations
 
 import pathlib
 import sys
 
 REPOSITORY = pathlib.Path(__file__).resolve().parents[2]
-MODULE = REPOSITORY / "web" / "js" / "view" / "palette.js"
+MODULE = REPOSITORY / "web" / "js" / "view" / "palette.ts"
 HEAD = """/**
  * Numbers of looks that the page and the cameras share. Written by tools/generate/page_palette.py
  * from src/my_simulations/appearance/palette.py: edit that file, not this one.
@@ -26,8 +26,9 @@ def module() -> str:
     lines += ["", "export const SKY = Object.freeze({", *sky, "});", "",
               "/** GLSL: the colour of the sky, linear, in a direction. */",
               f"export const SKY_COLOR = `{palette.SKY_COLOR}`;", "",
-              "/** @type {Record<string, {painter: string, colors: string[], count: number,"
-              " grain: number}>} */", "export const PATTERNS = Object.freeze({"]
+              "export interface Pattern {",
+              "  painter: string; colors: string[]; count: number; grain: number;", "}", "",
+              "export const PATTERNS: Record<string, Pattern> = Object.freeze({"]
     for name, one in palette.PATTERNS.items():
         colors = ", ".join(f"'#{color:06x}'" for color in one.colors)
         lines.append(f"  {name}: {{painter: '{one.painter}', colors: [{colors}], count: "

@@ -133,7 +133,8 @@ node_tests() {
   local name="$1" limit="$2" status=0
   shift 2
   begin "$name"
-  attempt "${name//\//-}" "$limit" env NODE_OPTIONS="--import=file://$CLONE/test/page/node18.mjs" \
+  attempt "${name//\//-}" "$limit" env NODE_OPTIONS="--import=file://$CLONE/test/page/built_modules.mjs" \
+    MY_SIMULATIONS_NODE_MODULES="$OWN/node_modules" \
     node --test --test-reporter=tap "$@" || status=$?
   judge "$name" "$(tap tests)" "$(tap fail)" "$status"
 }

@@ -1,5 +1,6 @@
 # shellcheck shell=bash
-# What the editor's page needs: packages of npm, and its modules in few files.
+# What the editor's page needs: packages of npm, and its modules as JavaScript, once each for itself
+# and once in few files.
 
 BUNDLE_REMARK=    # what a user should know of the few files; empty for nothing
 
@@ -46,36 +47,39 @@ prepare_page() {
 page_sources() {
   local modules="$WORKSPACE/.my_simulations/node_modules"
   {
-    (cd -- "$CLONE/web" && find js -type f -name '*.js' | LC_ALL=C sort | xargs -r sha256sum)
+    (cd -- "$CLONE/web" && find js -type f -name '*.ts' | LC_ALL=C sort | xargs -r sha256sum)
     (cd -- "$modules" && sha256sum three/package.json)
   } | sha256sum | cut -d ' ' -f 1
 }
 
-# bundle_page: pack the modules of the page. A browser takes them in half of the time then; where
-# it cannot be done the page is served as it is, module by module.
+# bundle_page: make JavaScript of the page's modules. Few files reach a browser in half of the time;
+# tests load single modules.
 bundle_page() {
-  local own="$WORKSPACE/.my_simulations" sources place work esbuild
+  local own="$WORKSPACE/.my_simulations" sources place work esbuild modules
   place="$own/node_modules/my_simulations_page"
   work="$own/page_made"
   BUNDLE_REMARK=
   [ -f "$own/node_modules/three/package.json" ] || return 0
   sources=$(page_sources)
   [ "$(cat "$place/sources" 2>/dev/null || true)" != "$sources" ] || return 0
-  BUNDLE_REMARK=", its modules not packed: see $LOGS/page-bundler.log"
+  BUNDLE_REMARK=", its modules not built: see $LOGS/page-bundler.log"
   page_bundler >/dev/null || recorded page-bundler fetch_page_bundler || return 0
   esbuild=$(page_bundler) || return 0
-  BUNDLE_REMARK=", its modules not packed: see $LOGS/page-bundle.log"
+  BUNDLE_REMARK=", its modules not built: see $LOGS/page-bundle.log"
   rm -rf -- "$work" "$place"
   mkdir -p -- "$work"
   recorded page-bundle env -C "$work" NODE_PATH="$own/node_modules" "$esbuild" \
-    "$CLONE/web/js/main.js" --bundle --splitting --format=esm --target=es2022 \
+    "$CLONE/web/js/main.ts" --bundle --splitting --format=esm --target=es2022 \
     --minify-whitespace --minify-syntax --legal-comments=eof --log-level=warning --outdir=. \
     --entry-names='bundle/[name]' --chunk-names='bundle/[name]-[hash]' --metafile=meta.json ||
     return 0
   recorded page-bundle env -C "$work" NODE_PATH="$own/node_modules" "$esbuild" \
-    "$CLONE/web/js/replay/main.js" --bundle --format=iife --target=es2022 --minify \
+    "$CLONE/web/js/replay/main.ts" --bundle --format=iife --target=es2022 --minify \
     --define:import.meta.url='""' --legal-comments=eof --log-level=warning --outfile=replay.js ||
     return 0
+  mapfile -t modules < <(find "$CLONE/web/js" -type f -name '*.ts')
+  recorded page-bundle "$esbuild" "${modules[@]}" --outbase="$CLONE/web/js" --outdir="$work/js" \
+    --format=esm --target=es2022 --log-level=warning || return 0
   printf '%s\n' "$sources" >"$work/sources"
   mv -- "$work" "$place"
   BUNDLE_REMARK=

@@ -1,6 +1,6 @@
 """Numbers of looks that the editor's page and the cameras share.
 
-The page gets them as a module: tools/generate/page_palette.py writes web/js/view/palette.js, and a
+The page gets them as a module: tools/generate/page_palette.py writes web/js/view/palette.ts, and a
 test compares it.
 """
 from __future__ import annotations

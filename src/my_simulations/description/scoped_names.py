@@ -21,7 +21,7 @@ def split_scoped(name: str, is_model: Callable[[str], bool]) -> Tuple[str, str]:
     """Split a scoped name into a model and the rest.
 
     The longest name of an existing model wins; the page splits names by the same rule
-    (`web/js/scoped_names.js`).
+    (`web/js/scoped_names.ts`).
 
     Args:
         name: `model`, `model::link`, `model::link::collision`, …, or a plain name.

@@ -1,4 +1,4 @@
-"""Roads as triangles: the strip of the editor's page (web/js/view/road_strip.js).
+"""Roads as triangles: the strip of the editor's page (web/js/view/road_strip.ts).
 
 A test compares both with test/data/road_strips.json.
 """

@@ -15,7 +15,8 @@ from editor_case import Browser, box, cases
 from my_simulations.description.shapes import Mesh
 from my_simulations.editor.editor_options import is_loopback
 from my_simulations.editor.transport.http_pages import Pages
-from my_simulations.editor.transport.page_files import PageFiles
+from my_simulations.editor.transport.page_bundle import FOLDER
+from my_simulations.editor.transport.page_files import PageFiles, node_modules
 from my_simulations.resources.resolver import Resolver
 
 PNG = b"\x89PNG\r\n\x1a\n" + b"\0" * 32
@@ -105,7 +106,7 @@ def test_modules_of_the_page_are_sent_compressed_until_they_change(case, tmp_pat
 
 def test_the_page_of_the_package_is_sent_in_less_than_half_of_its_bytes(case):
     url = case().url
-    folder = os.path.join(Pages.own_folder(), "js")
+    folder = os.path.join(node_modules(Pages.own_folder()), FOLDER, "js")
     plain = sent = 0
     for name in os.listdir(folder):
         if name.endswith(".js"):

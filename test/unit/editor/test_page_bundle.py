@@ -1,4 +1,4 @@
-"""The packed modules of the page: used while they fit, else the page is served as it is."""
+"""The built modules of the page: used while they fit to the sources."""
 from __future__ import annotations
 
 import json
@@ -21,15 +21,15 @@ HTML = """<link rel="stylesheet" href="/css/theme.css">
   <script type="module" src="/js/main.js"></script>
 """
 META = {"outputs": {
-    "bundle/main.js": {"entryPoint": "../clone/web/js/main.js", "imports": [
+    "bundle/main.js": {"entryPoint": "../clone/web/js/main.ts", "imports": [
         {"path": "bundle/chunk-A.js", "kind": "import-statement"},
         {"path": "bundle/view-B.js", "kind": "dynamic-import"}]},
     "bundle/chunk-A.js": {"imports": []},
-    "bundle/view-B.js": {"entryPoint": "../clone/web/js/view/view.js", "imports": [
+    "bundle/view-B.js": {"entryPoint": "../clone/web/js/view/view.ts", "imports": [
         {"path": "bundle/chunk-A.js", "kind": "import-statement"},
         {"path": "bundle/chunk-C.js", "kind": "import-statement"}]},
     "bundle/chunk-C.js": {"imports": []},
-    "bundle/later-D.js": {"entryPoint": "../clone/web/js/later.js", "imports": []}}}
+    "bundle/later-D.js": {"entryPoint": "../clone/web/js/later.ts", "imports": []}}}
 
 case = pytest.fixture(cases)
 
@@ -39,8 +39,8 @@ def page(tmp_path):
     """A page of two modules, packed."""
     folder, modules = tmp_path / "web", tmp_path / "node_modules"
     (folder / "js" / "view").mkdir(parents=True)
-    (folder / "js" / "main.js").write_text("one();")
-    (folder / "js" / "view" / "view.js").write_text("two();")
+    (folder / "js" / "main.ts").write_text("one();")
+    (folder / "js" / "view" / "view.ts").write_text("two();")
     (folder / "index.html").write_text(HTML)
     shutil.copy(os.path.join(PageFiles.own_folder(), "protocol.json"), folder)
     (modules / "three" / "build").mkdir(parents=True)
@@ -48,6 +48,8 @@ def page(tmp_path):
     made = modules / FOLDER
     (made / "bundle").mkdir(parents=True)
     (made / "bundle" / "main.js").write_text("both();")
+    (made / "js").mkdir()
+    (made / "js" / "main.js").write_text("one();")
     (made / "meta.json").write_text(json.dumps(META))
     (made / "sources").write_text(sources_of(str(folder), str(modules)) + "\n")
     return folder
@@ -70,15 +72,15 @@ def test_packed_modules_are_named_in_place_of_the_modules(page):
 
 
 def edit(page):
-    (page / "js" / "view" / "view.js").write_text("other();")
+    (page / "js" / "view" / "view.ts").write_text("other();")
 
 
 def add(page):
-    (page / "js" / "new.js").write_text("")
+    (page / "js" / "new.ts").write_text("")
 
 
 def remove(page):
-    (page / "js" / "view" / "view.js").unlink()
+    (page / "js" / "view" / "view.ts").unlink()
 
 
 def another_three(page):
@@ -103,16 +105,21 @@ def without_entry(page):
 
 @pytest.mark.parametrize("change", [edit, add, remove, another_three, no_three, damage, cut,
                                     without_entry])
-def test_a_page_that_was_not_packed_as_it_is_now_is_served_as_it_is(page, change):
+def test_a_page_that_was_not_built_as_it_is_now_is_not_served(page, change):
     change(page)
-    assert served(page) == HTML
+    assert served(page) is None
 
 
-def test_a_page_without_npm_packages_is_served_as_it_is(page):
+def test_a_page_without_npm_packages_is_not_served(page):
+    assert PageBundle(str(page), "").html(HTML) is None
+
+
+def test_a_page_without_typescript_is_served_as_it_is(page):
+    (page / "js" / "main.ts").unlink()
     assert PageBundle(str(page), "").html(HTML) == HTML
 
 
-def test_packed_modules_beside_the_page_are_served_until_a_module_is_edited(
+def test_built_modules_beside_the_page_are_served_until_a_module_is_edited(
         case, page, monkeypatch):
     monkeypatch.delenv("MY_SIMULATIONS_NODE_MODULES", raising=False)
     monkeypatch.setenv("CMAKE_PREFIX_PATH", "")
@@ -123,18 +130,20 @@ def test_packed_modules_beside_the_page_are_served_until_a_module_is_edited(
     status, headers, body = request(made.url + address)
     assert status == 200 and body == b"both();" and "immutable" in headers["Cache-Control"]
     assert headers["Content-Type"].startswith("text/javascript")
+    status, _, body = request(made.url + "js/main.js")
+    assert status == 200 and body == b"one();"
     edit(page)
-    _, _, html = request(made.url)
-    assert re.search(rb'src="/(.*?)"', html)[1].decode().endswith("/js/main.js")
+    status, _, html = request(made.url)
+    assert status == 503 and b"run tools/run" in html
     for outside in ("js/../sources", "js/sources", "js/meta.json", "js/bundle/../meta.json",
                     "js/bundle/..%2fmeta.json", "js/bundle/", "js/bundle/x.js"):
         assert request(made.url + outside)[0] == 404
 
 
 def test_the_set_up_hashes_the_modules_as_the_editor_does(page):
-    (page / "js" / "Zoë.js").write_text("")
+    (page / "js" / "Zoë.ts").write_text("")
     (page / "js" / "view-2").mkdir()
-    (page / "js" / "view-2" / "a_b.js").write_text("x")
+    (page / "js" / "view-2" / "a_b.ts").write_text("x")
     workspace = page.parent / "ws" / ".my_simulations"
     workspace.mkdir(parents=True)
     (workspace / "node_modules").symlink_to(modules_of(page))

@@ -190,7 +190,7 @@ def quoted_messages():
 
 def test_messages_of_the_troubleshooting_page_are_those_of_the_programs():
     files = [path for folder in ("src", "tools", "web/js") for path in
-             (REPOSITORY / folder).rglob("*") if path.suffix in (".py", ".sh", ".js")]
+             (REPOSITORY / folder).rglob("*") if path.suffix in (".py", ".sh", ".ts")]
     # String literals over several lines are joined.
     text = re.sub(r"""["']\s*\n\s*f?["']|\\\n""", "", "\n".join(map(text_of, files)))
     found = quoted_messages()
@@ -210,7 +210,7 @@ def test_every_parameter_of_the_node_is_documented():
 
 
 def test_keys_named_on_the_pages_are_hotkeys_of_the_editor():
-    keys = set(re.findall(r"keys: '([^']+)'", text_of(REPOSITORY / "web" / "js" / "hotkeys.js")))
+    keys = set(re.findall(r"keys: '([^']+)'", text_of(REPOSITORY / "web" / "js" / "hotkeys.ts")))
     for name in ("world_editor", "building_editor", "lab_sheet", "first_hour"):
         page = REPOSITORY / "doc" / f"{name}.md"
         for key in re.findall(r"\bCtrl\+(?:Shift\+)?[A-Z]\b|\bF\d+\b", text_of(page)):
@@ -267,10 +267,10 @@ def test_walk_counts_its_modules_right(title, stated, rows):
 def test_modules_and_functions_of_a_walk_exist(title, stated, rows):
     for module, names in rows:
         page = module.startswith("web/")
-        path = REPOSITORY / f"{module}.js" if page else (
+        path = REPOSITORY / f"{module}.ts" if page else (
             REPOSITORY / "src" / "my_simulations" / f"{module}.py")
         text = text_of(path)
         for name in names:
-            pattern = (rf"^\s*(?:async |export |function |#)*{name}\(" if page
+            pattern = (rf"^\s*(?:async |export |function |override |#)*{name}(?:<.*>)?\(" if page
                        else rf"^\s*(?:async )?def {name}\(")
             assert re.search(pattern, text, re.MULTILINE), f"{title}: {module} {name}"

@@ -633,7 +633,8 @@ case $3 in
     # npm 7 fetches the programs of other systems, too.
     for system in aix-ppc64 $(node -p 'process.platform + "-" + process.arch'); do
       mkdir -p $3/node_modules/@esbuild/$system/bin
-      printf '#!/bin/bash\n[[ $1 != */replay/* ]] || exec cp $1 replay.js\n%s && %s && %s\n' \
+      printf '#!/bin/bash\n%s\n%s\n%s && %s && %s\n' \
+        '[[ $* != *--outbase* ]] || exit 0' '[[ $1 != */replay/* ]] || exec cp $1 replay.js' \
         '[[ $0 != *aix* ]]' 'mkdir bundle && cp $1 bundle/' 'echo made >>$HOME/calls' \
         >$3/node_modules/@esbuild/$system/bin/esbuild
       chmod +x $3/node_modules/@esbuild/$system/bin/esbuild
@@ -641,7 +642,7 @@ case $3 in
   *) mkdir -p $3/node_modules/three && echo 1 >$3/node_modules/three/package.json ;;
 esac
 """
-PACKED = "ws/.my_simulations/node_modules/my_simulations_page/bundle/main.js"
+PACKED = "ws/.my_simulations/node_modules/my_simulations_page/bundle/main.ts"
 PACKED_REPLAY = "ws/.my_simulations/node_modules/my_simulations_page/replay.js"
 
 
@@ -650,15 +651,15 @@ def packed_home(clone, page_home):
     """As `page_home`, with a page of one module and what packs it."""
     (page_home / "bin" / "npm").write_text(NPM)
     (clone / "web" / "js" / "replay").mkdir(parents=True)
-    (clone / "web" / "js" / "main.js").write_text("one();")
-    (clone / "web" / "js" / "replay" / "main.js").write_text("play();")
+    (clone / "web" / "js" / "main.ts").write_text("one();")
+    (clone / "web" / "js" / "replay" / "main.ts").write_text("play();")
     return page_home
 
 
 def test_modules_of_the_page_are_packed_once_and_again_after_an_edit(clone, packed_home):
     for text, expected, made in (("one();", "installed", 1), ("one();", "all there", 1),
                                  ("other();", "all there", 2)):
-        (clone / "web" / "js" / "main.js").write_text(text)
+        (clone / "web" / "js" / "main.ts").write_text(text)
         done = shell(clone, PAGE, packed_home)
         assert done.returncode == 0 and f"{expected} (" in done.stdout, done.stderr
         assert (packed_home / PACKED).read_text() == text
@@ -668,11 +669,11 @@ def test_modules_of_the_page_are_packed_once_and_again_after_an_edit(clone, pack
 
 
 @pytest.mark.parametrize("fault", ["no_bundler", "bundle"])
-def test_a_page_that_cannot_be_packed_is_told_of_and_served_as_it_is(clone, packed_home, fault):
+def test_a_page_that_cannot_be_built_is_told_of(clone, packed_home, fault):
     (packed_home / fault).touch()
     if fault == "bundle":     # esbuild itself fails
         (packed_home / "bin" / "npm").write_text(NPM.replace("mkdir bundle", "false"))
-    for expected in ("installed, its modules not packed: see ", "all there, its modules not "):
+    for expected in ("installed, its modules not built: see ", "all there, its modules not "):
         done = shell(clone, PAGE, packed_home)
         assert done.returncode == 0 and expected in done.stdout, done.stdout + done.stderr
         assert not (packed_home / PACKED).exists()

@@ -28,7 +28,7 @@ def test_the_page_has_the_present_palette():
 
 
 def test_nobody_has_colours_of_the_sky_or_of_patterns_beside_it():
-    for name in ("environment.js", "builtin_textures.js", "materials.js"):
+    for name in ("environment.ts", "builtin_textures.ts", "materials.ts"):
         text = (REPOSITORY / "web" / "js" / "view" / name).read_text(encoding="utf-8")
         assert not re.search(r"0x[0-9a-f]{6}|'#[0-9a-f]{3,6}'", text), name
 

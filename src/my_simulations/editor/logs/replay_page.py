@@ -149,7 +149,7 @@ def _shown(document: Dict[str, Any], files: ReplayFiles) -> Dict[str, Any]:
 
 
 def _container(name: str, log: bytes, files: Dict[str, bytes]) -> bytes:
-    """The head in JSON, the log and the files, as `web/js/replay/page_files.js` reads them."""
+    """The head in JSON, the log and the files, as `web/js/replay/page_files.ts` reads them."""
     at = len(log)
     places: Dict[str, Tuple[int, int, str]] = {}
     for address, content in files.items():

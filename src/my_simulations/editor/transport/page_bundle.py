@@ -1,7 +1,7 @@
-"""The modules of the page packed into few files, which a browser takes in half of the time.
+"""The JavaScript of the page, which the set-up makes of its TypeScript modules.
 
-The set-up makes them with esbuild (`bundle_page` of tools/lib/page.sh). They are used as long as
-they were made of the modules that are there now; else the page is served module by module.
+esbuild makes it (`bundle_page` of tools/lib/page.sh): packed into few files, which a browser takes
+in half of the time, and module by module, for tests.
 """
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import hashlib
 import json
 import os
 import re
-from typing import Any, Dict, Iterator, List, Optional
+from typing import Any, Dict, Iterator, List, Optional, Tuple
 
 FOLDER = "my_simulations_page"
 """Beside `three`, in the folder of what npm has fetched."""
@@ -17,9 +17,10 @@ FOLDER = "my_simulations_page"
 PACKED = "bundle/"
 """Below `js` in addresses, and below that folder on the disk."""
 
-_ENTRY, _VIEW = "/js/main.js", "/js/view/view.js"
+_ENTRY, _VIEW = "/js/main.ts", "/js/view/view.ts"
+_ADDRESS = "/js/main.js"
 _PRELOAD = re.compile(r'[ \t]*<link rel="modulepreload"[^>]*>\n')
-_SCRIPT = f'<script type="module" src="{_ENTRY}">'
+_SCRIPT = f'<script type="module" src="{_ADDRESS}">'
 
 
 def sources_of(page: str, modules: str) -> str:
@@ -38,7 +39,7 @@ def _modules(page: str) -> Iterator[str]:
     for folder, _, names in os.walk(os.path.join(page, "js")):
         for name in names:
             path = os.path.join(folder, name)
-            if name.endswith(".js") and os.path.isfile(path) and not os.path.islink(path):
+            if name.endswith(".ts") and os.path.isfile(path) and not os.path.islink(path):
                 yield os.path.relpath(path, page)
 
 
@@ -59,13 +60,29 @@ class PageBundle:
         self._page, self._modules = page, modules
         self.folder = os.path.join(modules, FOLDER) if modules else ""
 
-    def html(self, text: str) -> str:
-        """The page's HTML, with the packed modules where they fit to the page's."""
-        names = self._preloads()
-        if names is None or _SCRIPT not in text:
+    def module(self, inside: str) -> Tuple[str, str]:
+        """The folder of a built module, and its path in it; `inside`: its address below `/js`.
+
+        The folder is "" if there is no such module.
+        """
+        if not self.folder:
+            return "", inside
+        if inside.startswith(PACKED):
+            return os.path.join(self.folder, PACKED), inside[len(PACKED):]
+        return os.path.join(self.folder, "js"), inside
+
+    def html(self, text: str) -> Optional[str]:
+        """The page's HTML with the packed modules; None if they were made of other sources.
+
+        A page without TypeScript needs none.
+        """
+        if not os.path.isfile(os.path.join(self._page, _ENTRY.lstrip("/"))):
             return text
+        names = self._preloads()
+        if names is None:
+            return None
         links = "".join(f'  <link rel="modulepreload" href="/js/{name}">\n' for name in names[1:])
-        script = _SCRIPT.replace(_ENTRY, f"/js/{names[0]}")
+        script = _SCRIPT.replace(_ADDRESS, f"/js/{names[0]}")
         return _PRELOAD.sub("", text).replace(f"  {_SCRIPT}", f"{links}  {script}")
 
     def _preloads(self) -> Optional[List[str]]:

@@ -12,7 +12,7 @@ from aiohttp import hdrs, web
 from ...resources.package_files import own_directory
 from ..scene.content_types import PAGE, page_type, resource_type
 from .compressed_files import CompressedFiles
-from .page_bundle import PACKED, PageBundle
+from .page_bundle import PageBundle
 from .page_key import page_key
 
 _SCRIPT = re.compile(r"<script\b(?![^>]*\bsrc=)[^>]*>(.*?)</script>", re.DOTALL | re.IGNORECASE)
@@ -21,6 +21,8 @@ _ADDRESS = re.compile(r'"/(js|css|img|three)/')
 _CHECKED = "no-cache"
 _FOR_GOOD = "private, max-age=31536000, immutable"
 """RFC 8246: what has this address never changes, so a browser need not ask for it again."""
+
+_NOT_BUILT = "the editor's page was not built from the sources that are there: run tools/run\n"
 
 
 class PageFiles:
@@ -41,7 +43,8 @@ class PageFiles:
         self._bundle = PageBundle(self.web, self._node_modules)
         self._compressed = CompressedFiles()
         self._stamp = ""
-        self._packed = ("", "", "")     # stamp, HTML, and the HTML with packed modules
+        # Stamp, HTML, and the HTML with packed modules.
+        self._packed: Tuple[str, str, Optional[str]] = ("", "", "")
 
     @staticmethod
     def own_folder() -> str:
@@ -68,8 +71,10 @@ class PageFiles:
         stamp = self.stamp()
         if (stamp, text) != self._packed[:2]:
             self._packed = (stamp, text, self._bundle.html(text))
-        self._stamp, text = stamp, self._packed[2]
-        text = _ADDRESS.sub(rf'"/v/{self._stamp}/\1/', text)
+        self._stamp, packed = stamp, self._packed[2]
+        if packed is None:
+            raise web.HTTPServiceUnavailable(text=_NOT_BUILT)
+        text = _ADDRESS.sub(rf'"/v/{self._stamp}/\1/', packed)
         response = web.Response(text=text, content_type="text/html")
         response.headers["Content-Security-Policy"] = _policy(text, request.host)
         response.headers[hdrs.CACHE_CONTROL] = _CHECKED
@@ -81,8 +86,9 @@ class PageFiles:
     async def _part(self, request: web.Request) -> web.StreamResponse:
         part, inside = request.match_info["part"], request.match_info["inside"]
         path = _inside(os.path.join(self.web, part), inside)
-        if part == "js" and inside.startswith(PACKED):
-            path = _inside(os.path.join(self._bundle.folder, PACKED), inside[len(PACKED):])
+        if part == "js" and (path is None or not os.path.isfile(path)):
+            folder, inside = self._bundle.module(inside)
+            path = _inside(folder, inside) if folder else None
         return await self._page_file(request, path)
 
     async def _three(self, request: web.Request) -> web.StreamResponse:

@@ -22,7 +22,7 @@ Form = Tuple[int, float, bool]
 
 
 class FigureShape:
-    """What an actor looks like at a time, as on the editor's page (web/js/view/actors.js).
+    """What an actor looks like at a time, as on the editor's page (web/js/view/actors.ts).
 
     Args:
         figure: the actor and its files.

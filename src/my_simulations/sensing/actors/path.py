@@ -1,4 +1,4 @@
-"""Where an actor is at a time: the rules of the editor's page (web/js/actor_path.js).
+"""Where an actor is at a time: the rules of the editor's page (web/js/actor_path.ts).
 
 Trajectories run one after the other, each from its first waypoint on, in world axes; a spline of
 the trajectory's `tension` joins their positions, another one their orientations (`turn_spline`).

@@ -1,4 +1,4 @@
-"""Turning from waypoint to waypoint: the rules of the editor's page (web/js/turn_spline.js).
+"""Turning from waypoint to waypoint: the rules of the editor's page (web/js/turn_spline.ts).
 
 A spline of Shoemake's (1985) joins orientations, which does not heed how long segments take
 (ignition::math::RotationSpline): turns swing by some degrees about straight parts of a path, and

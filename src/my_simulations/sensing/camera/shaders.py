@@ -39,7 +39,7 @@ void main() {
   out_uv = uv * repeats;
   out_height = at.z;
   gl_Position = clip * vec4(place, 1.0);
-  // Of two faces at one place the one seen from its front wins: web/js/view/fronts_first.js.
+  // Of two faces at one place the one seen from its front wins: web/js/view/fronts_first.ts.
   if (dot(out_normal, place) > 0.0) gl_Position.z += 1.0e-6 * gl_Position.w;
 }"""
 
@@ -142,7 +142,7 @@ def lit_fragment(kind: LitKind) -> str:
             parts.append(_bumps(kind.layers))
         parts.append(_FALLEN)
         parts += [_light(n, *one, kind.shiny) for n, one in enumerate(kind.lights)]
-        # A picture colours what glows, too, as on the page (materials.js).
+        # A picture colours what glows, too, as on the page (materials.ts).
         glow = "emissive * t.rgb" if kind.textured else "emissive"
         parts.append(f"  color = albedo * fallen + shine + {glow};\n")
     if kind.fog:

@@ -1,0 +1,120 @@
+/** Several of a kind, equal gaps, and what is hidden or locked in this browser. */
+import {arrayOffsets, clearSpacing, copiesIn, distributeMoves, MOST_COPIES} from './arrange.js';
+import {withGroups} from './model_groups.js';
+import {NOTHING} from './nothing.js';
+import {add, orientation, position} from './pose.js';
+import type {ActionParts, Outcome} from './actions.js';
+import type {Operation} from './protocol.js';
+import type {Pose7, Vec3} from './pose.js';
+
+export function arrangeActions({store, ask, edit, dialog, note, view}: ActionParts) {
+  /** The selected models, those of selected links, too. */
+  const chosenModels = () =>
+    [...new Set(store.selection.flatMap((name) => store.split(name)[0]?.name ?? []))];
+
+  /** What can be copied of the selection, in the order of a world file: models, then lights. */
+  const copied = () => {
+    const kinds = ['model', 'light'] as const;
+    return kinds.flatMap((kind) => store.selection.filter((name) => store.entity(name)?.kind === kind));
+  };
+
+  /**
+   * @param names  models, then lights
+   * @param offsets  of the copies, m
+   */
+  async function copies(names: string[], offsets: Vec3[], label: string): Promise<Outcome> {
+    const last = names.at(-1);
+    const from = last && (store.worldPose(last) ?? store.light(last)?.pose);
+    if (!from || !offsets.length) return NOTHING;
+    const outcome = await ask('copy', {names});
+    if (!outcome.ok) return outcome;
+    const {text} = outcome.value;
+    const ops: Operation[] = offsets.map((offset) => ({kind: 'paste', text,
+      pose: [...add(position(from), offset), ...orientation(from)] as Pose7}));
+    const done = await edit({kind: 'group', ops, label});
+    if (done.ok && done.value.names) store.select(done.value.names);
+    return done;
+  }
+
+  const arrange = {
+    /** What keeps the copies of the selection apart, m. */
+    spacing: () => clearSpacing(copied().flatMap((name) => view()?.bounds(name) ?? [])),
+    /** A copy of the selected models and lights beside them. */
+    duplicate() {
+      const names = copied();
+      if (!names.length) {
+        note('Select models or lights to duplicate.');
+        return Promise.resolve(NOTHING);
+      }
+      return copies(names, [[arrange.spacing()[0], 0, 0]], `Duplicate ${names.join(', ')}`);
+    },
+    /** Asks for the numbers of an array. */
+    arrayOfSelection: () => (copied().length ? dialog('array') : note('Select models or lights to copy.')),
+    /**
+     * Copies of the selection in rows, columns and layers.
+     * @param counts  cells along x, y and z
+     * @param spacing  m
+     */
+    array(counts: number[], spacing: number[]) {
+      const names = copied();
+      const added = copiesIn(counts);
+      if (added > MOST_COPIES) throw new RangeError(`An array has at most ${MOST_COPIES} copies.`);
+      return copies(names, arrayOffsets(counts, spacing), `Array of ${added + 1} ${names.join(', ')}`);
+    },
+    /** Equal gaps between the selected models. */
+    async distribute(axis: 'x'|'y'|'z'): Promise<Outcome> {
+      const shown = view();
+      const boxes = chosenModels().flatMap((name) => {
+        const [pose, bounds] = [store.worldPose(name), shown?.bounds(name)];
+        return pose && bounds ? [{name, pose, ...bounds}] : [];
+      });
+      if (boxes.length < 3) note('Select at least three models to distribute.');
+      const poses = distributeMoves(boxes, axis);
+      if (!shown || !Object.keys(poses).length) return NOTHING;
+      return shown.carry(poses, edit({kind: 'move', poses, label: 'distribute'}));
+    },
+    distributeX: () => arrange.distribute('x'),
+    distributeY: () => arrange.distribute('y'),
+    distributeZ: () => arrange.distribute('z'),
+    /** The selected models are not drawn any more, in this browser. */
+    hide(names = chosenModels()) {
+      for (const name of names) store.setOverlay('hidden', true, name);
+      store.select(store.selection.filter((name) => !names.includes(store.split(name)[0]?.name ?? '')));
+    },
+    showHidden: (names = marked('hidden')) => names.forEach((name) => store.setOverlay('hidden', null, name)),
+    /** Locks the selected models against the mouse; unlocks them where all of them are locked. */
+    lock(names = chosenModels()) {
+      const on = names.every((name) => store.overlay('locked', name)) ? null : true;
+      for (const name of names) store.setOverlay('locked', on, name);
+    },
+    unlockAll: () => marked('locked').forEach((name) => store.setOverlay('locked', null, name)),
+    /** Puts the selected models into a new group, kept in the world's file. */
+    async groupSelection(): Promise<Outcome> {
+      const names = chosenModels();
+      if (names.length < 2) {
+        note('Select at least two models to group.');
+        return NOTHING;
+      }
+      const done = await edit({kind: 'set_group', names});
+      if (done.ok) store.select(names);
+      return done;
+    },
+    /** Takes the selected models, and the others of their groups, out of them. */
+    async ungroupSelection(): Promise<Outcome> {
+      const models = store.document?.models ?? [];
+      const names = withGroups(models, chosenModels()).filter((name) => store.model(name)?.group);
+      if (names.length) return edit({kind: 'set_group', names, group: ''});
+      note('No model of a group is selected.');
+      return NOTHING;
+    },
+    /** What a click can select: neither hidden nor locked. */
+    selectAll: () => store.select((store.document?.models ?? []).map(({name}) => name)
+      .filter((name) => !store.overlay('hidden', name) && !store.overlay('locked', name))),
+    commands: () => dialog('commands'),
+  };
+
+  const marked = (flag: 'hidden'|'locked') =>
+    (store.document?.models ?? []).map(({name}) => name).filter((name) => store.overlay(flag, name));
+
+  return arrange;
+}

@@ -1,0 +1,49 @@
+/** One line over the view that names the keys and the mouse of the tool in use, until it is closed. */
+import {fill, h, remembered} from './dom.js';
+import {icon} from './icons.js';
+import type {Mode, Store} from '../store.js';
+
+/** keys, and what they do */
+export type Hints = [string, string][];
+
+const LOOKING: Hints = [
+  ['drag', 'pan'], ['Shift+drag', 'turn'], ['wheel', 'zoom'], ['click', 'select'], ['T R S', 'move, rotate, scale'],
+  ['Space', 'play'], ['Ctrl+K', 'all commands'], ['F1', 'all keys'],
+];
+
+const TOUCH: Hints = [
+  ['one finger', 'turn'], ['two', 'pan, zoom'], ['tap', 'select'], ['hold', 'menu'],
+];
+
+const BY_MODE: Record<Mode, Hints> = {
+  select: LOOKING,
+  translate: [['drag a handle or the model', 'move'], ['X Y Z', 'along one axis'], ['Ctrl', 'snap to 1 m'],
+    ['Shift', 'world axes'], ['Esc', 'end']],
+  rotate: [['drag a ring', 'rotate'], ['X Y Z', 'about one axis'], ['Ctrl', 'snap to 45°'], ['Shift', 'world axes'],
+    ['Esc', 'end']],
+  scale: [['drag a handle', 'scale'], ['X Y Z', 'one axis'], ['Shift', 'all axes'], ['Ctrl', 'snap to 1 m'], ['Esc', 'end']],
+  snap: [['click a face', 'that moves'], ['click a second face', 'where it goes'], ['Esc', 'end']],
+  measure: [['click two points', 'distance'], ['click a third', 'angle'], ['Esc', 'end']],
+  insert: [['click', 'place'], ['Enter', 'place in the middle'], ['Ctrl', 'snap to 1 m'], ['Esc', 'cancel']],
+  connect: [['click a link', 'parent'], ['click another link', 'child'], ['Esc', 'cancel']],
+};
+
+/** @param element  what the line lies in */
+export function mountHints(element: HTMLElement, store: Store) {
+  if (remembered.get('hints-closed', false)) return;
+  const touch = matchMedia('(pointer: coarse)').matches;
+  const hints = h('div', {class: 'hints'});
+  const line = h('div', {class: 'hint-line', role: 'note', 'aria-label': 'Hints'}, hints,
+    h('button', {type: 'button', class: 'plain', 'aria-label': 'Close the hints', title: 'Close the hints',
+      onclick: () => {
+        remembered.set('hints-closed', true);
+        line.remove();
+      }}, icon('close')));
+  const show = () => {
+    const rows = touch && store.mode === 'select' ? TOUCH : BY_MODE[store.mode];
+    fill(hints, ...rows.map(([keys, what]) => h('span', {}, h('kbd', {text: keys}), ` ${what}`)));
+  };
+  store.listen('mode', show);
+  show();
+  element.append(line);
+}

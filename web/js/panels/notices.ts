@@ -1,0 +1,184 @@
+/**
+ * What the simulator has to say: a short card for each issue, and a list that keeps them all, each
+ * with its file and line.
+ */
+import {RequestError} from '../connection.js';
+import {fill, h} from './dom.js';
+import {faultText} from './dialog.js';
+import {icon} from './icons.js';
+import type {Issue} from '../connection.js';
+
+const SECONDS = {error: 12, warning: 8, note: 4};
+const KEPT = 500;
+const CARDS = 4;
+
+export class Notices {
+  element;
+  entries: {issue: Issue, count: number, at: Date}[];
+  unseen;
+  badge;
+  button;
+
+  /** @param element  where the cards appear */
+  constructor(element: HTMLElement) {
+    this.element = element;
+    this.entries = [];
+    this.unseen = 0;
+    this.badge = h('span', {class: 'badge', hidden: true});
+    this.button = h(
+      'button',
+      {
+        type: 'button',
+        class: 'plain notices-button',
+        title: 'Messages',
+        'aria-label': 'Messages',
+        'aria-expanded': 'false',
+        onclick: () => this.#toggle(),
+      },
+      icon('messages', 16),
+      this.badge,
+    );
+    this.#list = h('div', {
+      class: 'notice-list',
+      hidden: true,
+      role: 'dialog',
+      'aria-label': 'All messages',
+    });
+    this.#list.addEventListener('keydown', (event) => {
+      if (event.key !== 'Escape') return;
+      event.stopPropagation();
+      this.#toggle();
+    });
+    document.body.append(this.#list);
+  }
+
+  #list;
+
+  add(issue: Issue) {
+    const last = this.entries[0];
+    const again = last && last.issue.message === issue.message && last.issue.line === issue.line;
+    if (again) last.count += 1;
+    else this.entries.unshift({issue, count: 1, at: new Date()});
+    this.entries.length = Math.min(this.entries.length, KEPT);
+    if (!this.#list.hidden) this.#showList();
+    else if (issue.severity !== 'note') this.#markUnseen(this.unseen + 1);
+    if (!again || !this.#renew()) this.#card(issue);
+  }
+
+  /** A word in passing: a path that was saved, an action that makes no sense now. */
+  say(message: string) {
+    this.add({severity: 'note', code: 'editor', message});
+  }
+
+  /** What came back of a refused request. */
+  fault(fault: unknown) {
+    if (fault instanceof RequestError) fault.issues.forEach((issue) => this.add(issue));
+    else this.add({severity: 'error', code: 'editor', message: faultText(fault)});
+  }
+
+  #markUnseen(count: number) {
+    this.unseen = count;
+    this.badge.hidden = count === 0;
+    this.badge.textContent = count > 99 ? '99+' : String(count);
+  }
+
+  /** Lets the newest card stay on; false where it has gone. */
+  #renew: () => boolean = () => false;
+
+  #card(issue: Issue) {
+    const severity = issue.severity ?? 'error';
+    const close = () => { card.remove(); };
+    const card = h(
+      'div',
+      {class: `notice ${severity}`},
+      icon(glyph(severity), 16),
+      body(issue),
+      h(
+        'button',
+        {type: 'button', class: 'plain', 'aria-label': 'Dismiss', onclick: close},
+        icon('close', 12),
+      ),
+    );
+    let timer = setTimeout(close, SECONDS[severity] * 1000);
+    card.addEventListener('pointerenter', () => clearTimeout(timer));
+    card.addEventListener('pointerleave', () => {
+      timer = setTimeout(close, 3000);
+    });
+    this.#renew = () => {
+      clearTimeout(timer);
+      timer = setTimeout(close, SECONDS[severity] * 1000);
+      return card.isConnected;
+    };
+    this.element.append(card);
+    while (this.element.childElementCount > CARDS) this.element.firstElementChild?.remove();
+  }
+
+  #toggle() {
+    const show = this.#list.hidden;
+    this.#list.hidden = !show;
+    this.button.setAttribute('aria-expanded', String(show));
+    if (show) {
+      this.#markUnseen(0);
+      this.#showList();
+      this.#list.querySelector('button')?.focus();
+    } else this.button.focus();
+  }
+
+  #showList() {
+    fill(
+      this.#list,
+      h(
+        'header',
+        {},
+        h('h2', {text: 'Messages'}),
+        h('button', {
+          type: 'button',
+          text: 'Clear',
+          onclick: () => {
+            this.entries = [];
+            this.#showList();
+          },
+        }),
+        h(
+          'button',
+          {type: 'button', class: 'plain', 'aria-label': 'Close', onclick: () => this.#toggle()},
+          icon('close', 14),
+        ),
+      ),
+      this.entries.length
+        ? h(
+            'ol',
+            {},
+            ...this.entries.map(({issue, count, at}) =>
+              h(
+                'li',
+                {class: issue.severity ?? 'error'},
+                icon(glyph(issue.severity ?? 'error'), 15),
+                body(issue),
+                h('span', {
+                  class: 'soft',
+                  text: `${count > 1 ? `${count}× ` : ''}${at.toLocaleTimeString()}`,
+                }),
+              ),
+            ),
+          )
+        : h('p', {class: 'empty', text: 'No messages'}),
+    );
+  }
+}
+
+function glyph(severity: string) {
+  return {error: 'error', warning: 'warning'}[severity] ?? 'info';
+}
+
+function body(issue: Issue) {
+  const place = issue.file ? `${issue.file}${issue.line ? `:${issue.line}` : ''}` : '';
+  return h(
+    'div',
+    {class: 'notice-body'},
+    h('div', {text: issue.message}),
+    issue.hint && h('div', {class: 'soft', text: issue.hint}),
+    place && h('code', {text: place}),
+    issue.xpath && h('code', {class: 'soft', text: issue.xpath}),
+  );
+}

@@ -1,0 +1,37 @@
+/** Whether a plugin runs, as the tree and the property panel show it. */
+import {h} from './dom.js';
+import type {PluginState, World} from '../protocol.js';
+import type {Found} from './property_sections.js';
+import type {Row} from './world_rows.js';
+
+/** The state of the plugin of a row; undefined before the simulator has sent it. */
+export function pluginState({document, pluginStates}: {document: World|null,
+    pluginStates: PluginState[]}, {model = '', index = -1}: Row): PluginState|undefined {
+  const owner = model ? document?.models.find(({name}) => name === model) : document;
+  const plugin = owner?.plugins[index];
+  return plugin && pluginStates.find((one) =>
+    one.model === model && one.name === plugin.name && one.filename === plugin.filename);
+}
+
+/** The state of the plugin of a sensor's row; undefined without one. */
+export function sensorState({document, pluginStates}: {document: World|null,
+    pluginStates: PluginState[]}, {model = '', owner, name}: Row): PluginState|undefined {
+  const found = document?.models.find((one) => one.name === model);
+  const holder = found && [...found.links, ...found.joints].find((one) => one.name === owner);
+  const sensor = holder?.sensors?.find((one) => one.name === name);
+  return sensor && pluginStates.find((state) => state.model === model &&
+    sensor.parameters.some(({path}) => path.startsWith(`plugin:${state.name}/`)));
+}
+
+/** A tag at the end of a row, red where something failed. */
+export const stateTag = (text: string, reason: string) =>
+  h('span', {class: text.endsWith('failed') ? 'tag failed' : 'tag', text, title: reason});
+
+/** The sections of a plugin, with its state after its name. */
+export function withState({title, sections}: Found, state: PluginState): Found {
+  const [first, ...others] = sections;
+  const fields: import('./property_fields.js').Field[] = [{path: 'state', label: 'state',
+      type: 'text', fixed: true}];
+  if (state.reason) fields.push({path: 'reason', label: 'reason', type: 'xml', fixed: true});
+  return {title, sections: [first, {key: 'state', title: '', target: '', entity: state, fields}, ...others]};
+}

@@ -1,0 +1,92 @@
+/** Windows over the view for topics that are no part of the scene: pictures and text. */
+import {fill, h} from './dom.js';
+import {icon} from './icons.js';
+import type {ImageView} from '../protocol.js';
+import type {TopicView} from '../topics/topics.js';
+
+export type TopicWindow = {element: HTMLElement, body: HTMLElement, canvas: HTMLCanvasElement|null,
+    busy: boolean};
+
+export class TopicWindows {
+  #page;
+  #container;
+  #windows: Map<string, TopicWindow> = new Map();
+
+  constructor(element: HTMLElement, page: import('./panels.js').Page) {
+    this.#page = page;
+    this.#container = h('div', {class: 'topic-windows'});
+    element.append(this.#container);
+    page.topics.listen('view', ({detail}) => this.#show(detail));
+    page.topics.listen('shown', () => this.#close());
+  }
+
+  #close() {
+    const shown = new Set(this.#page.topics.shown);
+    for (const [name, {element}] of this.#windows) {
+      if (shown.has(name)) continue;
+      element.remove();
+      this.#windows.delete(name);
+    }
+  }
+
+  #show({head: {topic, view}, buffer, start}: TopicView) {
+    if (view.type !== 'image' && view.type !== 'text') return;
+    if (!this.#page.topics.shown.includes(topic)) return;
+    let opened = this.#windows.get(topic);
+    if (!opened) this.#windows.set(topic, opened = this.#open(topic));
+    if (view.type === 'text') showText(opened, view.text);
+    else showImage(opened, view, new Uint8Array(buffer, start));
+  }
+
+  #open(topic: string): TopicWindow {
+    const body = h('div', {class: 'topic-window-body'});
+    const element = h(
+      'section',
+      {class: 'topic-window', 'aria-label': topic},
+      h('header', {},
+        h('h2', {text: topic, title: topic}),
+        h('button', {
+          type: 'button', class: 'plain', 'aria-label': `Close ${topic}`,
+          onclick: () => this.#page.topics.show(topic, false),
+        }, icon('close', 12))),
+      body,
+    );
+    this.#container.append(element);
+    return {element, body, canvas: null, busy: false};
+  }
+}
+
+function showText({body}: TopicWindow, text: string) {
+  const shown = body.querySelector('pre');
+  if (shown) shown.textContent = text;
+  else fill(body, h('pre', {tabindex: 0, text}));
+}
+
+async function showImage(opened: TopicWindow, {format, width, height, near, far}: ImageView,
+    data: Uint8Array<ArrayBuffer>) {
+  // Of pictures that come while one is being decoded the next one is newer anyway.
+  if (opened.busy) return;
+  opened.busy = true;
+  try {
+    const picture = await createImageBitmap(new Blob([data], {type: format}));
+    if (!opened.canvas) {
+      opened.canvas = h('canvas', {role: 'img'});
+      fill(opened.body, opened.canvas, h('p', {class: 'soft'}));
+    }
+    const {canvas} = opened;
+    if (canvas.width !== picture.width) canvas.width = picture.width;
+    if (canvas.height !== picture.height) canvas.height = picture.height;
+    canvas.getContext('2d')?.drawImage(picture, 0, 0);
+    picture.close();
+    const depth = typeof near === 'number' && typeof far === 'number'
+      ? `, ${near.toFixed(2)} to ${far.toFixed(2)} m` : '';
+    const said = `${width} x ${height}${depth}`;
+    canvas.setAttribute('aria-label', said);
+    const note = opened.body.querySelector('p');
+    if (note && note.textContent !== said) note.textContent = said;
+  } catch {
+    fill(opened.body, h('p', {class: 'empty', text: 'The browser cannot read this picture.'}));
+    opened.canvas = null;
+  }
+  opened.busy = false;
+}

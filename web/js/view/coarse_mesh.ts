@@ -1,0 +1,140 @@
+/**
+ * Meshes with fewer triangles, for browsers that draw without a graphics card. Corners in one cell of
+ * a grid become one corner (vertex clustering: Rossignac and Borrel, 1993). Pure.
+ */
+/** Triangles of all meshes of a world together. */
+const BUDGET = 200000;
+/** A mesh keeps at least, and at most, so many triangles. */
+const LEAST = 800;
+const MOST = 80000;
+/** Cells along the longest side at most: the grid takes 4 bytes for each cell. */
+const MOST_CELLS = 128;
+/** Cosine of the angle up to which a corner has the normal of its cell, so that curves look round. */
+const ROUND = 0.6;
+
+/** The most triangles of a mesh in a world of so many files. */
+export const limitFor = (files: number) => Math.min(MOST, Math.max(LEAST,
+    Math.round(BUDGET / Math.max(files, 1))));
+
+/** nine numbers for each triangle */
+export type Corners = {position: Float32Array, normal: Float32Array};
+
+/**
+ * A mesh of about `limit` triangles at most; null for one that has no more.
+ * @param position  three numbers for each corner
+ * @param normal  as many
+ * @param index  of the corners of the triangles; null: three corners each
+ */
+export function coarse(position: ArrayLike<number>, normal: ArrayLike<number>,
+    index: ArrayLike<number>|null, limit: number): Corners|null {
+  if ((index ?? position).length / (index ? 3 : 9) <= limit) return null;
+  let cells = Math.min(MOST_CELLS, Math.max(4, Math.round(Math.sqrt(limit / 6))));
+  for (;;) {
+    const found = clustered(position, normal, index, cells);
+    const count = found.position.length / 9;
+    if (count <= 1.2 * limit || cells <= 4) return found;
+    cells = Math.max(4, Math.min(cells - 1, Math.floor(cells * Math.sqrt(limit / count))));
+  }
+}
+
+/**
+ * Triangles between the middles of the corners in each cell; those within one cell or two go.
+ * @param cells  along the longest side
+ */
+function clustered(position: ArrayLike<number>, normal: ArrayLike<number>,
+    index: ArrayLike<number>|null, cells: number) {
+  const {low, high} = bounds(position);
+  const size = Math.max(high[0] - low[0], high[1] - low[1], high[2] - low[2], 1e-12) / (cells - 0.001);
+  const [across, deep] = [0, 1].map((axis) => Math.floor((high[axis] - low[axis]) / size) + 1);
+  const tall = Math.floor((high[2] - low[2]) / size) + 1;
+  const cellOf = new Int32Array(across * deep * tall);
+  const cornerOf = new Int32Array(position.length / 3);
+  let found = 0;
+  const [x0, y0, z0] = low;
+  for (let corner = 0, at = 0; corner < cornerOf.length; corner += 1, at += 3) {
+    const cell = ((position[at] - x0) / size | 0) +
+      across * (((position[at + 1] - y0) / size | 0) + deep * ((position[at + 2] - z0) / size | 0));
+    let place = cellOf[cell];
+    if (!place) cellOf[cell] = place = found += 1;
+    cornerOf[corner] = place - 1;
+  }
+  const middle = new Float64Array(3 * found);
+  const facing = new Float64Array(3 * found);
+  const members = new Uint32Array(found);
+  for (let corner = 0, at = 0; corner < cornerOf.length; corner += 1, at += 3) {
+    const to = 3 * cornerOf[corner];
+    members[cornerOf[corner]] += 1;
+    middle[to] += position[at];
+    middle[to + 1] += position[at + 1];
+    middle[to + 2] += position[at + 2];
+    facing[to] += normal[at];
+    facing[to + 1] += normal[at + 1];
+    facing[to + 2] += normal[at + 2];
+  }
+  for (let at = 0; at < middle.length; at += 1) middle[at] /= members[Math.floor(at / 3)];
+  return triangles(cornerOf, index, middle, facing);
+}
+
+function bounds(position: ArrayLike<number>) {
+  const [low, high] = [[Infinity, Infinity, Infinity], [-Infinity, -Infinity, -Infinity]];
+  for (let axis = 0; axis < 3; axis += 1) {
+    let [least, most] = [Infinity, -Infinity];
+    for (let at = axis; at < position.length; at += 3) {
+      const value = position[at];
+      if (value < least) least = value;
+      if (value > most) most = value;
+    }
+    [low[axis], high[axis]] = [least, most];
+  }
+  return {low, high};
+}
+
+/**
+ * @param cornerOf  place in `middle` of each corner of the file
+ * @param facing  sums of the normals
+ */
+function triangles(cornerOf: Int32Array, index: ArrayLike<number>|null, middle: Float64Array,
+    facing: Float64Array) {
+  const count = (index ?? cornerOf).length / 3;
+  const kept: number[] = [];
+  const seen = new Set();
+  const cells = middle.length / 3;
+  for (let triangle = 0; triangle < count; triangle += 1) {
+    const at = 3 * triangle;
+    const a = cornerOf[index ? index[at] : at];
+    const b = cornerOf[index ? index[at + 1] : at + 1];
+    const c = cornerOf[index ? index[at + 2] : at + 2];
+    if (a === b || b === c || c === a) continue;
+    // Many triangles become the same one; the other side of a thin wall has another order of corners.
+    const key = a < b && a < c ? (a * cells + b) * cells + c
+      : b < c ? (b * cells + c) * cells + a : (c * cells + a) * cells + b;
+    if (seen.has(key)) continue;
+    seen.add(key);
+    kept.push(a, b, c);
+  }
+  const position = new Float32Array(3 * kept.length);
+  const normal = new Float32Array(3 * kept.length);
+  for (let at = 0; at < kept.length; at += 3) writeTriangle(kept, at, middle, facing, position, normal);
+  return {position, normal};
+}
+
+function writeTriangle(kept: number[], at: number, middle: Float64Array, facing: Float64Array,
+    position: Float32Array, normal: Float32Array) {
+  for (let corner = 0; corner < 3; corner += 1) {
+    for (let part = 0; part < 3; part += 1) position[3 * (at + corner) + part] = middle[3 * kept[at + corner] + part];
+  }
+  const start = 3 * at;
+  const [ux, uy, uz, vx, vy, vz] = [3, 4, 5, 6, 7, 8].map((one) => position[start + one] - position[start + one % 3]);
+  const flat = unit([uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx]);
+  for (let corner = 0; corner < 3; corner += 1) {
+    const cell = 3 * kept[at + corner];
+    const mean = unit([facing[cell], facing[cell + 1], facing[cell + 2]]);
+    const round = mean[0] * flat[0] + mean[1] * flat[1] + mean[2] * flat[2] > ROUND;
+    for (let part = 0; part < 3; part += 1) normal[start + 3 * corner + part] = (round ? mean : flat)[part];
+  }
+}
+
+function unit(vector: number[]) {
+  const size = Math.hypot(...vector) || 1;
+  return vector.map((part) => part / size);
+}

@@ -1,0 +1,76 @@
+/** White wire boxes round what is selected, aligned with it. */
+import {LineBasicMaterial, Vector3} from 'three';
+import {place} from './three_convert.js';
+import {boxLines} from './markers.js';
+import type {LineSegments} from 'three';
+import type {ViewParts} from './view.js';
+
+const material = new LineBasicMaterial({color: 0xffffff, fog: false});
+const LIGHT_SIZE = 0.7;
+
+export class SelectionBoxes {
+  #store;
+  #models;
+  #stage;
+  #boxes: LineSegments[] = [];
+
+  constructor({store, models, stage}: ViewParts) {
+    this.#store = store;
+    this.#models = models;
+    this.#stage = stage;
+    for (const event of ['selection', 'document'] as const) {
+      store.listen(event, () => this.update());
+    }
+    // `follow` applies the poses of moving models; lights change by their documents only.
+    store.listen('entity', ({detail}) => {
+      if (detail.kind === 'light' && store.selection.length) this.update();
+    });
+  }
+
+  /** Centres of the boxes that are seen, for tests. */
+  get places() {
+    return this.#boxes.filter(({visible}) => visible).map(({position}) => position.toArray());
+  }
+
+  /** Fits the boxes to what is selected now. */
+  update() {
+    const {selection} = this.#store;
+    for (const box of this.#boxes.splice(selection.length)) this.#stage.scene.remove(box);
+    while (this.#boxes.length < selection.length) {
+      const box = boxLines(material);
+      box.renderOrder = 60;
+      this.#boxes.push(box);
+      this.#stage.scene.add(box);
+    }
+    selection.forEach((name, index) => this.#fit(this.#boxes[index], name));
+    this.#stage.invalidate();
+  }
+
+  /** Goes along when one of the links belongs to the selection. */
+  follow(ids: Set<number>|null) {
+    const {selection} = this.#store;
+    if (!selection.length) return;
+    if (ids && !selection.some((name) => this.#touches(name, ids))) return;
+    this.update();
+  }
+
+  #touches(name: string, ids: Set<number>) {
+    const entity = this.#store.entity(name);
+    return entity?.model?.links.some(({id}) => ids.has(id));
+  }
+
+  #fit(box: LineSegments, name: string) {
+    const pose = this.#models.shownPose(name);
+    box.visible = pose !== null;
+    if (!pose) return;
+    place(box, pose);
+    const bounds = this.#models.bounds(name, pose);
+    if (!bounds) {
+      box.scale.setScalar(LIGHT_SIZE);
+      return;
+    }
+    const size = bounds.getSize(new Vector3());
+    box.scale.set(size.x + 0.01, size.y + 0.01, size.z + 0.01);
+    box.position.add(bounds.getCenter(new Vector3()).applyQuaternion(box.quaternion));
+  }
+}

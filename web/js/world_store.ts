@@ -1,0 +1,275 @@
+/** The world as the simulator last told it: document, poses, time, history, people. */
+import {Emitter} from './emitter.js';
+import {decodeFrame, LIVE} from './pose_frames.js';
+import {linkNames, renamedModel} from './model_editor/model_edits.js';
+import {compose, inverse} from './pose.js';
+import {splitScoped} from './scoped_names.js';
+import type {
+  AutosavePush, ChangePush, HistoryPush, Link, LogPush, Model, Notices, Person, PluginState, Push,
+  World, WorldPush,
+} from './protocol.js';
+import type {Connection, Issue} from './connection.js';
+import type {EntityChange, EntityRef, StoreEvents} from './store.js';
+
+/** The world as last received from the simulator. Emits an event for every change. */
+export class WorldStore extends Emitter<StoreEvents> {
+  /** The world's document, null until the simulator has sent one. */
+  document: World|null = null;
+  revision = 0;
+  /** World pose of each link's frame by link id, as last received from the simulator. */
+  poses: Map<number, Float64Array> = new Map();
+  stats = {sim_ns: 0, real_ns: 0, factor: 0, iterations: 0, paused: true};
+  history: Omit<HistoryPush, 'type'> = {
+    undo: [], redo: [], undoable: 0, depth: 0, state: 0, undo_by: [], redo_by: [],
+    dirty: false, file: '',
+  };
+  /** Everybody who has this world open, this page too. */
+  people: Person[] = [];
+  /** This page's number among them. */
+  me = 0;
+  issues: Issue[] = [];
+  /** Of the plugins of models, their sensors and the world. */
+  pluginStates: PluginState[] = [];
+  connected = false;
+  autosave: AutosavePush|null = null;
+  log: LogPush|null = null;
+  /** Whether the poses are those of a log. */
+  replaying = false;
+
+  /** From a link's id to the document of its model. */
+  #owners: Map<number, Model> = new Map();
+  #connection: Connection|undefined;
+
+  constructor(connection?: Connection) {
+    super();
+    if (!connection) return;
+    this.#connection = connection;
+    connection.listen('open', ({detail}) => {
+      this.me = detail.number;
+      this.#setConnected(true);
+      this.emit('people');
+    });
+    connection.listen('close', () => this.#setConnected(false));
+    connection.listen('message', (event) => this.receive(event.detail));
+    connection.listen('frame', (event) => this.receiveFrame(event.detail));
+  }
+
+  // ---- messages from the simulator
+
+  /** Takes a pushed message. */
+  receive(message: Push|{type: 'issue', issue: Issue}) {
+    switch (message.type) {
+      case 'world': this.#replaceWorld(message); break;
+      case 'change': this.#change(message); break;
+      case 'stats': {
+        const {type: _, ...stats} = message;
+        this.stats = stats;
+        this.emit('stats');
+        break;
+      }
+      case 'history': {
+        const {type: _, ...history} = message;
+        this.history = history;
+        this.emit('history');
+        break;
+      }
+      case 'issue': this.addIssue(message.issue); break;
+      case 'autosave': this.autosave = message; this.emit('autosave', message); break;
+      case 'log': this.log = message; this.emit('log', message); break;
+      case 'people': this.people = message.people; this.emit('people'); break;
+      case 'plugins': this.pluginStates = message.states; this.emit('plugins'); break;
+      case 'loading': this.emit('loading', message); break;
+      case 'watch': this.emit('watch', message); break;
+      case 'library': this.emit('library', message); break;
+      case 'download': this.emit('download', message); break;
+      case 'shutdown': this.emit('shutdown', message); break;
+      default: break;  // of a newer simulator
+    }
+  }
+
+  /** Takes a binary pose frame. */
+  receiveFrame(buffer: ArrayBuffer) {
+    const frame = decodeFrame(buffer);
+    if (!frame) return;
+    const moved: Set<number> = new Set();
+    for (let index = 0; index < frame.count; index++) {
+      const id = frame.id(index);
+      let pose = this.poses.get(id);
+      if (!pose) this.poses.set(id, pose = new Float64Array(7));
+      frame.read(index, pose);
+      moved.add(id);
+    }
+    this.replaying = frame.kind !== LIVE;
+    if (moved.size) this.emit('poses', moved);
+  }
+
+  #replaceWorld({revision, document}: WorldPush) {
+    const before = this.document;
+    if (before && (before.name !== document.name || before.file !== document.file)) this.worldGone();
+    this.revision = revision;
+    this.document = document;
+    this.poses.clear();
+    this.#owners.clear();
+    for (const model of document.models) this.#index(model);
+    this.emit('document');
+    this.dropGone();
+  }
+
+  #change({revision, models, lights, world, order}: ChangePush) {
+    if (!this.document) return;
+    this.revision = revision;
+    const gone = this.document.models.filter(({name}) => models?.[name] === null);
+    const before = new Set(gone.length ? this.document.models.map(({name}) => name) : []);
+    const changed: EntityChange[] = [];
+    for (const [name, value] of Object.entries(models ?? {})) {
+      replaceByName(this.document.models, name, value);
+      this.#reindex(name, value);
+      changed.push({name, kind: 'model', value});
+    }
+    for (const [name, value] of Object.entries(lights ?? {})) {
+      replaceByName(this.document.lights, name, value);
+      changed.push({name, kind: 'light', value});
+    }
+    Object.assign(this.document, world);
+    if (world && Object.keys(world).length) changed.push({name: '', kind: 'world', value: world});
+    if (order) this.#sort(order);
+    for (const model of gone) {
+      const renamed = renamedModel(this.document.models, linkNames(model), before);
+      this.modelGone(model.name, renamed?.name ?? null);
+    }
+    for (const detail of changed) this.emit('entity', detail);
+    if (order) this.emit('order');
+    this.dropGone();
+  }
+
+  #sort(order: string[]) {
+    const places = new Map(order.map((name, index) => [name, index]));
+    const place = ({name}: {name: string}) => places.get(name) ?? order.length;
+    this.document?.models.sort((a, b) => place(a) - place(b));
+    this.document?.lights.sort((a, b) => place(a) - place(b));
+  }
+
+  #reindex(name: string, model: Model|null) {
+    const before = [...this.#owners].filter(([, owner]) => owner.name === name);
+    for (const [id] of before) this.#owners.delete(id);
+    if (model) this.#index(model);
+    for (const [id] of before) if (!this.#owners.has(id)) this.poses.delete(id);
+  }
+
+  #index(model: Model) {
+    for (const link of model.links) {
+      this.#owners.set(link.id, model);
+      if (!this.poses.has(link.id)) {
+        this.poses.set(link.id, Float64Array.from(compose(model.pose, link.pose)));
+      }
+    }
+  }
+
+  /** Called when entities may have gone. */
+  dropGone() {}
+
+  /**
+   * Called when there is no model of a name any more, before others are told.
+   * @param _to  its new name, where it got one
+   */
+  modelGone(_name: string, _to: string|null) {}
+
+  /** Called when another world was opened, before others are told. */
+  worldGone() {}
+
+  #setConnected(connected: boolean) {
+    this.connected = connected;
+    this.emit('connection');
+  }
+
+  // ---- looking things up
+
+  /** The model's document, or undefined. */
+  model(name: string) {
+    return this.document?.models.find((model) => model.name === name);
+  }
+
+  /** The light's document, or undefined. */
+  light(name: string) {
+    return this.document?.lights.find((light) => light.name === name);
+  }
+
+  /**
+   * What a name means.
+   * @param name  "model", "model::link" or "light"
+   */
+  entity(name: string): EntityRef|null {
+    const model = this.model(name);
+    if (model) return {kind: 'model', model};
+    const light = this.light(name);
+    if (light) return {kind: 'light', light};
+    const [owner, rest] = this.split(name);
+    const link = owner?.links.find((one) => one.name === rest);
+    return owner && link ? {kind: 'link', model: owner, link} : null;
+  }
+
+  /**
+   * The model that a scoped name begins with, and the rest of the name within it.
+   * @param name  `model`, `model::link`, `model::link::visual`, …
+   */
+  split(name: string): [Model|undefined, string] {
+    const [model, rest] = splitScoped(name, (one) => this.model(one) !== undefined);
+    return [this.model(model), rest];
+  }
+
+  /**
+   * Where an entity is now, in the world: of a model, where its first link carries its frame.
+   * @returns pose7
+   */
+  worldPose(name: string): number[]|null {
+    const entity = this.entity(name);
+    if (!entity) return null;
+    if (entity.kind === 'light') return [...entity.light.pose];
+    const link = entity.kind === 'link' ? entity.link : canonicalLink(entity.model);
+    const pose = link && this.poses.get(link.id);
+    if (!link || !pose) return [...entity.model.pose];
+    return entity.kind === 'link' ? [...pose] : compose(pose, inverse(link.pose));
+  }
+
+  /** Whether this page shows a log instead of the running world. */
+  get showsLog() {
+    return this.log?.state === 'open' || this.log?.state === 'playing';
+  }
+
+  /** The others who have this world open. */
+  get others() {
+    return this.people.filter(({number}) => number !== this.me);
+  }
+
+  /**
+   * Returns the name of the other user who did a step of the history; '' for this page's user and
+   * for an unknown user.
+   */
+  authorOf(which: 'undo'|'redo', at = 0) {
+    const by = this.history[`${which}_by`]?.[at] ?? '';
+    return by === this.people.find(({number}) => number === this.me)?.name ? '' : by;
+  }
+
+  /** Sends the selection or the user's name to the other users. */
+  tellPresence(fields: Notices['presence']) {
+    this.#connection?.send('presence', fields);
+  }
+
+  addIssue(issue: Issue) {
+    this.issues.push(issue);
+    this.emit('issue', issue);
+  }
+}
+
+/** The link that carries a model's frame: the one it names, else the first; undefined without links. */
+export function canonicalLink(model: Model): Link|undefined {
+  return model.links.find((link) => link.name === model.canonical_link) ?? model.links[0];
+}
+
+function replaceByName<T extends {name: string}>(list: T[], name: string, value: T|null) {
+  const index = list.findIndex((one) => one.name === name);
+  if (value === null) {
+    if (index >= 0) list.splice(index, 1);
+  } else if (index >= 0) list[index] = value;
+  else list.push(value);
+}
