@@ -119,9 +119,9 @@ def test_an_exception_in_a_notification_ends_one_plugin_only(case, call):
 @pytest.mark.parametrize("call", [
     "self.context.transform('a', 'b', None)",
     "self.context.joint('hinge').drive('fast', 1.0)",
-    "self.context.joint('hinge').steer(None)",
+    "self.context.joint('hinge').set_servo(None)",
     "self.context.joint('hinge').drive(float('nan'), 1.0)",
-    "self.context.push('base', 'up', None)",
+    "self.context.set_wrench('base', 'up', None)",
     "self.context.drive_level('x', None, {})",
     "self.context.move(None)",
     "self.context.publish('t', 'std_msgs/Empty').publish_later(None)",
