@@ -3,6 +3,35 @@ import js from '@eslint/js';
 import globals from 'globals';
 import ts from 'typescript-eslint';
 
+/** The folders of the page from the lowest layer up, with those that each may import; '.': modules of web/js. */
+const LAYERS = {
+  ui: [],
+  '.': ['ui'],
+  topics: ['.', 'ui'],
+  view: ['.', 'ui', 'topics'],
+  building: ['.', 'ui'],
+  panels: ['.', 'ui', 'topics'],
+  model_editor: ['.', 'ui', 'panels'],
+  replay: ['.', 'ui', 'topics', 'panels', 'view'],
+};
+
+/** Types of any layer may be named, as these leave nothing in the page; the toolkit knows of none. */
+const layers = Object.entries(LAYERS).map(([folder, allowed]) => {
+  const others = Object.keys(LAYERS).filter((name) => name !== '.' && name !== folder && !allowed.includes(name));
+  const patterns = [{
+    regex: `^(\\.{1,2}/)+(${others.join('|')})/`,
+    allowTypeImports: folder !== 'ui',
+    message: 'This layer must not import that one: see LAYERS in test/page/eslint.config.mjs.',
+  }];
+  if (folder === 'ui') patterns.push({regex: '^\\.\\./\\w+\\.js$', message: 'The toolkit knows nothing of the simulator.'});
+  return {
+    files: [folder === '.' ? 'web/js/*.ts' : `web/js/${folder}/**/*.ts`],
+    ignores: ['web/js/main.ts'],
+    plugins: {ts: ts.plugin},
+    rules: {'ts/no-restricted-imports': ['error', {patterns}]},
+  };
+});
+
 export default [
   js.configs.recommended,
   {
@@ -45,4 +74,5 @@ export default [
     files: ['test/page/**/*.mjs', 'tools/**/*.mjs'],
     languageOptions: {globals: globals.node},
   },
+  ...layers,
 ];

@@ -1,7 +1,7 @@
 import assert from 'node:assert/strict';
 import {test} from 'node:test';
 import {spread} from '../../web/js/building/label_places.js';
-import {hullOf} from '../../web/js/building/plane_geometry.js';
+import {hullOf} from '../../web/js/convex_hull.js';
 
 const SIZE = 10;
 

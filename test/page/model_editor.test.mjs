@@ -4,7 +4,7 @@ import {createActions} from '../../web/js/actions.js';
 import {
   axesOf, axisOr, connection, isLinkOf, jointText, JOINT_TYPES, linkMoves, linkRemovals, pluginText,
   renamedModel, resizing, sizeOf, stepsSince,
-} from '../../web/js/model_editor/model_edits.js';
+} from '../../web/js/model_edits.js';
 import {ModelEditor} from '../../web/js/model_editor/model_editor.js';
 import {BOX, schematicOf} from '../../web/js/model_editor/schematic_layout.js';
 import {SOLID_SHAPES, solidModel} from '../../web/js/model_editor/solids.js';

@@ -8,7 +8,7 @@ import {
   colorText,
   numberText,
   parseNumber,
-} from '../../web/js/panels/text_format.js';
+} from '../../web/js/ui/text_format.js';
 
 test('sim time is written as days, hours, minutes, seconds and milliseconds', () => {
   assert.equal(clockText(0), '00 00:00:00.000');

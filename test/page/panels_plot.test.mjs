@@ -1,6 +1,7 @@
 import assert from 'node:assert/strict';
 import test from 'node:test';
-import {csvOf, extent, KEPT, Series, take, ticks, variablesOf} from '../../web/js/panels/plot_data.js';
+import {csvOf, extent, KEPT, Series, take, ticks} from '../../web/js/ui/plot_data.js';
+import {variablesOf} from '../../web/js/panels/plot_variables.js';
 import {box, world} from './fake_simulator.mjs';
 
 function series(variable, ...samples) {

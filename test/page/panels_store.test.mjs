@@ -4,7 +4,7 @@ import {createActions} from '../../web/js/actions.js';
 import {Connection, RequestError} from '../../web/js/connection.js';
 import {Store} from '../../web/js/store.js';
 import {Watches} from '../../web/js/watches.js';
-import {faultText} from '../../web/js/panels/dialog.js';
+import {faultText} from '../../web/js/ui/dialog.js';
 import {rootLabels, withEnding} from '../../web/js/panels/dialogs/world_file_dialogs.js';
 import {contextMenu, keysOf, menus} from '../../web/js/panels/menu_items.js';
 import {numberFault} from '../../web/js/panels/property_inputs.js';

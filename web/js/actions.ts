@@ -10,7 +10,7 @@ import {cameraActions} from './camera_actions.js';
 import {RequestError} from './connection.js';
 import {fileActions} from './file_actions.js';
 import {insertActions} from './insert_actions.js';
-import {linkMoves, linkRemovals} from './model_editor/model_edits.js';
+import {linkMoves, linkRemovals} from './model_edits.js';
 import {NOTHING} from './nothing.js';
 import type {AlignChoice} from './align.js';
 import type {CopiedItem, EntityRef, Mode, OverlayFlag, Store} from './store.js';

@@ -1,5 +1,5 @@
 /** Where the camera looks from: sides, flights, bookmarks, links, following, projection. */
-import {remembered} from './panels/dom.js';
+import {remembered} from './ui/dom.js';
 import {linkOf} from './view_link.js';
 import type {ActionParts} from './actions.js';
 import type {CameraChoices} from './store.js';

@@ -25,6 +25,14 @@ export type RequestFunction = <T extends keyof Requests>(type: T, fields?: Reque
 
 export type Waiting = {resolve: (value: unknown) => void, reject: (error: Error) => void};
 
+/** The first error with its place. */
+function textOf(issues: Issue[]) {
+  const issue = issues.find(({severity}) => severity === 'error') ?? issues[0];
+  if (!issue) return 'The request was refused.';
+  const place = issue.file ? ` (${issue.file}${issue.line ? `:${issue.line}` : ''})` : '';
+  return `${issue.message}${place}${issue.hint ? `${place ? '' : ';'} ${issue.hint}` : ''}`;
+}
+
 /** A request that was refused or never answered. */
 export class RequestError extends Error {
   override name;
@@ -32,7 +40,7 @@ export class RequestError extends Error {
 
   /** @param issues  at least one */
   constructor(issues: Issue[]) {
-    super(issues[0]?.message ?? 'The request was refused.');
+    super(textOf(issues));
     this.name = 'RequestError';
     this.issues = issues;
   }

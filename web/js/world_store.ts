@@ -1,7 +1,7 @@
 /** The world as the simulator last told it: document, poses, time, history, people. */
 import {Emitter} from './emitter.js';
 import {decodeFrame, LIVE} from './pose_frames.js';
-import {linkNames, renamedModel} from './model_editor/model_edits.js';
+import {linkNames, renamedModel} from './model_edits.js';
 import {compose, inverse} from './pose.js';
 import {splitScoped} from './scoped_names.js';
 import type {

@@ -1,8 +1,8 @@
 /** The building editor: a plan beside the 3D view. */
-import {ask, faultText} from '../panels/dialog.js';
-import {byId, fill, h, onceAFrame} from '../panels/dom.js';
-import {mountMenuBar} from '../panels/menubar.js';
-import {styled} from '../panels/stylesheet.js';
+import {ask, faultText} from '../ui/dialog.js';
+import {byId, fill, h, onceAFrame} from '../ui/dom.js';
+import {mountMenuBar} from '../ui/menubar.js';
+import {styled} from '../ui/stylesheet.js';
 import {Canvas} from './plan_canvas.js';
 import {forgetDraft, keepDraft, leftDraft} from './unsaved_plan.js';
 import {MeasureTool} from './draw_tools.js';

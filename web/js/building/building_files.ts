@@ -1,6 +1,6 @@
 /** Saving, opening and leaving: the windows that ask, and the requests behind them. */
-import {Dialog, ask, faultText, labelled} from '../panels/dialog.js';
-import {h} from '../panels/dom.js';
+import {Dialog, ask, faultText, labelled} from '../ui/dialog.js';
+import {h} from '../ui/dom.js';
 import {emptyPlan} from './plan.js';
 import {rescaled, withImage} from './draw_tools.js';
 import type {BuildingAbout, BuildingOptions} from '../protocol.js';

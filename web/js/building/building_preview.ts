@@ -1,6 +1,6 @@
 /** The building in the 3D view while it is drawn, and its place in the world afterwards. */
 import {RequestError} from '../connection.js';
-import {faultText} from '../panels/dialog.js';
+import {faultText} from '../ui/dialog.js';
 import {isEmpty, withoutImages} from './plan.js';
 import type {Fault} from './plan_check.js';
 import type {Model, Operation, Plan} from '../protocol.js';

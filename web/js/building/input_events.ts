@@ -1,8 +1,8 @@
 /** Mouse and keyboard on the sheet, handed to the tool in metres of the plan. */
 import {belongsToControl, hotkey} from '../hotkeys.js';
 import {isDown} from '../mouse_buttons.js';
-import {isModalOpen} from '../panels/dialog.js';
-import {menuList, openPopup} from '../panels/popup.js';
+import {isModalOpen} from '../ui/dialog.js';
+import {menuList, openPopup} from '../ui/popup.js';
 import {hitOf} from './hit_test.js';
 import {inspectItem, inspectLevel} from './inspector.js';
 import {dropLevel, newLevel} from './level_bar.js';

@@ -1,6 +1,6 @@
 /** Inspectors as windows: Cancel, Apply and OK over the fields of `inspector_fields.js`. */
-import {Dialog, labelled} from '../panels/dialog.js';
-import {h} from '../panels/dom.js';
+import {Dialog, labelled} from '../ui/dialog.js';
+import {h} from '../ui/dom.js';
 import {
   ROOF_FIELDS, applied, fieldFault, fieldsOf, levelApplied, levelFields, levelValues, roofApplied,
   roofValues, valuesOf,

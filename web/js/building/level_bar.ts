@@ -1,5 +1,5 @@
 /** The bar above the sheet: levels, what is shown, zoom. */
-import {fill, h} from '../panels/dom.js';
+import {fill, h} from '../ui/dom.js';
 import {inspectLevel} from './inspector.js';
 import {addLevel, bases, removeLevel} from './plan.js';
 import type {Session} from './drawing_session.js';

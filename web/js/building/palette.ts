@@ -1,9 +1,9 @@
 /** The palette beside the sheet: name, walls, features, colours, textures, floor plan. */
-import {fill, h} from '../panels/dom.js';
+import {fill, h} from '../ui/dom.js';
 import {FloorTool, OpeningTool, StairsTool, WallTool} from './draw_tools.js';
 import {SWATCHES, TEXTURES, inspectRoof} from './inspector.js';
 import {PaintTool} from './select_tool.js';
-import {svg} from './plan_svg.js';
+import {svg} from '../ui/svg.js';
 import type {Tool} from './tool.js';
 
 const GLYPHS = {

@@ -6,9 +6,8 @@ import {handlesOf} from './hit_test.js';
 import {itemOf} from './plan.js';
 import {labelsOf} from './plan_labels.js';
 import {spread} from './label_places.js';
-import {
-  SCALE, floorPath, onSheet, openingPaths, pathOf, set, stairsPaths, svg, wallPath,
-} from './plan_svg.js';
+import {set, svg} from '../ui/svg.js';
+import {SCALE, floorPath, onSheet, openingPaths, pathOf, stairsPaths, wallPath} from './plan_svg.js';
 import type {AnyItem, ItemOf, Kind, OpeningKind} from './plan.js';
 import type {FloorImage, Level, Opening, Wall} from '../protocol.js';
 import type {Point} from './plane_geometry.js';

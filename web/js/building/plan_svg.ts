@@ -1,33 +1,10 @@
-/**
- * SVG elements, and the path data of what a plan holds, in pixels of the sheet: 100 a metre, y
- * down.
- */
+/** The path data of what a plan holds, in pixels of the sheet: 100 a metre, y down. */
 import {fromLocal} from './plane_geometry.js';
 import {placeOf, wallLength, wallYaw} from './plan.js';
 import type {Floor, Level, Opening, Stairs} from '../protocol.js';
 import type {Point} from './plane_geometry.js';
 
-export type Attributes = Record<string, string|number|boolean|null|undefined>;
-
 export const SCALE = 100;
-const SVG = 'http://www.w3.org/2000/svg';
-
-export function svg(tag: string, attributes = {}, ...children: (Node|string)[]): SVGElement {
-  const element = document.createElementNS(SVG, tag);
-  set(element, attributes);
-  element.append(...children);
-  return element;
-}
-
-/** Sets attributes; null takes one away, `text` is the content. */
-export function set(element: Element, attributes: Attributes) {
-  for (const [name, value] of Object.entries(attributes)) {
-    if (name === 'text') element.textContent = String(value);
-    else if (value === null || value === undefined || value === false) element.removeAttribute(name);
-    else element.setAttribute(name, String(value));
-  }
-  return element;
-}
 
 const round = (value: number) => Math.round(value * 1000) / 1000;
 

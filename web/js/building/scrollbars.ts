@@ -1,5 +1,5 @@
 /** Scroll bars for a sheet without end: they span what is drawn and what is seen. */
-import {h} from '../panels/dom.js';
+import {h} from '../ui/dom.js';
 import {extentOf} from './plan_canvas.js';
 import {SCALE} from './plan_svg.js';
 

@@ -1,5 +1,5 @@
 /** The plan that was never saved, kept in this browser: a crash or a closed tab loses nothing. */
-import {remembered} from '../panels/dom.js';
+import {remembered} from '../ui/dom.js';
 import {isEmpty, withoutImages} from './plan.js';
 import type {Plan} from '../protocol.js';
 import type {Session} from './drawing_session.js';

@@ -1,5 +1,5 @@
 /** A joint by two choices, in the view, in the tree or in a list: the parent link, then the child link. */
-import {connection, isLinkOf} from './model_edits.js';
+import {connection, isLinkOf} from '../model_edits.js';
 import type {ModelEditor} from './model_editor.js';
 
 export class ConnectTool {

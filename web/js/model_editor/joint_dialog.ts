@@ -1,9 +1,9 @@
 /** The dialog of a joint: ends, type, axes, limits, pose. */
-import {Dialog, labelled} from '../panels/dialog.js';
-import {h} from '../panels/dom.js';
+import {Dialog, labelled} from '../ui/dialog.js';
+import {h} from '../ui/dom.js';
 import {makeInput} from '../panels/property_inputs.js';
 import {axisFields} from '../panels/property_fields.js';
-import {JOINT_TYPES, axesOf, axisOr} from './model_edits.js';
+import {JOINT_TYPES, axesOf, axisOr} from '../model_edits.js';
 import type {Axis, Joint, Model} from '../protocol.js';
 
 function choice(label: string, choices: readonly string[], chosen: string) {

@@ -2,11 +2,11 @@
  * The model editor: a palette over the 3D view. The model that is built stands in the world, whose tree,
  * properties, tools and history work on it as ever; the palette adds links, joints and the rest.
  */
-import {ask} from '../panels/dialog.js';
-import {byId} from '../panels/dom.js';
-import {styled} from '../panels/stylesheet.js';
+import {ask} from '../ui/dialog.js';
+import {byId} from '../ui/dom.js';
+import {styled} from '../ui/stylesheet.js';
 import {ConnectTool} from './connect_tool.js';
-import {linkNames, ownSteps, renamedModel, stepsSince} from './model_edits.js';
+import {linkNames, ownSteps, renamedModel, stepsSince} from '../model_edits.js';
 import {ModelFiles} from './model_files.js';
 import {Palette} from './model_palette.js';
 import type {Actions} from '../actions.js';

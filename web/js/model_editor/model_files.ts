@@ -1,8 +1,8 @@
 /** Saving what was built as a model folder, and meshes that become links. */
 import {encoded} from '../dropped_files.js';
 import {RequestError} from '../connection.js';
-import {ask, Dialog, faultText, labelled} from '../panels/dialog.js';
-import {h} from '../panels/dom.js';
+import {ask, Dialog, faultText, labelled} from '../ui/dialog.js';
+import {h} from '../ui/dom.js';
 import type {BuildingAbout} from '../protocol.js';
 import type {RequestFunction} from '../connection.js';
 

@@ -1,9 +1,9 @@
 /** The palette of the model editor: what can be added, and what the model has. */
-import {Dialog, faultText, labelled, movable} from '../panels/dialog.js';
-import {fill, h} from '../panels/dom.js';
-import {icon} from '../panels/icons.js';
+import {Dialog, faultText, labelled, movable} from '../ui/dialog.js';
+import {fill, h} from '../ui/dom.js';
+import {icon} from '../ui/icons.js';
 import {jointDialog} from './joint_dialog.js';
-import {isLinkOf, JOINT_TYPES, jointText, pluginText, resizing, sizeOf} from './model_edits.js';
+import {isLinkOf, JOINT_TYPES, jointText, pluginText, resizing, sizeOf} from '../model_edits.js';
 import {meshDialog} from './model_files.js';
 import {Schematic} from './schematic.js';
 import {SOLID_SHAPES, solidModel} from './solids.js';

@@ -1,8 +1,8 @@
 /** The schematic view of the model editor: links as boxes, joints as lines between them. */
-import {svg} from '../building/plan_svg.js';
-import {movable} from '../panels/dialog.js';
-import {fill, h, onActivate} from '../panels/dom.js';
-import {icon} from '../panels/icons.js';
+import {svg} from '../ui/svg.js';
+import {movable} from '../ui/dialog.js';
+import {fill, h, onActivate} from '../ui/dom.js';
+import {icon} from '../ui/icons.js';
 import {BOX, schematicOf} from './schematic_layout.js';
 import type {Joint} from '../protocol.js';
 import type {ModelEditor} from './model_editor.js';

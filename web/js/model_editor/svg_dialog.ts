@@ -1,7 +1,7 @@
 /** Asks for an SVG drawing that becomes a link: its outline, extruded. */
-import {set, svg} from '../building/plan_svg.js';
-import {Dialog, labelled} from '../panels/dialog.js';
-import {h} from '../panels/dom.js';
+import {set, svg} from '../ui/svg.js';
+import {Dialog, labelled} from '../ui/dialog.js';
+import {h} from '../ui/dom.js';
 import {loopsOfSvg, scaledLoops} from './svg_outline.js';
 import type {Loop} from './svg_outline.js';
 

@@ -1,5 +1,5 @@
 /** What the page waits for, written over the view. */
-import {h} from './dom.js';
+import {h} from '../ui/dom.js';
 import type {LoadingPush} from '../protocol.js';
 import type {Page} from './panels.js';
 

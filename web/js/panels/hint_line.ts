@@ -1,6 +1,6 @@
 /** One line over the view that names the keys and the mouse of the tool in use, until it is closed. */
-import {fill, h, remembered} from './dom.js';
-import {icon} from './icons.js';
+import {fill, h, remembered} from '../ui/dom.js';
+import {icon} from '../ui/icons.js';
 import type {Mode, Store} from '../store.js';
 
 /** keys, and what they do */

@@ -2,10 +2,10 @@
  * The Insert tab: simple shapes, then the model database by location, each model with its picture.
  * A click takes the model in hand: it then follows the mouse over the view until it is placed.
  */
-import {Dialog, labelled} from './dialog.js';
-import {elementsOf, fill, h, onActivate, remembered} from './dom.js';
-import {bytesText} from './text_format.js';
-import {icon} from './icons.js';
+import {Dialog, labelled} from '../ui/dialog.js';
+import {elementsOf, fill, h, onActivate, remembered} from '../ui/dom.js';
+import {bytesText} from '../ui/text_format.js';
+import {icon} from '../ui/icons.js';
 import {TemplateCards} from './template_cards.js';
 import type {DownloadPush, LibraryModel, Location} from '../protocol.js';
 

@@ -2,9 +2,9 @@
  * The Joints panel: for the selected model a row per joint, on three tabs: Force, Position,
  * Velocity. What a joint does now stands beside what it is asked to do.
  */
-import {fill, h, roving} from './dom.js';
-import {numberText} from './text_format.js';
-import {icon} from './icons.js';
+import {fill, h, roving} from '../ui/dom.js';
+import {numberText} from '../ui/text_format.js';
+import {icon} from '../ui/icons.js';
 import {makeInput} from './property_inputs.js';
 import {modelOf} from './world_rows.js';
 import type {Drive, Gains, Joint, Model, WatchPush} from '../protocol.js';

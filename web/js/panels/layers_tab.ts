@@ -1,5 +1,5 @@
 /** The Layers tab: a check box for each `visual/meta/layer` that occurs. */
-import {fill, h, onceAFrame} from './dom.js';
+import {fill, h, onceAFrame} from '../ui/dom.js';
 import type {World} from '../protocol.js';
 
 /**

@@ -3,7 +3,7 @@ import {HOTKEYS, run} from '../hotkeys.js';
 import type {Actions} from '../actions.js';
 import type {OverlayFlag, Store} from '../store.js';
 import type {Page} from './panels.js';
-import type {ThemeName} from './theme.js';
+import type {ThemeName} from '../ui/theme.js';
 
 /** The hotkey of an action, '' where it has none. */
 export function keysOf(action: keyof Actions) {
@@ -47,7 +47,7 @@ const LINE = {separator: true};
 
 /** The menu bar's menus. */
 export function menus(page: import('./panels.js').Page): {title: string, items: () =>
-    import('./popup.js').MenuItem[]}[] {
+    import('../ui/popup.js').MenuItem[]}[] {
   const {store, actions, theme} = page;
   const item = (title: string, action: keyof Actions, more = {}) => ({
     title,
@@ -205,7 +205,7 @@ function overlayItem({store, actions}: Page, flag: OverlayFlag, title: string, m
  * @returns empty where nothing has the name
  */
 export function contextMenu(page: import('./panels.js').Page, name: string):
-    import('./popup.js').MenuItem[] {
+    import('../ui/popup.js').MenuItem[] {
   const {store, actions} = page;
   const entity = store.entity(name);
   if (!entity) return [];

@@ -3,9 +3,9 @@
  * with its file and line.
  */
 import {RequestError} from '../connection.js';
-import {fill, h} from './dom.js';
-import {faultText} from './dialog.js';
-import {icon} from './icons.js';
+import {fill, h} from '../ui/dom.js';
+import {faultText} from '../ui/dialog.js';
+import {icon} from '../ui/icons.js';
 import type {Issue} from '../connection.js';
 
 const SECONDS = {error: 12, warning: 8, note: 4};

@@ -20,17 +20,17 @@ export interface Page {
 }
 import {mountConnectionNote} from './connection_note.js';
 import {offerRestore} from './dialogs/restore_offer.js';
-import {byId, fill, h, roving} from './dom.js';
+import {byId, fill, h, roving} from '../ui/dom.js';
 import {mountHints} from './hint_line.js';
 import {InsertTab} from './insert_tab.js';
 import {mountLayers} from './layers_tab.js';
-import {mountMenuBar} from './menubar.js';
+import {mountMenuBar} from '../ui/menubar.js';
 import {contextMenu, menus} from './menu_items.js';
 import {Notices} from './notices.js';
-import {openMenu} from './popup.js';
+import {openMenu} from '../ui/popup.js';
 import {mountPeople} from './people_bar.js';
-import {splitter} from './splitter.js';
-import {mountTheme} from './theme.js';
+import {splitter} from '../ui/splitter.js';
+import {mountTheme} from '../ui/theme.js';
 import {TimeBar} from './timebar.js';
 import {mountToolBar} from './toolbar.js';
 import {Windows} from './windows.js';

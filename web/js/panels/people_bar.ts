@@ -1,14 +1,11 @@
 /** Who else has this world open, beside the menus: their names, and what they hold. */
-import {Dialog, labelled} from './dialog.js';
-import {fill, h, remembered} from './dom.js';
+import {Dialog, labelled} from '../ui/dialog.js';
+import {fill, h, remembered} from '../ui/dom.js';
+import {colorOf} from '../person_color.js';
 import type {Person} from '../protocol.js';
 import type {Page} from './panels.js';
 
-const COLORS = ['#4f9cf0', '#4bc07a', '#e06c9f', '#b58cf0', '#d9a13a', '#3fc1c9', '#f07860'];
 const SELECTED = 3;
-
-/** Returns the color of a user's marks. */
-export const colorOf = ({number}: Person) => COLORS[number % COLORS.length];
 
 /** Who this page is to the simulator: the same after it was loaded again. */
 export function identity() {

@@ -3,11 +3,12 @@
  * of canvases, any number of curves on each, drawn as the values come.
  */
 import {saveBlob} from '../actions.js';
-import {elementsOf, fill, h, onActivate, onceAFrame, roving} from './dom.js';
-import {icon} from './icons.js';
-import {CURVE_COLORS, drawPlot} from './plot_canvas.js';
-import {csvOf, isTopicField, Series, take, topicVariables, variablesOf} from './plot_data.js';
-import type {Curve} from './plot_canvas.js';
+import {elementsOf, fill, h, onActivate, onceAFrame, roving} from '../ui/dom.js';
+import {icon} from '../ui/icons.js';
+import {CURVE_COLORS, drawPlot} from '../ui/plot_canvas.js';
+import {csvOf, Series, take} from '../ui/plot_data.js';
+import {isTopicField, topicVariables, variablesOf} from './plot_variables.js';
+import type {Curve} from '../ui/plot_canvas.js';
 import type {WatchPush} from '../protocol.js';
 
 /** The time spans to choose from, s; null: all. */

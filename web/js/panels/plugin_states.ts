@@ -1,5 +1,5 @@
 /** Whether a plugin runs, as the tree and the property panel show it. */
-import {h} from './dom.js';
+import {h} from '../ui/dom.js';
 import type {PluginState, World} from '../protocol.js';
 import type {Found} from './property_sections.js';
 import type {Row} from './world_rows.js';

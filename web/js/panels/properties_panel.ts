@@ -3,9 +3,9 @@
  * came back.
  */
 import {compose, inverse} from '../pose.js';
-import {byId, elementsOf, fill, h, onceAFrame, remembered} from './dom.js';
-import {faultText} from './dialog.js';
-import {icon} from './icons.js';
+import {byId, elementsOf, fill, h, onceAFrame, remembered} from '../ui/dom.js';
+import {faultText} from '../ui/dialog.js';
+import {icon} from '../ui/icons.js';
 import {pluginState, withState} from './plugin_states.js';
 import {makeInput} from './property_inputs.js';
 import {sharedSections} from './model_sections.js';

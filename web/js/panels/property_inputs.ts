@@ -9,8 +9,8 @@ export interface Input {
 }
 export type InputField = Omit<Field, 'path'> & {path?: string};
 import {sevenOf, sixOf} from './pose_rpy.js';
-import {h} from './dom.js';
-import {colorOf, colorText, numberText, parseNumber} from './text_format.js';
+import {h} from '../ui/dom.js';
+import {colorOf, colorText, numberText, parseNumber} from '../ui/text_format.js';
 import type {Field} from './property_fields.js';
 
 /**

@@ -1,7 +1,7 @@
 /** The robot templates at the top of the Insert tab. */
 import {templateDialog} from './dialogs/template_dialog.js';
-import {fill, h, onActivate} from './dom.js';
-import {icon} from './icons.js';
+import {fill, h, onActivate} from '../ui/dom.js';
+import {icon} from '../ui/icons.js';
 import type {Page} from './panels.js';
 import type {Template} from '../protocol.js';
 

@@ -2,9 +2,9 @@
  * The bar below the view: play, pause, step, the figures of time; while a log is replayed its
  * slider in their place.
  */
-import {fill, h, remembered, roving} from './dom.js';
-import {clockText} from './text_format.js';
-import {icon} from './icons.js';
+import {fill, h, remembered, roving} from '../ui/dom.js';
+import {clockText} from '../ui/text_format.js';
+import {icon} from '../ui/icons.js';
 
 const RATES = [0.1, 0.25, 0.5, 1, 2, 5, 10];
 

@@ -1,8 +1,8 @@
 /** The tool bar: Gazebo's buttons from left to right, with its drop-downs. */
-import {closestTo, elementsOf, fill, h, roving} from './dom.js';
+import {closestTo, elementsOf, fill, h, roving} from '../ui/dom.js';
 import {run} from '../hotkeys.js';
-import {icon} from './icons.js';
-import {closePopup, openPopup} from './popup.js';
+import {icon} from '../ui/icons.js';
+import {closePopup, openPopup} from '../ui/popup.js';
 import {Video} from './video_recorder.js';
 import type {Actions} from '../actions.js';
 import type {LightType, ShapeName} from '../new_entities.js';

@@ -1,6 +1,6 @@
 /** Windows over the view for topics that are no part of the scene: pictures and text. */
-import {fill, h} from './dom.js';
-import {icon} from './icons.js';
+import {fill, h} from '../ui/dom.js';
+import {icon} from '../ui/icons.js';
 import type {ImageView} from '../protocol.js';
 import type {TopicView} from '../topics/topics.js';
 

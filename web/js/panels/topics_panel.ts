@@ -2,8 +2,8 @@
  * The Topics panel lists all ROS topics with their types. A ticked topic is shown in the view or in
  * a separate window, with its rate and bandwidth. Only topics that are shown are subscribed to.
  */
-import {fill, h} from './dom.js';
-import {bandwidthText, rateText} from './text_format.js';
+import {fill, h} from '../ui/dom.js';
+import {bandwidthText, rateText} from '../ui/text_format.js';
 import type {Topic} from '../protocol.js';
 
 export class TopicsPanel {

@@ -1,6 +1,6 @@
 /** Dialogs, docked windows and editors, opened by the names that actions ask for them. */
 import {HOTKEYS} from '../hotkeys.js';
-import {closeDialogs} from './dialog.js';
+import {closeDialogs} from '../ui/dialog.js';
 import {aboutDialog, hotkeyDialog} from './dialogs/help_dialogs.js';
 import {cloneDialog, newWorld, openDialog, saveAsDialog} from './dialogs/world_file_dialogs.js';
 import {forceDialog} from './dialogs/force_dialog.js';
@@ -9,10 +9,10 @@ import {commandDialog} from './dialogs/command_dialog.js';
 import {logsDialog} from './dialogs/log_dialog.js';
 import {importDialog} from './dialogs/import_dialog.js';
 import {recoverDialog} from './dialogs/recover_dialog.js';
-import {byId, elementsOf, remembered} from './dom.js';
+import {byId, elementsOf, remembered} from '../ui/dom.js';
 import {JointsPanel} from './joints_panel.js';
 import {Plots} from './plots.js';
-import {lyingBar, splitter} from './splitter.js';
+import {lyingBar, splitter} from '../ui/splitter.js';
 import {TopicsPanel} from './topics_panel.js';
 import {TopicWindows} from './topic_windows.js';
 import type {DialogName, DialogRequest} from '../actions.js';

@@ -1,18 +1,10 @@
 /** The rows of the World tab, in Gazebo's order, out of the document. Pure. */
-export interface Row {
-  /** unique in the tree, stable over edits */
-  id: string;
-  label: string;
-  icon: string;
-  /** 1 for the outermost */
-  level: number;
+export interface Row extends TreeRow {
   /**
    * gui, scene, spherical, physics, atmosphere, wind, plugins, models,
    * lights, model, group, heading, link, joint, sensor, plugin, light, road, actor
    */
   kind: string;
-  expandable: boolean;
-  open: boolean;
   /** what a click selects: a model, `model::link` or a light */
   select?: string;
   /** the model the row belongs to */
@@ -28,6 +20,7 @@ export interface Row {
 import {groupsOf} from '../model_groups.js';
 import {splitScoped} from '../scoped_names.js';
 import type {Model, World} from '../protocol.js';
+import type {TreeRow} from '../ui/tree_view.js';
 
 const WORLD_ROWS = [
   ['gui', 'GUI', 'gui'],

@@ -1,12 +1,13 @@
 /** The World tab: a filter, the tree, and the properties of the row that is chosen. */
-import {elementsOf, fill, h, onceAFrame, remembered} from './dom.js';
+import {elementsOf, fill, h, onceAFrame, remembered} from '../ui/dom.js';
 import {groupsOf} from '../model_groups.js';
-import {colorOf, doing} from './people_bar.js';
+import {colorOf} from '../person_color.js';
+import {doing} from './people_bar.js';
 import {pluginState, sensorState, stateTag} from './plugin_states.js';
 import {Properties} from './properties_panel.js';
-import {Tree} from './tree_view.js';
+import {Tree} from '../ui/tree_view.js';
 import {rowOf, worldRows} from './world_rows.js';
-import {lyingBar, splitter} from './splitter.js';
+import {lyingBar, splitter} from '../ui/splitter.js';
 import type {Row} from './world_rows.js';
 
 /** What of a model this browser's user has chosen, as tags of its row. */

@@ -1,9 +1,9 @@
 /** Puts a replay page together: the view, a time bar, and the recording that the page contains. */
 import {createActions} from '../actions.js';
-import {faultText} from '../panels/dialog.js';
-import {byId, h} from '../panels/dom.js';
+import {faultText} from '../ui/dialog.js';
+import {byId, h} from '../ui/dom.js';
 import {Notices} from '../panels/notices.js';
-import {mountTheme} from '../panels/theme.js';
+import {mountTheme} from '../ui/theme.js';
 import {TimeBar} from '../panels/timebar.js';
 import {Store} from '../store.js';
 import {Topics} from '../topics/topics.js';

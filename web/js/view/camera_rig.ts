@@ -1,7 +1,7 @@
 /** The camera: the user's moves, flights between views, following, the two projections. */
 import {Box3, Matrix4, Vector3} from 'three';
 import * as views from '../camera_math.js';
-import {remembered} from '../panels/dom.js';
+import {remembered} from '../ui/dom.js';
 import {add, length, scale, subtract} from '../pose.js';
 import {readLink} from '../view_link.js';
 import type {GuiCamera} from '../protocol.js';

@@ -1,5 +1,5 @@
 /** Mesh files, each read once. Coordinates stay as the file has them, in metres; z is up. */
-import {faultText} from '../panels/dialog.js';
+import {faultText} from '../ui/dialog.js';
 import {frontsFirst} from './fronts_first.js';
 import {
   BufferAttribute, BufferGeometry, Camera, DoubleSide, Light, LoadingManager, Mesh, MeshPhongMaterial,

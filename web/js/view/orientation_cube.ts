@@ -1,6 +1,6 @@
 /** A small cube that turns with the camera; a click on a face looks at the world from there. */
 import {forward, right, up} from '../camera_math.js';
-import {h} from '../panels/dom.js';
+import {h} from '../ui/dom.js';
 import type {Actions} from '../actions.js';
 import type {View} from '../camera_math.js';
 

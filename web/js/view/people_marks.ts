@@ -1,6 +1,6 @@
 /** Boxes with names round what others drag or have selected. */
 import {Color, LineBasicMaterial, Vector3} from 'three';
-import {colorOf} from '../panels/people_bar.js';
+import {colorOf} from '../person_color.js';
 import {label} from './label_sprite.js';
 import {boxLines} from './markers.js';
 import {place} from './three_convert.js';

@@ -1,6 +1,6 @@
 /** The mouse and the held keys over the view: who gets a drag, and what a click means. */
 import {isDown} from '../mouse_buttons.js';
-import {closestTo} from '../panels/dom.js';
+import {closestTo} from '../ui/dom.js';
 import {Touch, TOUCH_PIXELS} from './touch.js';
 import type {Vec3} from '../pose.js';
 import type {ViewParts} from './view.js';

@@ -1,7 +1,7 @@
 /** The 3D view of a world: puts its parts together and answers what the rest of the page asks of it. */
 import {Vector3} from 'three';
-import {hullOf} from '../building/plane_geometry.js';
-import {remembered} from '../panels/dom.js';
+import {hullOf} from '../convex_hull.js';
+import {remembered} from '../ui/dom.js';
 import {subtract, transform} from '../pose.js';
 import {Actors} from './actors.js';
 import {Batches} from './batches.js';

@@ -1,7 +1,7 @@
 /** How many copies of the selection, and how far apart. */
 import {copiesIn, MOST_COPIES} from '../../arrange.js';
-import {Dialog} from '../dialog.js';
-import {h} from '../dom.js';
+import {Dialog} from '../../ui/dialog.js';
+import {h} from '../../ui/dom.js';
 import type {Page} from '../panels.js';
 
 const AXES = ['X', 'Y', 'Z'];

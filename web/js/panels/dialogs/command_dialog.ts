@@ -1,10 +1,10 @@
 /** The command search: every item of the menus and every action that has a key, by its name. */
 import {HOTKEYS, run} from '../../hotkeys.js';
 import {LIGHTS, SHAPES} from '../../new_entities.js';
-import {Dialog} from '../dialog.js';
-import {fill, h} from '../dom.js';
+import {Dialog} from '../../ui/dialog.js';
+import {fill, h} from '../../ui/dom.js';
 import {keysOf, menus} from '../menu_items.js';
-import type {MenuItem} from '../popup.js';
+import type {MenuItem} from '../../ui/popup.js';
 import type {Page} from '../panels.js';
 
 export type Command = {title: string, group: string, keys: string, run: () => unknown};

@@ -1,8 +1,8 @@
 /**
  * Apply Force/Torque: stays beside the view, so that its arrows can be seen and turned there.
  */
-import {Dialog} from '../dialog.js';
-import {h} from '../dom.js';
+import {Dialog} from '../../ui/dialog.js';
+import {h} from '../../ui/dom.js';
 import {makeInput} from '../property_inputs.js';
 import {modelOf} from '../world_rows.js';
 import type {Model} from '../../protocol.js';

@@ -1,6 +1,6 @@
 /** Two windows to read: the hotkey chart and About. */
-import {Dialog} from '../dialog.js';
-import {h} from '../dom.js';
+import {Dialog} from '../../ui/dialog.js';
+import {h} from '../../ui/dom.js';
 import type {Hotkey} from '../../hotkeys.js';
 import type {Requests} from '../../protocol.js';
 

@@ -1,8 +1,8 @@
 /** Files of the desktop that were dropped on the ground: asks what must be known, then inserts. */
 import {encoded, filesOf, kindOf, modelsOfWorld} from '../../dropped_files.js';
 import {RequestError} from '../../connection.js';
-import {ask, Dialog, faultText, labelled} from '../dialog.js';
-import {h} from '../dom.js';
+import {ask, Dialog, faultText, labelled} from '../../ui/dialog.js';
+import {h} from '../../ui/dom.js';
 import type {Dropped, DroppedFile} from '../../dropped_files.js';
 import type {Operation} from '../../protocol.js';
 import type {Vec3} from '../../pose.js';

@@ -1,8 +1,8 @@
 /** Log data: records the state of the world, lists what was recorded, opens it to be replayed. */
-import {Dialog} from '../dialog.js';
-import {fill, h} from '../dom.js';
-import {bytesText} from '../text_format.js';
-import {icon} from '../icons.js';
+import {Dialog} from '../../ui/dialog.js';
+import {fill, h} from '../../ui/dom.js';
+import {bytesText} from '../../ui/text_format.js';
+import {icon} from '../../ui/icons.js';
 import type {Issue} from '../../connection.js';
 
 export function logsDialog({store, actions}: import('../panels.js').Page): Promise<unknown> {

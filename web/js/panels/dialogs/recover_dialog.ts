@@ -1,7 +1,7 @@
 /** Recover: unsaved changes of earlier sessions, and what was discarded in the last week. */
-import {Dialog} from '../dialog.js';
-import {fill, h} from '../dom.js';
-import {icon} from '../icons.js';
+import {Dialog} from '../../ui/dialog.js';
+import {fill, h} from '../../ui/dom.js';
+import {icon} from '../../ui/icons.js';
 import type {Recoverable} from '../../protocol.js';
 
 export function recoverDialog({store, actions, notices}: import('../panels.js').Page):

@@ -1,5 +1,5 @@
 /** Offers unsaved changes when a page opens. */
-import {ask} from '../dialog.js';
+import {ask} from '../../ui/dialog.js';
 import type {AutosavePush} from '../../protocol.js';
 import type {Page} from '../panels.js';
 

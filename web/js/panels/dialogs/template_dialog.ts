@@ -1,6 +1,6 @@
 /** The form of a robot template: its parameters as the server declares them. */
-import {Dialog, labelled} from '../dialog.js';
-import {h} from '../dom.js';
+import {Dialog, labelled} from '../../ui/dialog.js';
+import {h} from '../../ui/dom.js';
 import type {Requests, Template, TemplateParameter} from '../../protocol.js';
 import type {Page} from '../panels.js';
 

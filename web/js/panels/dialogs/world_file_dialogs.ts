@@ -4,10 +4,10 @@
  * The server answers `folders {path}` with {path, parent, roots, folders, files}.
  */
 import {RequestError} from '../../connection.js';
-import {Dialog, ask, faultText, labelled} from '../dialog.js';
-import {fill, h, roving} from '../dom.js';
-import {bytesText} from '../text_format.js';
-import {icon} from '../icons.js';
+import {Dialog, ask, faultText, labelled} from '../../ui/dialog.js';
+import {fill, h, roving} from '../../ui/dom.js';
+import {bytesText} from '../../ui/text_format.js';
+import {icon} from '../../ui/icons.js';
 import type {Page} from '../panels.js';
 import type {RequestFunction} from '../../connection.js';
 import type {Requests} from '../../protocol.js';

@@ -1,7 +1,6 @@
 /**
  * Windows over the page: a title, a content, buttons. Escape and the cross answer as Cancel does.
  */
-import {RequestError} from '../connection.js';
 import {closestTo, elementsOf, h} from './dom.js';
 import {icon} from './icons.js';
 
@@ -199,14 +198,8 @@ export class Dialog {
   }
 }
 
-/** What a refused request says: the first error with its place, or the error's words. */
-export function faultText(fault: unknown) {
-  const issues = fault instanceof RequestError ? fault.issues : [];
-  const issue = issues.find(({severity}) => severity === 'error') ?? issues[0];
-  if (!issue) return fault instanceof Error ? fault.message : String(fault);
-  const place = issue.file ? ` (${issue.file}${issue.line ? `:${issue.line}` : ''})` : '';
-  return `${issue.message}${place}${issue.hint ? `${place ? '' : ';'} ${issue.hint}` : ''}`;
-}
+/** What is said of something that was thrown. */
+export const faultText = (fault: unknown) => (fault instanceof Error ? fault.message : String(fault));
 
 /**
  * A question with a few answers.

@@ -5,15 +5,29 @@
 import {fill, h, onceAFrame} from './dom.js';
 import {icon} from './icons.js';
 import type {Child} from './dom.js';
-import type {Row} from './world_rows.js';
+
+export interface TreeRow {
+  /** unique in the tree, stable over edits */
+  id: string;
+  label: string;
+  icon: string;
+  /** 1 for the outermost */
+  level: number;
+  /** for style sheets */
+  kind: string;
+  expandable: boolean;
+  open: boolean;
+  /** what a click selects */
+  select?: string;
+}
 
 const ROW = 24;
 const SPARE = 8;
 
 /** px before a row's arrow. */
-const indent = (row: Row) => 4 + (row.level - 1) * 14;
+const indent = (row: TreeRow) => 4 + (row.level - 1) * 14;
 
-export class Tree {
+export class Tree<Row extends TreeRow> {
   element;
   handlers;
   rows: Row[];
@@ -77,7 +91,6 @@ export class Tree {
   #typed = {text: '', at: 0};
 
   /**
-   * @param rows  as `world_rows.Row`
    * @param selected  ids
    */
   show(rows: Row[], selected: Set<string>) {

@@ -1,7 +1,7 @@
 /** What the model editor asks of the simulator, as operations. Pure. */
-import {compose, inverse} from '../pose.js';
-import type {Joint, Axis, Link, Model, Operation} from '../protocol.js';
-import type {Pose7} from '../pose.js';
+import {compose, inverse} from './pose.js';
+import type {Joint, Axis, Link, Model, Operation} from './protocol.js';
+import type {Pose7} from './pose.js';
 
 export const JOINT_TYPES = Object.freeze(['revolute', 'revolute2', 'prismatic', 'ball', 'universal', 'screw',
   'gearbox', 'fixed']);
