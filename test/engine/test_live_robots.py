@@ -54,6 +54,21 @@ def world(file):
         yield opened
 
 
+def test_the_first_sample_comes_for_who_subscribes_before_it_only(world):
+    topic = world.topics["/imu"]
+    world.step(60)
+    assert [one.header.stamp.to_nsec() for one in topic.take()] == [
+        20_000_000, 40_000_000, 60_000_000]
+    topic.close()
+    world.step(20)
+    topic = world.topics["/imu"]
+    world.step(40)
+    assert [one.header.stamp.to_nsec() for one in topic.take()] == [120_000_000]
+    world.reset()
+    world.step(20)
+    assert [one.header.stamp.to_nsec() for one in topic.take()] == [20_000_000]
+
+
 def test_a_robot_drives_and_its_odometry_follows(world):
     odometry = world.topics["odom"]
     world.publish("/cmd_vel", geometry_msgs.Twist(linear=geometry_msgs.Vector3(x=0.3)))

@@ -279,7 +279,9 @@ class PluginHost:
     def _hand_over(self, observation: Observation) -> None:
         running = self._running.get(observation.owner)
         if running is not None and running.is_callable:
-            self._guard.call(running, observation.call)
+            time_step = self._schedule.time_step
+            assert time_step is not None   # that of the record
+            self._guard.call(running, observation.call, time_step)
 
     def _finish_changes(self, settings: int, _time_step: SimTimeStep) -> None:
         if settings != self._settings:
@@ -375,6 +377,7 @@ class PluginHost:
         calls: List[str] = []
         if before is not None and time_step.clock_sets != before.clock_sets:
             self._schedule.reschedule(time_step.sim_ns < before.sim_ns)
+            self._observations.begin_all(time_step)
             for running in self._at_work():
                 running.context.sensing.forget()
             if resets.simulation_resets != self._simulation_resets:

@@ -16,6 +16,7 @@ from ..engine.ring import LINK_WIDTH
 from ..engine.step_records import AXIS_WIDTH, Part, RecordRule, StepRecord
 from ..geometry import Pose, Twist
 from ..simulator.states import States
+from ..simulator.sync_points import SimTimeStep
 from .context import PluginError, Publication
 from .model_rows import ModelRows
 
@@ -64,7 +65,8 @@ class Observation:
         number: identifies it in records.
         rate: the steps.
         call: the function; its context shows the step.
-        resume: called at the first step after a time without subscribers, instead of `call`.
+        resume: called at the first step after a time without subscribers in which the rate had
+            steps, instead of `call`.
         topics: those that it publishes; without any it is always due.
         transforms: it broadcasts to tf.
         remembers: it is due without subscribers too, because it keeps a state.
@@ -80,6 +82,7 @@ class Observation:
         self.reads = reads
         self.ended = False
         self._was_idle = False
+        self._last: Optional[SimTimeStep] = None   # of its rate; no step after it was left out
         self.rule: Optional[RecordRule] = None
         self._asked = 1   # of single steps
         self._links: Dict[int, int] = {}
@@ -120,13 +123,23 @@ class Observation:
         self._links = {row: n for n, row in enumerate(links)}
         self._axes = {row: n for n, row in enumerate(axes)}
 
-    def call(self) -> None:
+    def begin(self, time_step: Optional[SimTimeStep]) -> None:
+        """Count the steps that are left out from a moment on."""
+        self._last = time_step
+
+    def call(self, time_step: SimTimeStep) -> None:
         """Hand a step over to the plugin."""
-        idle, self._was_idle = self._was_idle, False
+        idle = self._was_idle and self._has_left_out_steps(time_step)
+        self._was_idle, self._last = False, time_step
         if idle and self._resume is not None:
             self._resume()
         else:
             self._call()
+
+    def _has_left_out_steps(self, time_step: SimTimeStep) -> bool:
+        last = self._last
+        return (last is None or last.clock_sets != time_step.clock_sets
+                or self._rate.after(last.step, time_step.clock) < time_step.step)
 
     def places(self) -> Tuple[Dict[int, int], Dict[int, int]]:
         """Return the indices of links and joint axes in a part of a record, by row."""
@@ -156,6 +169,11 @@ class Observations:
         self._all[self._made] = made
         self.changed = True
         return made
+
+    def begin_all(self, time_step: SimTimeStep) -> None:
+        """Count the steps that are left out from a moment on, after a reset."""
+        for one in self._all.values():
+            one.begin(time_step)
 
     def end_all(self, owner: Any) -> None:
         """End all observations of a plugin."""

@@ -165,9 +165,11 @@ class SimulatedContext(GraphUser):
         """Call a function that only reads, at a rate."""
         if transforms:
             self.graph.offer_transforms()
-        return self.observations.add(
+        made = self.observations.add(
             self, Rate(hertz, lead), call, resume, topics, transforms, remembers,
             Reads(contacts, tuple(efforts), tuple(wrenches), world))
+        made.begin(self._schedule.time_step)
+        return made
 
     def observed(self, reads: Reads) -> Tuple[Tuple[int, ...], Tuple[int, ...],
                                               Tuple[Command, ...]]:
