@@ -3,9 +3,10 @@ import {remembered} from './ui/dom.js';
 import {linkOf} from './view_link.js';
 import type {ActionParts} from './actions.js';
 import type {CameraChoices} from './store.js';
+import type {View} from './camera_math.js';
 
 /** a camera to come back to */
-export type Bookmark = {name: string, view: import('./camera_math.js').View};
+export type Bookmark = {name: string, view: View};
 
 export function cameraActions({store, note, view}: ActionParts) {
   const bookmarksKey = () => `bookmarks.${store.history.file || store.document?.name || ''}`;

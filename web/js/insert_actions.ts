@@ -1,7 +1,7 @@
 /** What is added to the world: shapes, lights, models of the library, files of the desktop. */
 import {LIGHTS, newLight, shapeModel, SHAPES} from './new_entities.js';
 import {NOTHING} from './nothing.js';
-import type {ActionParts} from './actions.js';
+import type {ActionParts, Outcome} from './actions.js';
 import type {Dropped} from './dropped_files.js';
 import type {LightType, ShapeName} from './new_entities.js';
 import type {Model, Operation, Requests} from './protocol.js';
@@ -53,7 +53,7 @@ export function insertActions({store, ask, edit, dialog, view}: ActionParts) {
      * Inserts the entity that follows the mouse.
      * @param pose  in the world
      */
-    async place(pose: Pose7): Promise<import('./actions.js').Outcome> {
+    async place(pose: Pose7): Promise<Outcome> {
       const {placing} = store;
       if (!placing) return NOTHING;
       store.setPlacing(null);

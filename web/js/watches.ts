@@ -1,11 +1,12 @@
 /** What this page wants to be told of: several parts ask, the simulator hears one list. */
+import type {Connection} from './connection.js';
 
 export class Watches {
   #connection;
   #counts = new Map();
   #sending = false;
 
-  constructor(connection: import('./connection.js').Connection) {
+  constructor(connection: Connection) {
     this.#connection = connection;
     connection.listen('open', () => {
       if (this.#counts.size) this.#tell();

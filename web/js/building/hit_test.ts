@@ -10,7 +10,7 @@ import type {Point} from './plane_geometry.js';
 const STEM = 0.4;
 
 /** The handles of what is selected. */
-export function handlesOf(item: AnyItem): {part: string, point: import('./plane_geometry.js').Point}[] {
+export function handlesOf(item: AnyItem): {part: string, point: Point}[] {
   if ('start' in item) {
     return [{part: 'start', point: item.start}, {part: 'end', point: item.end}];
   }
@@ -32,9 +32,9 @@ export function handlesOf(item: AnyItem): {part: string, point: import('./plane_
  * @param at  level
  * @param options  metres
  */
-export function hitOf(plan: Plan, at: number, point: import('./plane_geometry.js').Point,
+export function hitOf(plan: Plan, at: number, point: Point,
     {tolerance = 0.05, selection = []}: {tolerance?: number,
-    selection?: import('./plan.js').Ref[]} = {}): {ref: import('./plan.js').Ref, part: string}|null {
+    selection?: Ref[]} = {}): {ref: Ref, part: string}|null {
   for (const ref of selection) {
     const item = itemOf(plan, at, ref);
     const handle = item && handlesOf(item)

@@ -12,9 +12,11 @@ import {NAMES} from './drawing_session.js';
 import type {Actions} from '../actions.js';
 import type {Ref} from './plan.js';
 import type {Session} from './drawing_session.js';
+import type {FileCommands} from './building_editor.js';
+import type {Canvas} from './plan_canvas.js';
 
 export function listenToMouse({session, canvas,
-    draw}: {session: import('./drawing_session.js').Session, canvas: import('./plan_canvas.js').Canvas,
+    draw}: {session: Session, canvas: Canvas,
     draw: () => void}) {
   const sheet = canvas.element;
   const mouseOf = (event: MouseEvent) => ({
@@ -117,7 +119,7 @@ const OF_THE_PAGE = new Set(['building', 'fullScreen', 'hotkeys', 'togglePanels'
  * @returns stops listening
  */
 export function listenToKeys(element: HTMLElement, {session, files, exit, draw}: {session: Session,
-    files: import('./building_editor.js').FileCommands,
+    files: FileCommands,
     exit: () => void, draw: () => void}): () => void {
   let typed = '';
   const run: Record<string, () => unknown> = {

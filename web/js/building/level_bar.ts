@@ -3,6 +3,7 @@ import {fill, h} from '../ui/dom.js';
 import {inspectLevel} from './inspector.js';
 import {addLevel, bases, removeLevel} from './plan.js';
 import type {Session} from './drawing_session.js';
+import type {Canvas} from './plan_canvas.js';
 
 /** Adds a level on top and goes there. */
 export function newLevel(session: Session) {
@@ -27,8 +28,8 @@ export function dropLevel(session: Session) {
 }
 
 export function mountLevels(element: HTMLElement, {session,
-    canvas}: {session: import('./drawing_session.js').Session,
-    canvas: import('./plan_canvas.js').Canvas}) {
+    canvas}: {session: Session,
+    canvas: Canvas}) {
   const choice = h('select', {'aria-label': 'Level', onchange: () => { session.goTo(Number(choice.value)); }});
   const button = (text: string, title: string, run: () => void) => h('button',
       {type: 'button', title, 'aria-label': title, onclick: run, text});

@@ -5,6 +5,7 @@ import {SWATCHES, TEXTURES, inspectRoof} from './inspector.js';
 import {PaintTool} from './select_tool.js';
 import {svg} from '../ui/svg.js';
 import type {Tool} from './tool.js';
+import type {Session} from './drawing_session.js';
 
 const GLYPHS = {
   wall: 'M2 14h16M2 10h16M2 6h16M6 6v4M14 6v4M10 10v4M2 6v8M18 6v8',
@@ -19,7 +20,7 @@ function glyph(name: keyof typeof GLYPHS) {
 }
 
 export function mountPalette(element: HTMLElement, {session,
-    importPlan}: {session: import('./drawing_session.js').Session, importPlan: () => void}) {
+    importPlan}: {session: Session, importPlan: () => void}) {
   const tools: [string, [keyof typeof GLYPHS, string, () => Tool, string?][]][] = [
     ['Create Walls', [['wall', 'Wall', () => new WallTool(session), 'Shift suspends snapping']]],
     ['Add Features', [

@@ -5,13 +5,14 @@
  *
  * The shape of a plan is that of the plan file: metres and radians, colours as #rrggbb.
  */
+import {direction, distance, polar, tidy, tidyPoint} from './plane_geometry.js';
+import {outlineOf} from './rooms.js';
+import type {Floor, Level, Opening, Plan, Stairs, Wall} from '../protocol.js';
+
 export type Point = import('./plane_geometry.js').Point;
 export type OpeningKind = 'windows'|'doors';
 export type Kind = 'walls'|'stairs'|'floors'|OpeningKind;
 export type Ref = {kind: Kind, id: number};
-import {direction, distance, polar, tidy, tidyPoint} from './plane_geometry.js';
-import {outlineOf} from './rooms.js';
-import type {Floor, Level, Opening, Plan, Stairs, Wall} from '../protocol.js';
 
 export type ItemOf = {walls: Wall, windows: Opening, doors: Opening, stairs: Stairs, floors: Floor};
 

@@ -11,6 +11,7 @@ import {SCALE, floorPath, onSheet, openingPaths, pathOf, stairsPaths, wallPath} 
 import type {AnyItem, ItemOf, Kind, OpeningKind} from './plan.js';
 import type {FloorImage, Level, Opening, Wall} from '../protocol.js';
 import type {Point} from './plane_geometry.js';
+import type {Session} from './drawing_session.js';
 
 /** From the lowest layer to the highest. */
 const ORDER: readonly Kind[] = Object.freeze(['floors', 'stairs', 'walls', 'windows', 'doors']);
@@ -55,7 +56,7 @@ export class Canvas {
   major;
   element;
 
-  constructor(session: import('./drawing_session.js').Session) {
+  constructor(session: Session) {
     this.session = session;
     this.image = svg('image', {class: 'plan-image', preserveAspectRatio: 'none'});
     this.below = svg('g', {class: 'below'});

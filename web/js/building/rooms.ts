@@ -16,11 +16,11 @@ const known: WeakMap<Wall[], Faces> = new WeakMap();
 
 export interface Room {
   /** middle lines of its walls, counter-clockwise */
-  outline: import('./plane_geometry.js').Point[];
+  outline: Point[];
   /** the faces of its walls */
-  inside: import('./plane_geometry.js').Point[];
+  inside: Point[];
   /** outer loops of free-standing walls in it */
-  holes: import('./plane_geometry.js').Point[][];
+  holes: Point[][];
   /** m2 between the faces of the walls */
   area: number;
 }

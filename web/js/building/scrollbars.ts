@@ -2,14 +2,16 @@
 import {h} from '../ui/dom.js';
 import {extentOf} from './plan_canvas.js';
 import {SCALE} from './plan_svg.js';
+import type {Canvas} from './plan_canvas.js';
+import type {Session} from './drawing_session.js';
 
 /**
  * @param element  holds the sheet
  * @returns brings them up to date
  */
 export function mountScrollbars(element: HTMLElement, {session,
-    canvas}: {session: import('./drawing_session.js').Session,
-    canvas: import('./plan_canvas.js').Canvas}): () => void {
+    canvas}: {session: Session,
+    canvas: Canvas}): () => void {
   const bars = (['across', 'down'] as const).map((way) => {
     const thumb = h('div', {class: 'thumb'});
     const track = h('div', {class: `scroll ${way}`, 'aria-hidden': 'true'}, thumb);

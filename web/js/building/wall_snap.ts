@@ -12,7 +12,7 @@ export const REACH = 0.3;
 const SPOT = 0.12;
 
 /** The nearest end of a wall within reach, or null. */
-function nearEnd(walls: Wall[], point: import('./plane_geometry.js').Point, wanted: (wall: Wall,
+function nearEnd(walls: Wall[], point: Point, wanted: (wall: Wall,
     end: 'start'|'end') => boolean = () => true) {
   let best = null;
   let least = REACH;
@@ -35,7 +35,7 @@ function nearEnd(walls: Wall[], point: import('./plane_geometry.js').Point, want
  */
 export function snapEnd(from: Point, point: Point, {walls = [], thickness = 0.15,
     free = false}: {walls?: Wall[], thickness?: number, free?: boolean} = {}):
-    {point: import('./plane_geometry.js').Point, on: 'end'|'wall'|'grid'|'free'} {
+    {point: Point, on: 'end'|'wall'|'grid'|'free'} {
   if (free) return {point: tidyPoint(point), on: 'free'};
   const end = nearEnd(walls, point, (wall, name) => distance(wall[name], from) > 1e-4);
   if (end) return {point: end, on: 'end'};

@@ -78,7 +78,7 @@ export function unitGeometry(type: string) {
   return {type, ...UNIT[type]};
 }
 
-export function geometryFields(geometry: {type: string}): import('./property_fields.js').Field[] {
+export function geometryFields(geometry: {type: string}): Field[] {
   const simple = SIMPLE.includes(geometry.type);
   const type: Field = {
     path: 'geometry.type',

@@ -8,6 +8,7 @@ import {bytesText} from '../ui/text_format.js';
 import {icon} from '../ui/icons.js';
 import {TemplateCards} from './template_cards.js';
 import type {DownloadPush, LibraryModel, Location} from '../protocol.js';
+import type {Page} from './panels.js';
 
 /** The locations with the models that a search leaves. Pure. */
 export function searched(locations: Location[], wanted: string) {
@@ -24,7 +25,7 @@ export class InsertTab {
   page;
   locations: Location[]|null;
 
-  constructor(element: HTMLElement, page: import('./panels.js').Page) {
+  constructor(element: HTMLElement, page: Page) {
     this.page = page;
     this.locations = null;
     this.#search = h('input', {

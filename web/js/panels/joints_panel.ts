@@ -8,6 +8,8 @@ import {icon} from '../ui/icons.js';
 import {makeInput} from './property_inputs.js';
 import {modelOf} from './world_rows.js';
 import type {Drive, Gains, Joint, Model, WatchPush} from '../protocol.js';
+import type {Input, InputField} from './property_inputs.js';
+import type {Page} from './panels.js';
 
 export type DriveMode = Drive['mode'];
 /** A joint that can be driven, with its unit in each mode. */
@@ -50,7 +52,7 @@ export function drivenJoints(model: Model|null): DrivenJoint[] {
 export class JointsPanel {
   page;
 
-  constructor(element: HTMLElement, page: import('./panels.js').Page) {
+  constructor(element: HTMLElement, page: Page) {
     this.page = page;
     this.#head = h('h2', {class: 'properties-title'});
     this.#body = h('div', {class: 'joints-body'});
@@ -203,7 +205,7 @@ export class JointsPanel {
       }
       row.show(row.drive);
     };
-    const label = (name: string): import('./property_inputs.js').InputField =>
+    const label = (name: string): InputField =>
         ({type: 'number', label: `${joint.name} ${name}`});
     const input = makeInput(label(mode), (value) => send(Number(value) * factor), say);
     const gainInputs = GAIN_NAMES.filter((name) => name in gains).map((name) => {
@@ -288,7 +290,7 @@ export class JointsPanel {
   }
 }
 
-const gainPart = ({name, gain}: {name: string, gain: import('./property_inputs.js').Input}) =>
+const gainPart = ({name, gain}: {name: string, gain: Input}) =>
   h(
     'span',
     {class: 'part'},

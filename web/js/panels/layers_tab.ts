@@ -1,6 +1,7 @@
 /** The Layers tab: a check box for each `visual/meta/layer` that occurs. */
 import {fill, h, onceAFrame} from '../ui/dom.js';
 import type {World} from '../protocol.js';
+import type {Page} from './panels.js';
 
 /**
  * The layers of a world. Pure.
@@ -18,7 +19,7 @@ export function layersOf(document: World|null): number[] {
   return [...layers].sort((a, b) => a - b);
 }
 
-export function mountLayers(element: HTMLElement, {store}: import('./panels.js').Page) {
+export function mountLayers(element: HTMLElement, {store}: Page) {
   let shown = '';
   const show = onceAFrame(() => {
     const layers = layersOf(store.document);

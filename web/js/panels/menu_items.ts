@@ -4,6 +4,8 @@ import type {Actions} from '../actions.js';
 import type {OverlayFlag, Store} from '../store.js';
 import type {Page} from './panels.js';
 import type {ThemeName} from '../ui/theme.js';
+import type {Model} from '../protocol.js';
+import type {MenuItem} from '../ui/popup.js';
 
 /** The hotkey of an action, '' where it has none. */
 export function keysOf(action: keyof Actions) {
@@ -46,8 +48,8 @@ const AXES = ['X', 'Y', 'Z'] as const;
 const LINE = {separator: true};
 
 /** The menu bar's menus. */
-export function menus(page: import('./panels.js').Page): {title: string, items: () =>
-    import('../ui/popup.js').MenuItem[]}[] {
+export function menus(page: Page): {title: string, items: () =>
+    MenuItem[]}[] {
   const {store, actions, theme} = page;
   const item = (title: string, action: keyof Actions, more = {}) => ({
     title,
@@ -204,8 +206,8 @@ function overlayItem({store, actions}: Page, flag: OverlayFlag, title: string, m
  * The right-click menu of a model, a light or a link.
  * @returns empty where nothing has the name
  */
-export function contextMenu(page: import('./panels.js').Page, name: string):
-    import('../ui/popup.js').MenuItem[] {
+export function contextMenu(page: Page, name: string):
+    MenuItem[] {
   const {store, actions} = page;
   const entity = store.entity(name);
   if (!entity) return [];
@@ -271,6 +273,6 @@ const grouped = (store: Store, names: string[]) => names.some((name) =>
     Boolean(store.split(name)[0]?.group));
 
 /** A ground: nothing of it can be edited by hand. */
-const isPlane = (model: import('../protocol.js').Model|undefined) =>
+const isPlane = (model: Model|undefined) =>
     Boolean(model?.links.every((link) =>
   link.visuals.length && link.visuals.every(({geometry}) => geometry.type === 'plane')));

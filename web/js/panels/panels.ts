@@ -3,21 +3,6 @@
  * actions; what they show of the world is what the simulator last said.
  * what the panels hand to each other
  */
-export interface Page {
-  store: Store;
-  actions: Actions;
-  connection: Connection;
-  request: RequestFunction;
-  watches: Watches;
-  topics: Topics;
-  driving: {speeds: DriveSpeeds};
-  notices: Notices;
-  theme: ReturnType<typeof mountTheme>;
-  /** null until it is there */
-  view: PageView|null;
-  /** what the server said of itself */
-  about?: Requests['hello']['reply'];
-}
 import {mountConnectionNote} from './connection_note.js';
 import {offerRestore} from './dialogs/restore_offer.js';
 import {byId, fill, h, roving} from '../ui/dom.js';
@@ -43,6 +28,22 @@ import type {Store} from '../store.js';
 import type {DriveSpeeds} from '../drive_keys.js';
 import type {Topics} from '../topics/topics.js';
 import type {Watches} from '../watches.js';
+
+export interface Page {
+  store: Store;
+  actions: Actions;
+  connection: Connection;
+  request: RequestFunction;
+  watches: Watches;
+  topics: Topics;
+  driving: {speeds: DriveSpeeds};
+  notices: Notices;
+  theme: ReturnType<typeof mountTheme>;
+  /** null until it is there */
+  view: PageView|null;
+  /** what the server said of itself */
+  about?: Requests['hello']['reply'];
+}
 
 /** What the panels ask of the view, which may be without a picture. */
 export type PageView = Pick<SceneView, 'fps'|'available'|'thumbnail'|'redraw'>;

@@ -10,6 +10,7 @@ import {csvOf, Series, take} from '../ui/plot_data.js';
 import {isTopicField, topicVariables, variablesOf} from './plot_variables.js';
 import type {Curve} from '../ui/plot_canvas.js';
 import type {WatchPush} from '../protocol.js';
+import type {Page} from './panels.js';
 
 /** The time spans to choose from, s; null: all. */
 const SPANS: [string, number|null][] = [
@@ -29,7 +30,7 @@ export class Plots {
   page;
   span: number|null;
 
-  constructor(element: HTMLElement, page: import('./panels.js').Page, close: () => void) {
+  constructor(element: HTMLElement, page: Page, close: () => void) {
     this.page = page;
     this.span = 10;
     this.#search = h('input', {

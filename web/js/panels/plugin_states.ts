@@ -3,6 +3,7 @@ import {h} from '../ui/dom.js';
 import type {PluginState, World} from '../protocol.js';
 import type {Found} from './property_sections.js';
 import type {Row} from './world_rows.js';
+import type {Field} from './property_fields.js';
 
 /** The state of the plugin of a row; undefined before the simulator has sent it. */
 export function pluginState({document, pluginStates}: {document: World|null,
@@ -30,7 +31,7 @@ export const stateTag = (text: string, reason: string) =>
 /** The sections of a plugin, with its state after its name. */
 export function withState({title, sections}: Found, state: PluginState): Found {
   const [first, ...others] = sections;
-  const fields: import('./property_fields.js').Field[] = [{path: 'state', label: 'state',
+  const fields: Field[] = [{path: 'state', label: 'state',
       type: 'text', fixed: true}];
   if (state.reason) fields.push({path: 'reason', label: 'reason', type: 'xml', fixed: true});
   return {title, sections: [first, {key: 'state', title: '', target: '', entity: state, fields}, ...others]};

@@ -15,6 +15,7 @@ import type {Field, Section} from './property_fields.js';
 import type {Found} from './property_sections.js';
 import type {Input} from './property_inputs.js';
 import type {Row} from './world_rows.js';
+import type {Page} from './panels.js';
 
 /** A field on the panel; `field` is that of the newest document. */
 export type Entry = {key: string, field: Field, input: Input, element: HTMLElement};
@@ -26,7 +27,7 @@ export class Properties {
   row: Row|null;
   update;
 
-  constructor(element: HTMLElement, {store, request}: import('./panels.js').Page) {
+  constructor(element: HTMLElement, {store, request}: Page) {
     this.element = element;
     this.store = store;
     this.request = request;
@@ -106,7 +107,7 @@ export class Properties {
   }
 
   /** @param row  whose properties are wanted */
-  show(row: import('./world_rows.js').Row|null) {
+  show(row: Row|null) {
     this.row = row;
     this.update();
   }

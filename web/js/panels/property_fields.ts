@@ -1,4 +1,6 @@
 /** What the property panel shows of each kind of row: sections of fields, as data. Pure. */
+import type {Joint, Light, Operation} from '../protocol.js';
+
 export interface Field {
   /** dotted path within the entity, as the `set` operation takes it */
   path: string;
@@ -37,7 +39,6 @@ export interface Section {
   entity: object|null|undefined;
   fields: Field[];
 }
-import type {Joint, Light, Operation} from '../protocol.js';
 
 const field = (path: string, label: string, type: Field['type'], more: Partial<Field> = {}): Field =>
     ({path, label, type, ...more});

@@ -2,16 +2,17 @@
  * The input of a property: shows the document's value for editing, commits on Enter or when the
  * focus leaves. Updates from the server never overwrite text that the user is typing.
  */
+import {sevenOf, sixOf} from './pose_rpy.js';
+import {h} from '../ui/dom.js';
+import {colorOf, colorText, numberText, parseNumber} from '../ui/text_format.js';
+import type {Field} from './property_fields.js';
+
 export interface Input {
   element: HTMLElement;
   /** What an input needs of a field; those outside of the property panel have no path. */
   show: (value: unknown) => void;
 }
 export type InputField = Omit<Field, 'path'> & {path?: string};
-import {sevenOf, sixOf} from './pose_rpy.js';
-import {h} from '../ui/dom.js';
-import {colorOf, colorText, numberText, parseNumber} from '../ui/text_format.js';
-import type {Field} from './property_fields.js';
 
 /**
  * @param commit  called with a new value, checked against the field

@@ -5,6 +5,7 @@
 import {fill, h, remembered, roving} from '../ui/dom.js';
 import {clockText} from '../ui/text_format.js';
 import {icon} from '../ui/icons.js';
+import type {Page} from './panels.js';
 
 const RATES = [0.1, 0.25, 0.5, 1, 2, 5, 10];
 
@@ -55,7 +56,7 @@ export class TimeBar {
   actions;
   notices;
 
-  constructor(element: HTMLElement, page: import('./panels.js').Page) {
+  constructor(element: HTMLElement, page: Page) {
     const {store, actions, notices} = page;
     this.page = page;
     this.store = store;

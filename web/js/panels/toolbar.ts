@@ -8,6 +8,7 @@ import type {Actions} from '../actions.js';
 import type {LightType, ShapeName} from '../new_entities.js';
 import type {Mode} from '../store.js';
 import type {Page} from './panels.js';
+import type {AlignChoice} from '../align.js';
 
 const MODES: [Mode, keyof Actions, string, string][] = [
   ['select', 'selectMode', 'select', 'Select (Esc)'],
@@ -225,7 +226,7 @@ function alignPanel({store, actions}: Page) {
     h('option', {value: 'first', text: 'First selected'}),
     h('option', {value: 'last', text: 'Last selected'}),
   );
-  const choice = (axis: 'x'|'y'|'z', at: 'min'|'center'|'max'): import('../align.js').AlignChoice => ({
+  const choice = (axis: 'x'|'y'|'z', at: 'min'|'center'|'max'): AlignChoice => ({
     axis, at, reverse: reverse.checked, relative: relative.value === 'last' ? 'last' : 'first',
   });
   const cell = (axis: 'x'|'y'|'z', at: 'min'|'center'|'max') => {

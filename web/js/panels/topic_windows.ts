@@ -3,6 +3,7 @@ import {fill, h} from '../ui/dom.js';
 import {icon} from '../ui/icons.js';
 import type {ImageView} from '../protocol.js';
 import type {TopicView} from '../topics/topics.js';
+import type {Page} from './panels.js';
 
 export type TopicWindow = {element: HTMLElement, body: HTMLElement, canvas: HTMLCanvasElement|null,
     busy: boolean};
@@ -12,7 +13,7 @@ export class TopicWindows {
   #container;
   #windows: Map<string, TopicWindow> = new Map();
 
-  constructor(element: HTMLElement, page: import('./panels.js').Page) {
+  constructor(element: HTMLElement, page: Page) {
     this.#page = page;
     this.#container = h('div', {class: 'topic-windows'});
     element.append(this.#container);

@@ -5,11 +5,12 @@
 import {fill, h} from '../ui/dom.js';
 import {bandwidthText, rateText} from '../ui/text_format.js';
 import type {Topic} from '../protocol.js';
+import type {Page} from './panels.js';
 
 export class TopicsPanel {
   page;
 
-  constructor(element: HTMLElement, page: import('./panels.js').Page) {
+  constructor(element: HTMLElement, page: Page) {
     this.page = page;
     this.#filter = h('input', {
       type: 'search',

@@ -18,6 +18,7 @@ import {TopicWindows} from './topic_windows.js';
 import type {DialogName, DialogRequest} from '../actions.js';
 import type {Page} from './panels.js';
 import type {WorldTab} from './world_tab.js';
+import type {ModelEditor} from '../model_editor/model_editor.js';
 
 /** The tabs of the left panel. */
 export type Tabs = {world: WorldTab, show: (name: string) => void};
@@ -76,7 +77,7 @@ export class Windows {
   /** Names of the windows that are being opened. */
   #open: Set<DialogName> = new Set();
   #building: {close: () => Promise<boolean>}|null = null;
-  #model: import('../model_editor/model_editor.js').ModelEditor|null = null;
+  #model: ModelEditor|null = null;
 
   show(detail: DialogRequest) {
     const windows: Record<DialogName, () => unknown> = {

@@ -1,4 +1,9 @@
 /** The rows of the World tab, in Gazebo's order, out of the document. Pure. */
+import {groupsOf} from '../model_groups.js';
+import {splitScoped} from '../scoped_names.js';
+import type {Model, World} from '../protocol.js';
+import type {TreeRow} from '../ui/tree_view.js';
+
 export interface Row extends TreeRow {
   /**
    * gui, scene, spherical, physics, atmosphere, wind, plugins, models,
@@ -16,11 +21,6 @@ export interface Row extends TreeRow {
   /** of a sensor: its link or joint */
   owner?: string;
 }
-
-import {groupsOf} from '../model_groups.js';
-import {splitScoped} from '../scoped_names.js';
-import type {Model, World} from '../protocol.js';
-import type {TreeRow} from '../ui/tree_view.js';
 
 const WORLD_ROWS = [
   ['gui', 'GUI', 'gui'],

@@ -9,6 +9,7 @@ import {Tree} from '../ui/tree_view.js';
 import {rowOf, worldRows} from './world_rows.js';
 import {lyingBar, splitter} from '../ui/splitter.js';
 import type {Row} from './world_rows.js';
+import type {Page} from './panels.js';
 
 /** What of a model this browser's user has chosen, as tags of its row. */
 const FLAGS = ['hidden', 'locked'] as const;
@@ -21,7 +22,7 @@ export class WorldTab {
   properties;
   update;
 
-  constructor(element: HTMLElement, page: import('./panels.js').Page) {
+  constructor(element: HTMLElement, page: Page) {
     this.store = page.store;
     this.actions = page.actions;
     this.page = page;

@@ -1,9 +1,10 @@
 /** The menu bar: arrow keys walk along it, an open menu follows the mouse. */
 import {elementsOf, fill, h, roving} from './dom.js';
 import {closePopup, menuList, openPopup} from './popup.js';
+import type {MenuItem} from './popup.js';
 
 export function mountMenuBar(element: HTMLElement, menus: {title: string, items: () =>
-    import('./popup.js').MenuItem[]}[]) {
+    MenuItem[]}[]) {
   let open: number|null = null;
   const buttons = menus.map((menu) =>
     h('button', {

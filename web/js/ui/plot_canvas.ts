@@ -2,6 +2,7 @@
 import {themeColor} from './dom.js';
 import {numberText} from './text_format.js';
 import {extent, ticks} from './plot_data.js';
+import type {Series} from './plot_data.js';
 
 /** Told apart by eyes that see no red or green as well; readable on dark and light. */
 export const CURVE_COLORS = [
@@ -15,7 +16,7 @@ export const CURVE_COLORS = [
   '#2fa7a7',
 ];
 
-export type Curve = {series: import('./plot_data.js').Series, color: string};
+export type Curve = {series: Series, color: string};
 /** Where the curves are drawn, px. */
 export type PlotBox = {left: number, top: number, width: number, height: number};
 /** What the axes show. */

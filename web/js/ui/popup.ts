@@ -1,4 +1,7 @@
 /** What opens over the page and closes again: menus, drop-downs. One is open at a time. */
+import {closestTo, elementsOf, fill, h, roving} from './dom.js';
+import {icon} from './icons.js';
+
 export interface MenuItem {
   title?: string;
   /** the hotkey shown beside it */
@@ -19,8 +22,6 @@ export interface PopupOptions {
   onClose?: () => void;
   keepFocus?: boolean;
 }
-import {closestTo, elementsOf, fill, h, roving} from './dom.js';
-import {icon} from './icons.js';
 
 let closeOpen: (() => void)|null = null;
 

@@ -1,6 +1,7 @@
 /** A rectangle drawn with the mouse: what has its middle in it is selected. */
 
 import {withGroups} from '../model_groups.js';
+import type {Store} from '../store.js';
 
 export type Dragged = {x: number, y: number, lastX: number, lastY: number};
 
@@ -10,7 +11,7 @@ export class BoxSelect {
   #pixelOf;
 
   /** @param pixelOf  the middle of a model in the page, px */
-  constructor(parent: HTMLElement, store: import('../store.js').Store, pixelOf: (name: string) =>
+  constructor(parent: HTMLElement, store: Store, pixelOf: (name: string) =>
       number[]|null) {
     this.#store = store;
     this.#pixelOf = pixelOf;

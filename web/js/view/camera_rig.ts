@@ -4,14 +4,15 @@ import * as views from '../camera_math.js';
 import {remembered} from '../ui/dom.js';
 import {add, length, scale, subtract} from '../pose.js';
 import {readLink} from '../view_link.js';
-import type {GuiCamera} from '../protocol.js';
+import type {GuiCamera, Model} from '../protocol.js';
 import type {Vec3} from '../pose.js';
 import type {View} from '../camera_math.js';
 import type {ViewParts} from './view.js';
+import type {OverlayFlag} from '../store.js';
 
 /** What Save Configuration has kept in this browser. */
 export type Configuration = View & {projection: 'perspective'|'orthographic', controller: 'orbit'|'fps',
-    overlays: Partial<Record<import('../store.js').OverlayFlag, boolean>>};
+    overlays: Partial<Record<OverlayFlag, boolean>>};
 
 export const savedConfiguration = (): Configuration|null => remembered.get('configuration', null);
 
@@ -20,7 +21,7 @@ const TURN_FLIGHT = 1000;
 /** Whether the user has asked the system for less motion: views then change at once. */
 const calm = () => globalThis.matchMedia?.('(prefers-reduced-motion: reduce)').matches ?? false;
 /** Whether nothing is seen of a model but planes. */
-const isGround = (model: import('../protocol.js').Model) =>
+const isGround = (model: Model) =>
   model.links.every((link) => link.visuals.every(({geometry}) => geometry.type === 'plane'));
 const WALK_SPEED = {ahead: 1, aside: 0.8};
 
@@ -133,7 +134,7 @@ export class CameraRig {
     this.#stage.invalidate();
   }
 
-  flyTo(box: import('three').Box3) {
+  flyTo(box: Box3) {
     if (this.orthographic) {
       const size = Math.max(length(subtract(box.max.toArray(), box.min.toArray())), 0.2);
       this.zoomLevel = Math.min(this.#stage.width, this.#stage.height) / size / 1.1;

@@ -8,13 +8,13 @@ import {frontsFirst} from './fronts_first.js';
 import {patternCanvas} from './builtin_textures.js';
 import {DULLEST, GREY, GROUND, SHININESS} from './palette.js';
 import {terrainMaterial} from './terrain_material.js';
-import type {LoadingManager, Texture} from 'three';
+import type {Color, LoadingManager, Material, Texture} from 'three';
 
 export type MaterialDocument = import('../protocol.js').Material;
 export type Paint = Pick<MaterialDocument, 'texture'> & Partial<MaterialDocument>;
 export type TextureDocument = import('../protocol.js').Texture;
 export type TerrainLayer = import('../protocol.js').TerrainLayer;
-export type ThreeMaterial = import('three').Material;
+export type ThreeMaterial = Material;
 /**
  * How a surface is drawn; `pushed`: it lies just behind others; `endless`: its rim goes over into
  * what is behind it.
@@ -56,7 +56,7 @@ export class Materials {
   }
 
   /** @param color  of what is behind an endless ground */
-  setDistance(color: import('three').Color) {
+  setDistance(color: Color) {
     const {r, g, b} = color.clone().convertLinearToSRGB();
     this.#distance.value.set(r, g, b);
   }

@@ -6,6 +6,7 @@ import {ball, empty, segments} from './markers.js';
 import type {Vec3} from '../pose.js';
 import type {ViewParts} from './view.js';
 import type {MousePoint} from './pointer.js';
+import type {Selector} from './selector.js';
 
 const COLOR = 0xffd54a;
 const LABEL = '#ffd54a';
@@ -22,7 +23,7 @@ export class Measure {
   /** What is shown, in words. */
   texts: string[] = [];
 
-  constructor({store, stage, rig, selector}: ViewParts & {selector: import('./selector.js').Selector}) {
+  constructor({store, stage, rig, selector}: ViewParts & {selector: Selector}) {
     this.#stage = stage;
     this.#rig = rig;
     this.#selector = selector;

@@ -4,6 +4,14 @@ import {closestTo} from '../ui/dom.js';
 import {Touch, TOUCH_PIXELS} from './touch.js';
 import type {Vec3} from '../pose.js';
 import type {ViewParts} from './view.js';
+import type {BoxSelect} from './box_select.js';
+import type {Measure} from './measure.js';
+import type {PivotMark} from './markers.js';
+import type {Selector} from './selector.js';
+import type {Forces} from './force_arrows.js';
+import type {FaceSnap} from './face_snap.js';
+import type {Placer} from './insert_ghost.js';
+import type {Manipulator} from './manipulator.js';
 
 /** Where the mouse is in the page, px, and what is held. */
 export type MousePoint = {clientX: number, clientY: number,
@@ -12,11 +20,11 @@ export type MousePoint = {clientX: number, clientY: number,
 export type KeyState = {ctrlKey?: boolean, metaKey?: boolean,
     shiftKey?: boolean};
 /** The parts that the mouse works with. */
-export type PointerParts = {manipulator: import('./manipulator.js').Manipulator,
-    placer: import('./insert_ghost.js').Placer,
-    faceSnap: import('./face_snap.js').FaceSnap, forces: import('./force_arrows.js').Forces,
-    selector: import('./selector.js').Selector, pivotMark: import('./markers.js').PivotMark,
-    measure: import('./measure.js').Measure, boxSelect: import('./box_select.js').BoxSelect};
+export type PointerParts = {manipulator: Manipulator,
+    placer: Placer,
+    faceSnap: FaceSnap, forces: Forces,
+    selector: Selector, pivotMark: PivotMark,
+    measure: Measure, boxSelect: BoxSelect};
 /** A pressed button: where it was pressed and who has the drag. */
 export type Press = {x: number, y: number,
     lastX: number, lastY: number, button: number, moved: number, point: Vec3,

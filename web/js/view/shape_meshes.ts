@@ -13,7 +13,7 @@ import type {Pose7} from '../pose.js';
 import type {Variant} from './materials.js';
 
 /** What parts are made of. */
-export type Stock = {meshes: import('./mesh_files.js').Meshes, materials: Materials};
+export type Stock = {meshes: Meshes, materials: Materials};
 
 /** A visual, or a collision, which has no material of its own. */
 export type DrawnShape = {pose: Pose7, geometry: Geometry,

@@ -4,6 +4,7 @@
  */
 import type {ViewParts} from './view.js';
 import type {MousePoint} from './pointer.js';
+import type {Selector} from './selector.js';
 
 /** Milliseconds of a long press. */
 const LONG = 550;
@@ -23,7 +24,7 @@ export class Touch {
   /** Where a finger has pressed long. */
   #onLong: (event: MousePoint) => void;
 
-  constructor({rig, selector}: Pick<ViewParts, 'rig'> & {selector: import('./selector.js').Selector},
+  constructor({rig, selector}: Pick<ViewParts, 'rig'> & {selector: Selector},
       onLong: (event: MousePoint) => void) {
     this.#rig = rig;
     this.#selector = selector;

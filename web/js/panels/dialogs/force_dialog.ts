@@ -206,7 +206,7 @@ class ForceDialog {
  * @param name  a model or `model::link`
  * @returns settles when the dialog is closed
  */
-export async function forceDialog(page: import('../panels.js').Page, name: string): Promise<void> {
+export async function forceDialog(page: Page, name: string): Promise<void> {
   const model = modelOf(page.store.document, name);
   if (!model?.links.length) return;
   const force = new ForceDialog(page, model, name);

@@ -6,11 +6,12 @@ import {h} from '../../ui/dom.js';
 import type {Dropped, DroppedFile} from '../../dropped_files.js';
 import type {Operation} from '../../protocol.js';
 import type {Vec3} from '../../pose.js';
+import type {Page} from '../panels.js';
 
 const WATER = 1000;
 
 /** @param place  on the ground */
-export async function importDialog(page: import('../panels.js').Page, entries: Dropped[], place: Vec3) {
+export async function importDialog(page: Page, entries: Dropped[], place: Vec3) {
   const files: DroppedFile[] = await filesOf(entries);
   const found = kindOf(files);
   if (!found) {
@@ -37,14 +38,14 @@ export async function importDialog(page: import('../panels.js').Page, entries: D
 const at = ([x, y]: Vec3, entity: {pose: number[]}|null|undefined) => [x, y,
     ...(entity?.pose ?? [0, 0, 0, 0, 0, 0, 1]).slice(2)];
 
-async function insert({actions, store: {select}, store}: import('../panels.js').Page, op: Operation) {
+async function insert({actions, store: {select}, store}: Page, op: Operation) {
   const outcome = await actions.edit(op);
   const names = outcome.value?.names ?? (outcome.value?.name ? [outcome.value.name] : []);
   if (names.length) select.call(store, names);
 }
 
 /** Stores the files as a model folder; `found.name` is the one that was chosen. */
-async function store({request}: import('../panels.js').Page, files: DroppedFile[],
+async function store({request}: Page, files: DroppedFile[],
     found: {kind: string, name: string}) {
   const name = h('input', {type: 'text', value: found.name, spellcheck: 'false', 'aria-label': 'Model name'});
   const density = h('input', {type: 'number', value: WATER, min: 1, step: 'any', 'aria-label': 'Density'});

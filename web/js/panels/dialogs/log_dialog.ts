@@ -4,8 +4,9 @@ import {fill, h} from '../../ui/dom.js';
 import {bytesText} from '../../ui/text_format.js';
 import {icon} from '../../ui/icons.js';
 import type {Issue} from '../../connection.js';
+import type {Page} from '../panels.js';
 
-export function logsDialog({store, actions}: import('../panels.js').Page): Promise<unknown> {
+export function logsDialog({store, actions}: Page): Promise<unknown> {
   const name = h('input', {
     type: 'text',
     placeholder: 'name (default: date and time)',

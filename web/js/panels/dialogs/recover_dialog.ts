@@ -3,8 +3,9 @@ import {Dialog} from '../../ui/dialog.js';
 import {fill, h} from '../../ui/dom.js';
 import {icon} from '../../ui/icons.js';
 import type {Recoverable} from '../../protocol.js';
+import type {Page} from '../panels.js';
 
-export function recoverDialog({store, actions, notices}: import('../panels.js').Page):
+export function recoverDialog({store, actions, notices}: Page):
     Promise<unknown> {
   const list = h('div', {class: 'folder-list', 'aria-label': 'Changes that can be recovered'});
   const now = store.history.file || store.document?.file || 'the world without a file';
