@@ -50,7 +50,7 @@ export interface StoreEvents {
   selection: undefined;
   mode: undefined;
   placing: undefined;
-  overlays: {flag?: OverlayFlag, model?: string, layer?: number};
+  overlays: {flag?: OverlayFlag, model?: string|undefined, layer?: number};
   stats: undefined;
   history: undefined;
   issue: Issue;
@@ -133,7 +133,7 @@ export class Store extends WorldStore {
   }
 
   /** @param how  neither: the names replace the selection */
-  select(names: string[], {add = false, toggle = false}: {add?: boolean, toggle?: boolean} = {}) {
+  select(names: string[], {add = false, toggle = false}: {add?: boolean|undefined, toggle?: boolean|undefined} = {}) {
     let next = add || toggle ? [...this.selection] : [];
     for (const name of names) {
       const present = next.includes(name);

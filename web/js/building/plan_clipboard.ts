@@ -39,8 +39,11 @@ export function pasted(plan: Plan, at: number, clips: Clip[], by: Point): {plan:
     if ('outline' in item) {
       put(kind, {...item, outline: item.outline.map(shifted),
         holes: item.holes.map((hole) => hole.map(shifted)), fit: 'none'});
-    } else if ('along' in item && walls.has(item.wall)) {
-      put(kind, {...item, wall: walls.get(item.wall)});
+      continue;
+    }
+    const wall = 'along' in item ? walls.get(item.wall) : undefined;
+    if (wall !== undefined) {
+      put(kind, {...item, wall});
     } else if ('along' in item && place) {
       put(kind, detached(item, shifted(place.point), place.yaw));
     } else {

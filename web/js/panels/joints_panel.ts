@@ -23,7 +23,7 @@ export interface JointRow {
   factor: number;
   unit: string;
   /** what the simulator drives the joint with */
-  drive?: Drive|null;
+  drive?: Drive|null|undefined;
   show: (drive: Drive|null|undefined) => void;
   /** gains that suit the joint */
   suggest: (gains: Gains|undefined) => void;

@@ -203,7 +203,7 @@ export class Plots {
     const kept = this.#series.get(topic.slice(5));
     if (!kept) return;
     if (problem && kept.problem !== problem) this.page.notices.say(`${topic.slice(5)}: ${problem}`);
-    kept.problem = problem;
+    kept.problem = problem ?? null;
     take(this.#all, kept.series, push);
     this.#draw();
   }

@@ -11,7 +11,7 @@ export interface Field {
   parts?: string[];
   choices?: readonly string[];
   /** shown, not editable */
-  fixed?: boolean;
+  fixed?: boolean|undefined;
   /** what a number must be greater than */
   above?: number;
   min?: number;

@@ -20,8 +20,8 @@ const WORLD = ['', 'world'];
  * @returns null for an unknown frame
  */
 export function placeOf(frame: string, {models, model = '', mount = null,
-    transforms = new Map()}: {models: Model[], model?: string, mount?: Mount|null,
-    transforms?: Transforms}): FramePlace|null {
+    transforms = new Map()}: {models: Model[], model?: string|undefined,
+    mount?: Mount|null|undefined, transforms?: Transforms}): FramePlace|null {
   const own = models.find(({name}) => name === model);
   const carrier = mount && own?.links.find(({name}) => name === mount.link);
   if (carrier && mount) return {link: carrier.id, pose: mount.pose};

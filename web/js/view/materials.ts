@@ -134,7 +134,7 @@ export class Materials {
     let made = this.#cache.get(key);
     if (!made) {
       const covered = layers.map((layer) => ({layer,
-        map: this.#map({url: layer.url, pattern: layer.pattern, scale: [1, 1]}),
+        map: this.#map({url: layer.url ?? null, pattern: layer.pattern ?? null, scale: [1, 1]}),
         bumps: layer.normal_url ? this.#normalMap(layer.normal_url) : null}));
       this.#cache.set(key, made = terrainMaterial(covered, base, variant));
     }

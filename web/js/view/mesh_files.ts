@@ -11,7 +11,7 @@ import type {Color, Material, Matrix4, Object3D, Texture} from 'three';
 import type {Geometry} from '../protocol.js';
 
 /** A file that holds a mesh; `fallback`: the simulator's form of it, STL. */
-export type MeshSource = {url: string, format?: string|null, fallback?: string|null};
+export type MeshSource = {url: string, format?: string|null|undefined, fallback?: string|null|undefined};
 
 export interface MeshPart {
   geometry: BufferGeometry;

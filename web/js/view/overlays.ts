@@ -188,7 +188,7 @@ export class Overlays {
     this.#watchContacts();
   }
 
-  #flagsChanged({flag, model, layer}: {flag?: OverlayFlag, model?: string, layer?: number}) {
+  #flagsChanged({flag, model, layer}: {flag?: OverlayFlag, model?: string|undefined, layer?: number}) {
     const names = model ? [model] : this.#store.document?.models.map(({name}) => name) ?? [];
     if (layer !== undefined || ['transparent', 'wireframe', 'hidden', 'cameraColors'].includes(flag ?? '')) {
       for (const name of names) this.#models.rebuild(name);

@@ -14,11 +14,9 @@ import type {Placer} from './insert_ghost.js';
 import type {Manipulator} from './manipulator.js';
 
 /** Where the mouse is in the page, px, and what is held. */
-export type MousePoint = {clientX: number, clientY: number,
-    ctrlKey?: boolean, metaKey?: boolean, shiftKey?: boolean};
+export type MousePoint = {clientX: number, clientY: number} & KeyState;
 /** The keys that are held while another one changes. */
-export type KeyState = {ctrlKey?: boolean, metaKey?: boolean,
-    shiftKey?: boolean};
+export type KeyState = Partial<Record<'ctrlKey'|'metaKey'|'shiftKey', boolean|undefined>>;
 /** The parts that the mouse works with. */
 export type PointerParts = {manipulator: Manipulator,
     placer: Placer,

@@ -19,7 +19,7 @@ export interface ViewParts {
   store: Store;
   actions: Actions;
   connection: Connection;
-  watches?: Watches;
+  watches?: Watches|undefined;
   stage: Stage;
   stock: Stock;
   batches: Batches;
