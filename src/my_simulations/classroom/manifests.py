@@ -5,6 +5,7 @@ from typing import Any, Dict, List, Mapping
 
 import yaml
 
+from ..errors import CommandError
 from .class_plan import ClassPlan, Student, launch_text
 
 _PORT = 11346           # of the editor in each container
@@ -46,7 +47,16 @@ def compose(plan: ClassPlan, tokens: Mapping[str, str]) -> str:
 
 
 def kubernetes(plan: ClassPlan, tokens: Mapping[str, str]) -> str:
-    """Manifests for `kubectl apply -f`: a namespace, and four objects for each student."""
+    """Manifests for `kubectl apply -f`: a namespace, and four objects for each student.
+
+    Raises CommandError if the names of two students are the same in Kubernetes.
+    """
+    names: Dict[str, str] = {}
+    for student in plan.students:
+        other = names.setdefault(label(student.name), student.name)
+        if other != student.name:
+            raise CommandError(f"students {other!r} and {student.name!r} have the same name in "
+                               f"Kubernetes, {label(student.name)!r}: rename one of them")
     namespace = {"apiVersion": "v1", "kind": "Namespace", "metadata": {"name": label(plan.name)}}
     objects: List[Dict[str, Any]] = [namespace, _network_policy(plan)]
     for student in plan.students:

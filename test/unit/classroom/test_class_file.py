@@ -140,6 +140,13 @@ def test_kubernetes_manifests_have_the_form_of_their_kinds(plan):
         names.add((kind, meta["name"]))
 
 
+def test_students_who_would_share_their_objects_in_kubernetes_are_refused(tmp_path):
+    (tmp_path / "class.yaml").write_text(CLASS.replace("anna, ben_2", "ben-2, ben_2"))
+    plan, _ = read_class(str(tmp_path / "class.yaml"))
+    with pytest.raises(CommandError, match="'ben-2' and 'ben_2' have the same name in Kubernetes"):
+        kubernetes(plan, {"ben-2": "token-a", "ben_2": "token-b"})
+
+
 def test_a_deployment_takes_its_token_from_its_own_secret(plan):
     objects = list(yaml.safe_load_all(kubernetes(plan, {"anna": "token-a", "ben_2": "token-b"})))
     secrets = {one["metadata"]["name"]: one["stringData"]["token"] for one in objects
