@@ -80,6 +80,8 @@ bundle_page() {
   mapfile -t modules < <(find "$CLONE/web/js" -type f -name '*.ts')
   recorded page-bundle "$esbuild" "${modules[@]}" --outbase="$CLONE/web/js" --outdir="$work/js" \
     --format=esm --target=es2022 --log-level=warning || return 0
+  # Node.js before 20.19 takes modules of a package without this for CommonJS.
+  printf '{"type": "module"}\n' >"$work/package.json"
   printf '%s\n' "$sources" >"$work/sources"
   mv -- "$work" "$place"
   BUNDLE_REMARK=
