@@ -228,6 +228,8 @@ def test_a_large_mesh_is_drawn_with_fewer_triangles_without_a_graphics_card(node
     assert 10000 < editor.get("editor.view.meshTriangles") < 120000
     bounds = editor.get("(({min, max}) => [...min, ...max])(editor.view.bounds('large'))")
     assert bounds == pytest.approx([-1.0, -1.0, 0.0, 1.0, 1.0, 2.0], abs=0.03)
+    editor.get("editor.actions.edit({kind: 'delete', names: ['large']})")
+    editor.until("!editor.store.model('large')", "the mesh is gone")
 
 
 def test_the_picture_of_a_terrain_shows_all_of_it(node, editor):

@@ -90,6 +90,19 @@ def test_tests_of_a_users_package_run_with_catkin_make_run_tests(workspace):
     assert results.stdout.split()[1] != "0", results.stdout
 
 
+def test_the_example_package_of_a_plugin_builds_and_runs_under_ros_and_in_python(tmp_path):
+    package = tmp_path / "src" / "lamp_plugin"
+    shutil.copytree(REPOSITORY / "examples" / "lamp_plugin", package)
+    done = run(tmp_path, "catkin_make", "-C", str(tmp_path), "run_tests")
+    assert done.returncode == 0, done.stdout[-4000:]
+    results = run(tmp_path, "catkin_test_results", "build/test_results")
+    assert "0 errors, 0 failures" in results.stdout, done.stdout[-4000:]
+    assert results.stdout.split()[1] != "0", results.stdout
+    done = run(package, "bash", "-c", f". {tmp_path}/devel/setup.bash && rosrun my_simulations"
+               " python -m unittest discover -s test -p test_lamp.py")
+    assert done.returncode == 0 and "Ran 2 tests" in done.stdout, done.stdout[-4000:]
+
+
 @pytest.mark.parametrize("words", [["dynamic_reconfigure", "dynparam", "-h"], ["tf", "tf_echo"],
                                    ["tf", "static_transform_publisher"]])
 def test_usual_tool_is_there(words):

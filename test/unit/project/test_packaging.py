@@ -113,7 +113,7 @@ def test_definitions_of_messages_are_not_checked_in_each_catkin_make(path):
 def test_every_top_level_folder_of_data_is_installed():
     text = (REPOSITORY / "CMakeLists.txt").read_text()
     installed = re.search(r"foreach\(folder ([^)]*)\)", text).group(1).split()
-    data = {"Media", "config", "launch", "models", "objects", "urdf", "world"}
+    data = {"Media", "config", "examples", "launch", "models", "objects", "urdf", "world"}
     assert set(installed) == data
     assert all((REPOSITORY / folder).is_dir() for folder in data)
 
