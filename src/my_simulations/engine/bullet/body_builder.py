@@ -2,7 +2,7 @@
 from __future__ import annotations
 
 import itertools
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, Dict, Iterable, List, Optional, Sequence, Tuple
 
 import pybullet
@@ -57,7 +57,7 @@ _FIXED = _Masses(0.0, IDENTITY, (0.0, 0.0, 0.0))
 
 @dataclass(frozen=True)
 class _Rigid:
-    """A joint-free link, ready to be built; `carriers` has the collisions of each of `pieces`."""
+    """A joint-free link, ready to be built; `carriers` tells the surface of each of `pieces`."""
 
     number: int
     static: bool
@@ -139,10 +139,14 @@ class Builder:
         static = self._model.static or link.kinematic
         masses = (_FIXED if static
                   else _Masses(link.inertial.mass, *principal(link.inertial)))
-        found = [(recipe, carrier) for carrier in (by_surface(link) if static else (link,))
-                 for recipe in self._shapes.recipes(
-                     carrier.collisions if static else with_ends(link, MAX_SHAPES), meshes,
-                     inverse(masses.com), static)]
+        found: List[Tuple[Recipe, Link]] = []
+        for carrier in by_surface(link) if static else [link]:
+            recipes = self._shapes.recipes(
+                carrier.collisions if static else with_ends(link, MAX_SHAPES), meshes,
+                inverse(masses.com), static)
+            # One collision tells the surface of all: the pieces of a link may be thousands.
+            alike = replace(carrier, collisions=carrier.collisions[:1]) if static else carrier
+            found += [(recipe, alike) for recipe in recipes]
         return _Rigid(number, static, masses, compose(link.pose, masses.com),
                       tuple(recipe for recipe, _ in found),
                       tuple(carrier for _, carrier in found))
