@@ -5,11 +5,11 @@ import math
 import pathlib
 
 import pytest
-from conftest import box, ground
+from conftest import arm, box, ground
 from plugin_case import PluginCase, kept
 from wheeled_robots import axle, odometry, plugin, skid, tricycle
 
-from my_simulations.description.model import Inertial, Joint, Link, Model
+from my_simulations.description.model import Inertial, Joint, JointAxis, Link, Model
 from my_simulations.description.sensor import ContactSensor, Sensor
 from my_simulations.description.shapes import Box, Collision, Sphere
 from my_simulations.description.world import World
@@ -218,3 +218,26 @@ def test_a_square_of_the_lab_robot_slips_less_than_two_per_cent(case):
     true = one.truth("robo")
     assert math.hypot(told[0] - true[0], told[1] - true[1]) < 0.02 * 4 * 0.5
     assert math.remainder(told[2] - true[2], 2 * math.pi) == pytest.approx(0.0, abs=0.1)
+
+
+def test_a_gimbal_turns_by_the_effort_at_its_limit(case):
+    held = arm("revolute", JointAxis((0.0, 0.0, 1.0)), gravity=False)
+    held.plugins.append(plugin("libGimbalSmall2dPlugin.so", "<joint>hinge</joint>"))
+    one = case(held)
+    one.sim.clock.advance(1000)
+    pose = one.sim.states.link_state("arm::bob")[0]
+    assert rpy_from_quat(pose.orientation)[2] == pytest.approx(0.5 / 1.001, rel=0.005)
+
+
+def test_a_random_velocity_moves_a_box_as_long_as_it_is_set(case):
+    moved = box(gravity=False)
+    moved.plugins.append(plugin(
+        "libRandomVelocityPlugin.so", f"<link>{moved.links[0].name}</link>"
+        "<initial_velocity>0 0.5 0</initial_velocity><update_period>1</update_period>"
+        "<min_z>0</min_z><max_z>0</max_z><min_x>0.2</min_x><max_x>0.2</max_x>"))
+    one = case(moved)
+    one.sim.clock.advance(1000)
+    assert one.sim.states.model_state("box")[0].position == pytest.approx((0, 0.5, 0), abs=0.005)
+    one.sim.clock.advance(1000)
+    x, _, z = one.sim.states.model_state("box")[0].position
+    assert (x, z) == pytest.approx((0.2, 0.0), abs=0.005)

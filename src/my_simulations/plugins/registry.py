@@ -47,6 +47,8 @@ BUILT_IN: Mapping[str, str] = {
     "libleo_gazebo_differential_plugin.so": "state.joint_springs:Differential",
     "libwarthog_suspension_plugin.so": "state.joint_springs:WarthogSuspension",
     "libInitialVelocityPlugin.so": "state.initial_velocity:InitialVelocity",
+    "libRandomVelocityPlugin.so": "state.random_velocity:RandomVelocity",
+    "libGimbalSmall2dPlugin.so": "state.gimbal:Gimbal",
     "libgazebo_ros_vacuum_gripper.so": "gripping.vacuum_gripper:VacuumGripper",
     "libgazebo_grasp_fix.so": "gripping.grasp_fix:GraspFix",
     "libgazebo_ros_link_attacher.so": "gripping.link_attacher:LinkAttacher",

@@ -18,9 +18,11 @@ _REASONS: Mapping[str, str] = {
         "ForceTorquePlugin ImuSensorPlugin LinearBatteryPlugin LinearBatteryConsumerPlugin "
         "PressurePlugin RayPlugin SonarPlugin TouchPlugin",
     "its commands come from topics of Gazebo's own transport":
-        "CessnaPlugin DiffDrivePlugin GimbalSmall2dPlugin JointTrajectoryPlugin JoyPlugin "
-        "KeysToCmdVelPlugin KeysToJointsPlugin SimpleTrackedVehiclePlugin SkidSteerDrivePlugin "
-        "TransporterPlugin WheelTrackedVehiclePlugin",
+        "CessnaPlugin DiffDrivePlugin JoyPlugin KeysToCmdVelPlugin KeysToJointsPlugin "
+        "SimpleTrackedVehiclePlugin SkidSteerDrivePlugin WheelTrackedVehiclePlugin",
+    "it is Gazebo's own test of one arm, simple_arm_gripper, whose joints it moves":
+        "JointTrajectoryPlugin",
+    "models that reach its pads are not moved, although Gazebo moves them": "TransporterPlugin",
 }
 
 WITHOUT_EFFECT: Mapping[str, str] = {

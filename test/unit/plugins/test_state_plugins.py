@@ -8,11 +8,13 @@ import pytest
 from my_simulations.description.model import Inertial
 from my_simulations.geometry import Pose, Twist, quat_from_rpy
 from my_simulations.plugins.context import PluginError
+from my_simulations.plugins.state.gimbal import Gimbal
 from my_simulations.plugins.state.hand_of_god import HandOfGod
 from my_simulations.plugins.state.initial_velocity import InitialVelocity
 from my_simulations.plugins.state.joint_pose_trajectory import JointPoseTrajectory
 from my_simulations.plugins.state.joint_springs import Differential, WarthogSuspension
 from my_simulations.plugins.state.mimic_joint import MimicJoint
+from my_simulations.plugins.state.random_velocity import RandomVelocity
 from my_simulations.plugins.state.world_odometry import (
     PalWorldOdometry,
     RobotnikGroundTruthOdometry,
@@ -201,6 +203,70 @@ def test_an_initial_velocity_comes_back_with_a_reset():
     context.twist = Twist((0.0,) * 3, (0.0,) * 3)
     plugin.reset()
     assert context.twist == Twist((1.0, 2.0, 3.0), (0.0, 0.0, 1.0))
+
+
+def wander(xml, seed=0):
+    context = FakeContext(f"<plugin><link>l</link>{xml}</plugin>", links=("l",))
+    context.seed = seed
+    plugin = RandomVelocity(context)
+    plugin.load()
+    return context, plugin
+
+
+def test_a_random_velocity_begins_with_the_initial_one_and_changes_after_each_period():
+    context, plugin = wander("<initial_velocity>0 0.5 0</initial_velocity>"
+                             "<velocity_factor>2</velocity_factor><update_period>1</update_period>")
+    context.twist = Twist((9.0, 9.0, 9.0), (0.0, 0.0, 3.0))
+    context.advance(1.0)
+    assert context.twist == Twist((0.0, 0.5, 0.0), (0.0, 0.0, 3.0))
+    context.advance(0.5)
+    first = context.twist.linear
+    assert math.dist(first, (0.0, 0.0, 0.0)) == pytest.approx(2.0)
+    context.advance(1.0)
+    second = context.twist.linear
+    assert math.dist(second, (0.0, 0.0, 0.0)) == pytest.approx(2.0)
+    assert math.dist(first, second) > 0.01
+    plugin.reset()
+    context.step = 0
+    context.advance(0.5)
+    assert context.twist.linear == (0.0, 0.5, 0.0)
+    context.advance(1.0)
+    assert context.twist.linear == first
+
+
+def test_a_random_velocity_stays_within_limits_that_may_be_swapped():
+    found = []
+    for seed in range(20):
+        context, _ = wander("<min_x>0.1</min_x><max_x>-0.1</max_x><min_z>0</min_z><max_z>0</max_z>"
+                            "<update_period>0.01</update_period>", seed)
+        context.advance(0.1)
+        found.append(context.twist.linear)
+    assert all(-0.1 <= x <= 0.1 and z == 0.0 for x, _, z in found)
+    assert len({y for _, y, _ in found}) == 20
+
+
+@pytest.mark.parametrize("xml", ["<plugin/>", "<plugin><link>other</link></plugin>"])
+def test_a_random_velocity_needs_a_link_of_the_model(xml):
+    with pytest.raises(PluginError, match="link"):
+        RandomVelocity(FakeContext(xml, links=("l",))).load()
+
+
+@pytest.mark.parametrize("xml, joint", [("<plugin/>", "tilt_joint"),
+                                        ("<plugin><joint>drone::up</joint></plugin>", "up")])
+def test_a_gimbal_is_held_at_a_right_angle_by_a_limited_effort(xml, joint):
+    context = FakeContext(xml, joints=(joint,))
+    Gimbal(context).load()
+    held = context.joints[joint]
+    context.advance(0.001)
+    assert held.effort == pytest.approx(1.0)
+    held.put(math.pi / 2.0 + 0.25)
+    context.advance(0.001)
+    assert held.effort == pytest.approx(-0.25)
+
+
+def test_a_gimbal_without_its_joint_is_told():
+    with pytest.raises(PluginError, match="tilt_joint"):
+        Gimbal(FakeContext()).load()
 
 
 # -- odometry of other packages ------------------------------------------------------------------
