@@ -216,7 +216,7 @@ class TopicViews:
     def _feed(self, made: Tuple[str, Any]) -> List[Hashable]:
         kind, message = made
         viewer = self._viewers[kind]
-        viewer.take(message)
+        viewer.receive(message)
         try:
             frame, stamp, (fields, data) = viewer.view()
         except SimulationError as fault:
