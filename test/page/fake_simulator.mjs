@@ -285,7 +285,7 @@ export class FakeSimulator {
   }
 
   on_hello() {
-    return {session: 'one', version: 1, app: 'fake', number: 1};
+    return {session: 'one', version: 1, app: 'fake', number: 1, read_only: false};
   }
 
   on_edit({op}) {

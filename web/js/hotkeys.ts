@@ -83,6 +83,13 @@ export const HOTKEYS: readonly Hotkey[] = Object.freeze([
   {keys: 'F1', title: 'Hotkey chart', group: 'Help', action: 'hotkeys'},
 ]);
 
+const READ_ONLY_GROUPS = ['Camera', 'Window', 'Help'];
+const READ_ONLY_ACTIONS: (keyof Actions)[] = ['hide', 'showHidden', 'selectAll', 'find', 'escape', 'measureMode'];
+
+/** Whether a row works in a page that cannot edit the world. */
+export const isReading = ({group, action}: Hotkey) => action !== 'logs' && (
+  READ_ONLY_GROUPS.includes(group) || Boolean(action && READ_ONLY_ACTIONS.includes(action)));
+
 const NAMES: Record<string, string> = {' ': 'Space', Esc: 'Escape', Del: 'Delete'};
 
 /** The spelling of a key press in the table. */
@@ -131,6 +138,7 @@ export function mountKeys(target: Window, {store, actions}: {store: Store, actio
     if (row?.keys === 'S' && store.camera.controller === 'fps') return;
     if (row?.keys === 'Enter' && !store.placing) return;
     if (!row || event.defaultPrevented || belongsToControl(event)) return;
+    if (store.readOnly && !isReading(row)) return event.preventDefault();
     event.preventDefault();
     if (!event.repeat || row.action === 'undo' || row.action === 'redo') run(actions, row.action);
   };

@@ -18,7 +18,10 @@ const watches = new Watches(connection);
 const topics = new Topics({store, connection, watches});
 const driving = mountDriving(window, {store, actions});
 const page = mountPanels({store, actions, connection, watches, topics, driving, view: null});
-connection.listen('open', ({detail}) => { page.about = detail; });
+connection.listen('open', ({detail}) => {
+  page.about = detail;
+  document.body.classList.toggle('read-only', detail.read_only);
+});
 mountKeys(window, {store, actions});
 connection.open();
 

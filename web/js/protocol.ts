@@ -531,7 +531,7 @@ export type Requests = {
       version: number, session?: string|null, person?: string|null, name?: string|null
     },
     reply: {
-      session: string, version: number, app: string, number: number
+      session: string, version: number, app: string, number: number, read_only: boolean
     }},
   edit: {fields: {op: Operation},
     reply: {name?: string|null, names?: string[]|null}},

@@ -31,6 +31,8 @@ export class WorldStore extends Emitter<StoreEvents> {
   /** Of the plugins of models, their sensors and the world. */
   pluginStates: PluginState[] = [];
   connected = false;
+  /** Whether the simulator refuses edits, and control of time and logs. */
+  readOnly = false;
   autosave: AutosavePush|null = null;
   log: LogPush|null = null;
   /** Whether the poses are those of a log. */
@@ -46,6 +48,7 @@ export class WorldStore extends Emitter<StoreEvents> {
     this.#connection = connection;
     connection.listen('open', ({detail}) => {
       this.me = detail.number;
+      this.readOnly = detail.read_only;
       this.#setConnected(true);
       this.emit('people');
     });

@@ -75,7 +75,7 @@ class Assembly:
         self._pool = ThreadPoolExecutor(4, "editor requests")
         library = Library(resolver, documents.served, options.config_dir, self._downloading)
         self._requests = WorldRequests(self.hub, resolver, self._history, self._files,
-                                  self._autosave, self.report_issue)
+                                  self._autosave, self.report_issue, options.read_only)
         self._models = LibraryRequests(self.hub, resolver, library, self._pool, self.report_issue)
         self._logs = Logs(self.hub, options.data_dir, self.report_issue, options.more_logs)
         self._topics = TopicRequests(self.hub, options.topics)

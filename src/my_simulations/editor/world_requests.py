@@ -37,7 +37,9 @@ class WorldRequests:
     """
 
     def __init__(self, hub: Hub, resolver: Resolver, history: History, files: WorldFiles,
-                 autosave: Autosave, report: Callable[[Issue], None]) -> None:
+                 autosave: Autosave, report: Callable[[Issue], None],
+                 read_only: bool = False) -> None:
+        self._read_only = read_only  # the page hides what is then refused
         self._hub = hub
         self._world: Simulator = hub.simulator
         self._history = history
@@ -128,7 +130,7 @@ class WorldRequests:
         if found["found"] or (found["others"] and not given):
             self._hub.push(found, [client])
         return {"session": client.session, "version": version, "app": __version__,
-                "number": client.number}
+                "number": client.number, "read_only": self._read_only}
 
     async def _presence(self, client: Client, message: Dict[str, Any]) -> None:
         """Store the name or the selection that a client sends."""

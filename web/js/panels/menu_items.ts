@@ -5,6 +5,7 @@ import type {OverlayFlag, Store} from '../store.js';
 import type {Page} from './panels.js';
 import type {ThemeName} from '../ui/theme.js';
 import type {Model} from '../protocol.js';
+import type {Menu} from '../ui/menubar.js';
 import type {MenuItem} from '../ui/popup.js';
 
 /** The hotkey of an action, '' where it has none. */
@@ -48,8 +49,7 @@ const AXES = ['X', 'Y', 'Z'] as const;
 const LINE = {separator: true};
 
 /** The menu bar's menus. */
-export function menus(page: Page): {title: string, items: () =>
-    MenuItem[]}[] {
+export function menus(page: Page): Menu[] {
   const {store, actions, theme} = page;
   const item = (title: string, action: keyof Actions, more = {}) => ({
     title,
@@ -65,6 +65,7 @@ export function menus(page: Page): {title: string, items: () =>
   return [
     {
       title: 'File',
+      edits: true,
       items: () => [
         item('New World', 'newWorld'),
         item('Open World…', 'open'),
@@ -81,6 +82,7 @@ export function menus(page: Page): {title: string, items: () =>
     },
     {
       title: 'Edit',
+      edits: true,
       items: () => [
         item(labelOf('Undo', store, 'undo'), 'undo', {
           enabled: () => store.history.undo.length > 0,
@@ -156,8 +158,7 @@ export function menus(page: Page): {title: string, items: () =>
       title: 'Window',
       items: () => [
         item('Plot', 'plot'),
-        item('Log Data', 'logs'),
-        item('Joints Panel', 'joints'),
+        ...(store.readOnly ? [] : [item('Log Data', 'logs'), item('Joints Panel', 'joints')]),
         item('Topics', 'topics'),
         {title: 'Messages', run: () => page.notices.button.click()},
         LINE,
@@ -234,11 +235,17 @@ export function contextMenu(page: Page, name: string):
           enabled: () => !entity.model?.static,
         },
       ];
-  return [
+  const follow = [
     {title: 'Move To', run: () => actions.moveTo(name)},
     store.camera.following === whole
       ? {title: 'Stop Following', run: () => actions.follow(null)}
       : {title: 'Follow', run: () => actions.follow(whole)},
+  ];
+  const hide = (named: string) => (store.overlay('hidden', named) ? {title: 'Show', run: () => actions.showHidden(models)}
+    : {title: 'Hide', keys: keysOf('hide'), run: () => actions.hide(models)});
+  if (store.readOnly) return [...follow, ...view, ...(model ? [hide(model)] : [])];
+  return [
+    ...follow,
     ...force,
     ...(model && !isPlane(entity.model)
       ? [{title: 'Edit Model', run: () => actions.modelEditor(model), enabled: () => !store.modelEditing}] : []),
@@ -246,8 +253,7 @@ export function contextMenu(page: Page, name: string):
     ...view,
     ...(light ? [] : [LINE]),
     ...(model ? [
-      store.overlay('hidden', model) ? {title: 'Show', run: () => actions.showHidden(models)}
-        : {title: 'Hide', keys: keysOf('hide'), run: () => actions.hide(models)},
+      hide(model),
       {title: 'Locked', keys: keysOf('lock'), checked: () => store.overlay('locked', model), run: () => actions.lock(models)},
       ...(models.length > 1 ? [{title: 'Group', keys: keysOf('groupSelection'), run: () => actions.groupSelection()}] : []),
       ...(grouped(store, models)

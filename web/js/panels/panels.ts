@@ -109,6 +109,7 @@ function mountTabs(element: HTMLElement, page: Page) {
     h('button', {
       type: 'button',
       role: 'tab',
+      class: TABS[at][0] === 'insert' ? 'edits' : '',
       id: `tab-button-${name}`,
       'aria-controls': `tab-${name}`,
       text: title,

@@ -207,7 +207,8 @@ export class Properties {
   }
 
   #section(section: Section) {
-    const rows = section.fields.map((field) => this.#field(section, field));
+    const fields = section.fields.filter(({type}) => !(this.store.readOnly && type === 'button'));
+    const rows = fields.map((field) => this.#field(section, field));
     if (!section.title) return h('div', {class: 'section'}, ...rows);
     const kind = section.title.split(' ')[0];
     const details = h(
@@ -230,12 +231,13 @@ export class Properties {
     const refuse = (text: string) => {
       note.textContent = text;
     };
-    const input = makeInput(field, commit, refuse);
+    const fixed = field.fixed || this.store.readOnly;
+    const input = makeInput({...field, fixed}, commit, refuse);
     const wide = ['vector', 'pose', 'color', 'xml'].includes(field.type);
     const element = h(
       'div',
       {
-        class: `field ${wide ? 'wide' : ''} ${field.fixed ? 'fixed' : ''}`,
+        class: `field ${wide ? 'wide' : ''} ${fixed ? 'fixed' : ''}`,
         title: field.hint,
         dataset: {path: field.path, target: section.target},
       },

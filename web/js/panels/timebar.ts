@@ -78,10 +78,10 @@ export class TimeBar {
 
   #live;
   #replay;
-  #play = h('button', {type: 'button', class: 'play', onclick: () => this.actions.togglePlay()});
+  #play = h('button', {type: 'button', class: 'play edits', onclick: () => this.actions.togglePlay()});
   #step = h(
     'button',
-    {type: 'button', title: 'Step', 'aria-label': 'Step', onclick: () => this.#doStep()},
+    {type: 'button', class: 'edits', title: 'Step', 'aria-label': 'Step', onclick: () => this.#doStep()},
     icon('step'),
   );
   #steps = h('input', {
@@ -132,6 +132,7 @@ export class TimeBar {
       'button',
       {
         type: 'button',
+        class: 'edits',
         title: 'Reset time',
         'aria-label': 'Reset time',
         onclick: () => this.actions.reset('time'),
@@ -145,7 +146,7 @@ export class TimeBar {
       this.#step,
       h(
         'label',
-        {class: 'figure-pair figure-steps'},
+        {class: 'figure-pair figure-steps edits'},
         h('span', {class: 'figure-label', text: 'Steps'}),
         this.#steps,
       ),

@@ -44,7 +44,7 @@ export function mountToolBar(element: HTMLElement, page: Page) {
       },
       icon(glyph),
     );
-  const line = () => h('span', {class: 'tool-line', role: 'separator'});
+  const line = (more = '') => h('span', {class: `tool-line ${more}`, role: 'separator'});
 
   const modes = MODES.map(([mode, action, glyph, title]) =>
     button(glyph, title, () => run(actions, action), {role: 'radio', dataset: {mode}}),
@@ -84,20 +84,20 @@ export function mountToolBar(element: HTMLElement, page: Page) {
 
   fill(
     element,
-    h('span', {role: 'radiogroup', 'aria-label': 'Mode', class: 'tool-group'}, ...modes),
-    line(),
+    h('span', {role: 'radiogroup', 'aria-label': 'Mode', class: 'tool-group edits'}, ...modes),
+    line('edits'),
     undo,
     undoList,
     redo,
     redoList,
-    line(),
+    line('edits'),
     ...shapes,
-    line(),
+    line('edits'),
     ...lights,
-    line(),
+    line('edits'),
     copy,
     paste,
-    line(),
+    line('edits'),
     align,
     snap,
     measure,
@@ -111,6 +111,9 @@ export function mountToolBar(element: HTMLElement, page: Page) {
     joints,
     topics,
   );
+  for (const button of [undo, undoList, redo, redoList, ...shapes, ...lights, copy, paste, align, snap, log, joints]) {
+    button.classList.add('edits');
+  }
   const rove = roving(element, 'button');
 
   const update = () => {

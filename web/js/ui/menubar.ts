@@ -3,13 +3,15 @@ import {elementsOf, fill, h, roving} from './dom.js';
 import {closePopup, menuList, openPopup} from './popup.js';
 import type {MenuItem} from './popup.js';
 
-export function mountMenuBar(element: HTMLElement, menus: {title: string, items: () =>
-    MenuItem[]}[]) {
+/** `edits`: hidden in a page that cannot edit the world. */
+export type Menu = {title: string, edits?: boolean, items: () => MenuItem[]};
+
+export function mountMenuBar(element: HTMLElement, menus: Menu[]) {
   let open: number|null = null;
   const buttons = menus.map((menu) =>
     h('button', {
       type: 'button',
-      class: 'menu-title',
+      class: `menu-title ${menu.edits ? 'edits' : ''}`,
       role: 'menuitem',
       'aria-haspopup': 'menu',
       'aria-expanded': 'false',
@@ -37,7 +39,9 @@ export function mountMenuBar(element: HTMLElement, menus: {title: string, items:
       if (!step) return;
       event.preventDefault();
       event.stopPropagation();
-      show((at + step + buttons.length) % buttons.length);
+      const shown = buttons.filter((button) => button.offsetParent !== null);
+      const next = (shown.indexOf(buttons[at]) + step + shown.length) % shown.length;
+      show(buttons.indexOf(shown[next]));
     });
   };
   buttons.forEach((button, at) => {

@@ -1,5 +1,5 @@
 /** The command search: every item of the menus and every action that has a key, by its name. */
-import {HOTKEYS, run} from '../../hotkeys.js';
+import {HOTKEYS, isReading, run} from '../../hotkeys.js';
 import {LIGHTS, SHAPES} from '../../new_entities.js';
 import {Dialog} from '../../ui/dialog.js';
 import {fill, h} from '../../ui/dom.js';
@@ -14,7 +14,7 @@ const MOST = 12;
 
 /** What can be done now. */
 export function commandsOf(page: Page): Command[] {
-  const {actions} = page;
+  const {actions, store} = page;
   const found: Command[] = [];
   /** Keys of all items, also of those that cannot be chosen now. */
   const known = new Set();
@@ -25,14 +25,16 @@ export function commandsOf(page: Page): Command[] {
       else if (title && start && (enabled?.() ?? true)) found.push({title, group, keys, run: start});
     }
   };
-  for (const {title, items} of menus(page)) take(items(), title);
-  for (const shape of SHAPES) {
+  for (const {title, items, edits} of menus(page)) if (!(edits && store.readOnly)) take(items(), title);
+  for (const shape of store.readOnly ? [] : SHAPES) {
     found.push({title: `Insert ${shape}`, group: 'Insert', keys: '', run: () => actions.insertShape(shape)});
   }
-  for (const type of LIGHTS) {
+  for (const type of store.readOnly ? [] : LIGHTS) {
     found.push({title: `Insert ${type} light`, group: 'Insert', keys: '', run: () => actions.insertLight(type)});
   }
-  for (const {keys, title, group, action} of HOTKEYS) {
+  for (const row of HOTKEYS) {
+    const {keys, title, group, action} = row;
+    if (store.readOnly && !isReading(row)) continue;
     if (action && action !== 'commands' && !known.has(keysOf(action))) {
       found.push({title, group, keys, run: () => run(actions, action)});
     }
