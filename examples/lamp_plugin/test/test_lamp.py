@@ -1,12 +1,13 @@
 """The plugin alone, and with physics in a Python program; neither needs ROS."""
-import os
 import unittest
+from pathlib import Path
+
+from lamp_plugin.lamp import Lamp
 
 import my_simulations
-from lamp_plugin.lamp import Lamp
 from my_simulations.plugins.testing import FakeContext
 
-LAMP = os.path.join(os.path.dirname(os.path.dirname(os.path.abspath(__file__))), "urdf", "lamp.urdf")
+LAMP = str(Path(__file__).resolve().parents[1] / "urdf" / "lamp.urdf")
 
 
 class LampTest(unittest.TestCase):
