@@ -20,30 +20,23 @@ from ..simulator.sync_points import SimTimeStep
 from .barrier import Barrier
 from .base import Plugin
 from .call_watch import CALL_LIMITS, CallLimits, ThreadAbandoned
+from .clock_changes import ClockChanges
 from .command_sender import send_commands
 from .found_plugins import FoundPlugin
 from .graph import Graph, TopicUse
-from .isolated.isolated_plugin import IsolatedPlugin
-from .isolated.plugin_process import PluginProcesses
 from .nested_turns import NestedTurns
 from .observations import Observation, Observations, StepView
 from .outgoing import Outgoing
 from .plugin_faults import describe_fault
 from .plugin_guard import PluginGuard
+from .plugin_loader import PluginLoader
 from .plugin_state import PluginState
 from .record_handover import RecordHandover
-from .registry import (
-    PluginRegistry,
-    UnknownPluginError,
-    is_built_in,
-    library_name,
-    plugin_class,
-)
+from .registry import PluginRegistry
 from .running import ModelPlugins, RunningPlugin
 from .schedule import Schedule, ScheduledCall
 from .simulated_context import SharedServices, SimulatedContext
 from .step_readings import StepReadings
-from .without_effect import no_effect_note
 
 _LOOK_S = 0.5      # between two checks while nothing wakes the thread
 _LOADING_S = 120.0   # how long a caller waits for plugins to be loaded
@@ -71,8 +64,8 @@ class PluginHost:
                  log: Callable[[Issue], None], limits: CallLimits = CALL_LIMITS,
                  isolate: bool = False, scene: Optional[SceneSensing] = None,
                  is_used: Callable[[FoundPlugin], bool] = lambda found: True) -> None:
-        self._simulator, self._graph, self._registry, self._log = simulator, graph, registry, log
-        self._has_scene, self._is_used = scene is None, is_used
+        self._simulator, self._graph, self._log = simulator, graph, log
+        self._has_scene = scene is None
         self._scene, self._schedule = scene or SceneSensing(simulator, log), Schedule()
         self._sync, self._observations = simulator.sync_points, Observations()
         view = StepView(simulator.states, simulator.feed.rows)
@@ -88,18 +81,17 @@ class PluginHost:
         self._with_input: Deque[RunningPlugin] = deque()
         self._with_output: Dict[SimulatedContext, RunningPlugin] = {}
         self._due: Deque[ScheduledCall] = deque()
-        self._reported: Dict[str, bool] = {}
         self._revision = -1
-        self._world_resets = simulator.resets.world_resets
-        self._simulation_resets = simulator.resets.simulation_resets
+        self._clock_changes = ClockChanges(simulator.resets)
         self._loaded = threading.Condition()
         self._stop = threading.Event()
         self._was_stepped_manually = simulator.clock.is_stepped_manually
         self._delivering = False     # input was handed over, and its commands are not sent yet
         self._settings: Optional[int] = None
-        self._time_step: Optional[SimTimeStep] = None
         self._limits = limits
-        self._processes = PluginProcesses() if isolate else None
+        self._loader = PluginLoader(
+            registry, log, limits, isolate, is_used,
+            lambda running, waited: self._nested_turns.take_turn(running, waited))
         self._guard = PluginGuard(log, limits, self._mark_output, self._go_on_without)
         self._overdue: Deque[Tuple[RunningPlugin, str]] = deque()
         self._turns = 0
@@ -218,8 +210,7 @@ class PluginHost:
     def _clean_up(self) -> None:
         self._stop.set()
         self._guard.stop()
-        if self._processes is not None:
-            self._processes.stop()
+        self._loader.stop()
         if self._has_scene:
             self._scene.close()
         self._outgoing.stop()
@@ -372,26 +363,16 @@ class PluginHost:
     def _notice_resets(self, _settings: int, time_step: SimTimeStep) -> None:
         """Notify plugins of resets and of sim time that was set back."""
         self._schedule.set_time_step(time_step)
-        before, self._time_step = self._time_step, time_step
-        resets = self._simulator.resets
-        calls: List[str] = []
-        if before is not None and time_step.clock_sets != before.clock_sets:
-            self._schedule.reschedule(time_step.sim_ns < before.sim_ns)
+        change = self._clock_changes.since_last(time_step)
+        if change.is_clock_set:
+            self._schedule.reschedule(change.is_set_back)
             self._observations.begin_all(time_step)
             for running in self._at_work():
                 running.context.sensing.forget()
-            if resets.simulation_resets != self._simulation_resets:
-                calls.append("reset")
-            elif time_step.sim_ns < before.sim_ns:
-                calls.append("clock_set")
-            self._simulation_resets = resets.simulation_resets
-        if resets.world_resets != self._world_resets:
-            self._world_resets = resets.world_resets
-            calls.append("reset")
-        for call in calls:
+        for notice in change.notices:
             for running in self._at_work():
                 if running.plugin is not None:
-                    self._call_now_or_later(running, getattr(running.plugin, call))
+                    self._call_now_or_later(running, getattr(running.plugin, notice))
 
     # -- models ------------------------------------------------------------------------------------
 
@@ -413,50 +394,17 @@ class PluginHost:
         context = SimulatedContext(self._shared, entity, found, lambda: self._mark_input(running))
         running = self._running[context] = RunningPlugin(found, context, None)
         into.append(running)
-        if self._registry.is_provided(found.spec.filename):
-            running.note = "the simulator itself has its functions"
+        where = self._loader.locate(running, entity)
+        if where is None:
             return
-        if not self._is_used(found):
-            running.note = "the program does not use it"
-            return
-        try:
-            where = self._registry.locate(found.spec.filename)
-        except UnknownPluginError as unknown:
-            note = no_effect_note(found.spec)
-            running.note = note.message if note is not None else ""
-            if note is None:
-                running.fault = self._unknown(found, entity, str(unknown))
-            self._report_once(library_name(found.spec.filename), note or running.fault)
-            return
-
         made: List[Plugin] = []
         limits = self._limits.doubled()
-        if not self._guard.call(running, lambda: made.append(self._made(running, where)),
+        if not self._guard.call(running, lambda: made.append(self._loader.create(running, where)),
                                 limits=limits):
             return
         running.plugin = made[0]
         self._schedule.set_time_step(self._sync.now())
         self._guard.call(running, running.plugin.load, limits=limits)
-
-    def _made(self, running: RunningPlugin, where: str) -> Plugin:
-        """Create a plugin; one of a user runs in its own process if this host isolates them."""
-        if self._processes is None or is_built_in(where):
-            return plugin_class(where)(running.context)
-        process = self._processes.start()
-        running.end = process.end
-        return IsolatedPlugin(running.context, where, process, self._limits,
-                              lambda waited: self._nested_turns.take_turn(running, waited))
-
-    def _unknown(self, found: FoundPlugin, entity: Entity, text: str) -> Issue:
-        return warning("plugin-unknown", f"{text}; '{found.spec.name}' of model"
-                       f" '{entity.model.name}' does nothing", file=found.spec.file,
-                       line=found.spec.line,
-                       hint="a package can bring one: see doc/plugins.md")
-
-    def _report_once(self, library: str, issue: Optional[Issue]) -> None:
-        if issue is not None and library not in self._reported:
-            self._reported[library] = True
-            self._log(issue)
 
     def _end_removed(self) -> None:
         leaving = self._models.removed
