@@ -184,3 +184,25 @@ def test_parameters_of_a_plugin_are_set_in_fields_and_the_plugin_starts_again(ed
     editor.page.keyboard.press("Escape")
     editor.page.keyboard.press("Control+z")
     wait_for(lambda: editor.field("wheelSeparation").input_value() == "0.3", "the value of before")
+
+
+def test_a_parameter_that_the_file_leaves_out_has_its_default_and_can_be_set(editor):
+    editor.row("rover").click()
+    editor.page.keyboard.press("ArrowRight")
+    editor.row("drive").click()
+    wait_for(lambda: editor.field("wheelAcceleration").input_value() == "0", "the default")
+    source = editor.page.get_by_role("combobox", name="odometrySource", exact=True)
+    assert source.input_value() == "world"
+    assert editor.page.get_by_role("checkbox", name="publishOdomTF", exact=True).is_checked()
+    editor.field("wheelAcceleration").fill("1.5")
+    editor.field("wheelAcceleration").press("Enter")
+    editor.until("editor.store.model('rover').plugins[0].xml.includes("
+                 "'<wheelAcceleration>1.5</wheelAcceleration>')", "the new element")
+    editor.until("editor.store.pluginStates.some(({name, state}) =>"
+                 " name === 'drive' && state === 'running')", "the plugin that runs again")
+    wait_for(lambda: editor.field("wheelAcceleration").input_value() == "1.5", "the new value")
+    editor.page.keyboard.press("Escape")
+    editor.page.keyboard.press("Control+z")
+    editor.until("!editor.store.model('rover').plugins[0].xml.includes('wheelAcceleration')",
+                 "the file as before")
+    wait_for(lambda: editor.field("wheelAcceleration").input_value() == "0", "the default again")

@@ -3,7 +3,7 @@ import test from 'node:test';
 import {layersOf} from '../../web/js/panels/layers_tab.js';
 import {geometryFields, unitGeometry} from '../../web/js/panels/geometry_fields.js';
 import {sectionsOf, valueAt} from '../../web/js/panels/property_sections.js';
-import {pluginFields} from '../../web/js/panels/plugin_fields.js';
+import {defaultFields, pluginFields} from '../../web/js/panels/plugin_fields.js';
 import {modelOf, rowOf, worldRows} from '../../web/js/panels/world_rows.js';
 import {searched} from '../../web/js/panels/insert_tab.js';
 import {drivenJoints} from '../../web/js/panels/joints_panel.js';
@@ -115,6 +115,20 @@ test('each element of a plugin that holds only text is a field', () => {
   const text = (at, value) => fields[at].ops(value).ops[0].text.split('\n');
   assert.deepEqual(text(2, '<z>'), ['<plugin name="o"/>', xml.replace('x &amp; y', '&lt;z&gt;')]);
   assert.equal(text(1, 2)[1], xml.replace(' 0.5 ', '2'));
+});
+
+test('parameters that the XML of a plugin leaves out are fields with their defaults', () => {
+  const declared = [
+    {name: 'a', type: 'number', default: '0.5', choices: []}, {name: 'on', type: 'flag', default: 'true', choices: []},
+    {name: 'from', type: 'choice', default: 'world', choices: ['world', 'encoder']}, {name: 'b', type: 'text', default: '', choices: []}];
+  const made = (xml) => defaultFields(box('m', undefined, {plugins: [{xml}]}), 0, declared);
+  const {entity, fields} = made('<plugin name="p"><!-- <a>1</a> -->\n  <b/>\n</plugin>\n');
+  assert.deepEqual(fields.map(({label, type, choices}) => [label, type, choices]),
+    [['a', 'number', undefined], ['on', 'flag', undefined], ['from', 'choice', ['world', 'encoder']]]);
+  assert.deepEqual(Object.values(entity), [0.5, true, 'world']);
+  assert.equal(fields[0].ops(2).ops[0].text, '<plugin name="p"><!-- <a>1</a> -->\n  <b/>\n  <a>2</a>\n</plugin>\n');
+  const [, , , text] = made('<plugin name="p"/>').fields;
+  assert.equal(text.ops('$& <').ops[0].text, '<plugin name="p">\n  <b>$&amp; &lt;</b>\n</plugin>');
 });
 
 test('every field of every row finds a value in the document', () => {

@@ -328,9 +328,14 @@ export type Person = {
 
 export type Extrusion = {loops: vec2[][], height: number};
 
+export type PluginParameter = {
+  name: string, type: 'number'|'integer'|'flag'|'text'|'choice', default: string,
+  choices: string[]
+};
+
 export type PluginState = {
   model: string, name: string, filename: string, state: 'waiting'|'running'|'failed'|'off',
-  reason: string
+  reason: string, parameters: PluginParameter[]
 };
 
 export type Transform = {parent: string, child: string, pose: pose};

@@ -80,7 +80,7 @@ export class WorldStore extends Emitter<StoreEvents> {
       case 'autosave': this.autosave = message; this.emit('autosave', message); break;
       case 'log': this.log = message; this.emit('log', message); break;
       case 'people': this.people = message.people; this.emit('people'); break;
-      case 'plugins': this.pluginStates = message.states; this.emit('plugins'); break;
+      case 'plugins': this.#setPluginStates(message.states); break;
       case 'loading': this.emit('loading', message); break;
       case 'watch': this.emit('watch', message); break;
       case 'library': this.emit('library', message); break;
@@ -104,6 +104,16 @@ export class WorldStore extends Emitter<StoreEvents> {
     }
     this.replaying = frame.kind !== LIVE;
     if (moved.size) this.emit('poses', moved);
+  }
+
+  /** A plugin that starts again has read nothing yet: what it has read before is still of use. */
+  #setPluginStates(states: PluginState[]) {
+    this.pluginStates = states.map((state) => {
+      const before = state.state === 'waiting' && this.pluginStates.find((one) =>
+        one.model === state.model && one.name === state.name && one.filename === state.filename);
+      return before ? {...state, parameters: before.parameters} : state;
+    });
+    this.emit('plugins');
   }
 
   #replaceWorld({revision, document}: WorldPush) {

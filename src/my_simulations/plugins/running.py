@@ -46,7 +46,8 @@ class RunningPlugin:
         kind, reason = (
             (FAILED, fault.message) if fault is not None else (OFF, self.note) if self.note
             else (WAITING, "") if self.plugin is None else (RUNNING, ""))
-        return PluginState(model, spec.name, spec.filename, kind, reason)
+        return PluginState(model, spec.name, spec.filename, kind, reason,
+                           self.context.parameters.declared())
 
     @property
     def is_callable(self) -> bool:

@@ -27,6 +27,7 @@ from .graph import Graph, TopicUse
 from .model_rows import ModelRows, transmissions_of
 from .observations import Observation, Observations, Reads, StepView, queries_of
 from .parameters import Parameters
+from .plugin_state import PluginParameter
 from .schedule import Schedule, ScheduledCall
 from .sensing_requests import SensingRequests
 from .simulated_graph import GraphUser, PluginGraph
@@ -399,6 +400,10 @@ class SimulatedContext(GraphUser):
         kind = self.sensor.type if self.sensor is not None else ""
         return [TopicUse(name, message, is_subscription, self.model, link, kind, pose)
                 for name, message, is_subscription in self.graph.uses()]
+
+    def declare_parameters(self, parameters: Sequence[PluginParameter]) -> None:
+        """Add parameters that the plugin has read in its own process."""
+        self.parameters.declare(parameters)
 
     # -- log -------------------------------------------------------------------------------------
 

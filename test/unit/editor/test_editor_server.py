@@ -333,7 +333,7 @@ def test_states_of_plugins_are_sent_when_they_change(case):
     async def follow(browser):
         await browser.until(lambda: any(one["type"] == "plugins" and one["states"] == [
             {"model": "a", "name": "drive", "filename": "libdrive.so", "state": "waiting",
-             "reason": ""}] for one in browser.pushes))
+             "reason": "", "parameters": []}] for one in browser.pushes))
         states[0] = PluginState("a", "drive", "libdrive.so", "failed", "no joint")
         await browser.until(lambda: browser.last("plugins")["states"][0]["reason"] == "no joint")
 

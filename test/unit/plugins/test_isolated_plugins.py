@@ -20,6 +20,7 @@ from my_simulations.plugins.isolated.messages import (
     PROPERTIES,
 )
 from my_simulations.plugins.isolated.remote_context import RemoteContext
+from my_simulations.plugins.plugin_state import PluginParameter
 from my_simulations.plugins.testing import Message
 from my_simulations.sensing.api import RayReturns
 
@@ -78,6 +79,16 @@ def test_a_plugin_uses_its_context_from_its_own_process(case):
     assert times == [10_000_000, 15_000_000, 20_000_000, 30_000_000, 40_000_000]
     assert mark[:3] == ("bad", "", "base") and mark[4:] == (0.001, pytest.approx(-9.8))
     assert "bad::wheel" in names.values()
+
+
+def test_the_parameters_that_a_process_reads_are_known_although_it_fails(case):
+    one = case()
+    one.spawn(LOAD + """        self.context.parameters.number("gain", 0.25)
+        raise ValueError("no more")
+""")
+    until(one.failed)
+    (state,) = [state for state in one.host.states() if state.model == "bad"]
+    assert state.parameters == (PluginParameter("gain", "number", "0.25"),)
 
 
 def test_a_caller_of_a_service_is_told_why_its_request_is_refused(case):

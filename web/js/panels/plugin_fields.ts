@@ -3,7 +3,7 @@
  * Pure.
  */
 import type {Field} from './property_fields.js';
-import type {Model} from '../protocol.js';
+import type {Model, PluginParameter} from '../protocol.js';
 
 const ELEMENT = /<!--[^]*?-->|<!\[CDATA\[[^]*?\]\]>|<([\w.:-]+)(?:\s[^<>]*)?>([^<]*)<\/\1\s*>/g;
 const ENTITIES: Record<string, string> = {'&': '&amp;', '<': '&lt;', '>': '&gt;'};
@@ -32,13 +32,48 @@ export function pluginFields(model: Model, index: number): {entity: Record<strin
     const {type, value} = typed(text.trim());
     const end = found.index + whole.lastIndexOf('</');
     entity[path] = value;
-    fields.push({path, label: name, type, ops: (next) => {
-      const written = String(next).replace(/[&<>]/g, (one) => ENTITIES[one]);
-      const changed = xml.slice(0, end - text.length) + written + xml.slice(end);
-      const all = model.plugins.map((one, at) => (at === index ? changed : one.xml));
-      return {label: `Set ${name} of ${model.name}`,
-        ops: [{kind: 'set_plugins', model: model.name, text: all.join('\n')}]};
-    }});
+    fields.push({path, label: name, type, ops: (next) => replaced(model, index, name,
+        xml.slice(0, end - text.length) + escaped(next) + xml.slice(end))});
   }
   return {entity, fields};
+}
+
+/**
+ * Fields for the parameters that the plugin has read and its XML leaves out. A change adds the element.
+ * @param index  of the plugin
+ * @returns defaults and fields by path
+ */
+export function defaultFields(model: Model, index: number, parameters: PluginParameter[]):
+    {entity: Record<string, unknown>, fields: Field[]} {
+  const {xml} = model.plugins[index];
+  const shown = xml.replace(/<!--[^]*?-->/g, '');
+  const entity: Record<string, unknown> = {};
+  const fields: Field[] = [];
+  for (const {name, type, default: text, choices} of parameters) {
+    if (shown.includes(`<${name}>`) || shown.includes(`<${name} `) || shown.includes(`<${name}/`)) continue;
+    const path = `default:${name.replaceAll('.', '_')}`;
+    entity[path] = READ[type](text);
+    fields.push({path, label: name, type, ...(choices.length ? {choices} : {}), ops: (next) =>
+      replaced(model, index, name, withElement(xml, `<${name}>${escaped(next)}</${name}>`))});
+  }
+  return {entity, fields};
+}
+
+const READ: Record<PluginParameter['type'], (text: string) => unknown> =
+    {number: Number, integer: Number, flag: (text) => text === 'true', text: String, choice: String};
+
+const escaped = (value: unknown) => String(value).replace(/[&<>]/g, (one) => ENTITIES[one]);
+
+/** The XML of a plugin with one more element at its end. */
+function withElement(xml: string, element: string) {
+  const end = xml.lastIndexOf('</');
+  const [, name = ''] = /^\s*<([\w.:-]+)/.exec(xml) ?? [];
+  if (end >= 0 && /\/\s*>\s*$/.exec(xml) === null) return `${xml.slice(0, end)}  ${element}\n${xml.slice(end)}`;
+  return xml.replace(/\/\s*>\s*$/, `>\n  ${element.replaceAll('$', '$$$$')}\n</${name}>`);
+}
+
+function replaced(model: Model, index: number, name: string, changed: string) {
+  const all = model.plugins.map((one, at) => (at === index ? changed : one.xml));
+  return {label: `Set ${name} of ${model.name}`,
+    ops: [{kind: 'set_plugins' as const, model: model.name, text: all.join('\n')}]};
 }

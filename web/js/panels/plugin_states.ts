@@ -1,9 +1,10 @@
 /** Whether a plugin runs, as the tree and the property panel show it. */
 import {h} from '../ui/dom.js';
-import type {PluginState, World} from '../protocol.js';
+import {defaultFields} from './plugin_fields.js';
+import type {Model, PluginState, World} from '../protocol.js';
 import type {Found} from './property_sections.js';
 import type {Row} from './world_rows.js';
-import type {Field} from './property_fields.js';
+import type {Field, Section} from './property_fields.js';
 
 /** The state of the plugin of a row; undefined before the simulator has sent it. */
 export function pluginState({document, pluginStates}: {document: World|null,
@@ -28,11 +29,20 @@ export function sensorState({document, pluginStates}: {document: World|null,
 export const stateTag = (text: string, reason: string) =>
   h('span', {class: text.endsWith('failed') ? 'tag failed' : 'tag', text, title: reason});
 
-/** The sections of a plugin, with its state after its name. */
-export function withState({title, sections}: Found, state: PluginState): Found {
+/**
+ * The sections of a plugin, with its state after its name, and the defaults of what its XML leaves out.
+ * @param model  that has the plugin; undefined for the world
+ */
+export function withState({title, sections}: Found, state: PluginState, model: Model|undefined,
+    index: number): Found {
   const [first, ...others] = sections;
   const fields: Field[] = [{path: 'state', label: 'state',
       type: 'text', fixed: true}];
   if (state.reason) fields.push({path: 'reason', label: 'reason', type: 'xml', fixed: true});
-  return {title, sections: [first, {key: 'state', title: '', target: '', entity: state, fields}, ...others]};
+  const made: Section[] = [first, {key: 'state', title: '', target: '', entity: state, fields}, ...others];
+  const left = model && defaultFields(model, index, state.parameters);
+  if (left?.fields.length) {
+    made.splice(-1, 0, {key: 'defaults', title: 'Parameters with default values', target: '', ...left});
+  }
+  return {title, sections: made};
 }

@@ -40,7 +40,7 @@ export class Properties {
     element.addEventListener('keydown', (event) => {
       if (event.key === 'Escape') byId('view').focus();
     });
-    for (const event of ['document', 'entity', 'connection'] as const) {
+    for (const event of ['document', 'entity', 'connection', 'plugins'] as const) {
       store.listen(event, this.update);
     }
     store.listen('poses', () => this.#posesCame());
@@ -131,7 +131,8 @@ export class Properties {
   #ofRow(): Found|null {
     const found = sectionsOf(this.store.document, this.row);
     const state = found && this.row?.kind === 'plugin' ? pluginState(this.store, this.row) : undefined;
-    return found && state ? withState(found, state) : found;
+    const {model = '', index = -1} = this.row ?? {};
+    return found && state ? withState(found, state, this.store.model(model), index) : found;
   }
 
   #show() {

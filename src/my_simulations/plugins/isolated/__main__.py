@@ -11,9 +11,11 @@ import os
 import resource
 import socket
 import sys
+from typing import List
 
 from ...child_process import die_with_parent
 from ...engine.message_pipe import Wire
+from ..base import Plugin
 from ..registry import plugin_class
 from .connection import Connection
 from .messages import TRACE_SIGNAL, Call, Start
@@ -44,12 +46,18 @@ def main() -> None:
 def _prepare(connection: Connection, start: Start) -> None:
     """Offer the functions that every plugin has."""
     context = RemoteContext(connection, start)
-    made = []
+    made: List[Plugin] = []
+
+    def load() -> None:
+        try:
+            made[0].load()
+        finally:
+            context.declare_parameters()
 
     def construct() -> None:
         plugin = plugin_class(start.where)(context)   # type: ignore[arg-type]
         made.append(plugin)
-        connection.methods.update(load=plugin.load, reset=plugin.reset, close=plugin.close,
+        connection.methods.update(load=load, reset=plugin.reset, close=plugin.close,
                                   clock_set=plugin.clock_set)
 
     connection.methods["construct"] = construct

@@ -35,7 +35,7 @@ HANDLES = {"link": "link", "model_link": "link", "joint": "joint", "publish": "t
 """Methods of the context that return handles, and the kinds of these."""
 
 CALLS_WITHOUT_RESULT = frozenset(("drive_level", "set_wrench", "set_wrench_law", "transform",
-                                  "info", "warn"))
+                                  "info", "warn", "declare_parameters"))
 """Methods of the context without a result."""
 
 HANDLE_CALLS = {"link": frozenset(()), "joint": frozenset(("drive", "set_servo")),

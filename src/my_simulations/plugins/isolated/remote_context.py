@@ -239,6 +239,10 @@ class RemoteContext:
         """Broadcast a transform to tf."""
         self._call_handle("transform", str(parent), str(child), pose_of(pose, "a transform"))
 
+    def declare_parameters(self) -> None:
+        """Tell the node which parameters the plugin has read."""
+        self._call_handle("declare_parameters", self.parameters.declared())
+
     def info(self, text: str) -> None:
         """Report information to the user."""
         self._call_handle("info", str(text))
