@@ -141,7 +141,8 @@ def test_a_number_of_a_topic_is_plotted_until_no_page_wants_it(case):
         # A world that stands still pushes once for each request.
         await browser.ask("watch", topics=watched)
         await browser.until(lambda: any(one.get("value") == 2.5 for one in browser.pushes))
-        assert any("no field 'angle'" in one.get("problem", "") for one in browser.pushes)
+        await browser.until(lambda: any("no field 'angle'" in one.get("problem", "")
+                                        for one in browser.pushes))
         assert not browser.views
         await browser.ask("watch", topics=[])
         await until(lambda: source.heard == {})
