@@ -125,7 +125,7 @@ class Topics(unittest.TestCase):
 
     def test_states_come_at_every_step(self):
         # Slowly, so that the node can keep up on a busy machine, too: a row of steps without a gap
-        # comes some time. The speed of a falling body tells which step a message shows.
+        # comes some time. The speed of the falling body identifies the step of a message.
         self.assertTrue(self.gazebo.spawn("one", where=pose(0.0, 0.0, 1000.0)).success)
         physics = self.gazebo.get_physics_properties()
         gained = -physics.gravity.z * physics.time_step

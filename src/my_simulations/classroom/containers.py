@@ -1,7 +1,7 @@
 """Starts and stops the containers of a class, and copies files, with docker, podman or kubectl.
 
-All that happens in a container happens as the student. What comes out of it is what a student may
-have written, so its size is limited, and links in it are left out.
+All that happens in a container happens as the student. A student may have written its output
+and files, so their size is limited, and links are left out.
 """
 from __future__ import annotations
 

@@ -57,7 +57,7 @@ _FIXED = _Masses(0.0, IDENTITY, (0.0, 0.0, 0.0))
 
 @dataclass(frozen=True)
 class _Rigid:
-    """A joint-free link, ready to be built; `carriers` tells the surface of each of `pieces`."""
+    """A joint-free link, ready to be built; `carriers` has the surface of each of `pieces`."""
 
     number: int
     static: bool
@@ -144,7 +144,7 @@ class Builder:
             recipes = self._shapes.recipes(
                 carrier.collisions if static else with_ends(link, MAX_SHAPES), meshes,
                 inverse(masses.com), static)
-            # One collision tells the surface of all: the pieces of a link may be thousands.
+            # All have the surface of the first collision: the pieces of a link may be thousands.
             alike = replace(carrier, collisions=carrier.collisions[:1]) if static else carrier
             found += [(recipe, alike) for recipe in recipes]
         return _Rigid(number, static, masses, compose(link.pose, masses.com),

@@ -240,7 +240,7 @@ class RemoteContext:
         self._call_handle("transform", str(parent), str(child), pose_of(pose, "a transform"))
 
     def declare_parameters(self) -> None:
-        """Tell the node which parameters the plugin has read."""
+        """Report to the node which parameters the plugin has read."""
         self._call_handle("declare_parameters", self.parameters.declared())
 
     def info(self, text: str) -> None:
