@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -285,3 +286,34 @@ def test_a_multirotor_of_rotors_hovers_where_its_controller_says_and_follows_vel
     # The drag of the rotors along the ground, 4 k w v, is what the controller's gain leaves.
     left = 2.5 * TOTAL / (2.5 * TOTAL + 4.0 * 1e-4 * hover)
     assert twist.linear == pytest.approx((1.0 * left, 0.5 * left, 0.2), abs=0.02)
+
+
+@pytest.mark.parametrize("step_size", [0.001, 0.002, 0.005])
+def test_the_torque_on_a_rotor_turns_the_body_the_other_way(case, step_size):
+    model = rotors_model()
+    model.plugins = [one for one in model.plugins if "motor_model" in one.filename]
+    one = case(replace(model, pose=Pose((0.0, 0.0, 100.0))))
+    physics = one.sim.physics
+    physics.set(replace(physics.settings, max_step_size=step_size), physics.gravity)
+    hover = math.sqrt(TOTAL * G / 4.0 / THRUST)
+    fast, slow = hover * 1.05, math.sqrt(2.0 - 1.05 ** 2) * hover
+
+    def command(*speeds):
+        one.deliver("mav/gazebo/command/motor_speed", angular_velocities=speeds)
+        one.sim.clock.advance(round(1.0 / step_size))
+
+    command(hover, hover, hover, hover)
+    before = one.sim.states.model_state("mav")[1]
+    command(fast, slow, fast, slow)   # the weight is carried, the counter-clockwise ones are faster
+    twist = one.sim.states.model_state("mav")[1]
+    # The torque of the air, what the rotors took as they became faster, and the drag of the rotors
+    # along their circle.
+    torque = MOMENT * THRUST * 2.0 * (fast ** 2 - slow ** 2)
+    gained = 2.0 * 4e-5 * (fast - slow) / 10.0
+    lag = (1.0 / 80.0 + 1.0 / 40.0) / 2.0
+    whole = 0.06 + 4.0 * (4e-5 + ROTOR_MASS * ARM ** 2)
+    damping = 2.0 * (fast + slow) * 1e-4 * ARM ** 2
+    left = math.exp(-damping * (1.0 - lag) / whole)
+    assert twist.angular[2] == pytest.approx(
+        -torque / damping * (1.0 - left) - gained / whole * left, rel=0.005)
+    assert twist.linear[2] == pytest.approx(before.linear[2], abs=0.02)

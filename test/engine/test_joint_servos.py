@@ -150,6 +150,19 @@ def test_servos_go_on_when_the_step_size_changes(lab: Lab):
     assert lab.joint(model)[0] == pytest.approx(0.3, abs=1e-4)
 
 
+@pytest.mark.parametrize("step_size", [0.001, 0.002, 0.005, 0.01])
+def test_a_motor_with_a_lag_is_where_its_time_constant_says(lab: Lab, step_size: float):
+    lab.configure(step_size=step_size)
+    model, row = upright(lab)
+    lab.apply(SetServos((JointServo(row, "velocity", 0.5, lags=(0.2, 0.1)),)))
+    lab.seconds(0.4)
+    risen = 0.5 * (1.0 - math.exp(-2.0))
+    assert lab.joint(model)[1] == pytest.approx(risen, rel=1e-3)
+    lab.apply(SetServos((JointServo(row, "velocity", -0.5, lags=(0.2, 0.1)),)))
+    lab.seconds(0.2)
+    assert lab.joint(model)[1] == pytest.approx((0.5 + risen) * math.exp(-2.0) - 0.5, rel=1e-3)
+
+
 def test_a_servo_of_a_joint_that_is_not_there_is_refused(lab: Lab):
     with pytest.raises(CommandRefusedError):
         lab.apply(SetServos((JointServo(7, "effort"),)))

@@ -73,6 +73,8 @@ class JointServo:
         feedforward: the command for each unit of target rate.
         drive_gains: of the loop of the drive.
         wraps: position errors are angles in -pi to pi.
+        lags: time constants, s, with which the rate of a velocity drive without loops follows its
+            target, a first-order lag: of one that rises, and of one that falls.
         lower, upper, most_rate, most_effort: limits of commands.
         soft: soft limits.
     """
@@ -89,6 +91,7 @@ class JointServo:
     feedforward: float = 0.0
     drive_gains: Optional[PidGains] = None
     wraps: bool = False
+    lags: Optional[Tuple[float, float]] = None
     lower: float = -math.inf
     upper: float = math.inf
     most_rate: float = math.inf

@@ -26,7 +26,7 @@ class ServoMemory:
     Attributes:
         loop, inner: of the loops about the target and of the drive.
         target: as in `JointServo`; of a servo that holds, the position that it holds.
-        before: the position commanded in the last step; None for none.
+        before: the position, or the rate with a lag, commanded in the last step; None for none.
         last: the effort (N m or N) or rate commanded in the last step.
     """
 

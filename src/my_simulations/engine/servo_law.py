@@ -89,7 +89,8 @@ class ServoLaw:
         steady: nothing is to be computed: a motor keeps `servo.target`.
         loop: about the target; None without gains.
         last: what `advance` returned last.
-        before: the position commanded in the last step; None when there was none.
+        before: the position, or the rate with a lag, commanded in the last step; None when there
+            was none.
     """
 
     def __init__(self, servo: JointServo, dt: float) -> None:
@@ -107,7 +108,7 @@ class ServoLaw:
         self.gives_effort = servo.drive == "effort" or self._inner is not None
         self.steady = (servo.spline is None and servo.gains is None and self._inner is None
                        and (servo.drive != "effort" or servo.target == 0.0)
-                       and servo.soft is None)
+                       and servo.soft is None and servo.lags is None)
         self.advance: Advance = self._advance
         if servo.soft is None and servo.drive == "effort" and self.loop is not None and not (
                 servo.of_rate or servo.wraps or self.loop.gains.antiwindup):
@@ -115,6 +116,8 @@ class ServoLaw:
         elif servo.soft is None and servo.drive == "position" and servo.spline is not None and (
                 self.loop is None and self._inner is None):
             self.advance = _position_motor(self, self._target, self._dt)
+        elif servo.lags is not None:
+            self.advance = _lagging_motor(self, servo.lags, self._dt)
 
     def moves(self, step: int) -> bool:
         """Whether the position that is wanted at a step count is on its way."""
@@ -281,6 +284,24 @@ def _position_motor(law: ServoLaw, target: _Target, dt: float) -> Advance:
             ahead = max(lower, command - way, min(upper, command + way, ahead))
         law.before = command
         law.last = found = (FOLLOW * (command - position) + ahead - command) / dt
+        return found
+
+    return advance
+
+
+def _lagging_motor(law: ServoLaw, lags: Tuple[float, float], dt: float) -> Advance:
+    """Return a `ServoLaw._advance` for a rate that follows its target with a first-order lag.
+
+    It begins with the rate of the joint.
+    """
+    servo = law.servo
+    target = max(-servo.most_rate, min(servo.most_rate, servo.target))
+    rising, falling = (math.exp(-dt / lag) for lag in lags)
+
+    def advance(position: float, rate: float, step: int) -> float:
+        before = rate if law.before is None else law.before
+        lack = (before - target) * (rising if target > before else falling)
+        law.before = law.last = found = target + lack
         return found
 
     return advance

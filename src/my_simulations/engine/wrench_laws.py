@@ -1,7 +1,8 @@
 """Wrenches on a link that follow from its state in every step, as arithmetic.
 
-Sources: hector_gazebo_plugins (force_based_move), Gazebo 11 (LiftDragPlugin, BuoyancyPlugin). No
-physics engine is needed here.
+Sources: hector_gazebo_plugins (force_based_move), hector_quadrotor_model (drag), Gazebo 11
+(LiftDragPlugin, BuoyancyPlugin), rotors_gazebo_plugins (motor model). No physics engine is needed
+here.
 """
 from __future__ import annotations
 
@@ -30,20 +31,25 @@ from ..geometry import (
 Wrench = Tuple[Vec3, Vec3]
 """Force at the centre of mass and torque, N and N m, world axes."""
 
+AxisState = Tuple[float, float]
+"""Position and rate of a joint axis, rad and rad/s or m and m/s."""
+
+AT_REST: AxisState = (0.0, 0.0)
+
 _SLOWEST = 0.01  # m/s
 
 
 class WrenchLaw(Protocol):
     """Computes the wrench that acts in a step. It has no memory, and can be pickled."""
 
-    def wrench(self, pose: Pose, twist: Twist, com: Vec3, joint: float = 0.0) -> Wrench:
+    def wrench(self, pose: Pose, twist: Twist, com: Vec3, joint: AxisState = AT_REST) -> Wrench:
         """Return the wrench for a state of the link.
 
         Args:
             pose: world pose of the link.
             twist: at its origin.
             com: its centre of mass in its own axes, m.
-            joint: position of the joint that the law follows, rad or m; 0 without one.
+            joint: state of the joint that the law follows.
         """
 
 
@@ -62,7 +68,7 @@ class VelocityForce:
     y: float
     yaw: float
 
-    def wrench(self, pose: Pose, twist: Twist, com: Vec3, joint: float = 0.0) -> Wrench:
+    def wrench(self, pose: Pose, twist: Twist, com: Vec3, joint: AxisState = AT_REST) -> Wrench:
         """See `WrenchLaw`."""
         vx, vy, _ = rotate(conjugate(pose.orientation), twist.linear)
         along = (self.gains[0] * (self.x - vx), self.gains[1] * (self.y - vy), 0.0)
@@ -82,10 +88,70 @@ class ForceAtPoint:
     force: Vec3
     point: Vec3
 
-    def wrench(self, pose: Pose, twist: Twist, com: Vec3, joint: float = 0.0) -> Wrench:
+    def wrench(self, pose: Pose, twist: Twist, com: Vec3, joint: AxisState = AT_REST) -> Wrench:
         """See `WrenchLaw`."""
         arm = subtract(transform(pose, self.point), transform(pose, com))
         return self.force, cross(arm, self.force)
+
+
+@dataclass(frozen=True)
+class BodyWrench:
+    """A constant wrench in axes that turn with the link.
+
+    Attributes:
+        force: N, at the origin of the link.
+        torque: N m.
+    """
+
+    force: Vec3
+    torque: Vec3
+
+    def wrench(self, pose: Pose, twist: Twist, com: Vec3, joint: AxisState = AT_REST) -> Wrench:
+        """See `WrenchLaw`."""
+        torque = subtract(self.torque, cross(com, self.force))
+        return rotate(pose.orientation, self.force), rotate(pose.orientation, torque)
+
+
+@dataclass(frozen=True)
+class BodyDrag:
+    """Drag of a link in the air, and a moment against its rotation, each by the square of a speed.
+
+    Source: hector_quadrotor_model. With the velocity v of the link's origin relative to the air and
+    its angular velocity w, both in axes of the link and with components of at most `most`, the
+    force is -`linear` v |v| and the torque -`angular` w |w|, component by component.
+
+    Attributes:
+        linear: N s^2/m^2.
+        angular: N m s^2/rad^2.
+        wind: velocity of the air, m/s, world axes.
+        most: m/s and rad/s.
+    """
+
+    linear: Vec3
+    angular: Vec3
+    wind: Vec3
+    most: float
+
+    def wrench(self, pose: Pose, twist: Twist, com: Vec3, joint: AxisState = AT_REST) -> Wrench:
+        """See `WrenchLaw`."""
+        return BodyWrench(*self.in_body_axes(pose, twist)).wrench(pose, twist, com)
+
+    def in_body_axes(self, pose: Pose, twist: Twist) -> Wrench:
+        """Force at the origin of the link and torque, N and N m, in its axes."""
+        back = conjugate(pose.orientation)
+        return (self._against(rotate(back, self._clamped(subtract(twist.linear, self.wind))),
+                              self.linear),
+                self._against(rotate(back, self._clamped(twist.angular)), self.angular))
+
+    def _clamped(self, vector: Vec3) -> Vec3:
+        x, y, z = (max(-self.most, min(self.most, value)) for value in vector)
+        return x, y, z
+
+    @staticmethod
+    def _against(motion: Vec3, gains: Vec3) -> Vec3:
+        speed = norm(motion)
+        return (-gains[0] * speed * motion[0], -gains[1] * speed * motion[1],
+                -gains[2] * speed * motion[2])
 
 
 @dataclass(frozen=True)
@@ -114,10 +180,10 @@ class Wing:
     radial: bool
     rudder: float = 0.0
 
-    def wrench(self, pose: Pose, twist: Twist, com: Vec3, joint: float = 0.0) -> Wrench:
+    def wrench(self, pose: Pose, twist: Twist, com: Vec3, joint: AxisState = AT_REST) -> Wrench:
         """See `WrenchLaw`."""
         lever = rotate(pose.orientation, self.centre)
-        force = self._force(pose, twist_at(twist, lever).linear, self.rudder * joint)
+        force = self._force(pose, twist_at(twist, lever).linear, self.rudder * joint[0])
         arm = subtract(add(pose.position, lever), transform(pose, com))
         return force, cross(arm, force)
 
@@ -151,3 +217,39 @@ class Wing:
         """A coefficient that grows with alpha by the first slope, past the stall by the second."""
         most = max(-self.stall, min(self.stall, alpha))
         return (slopes[0] * most + slopes[1] * (alpha - most)) * sweep
+
+
+@dataclass(frozen=True)
+class Rotor:
+    """Thrust and drag of a rotor that turns about the z axis of its link.
+
+    The thrust is k w |w| along the axis, with the rate w of the rotor's joint. The drag is
+    k_d |w| times the velocity of the air across the axis (Martin and Salaun, The True Role of
+    Accelerometer Feedback in Quadrotor Control, ICRA 2010). The torque against the rotation is the
+    thrust times a length; a motor that keeps the rate passes it on to the body that carries it.
+
+    Attributes:
+        thrust: k, N s^2/rad^2; negative for a rotor that lifts as it turns clockwise.
+        moment: ratio of the torque about the axis to the thrust, m, positive.
+        drag, rolling: force and torque by rate and velocity, N s^2/(rad m) and N s^2/rad.
+        wind: velocity of the air, m/s, world axes.
+    """
+
+    thrust: float
+    moment: float
+    drag: float
+    rolling: float
+    wind: Vec3
+
+    def wrench(self, pose: Pose, twist: Twist, com: Vec3, joint: AxisState = AT_REST) -> Wrench:
+        """See `WrenchLaw`."""
+        rate = joint[1]
+        speed = abs(rate)
+        axis = rotate(pose.orientation, (0.0, 0.0, 1.0))
+        air = subtract(twist.linear, self.wind)
+        across = subtract(air, scale(axis, dot(air, axis)))
+        lift = self.thrust * rate * speed
+        # Against the rotation, whichever way the rotor lifts.
+        brake = -math.copysign(lift * self.moment, rate)
+        return (add(scale(axis, lift), scale(across, -speed * self.drag)),
+                add(scale(axis, brake), scale(across, -speed * self.rolling)))

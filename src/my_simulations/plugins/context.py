@@ -260,7 +260,7 @@ class Context(Protocol):
         """As `set_wrench`, with the wrench that a law gives for the state of the link in each step.
 
         The engine computes it, so it costs no synchronization. `law` is one of
-        `engine.wrench_laws`; it can follow the position of a joint of the model.
+        `engine.wrench_laws`; it can follow the state of a joint of the model.
         """
 
     def move(self, pose: Pose, twist: Twist = STILL) -> None:

@@ -19,7 +19,7 @@ from ..description.transmission import Transmission
 from ..engine.commands import JointWrench
 from ..engine.rates import Rate
 from ..engine.ring import Clock
-from ..engine.wrench_laws import WrenchLaw
+from ..engine.wrench_laws import AT_REST, WrenchLaw
 from ..geometry import IDENTITY, STILL, Pose, Twist, Vec3
 from .context import PluginError
 from .parameters import Parameters
@@ -201,7 +201,7 @@ class FakeContext(FakeGraph):
             link = self.link(name)
             self.wrenches[name] = law.wrench(
                 link.pose, link.twist, link.inertial.pose.position,
-                self.joint(joint).position if joint else 0.0)
+                (self.joint(joint).position, self.joint(joint).velocity) if joint else AT_REST)
 
     def move(self, pose: Pose, twist: Twist = STILL) -> None:
         """Set the model's pose and twist."""

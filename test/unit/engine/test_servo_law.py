@@ -104,3 +104,18 @@ def test_a_position_or_rate_without_loops_needs_no_computing():
     assert ServoLaw(JointServo(0, "velocity", 1.0), DT).steady
     assert not ServoLaw(JointServo(0, "effort", 1.0), DT).steady
     assert not ServoLaw(JointServo(0, "position", 1.0, drive_gains=PidGains(1.0)), DT).steady
+
+
+def test_a_rate_follows_its_target_with_the_lag_of_its_direction():
+    servo = JointServo(0, "velocity", target=50.0, lags=(0.1, 0.2), most_rate=40.0)
+    law = ServoLaw(servo, DT)
+    risen = [law.advance(0.0, 10.0, step) for step in range(100)][-1]
+    assert risen == pytest.approx(40.0 - 30.0 * math.exp(-1.0))   # it began with the joint's rate
+    resumed = ServoLaw(servo, DT)
+    resumed.resume(law.memory)
+    for each in (law, resumed):
+        each.change(replace(servo, target=0.0))
+    fallen = [(law.advance(0.0, 0.0, step), resumed.advance(0.0, 0.0, step))
+              for step in range(100, 200)][-1]
+    assert fallen[0] == pytest.approx(risen * math.exp(-0.5))
+    assert fallen[0] == fallen[1]

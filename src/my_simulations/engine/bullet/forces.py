@@ -24,7 +24,7 @@ from ...geometry import (
 from ..ring import LINK_WIDTH
 from ..run_state import DamperMemory, LoopMemory
 from ..timed_forces import TimedEffort, TimedForce, TimedWrench
-from ..wrench_laws import WrenchLaw
+from ..wrench_laws import AT_REST, WrenchLaw
 from .bodies import Axis, Body, Part, set_sleep
 from .body_events import BodyEvent
 from .force_dependent_slip import ForceDependentSlip
@@ -316,7 +316,10 @@ class Forces(StepHelper):
     def _computed(self, wrench: TimedWrench, law: WrenchLaw, com: Vec3) -> Tuple[Vec3, Vec3]:
         """Return force and torque for the state of the link; zero if they are not finite."""
         n = _ROW.unpack(self._read_links((wrench.row,)))
-        joint = self._read_axes((wrench.axis_row,))[0] if wrench.axis_row >= 0 else 0.0
+        joint = AT_REST
+        if wrench.axis_row >= 0:
+            position, rate = self._read_axes((wrench.axis_row,))
+            joint = position, rate
         force, torque = law.wrench(Pose(n[0:3], n[3:7]), Twist(n[7:10], n[10:13]), com, joint)
         found = (force, torque) if is_finite(*force, *torque) else (_NOTHING, _NOTHING)
         self._by_law[wrench.force_id] = found

@@ -14,7 +14,7 @@ from typing import Any, Callable, Dict, NamedTuple, Optional, Sequence
 from ...description.transmission import Transmission
 from ...geometry import Vec3, conjugate, norm, rotate, rpy_from_quat, scale
 from ..context import Context, Ending, PluginError
-from ..flight.body_wrench import NO_WRENCH, Wrench, fill_wrench, push_at_origin
+from ..flight.body_wrench import NO_WRENCH, Wrench, fill_wrench, hold_wrench
 from ..frames import prefixed, stamped
 from .hardware import Hardware
 from .settings import Settings
@@ -99,7 +99,7 @@ class QuadrotorHardware(Hardware):
         self._begins: Dict[int, Callable[[], None]] = {}
         self._timer: Optional[Ending] = None
         self._wrench = NO_WRENCH
-        self._period_ns = 0
+        self._period = 0.0
         limits = Settings(context, "wrench_limits")
         self._limits = (VectorLimits(limits, "force"), VectorLimits(limits, "torque"))
         self._frame = prefixed(context, str(context.parameter("base_link_frame", "base_link")))
@@ -137,7 +137,9 @@ class QuadrotorHardware(Hardware):
             period: s of sim time between calls of `update`; 0 for each step.
         """
         self._updates[place], self._begins[place] = update, begin
-        self._period_ns = round(period * 1e9)
+        if period != self._period:
+            self._period = period
+            self._stop()
         self._begin()
 
     def leave(self, place: int) -> None:
@@ -171,26 +173,29 @@ class QuadrotorHardware(Hardware):
     def _begin(self) -> None:
         if self.running and self._updates and self._timer is None:
             self._last_ns = self._context.now_ns
-            self._timer = self._context.every(0.0, self._step)
+            self._timer = self._context.every(1.0 / self._period if self._period > 0.0 else 0.0,
+                                              self._update)
 
-    def _end(self) -> None:
+    def _stop(self) -> None:
         if self._timer is not None:
             self._timer.end()
             self._timer = None
-            self._wrench = NO_WRENCH
-            push_at_origin(self._context, self.link, self._wrench)
 
-    def _step(self) -> None:
+    def _end(self) -> None:
+        if self._timer is not None:
+            self._stop()
+            self._wrench = NO_WRENCH
+            hold_wrench(self._context, self.link, self._wrench)
+
+    def _update(self) -> None:
         now = self._context.now_ns
-        elapsed = now - self._last_ns
-        if elapsed < 0:
-            self._last_ns = now   # time was set back
-        elif elapsed >= self._period_ns and elapsed > 0:
-            self._last_ns = now
-            for place in sorted(self._updates):
-                self._updates[place](elapsed * 1e-9)
-            if self._wrenches.wanted:
-                message = stamped(self._context, "geometry_msgs/WrenchStamped", self._frame)
-                fill_wrench(message.wrench, self._wrench)
-                self._wrenches.publish(message)
-        push_at_origin(self._context, self.link, self._wrench)
+        elapsed, self._last_ns = now - self._last_ns, now
+        if elapsed <= 0:
+            return   # the motors have just started, or time was set back
+        for place in sorted(self._updates):
+            self._updates[place](elapsed * 1e-9)
+        if self._wrenches.wanted:
+            message = stamped(self._context, "geometry_msgs/WrenchStamped", self._frame)
+            fill_wrench(message.wrench, self._wrench)
+            self._wrenches.publish(message)
+        hold_wrench(self._context, self.link, self._wrench)

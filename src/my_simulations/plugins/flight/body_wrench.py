@@ -3,6 +3,7 @@ from __future__ import annotations
 
 from typing import Any, Tuple
 
+from ...engine.wrench_laws import BodyWrench
 from ...geometry import Vec3, conjugate, cross, rotate, subtract
 from ..context import Context, Link
 
@@ -13,11 +14,19 @@ NO_WRENCH: Wrench = ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
 
 
 def push_at_origin(context: Context, link: Link, wrench: Wrench) -> None:
-    """Apply a wrench at the origin of a link from now on, given in the axes of the link."""
+    """Apply a wrench at the origin of a link, given in its present axes, which then stand still."""
     force, torque = wrench
     torque = subtract(torque, cross(link.inertial.pose.position, force))
     turn = link.pose.orientation
     context.set_wrench(link.name, rotate(turn, force), rotate(turn, torque))
+
+
+def hold_wrench(context: Context, link: Link, wrench: Wrench) -> None:
+    """Apply a wrench at the origin of a link from now on; it turns with the link."""
+    if wrench == NO_WRENCH:
+        context.set_wrench(link.name, *wrench)   # without a law that keeps the link awake
+    else:
+        context.set_wrench_law(link.name, BodyWrench(*wrench))
 
 
 def body_twist(link: Link) -> Tuple[Vec3, Vec3]:

@@ -2,18 +2,19 @@
 
 Parameters, defaults, topics and laws are those of rotors_gazebo_plugins; the drag of a rotor is
 that of Martin and Salaun, The True Role of Accelerometer Feedback in Quadrotor Control, ICRA 2010.
-Where it differs: the motor that turns the rotor acts back on the body that carries it; nothing acts
-before the first command.
+Where it differs: the moments act on the rotor, whose motor passes them on to the body that carries
+it, and acts back on that body when it accelerates; nothing acts before the first command.
 """
 from __future__ import annotations
 
 import math
-from typing import Any, Callable, Optional, Sequence
+from typing import Any, Callable, Sequence
 
 from ...engine.drive_commands import JointServo, PidGains
-from ...geometry import Vec3, add, dot, rotate, scale, subtract
+from ...engine.wrench_laws import Rotor
+from ...geometry import ZERO3, Vec3
 from ..base import Plugin
-from ..context import Ending, PluginError
+from ..context import PluginError
 from ..finite_messages import finite_only
 from ..parameters import namespace_or
 
@@ -23,7 +24,10 @@ _TURNS = {"ccw": 1.0, "cw": -1.0}
 
 
 class MotorModel(Plugin):
-    """Turns `<jointName>`; thrust and drag act on `<linkName>`, moments on its parent."""
+    """Turns `<jointName>`; thrust, drag and their moments act on `<linkName>`.
+
+    The engine computes both, so that only commands cost a synchronization.
+    """
 
     def load(self) -> None:
         """Read parameters; offer topics."""
@@ -34,7 +38,6 @@ class MotorModel(Plugin):
                 raise PluginError(f"it has no <{name}>")
         self._joint, self._link = context.joint(p.text("jointName")), context.link(
             p.text("linkName"))
-        self._parent = context.link(self._joint.parent)
         self._number = p.integer("motorNumber", 0)
         self._direction = p.choice("turningDirection", _TURNS, -1.0)
         self._kind = p.text("motorType", "velocity")
@@ -53,11 +56,10 @@ class MotorModel(Plugin):
         context.subscribe(command, ACTUATORS, finite_only(context, command, self._receive))
         self._offer_wind(p.text("windSpeedSubTopic", "wind_speed"))
         self._offer_states()
-        self._timer: Optional[Ending] = None
-        self.reset()
+        self._commanded = False
 
     def _offer_wind(self, topic: str) -> None:
-        self._wind: Vec3 = (0.0, 0.0, 0.0)
+        self._wind: Vec3 = ZERO3
         try:
             self.context.subscribe(topic, "rotors_comm/WindSpeed",
                                    finite_only(self.context, topic, self._receive_wind))
@@ -86,18 +88,15 @@ class MotorModel(Plugin):
 
     def reset(self) -> None:
         """Stop the rotor."""
-        if self._timer is not None:
-            self._timer.end()
-            self._timer = None
-        self._wanted = self._speed = 0.0
-        self.clock_set()
-
-    def clock_set(self) -> None:
-        """Restart the time of the lags."""
-        self._last_ns = self.context.now_ns
+        if self._commanded:
+            self._commanded = False
+            self._joint.set_servo(JointServo(0, ""))
+            self.context.set_wrench(self._link.name, ZERO3, ZERO3)
 
     def _receive_wind(self, message: Any) -> None:
         self._wind = (message.velocity.x, message.velocity.y, message.velocity.z)
+        if self._commanded:
+            self._apply_air()
 
     def _receive(self, message: Any) -> None:
         values = message.angular_velocities
@@ -107,14 +106,28 @@ class MotorModel(Plugin):
             return
         wanted = float(values[self._number])
         if self._kind == "velocity":
-            self._wanted = min(wanted, self._most_speed)
-            if self._timer is None:
-                self.clock_set()
-                self._timer = self.context.every(0.0, self.update)
+            self._turn(min(wanted, self._most_speed))
         elif self._kind == "force":
             self._joint.set_servo(JointServo(0, "effort", target=wanted))
         else:
             self._joint.set_servo(self._position_servo(wanted))
+
+    def _turn(self, speed: float) -> None:
+        """Have the rotor follow a speed, rad/s of the real one, and the air act on it."""
+        # A clockwise rotor is slower when its rate rises.
+        lags = (self._up_time, self._down_time)
+        self._joint.set_servo(JointServo(
+            0, "velocity", target=self._direction * speed / self._slowdown,
+            lags=lags if self._direction > 0.0 else lags[::-1], most_effort=_MOTOR_EFFORT))
+        if not self._commanded:
+            self._commanded = True
+            self._apply_air()
+
+    def _apply_air(self) -> None:
+        slow = self._slowdown
+        self.context.set_wrench_law(self._link.name, Rotor(
+            self._direction * self._thrust_constant * slow * slow, self._moment_constant,
+            self._drag * slow, self._rolling * slow, self._wind), self._joint.name)
 
     def _position_servo(self, angle: float) -> JointServo:
         found = self.context.parameters.children("joint_control_pid")
@@ -126,23 +139,3 @@ class MotorModel(Plugin):
             0, "effort", target=angle, wraps=True, most_effort=most if most > 0.0 else math.inf,
             gains=PidGains(pid.number("p", 0.0), pid.number("i", 0.0), pid.number("d", 0.0),
                            -abs(pid.number("iMin", 0.0)), abs(pid.number("iMax", 0.0))))
-
-    def update(self) -> None:
-        """Apply the rotor's forces in each step."""
-        dt = (self.context.now_ns - self._last_ns) * 1e-9
-        self._last_ns = self.context.now_ns
-        speed = self._joint.velocity * self._slowdown
-        thrust = self._direction * math.copysign(speed * speed, speed) * self._thrust_constant
-        turn = self._link.pose.orientation
-        axis = rotate(turn, (0.0, 0.0, 1.0))
-        air = subtract(self._link.twist.linear, self._wind)
-        across = subtract(air, scale(axis, dot(air, axis)))
-        self.context.set_wrench(self._link.name,
-                          add(scale(axis, thrust), scale(across, -abs(speed) * self._drag)),
-                          (0.0, 0.0, 0.0))
-        self.context.set_wrench(self._parent.name, (0.0, 0.0, 0.0), add(
-            scale(axis, -self._direction * thrust * self._moment_constant),
-            scale(across, -abs(speed) * self._rolling)))
-        lag = self._up_time if self._wanted > self._speed else self._down_time
-        self._speed = self._wanted + (self._speed - self._wanted) * math.exp(-dt / lag)
-        self._joint.drive(self._direction * self._speed / self._slowdown, _MOTOR_EFFORT)

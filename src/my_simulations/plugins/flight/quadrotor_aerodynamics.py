@@ -9,17 +9,20 @@ original turns them the wrong way about x); the wind of the world counts until o
 """
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any, List, Optional
 
-from ...geometry import Vec3, conjugate, norm, rotate, subtract
+from ...engine.wrench_laws import BodyDrag
+from ...geometry import Vec3
 from ..base import Plugin
 from ..context import Context, PluginError
 from ..finite_messages import finite_only
 from ..frames import stamped
 from ..parameters import namespace_or
-from .body_wrench import clamped_vector, fill_wrench, push_at_origin
+from .body_wrench import fill_wrench
 
 MOST_VELOCITY = 100.0   # m/s and rad/s: faster motion counts as this (hector_quadrotor_model)
+_WIND_HZ = 10.0         # how often it looks for another wind of the world
 
 
 class QuadrotorAerodynamics(Plugin):
@@ -30,9 +33,12 @@ class QuadrotorAerodynamics(Plugin):
         context, p = self.context, self.context.parameters
         context.use_namespace(namespace_or(p, ""))
         self._link = context.link("")
-        self._linear_x_y, self._linear_z, self._angular_x_y, self._angular_z = model_parameters(
+        across, along, turn_across, turn_along = model_parameters(
             context, p.text("paramNamespace", "quadrotor_aerodynamics"),
             ["C_wxy", "C_wz", "C_mxy", "C_mz"])
+        self._drag = BodyDrag((across, across, along), (turn_across, turn_across, turn_along),
+                              context.wind, MOST_VELOCITY)
+        context.set_wrench_law(self._link.name, self._drag)
         self._wind: Optional[Vec3] = None
         topic = p.text("windTopicName", "/wind")
         if topic:
@@ -41,35 +47,30 @@ class QuadrotorAerodynamics(Plugin):
         self._frame = p.text("frameId", self._link.name)
         self._wrenches = context.publish(p.text("wrenchTopic", "aerodynamics/wrench"),
                                          "geometry_msgs/WrenchStamped", 10)
-        context.every(0.0, self.update)
+        context.observe(0.0, self._publish, [self._wrenches])
+        context.every(_WIND_HZ, self.update)
 
     def reset(self) -> None:
-        """The wind is that of the world."""
+        """Drag ended with the reset. The wind is that of the world."""
         self._wind = None
+        self._drag = replace(self._drag, wind=self.context.wind)
+        self.context.set_wrench_law(self._link.name, self._drag)
 
     def _receive(self, message: Any) -> None:
         self._wind = (message.x, message.y, message.z)
+        self.update()
 
     def update(self) -> None:
-        """Before each step."""
-        context, twist = self.context, self._link.twist
-        wind = context.wind if self._wind is None else self._wind
-        back = conjugate(self._link.pose.orientation)
-        velocity = rotate(back, clamped_vector(subtract(twist.linear, wind), MOST_VELOCITY))
-        spin = rotate(back, clamped_vector(twist.angular, MOST_VELOCITY))
-        wrench = (_drag(velocity, self._linear_x_y, self._linear_z),
-                  _drag(spin, self._angular_x_y, self._angular_z))
-        push_at_origin(context, self._link, wrench)
-        if self._wrenches.wanted:
-            message = stamped(context, "geometry_msgs/WrenchStamped", self._frame)
-            fill_wrench(message.wrench, wrench)
-            self._wrenches.publish(message)
+        """Follow the wind."""
+        wind = self.context.wind if self._wind is None else self._wind
+        if wind != self._drag.wind:
+            self._drag = replace(self._drag, wind=wind)
+            self.context.set_wrench_law(self._link.name, self._drag)
 
-
-def _drag(velocity: Vec3, across: float, along: float) -> Vec3:
-    speed = norm(velocity)
-    return (-across * speed * velocity[0], -across * speed * velocity[1],
-            -along * speed * velocity[2])
+    def _publish(self) -> None:
+        message = stamped(self.context, "geometry_msgs/WrenchStamped", self._frame)
+        fill_wrench(message.wrench, self._drag.in_body_axes(self._link.pose, self._link.twist))
+        self._wrenches.publish(message)
 
 
 def model_parameters(context: Context, namespace: str, names: List[str]) -> List[float]:

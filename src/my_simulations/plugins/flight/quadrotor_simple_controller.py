@@ -17,7 +17,7 @@ from ..context import Ending
 from ..finite_messages import finite_only
 from ..parameters import namespace_or
 from ..sensors.hector_errors import rate_of
-from .body_wrench import NO_WRENCH, fill_wrench, push_at_origin
+from .body_wrench import NO_WRENCH, fill_wrench, hold_wrench
 from .filtered_pid import FilteredPid
 
 _TAKE_OFF = 0.1        # m/s: a command to rise this fast starts the motors
@@ -38,8 +38,7 @@ class QuadrotorSimpleController(Plugin):
         self._yaw = FilteredPid(p, "yaw")
         self._x, self._y = FilteredPid(p, "velocityXY"), FilteredPid(p, "velocityXY")
         self._z = FilteredPid(p, "velocityZ")
-        hertz = rate_of(p)
-        self._period_ns = round(1e9 / hertz) if hertz > 0.0 else 0
+        self._hertz = rate_of(p)
         command = self._topic("velocity_topic", p.text("topicName", "cmd_vel"))
         if command:
             context.subscribe(command, "geometry_msgs/Twist",
@@ -68,10 +67,11 @@ class QuadrotorSimpleController(Plugin):
             self._timer.end()
             self._timer = None
         self._begin()
+        self._apply()
 
     def clock_set(self) -> None:
-        """The next update is due at once."""
-        self._last_ns = self.context.now_ns - self._period_ns
+        """Restart the time since the last update."""
+        self._last_ns = self.context.now_ns
 
     def _receive(self, message: Any) -> None:
         self._command = (message.linear.x, message.linear.y, message.linear.z)
@@ -87,7 +87,7 @@ class QuadrotorSimpleController(Plugin):
             pid.reset()
         self._velocity = self._link.twist.linear
         self.clock_set()
-        self._timer = self.context.every(0.0, self.update)
+        self._timer = self.context.every(self._hertz, self.update)
 
     def _shut_down(self) -> None:
         """Stop the motors."""
@@ -99,15 +99,16 @@ class QuadrotorSimpleController(Plugin):
             self._publish()
 
     def update(self) -> None:
-        """Before each step."""
+        """At the rate of the controller."""
         elapsed_ns = self.context.now_ns - self._last_ns
-        if elapsed_ns >= self._period_ns and elapsed_ns > 0:
-            self._last_ns = self.context.now_ns
-            self._control(elapsed_ns * 1e-9)
-            if self._has_landed():
-                self._shut_down()
-                return
-            self._publish()
+        if elapsed_ns <= 0:
+            return
+        self._last_ns = self.context.now_ns
+        self._control(elapsed_ns * 1e-9)
+        if self._has_landed():
+            self._shut_down()
+            return
+        self._publish()
         self._apply()
 
     def _has_landed(self) -> bool:
@@ -143,7 +144,7 @@ class QuadrotorSimpleController(Plugin):
         return square / along if abs(along) > 1e-6 * square else 0.0
 
     def _apply(self) -> None:
-        push_at_origin(self.context, self._link, self._wrench)
+        hold_wrench(self.context, self._link, self._wrench)
 
     def _publish(self) -> None:
         if self._wrenches.wanted:
