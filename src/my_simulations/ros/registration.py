@@ -13,10 +13,17 @@ SUBSCRIBER_QUEUE = 10
 
 
 def class_of(row: Row) -> Any:
-    """The message or service class of a row. Raises ImportError where its package is not built."""
+    """Import the message or service class of a row.
+
+    Raises:
+        ImportError: the package is not built, or was built before the definition was added.
+    """
     package, name = row.type.split("/")
-    kind = "srv" if row.direction is SERVES else "msg"
-    return getattr(importlib.import_module(f"{package}.{kind}"), name)
+    module = importlib.import_module(f"{package}.{'srv' if row.direction is SERVES else 'msg'}")
+    try:
+        return getattr(module, name)
+    except AttributeError as error:
+        raise ImportError(f"{module.__name__} has no {name}") from error
 
 
 def publisher(name: str, **options: Any) -> rospy.Publisher:
@@ -51,7 +58,7 @@ def register(rows: Iterable[Row], handlers: Dict[str, Any],
         try:
             kind = class_of(row)
         except ImportError:
-            rospy.logwarn("service %s is not available: %s is not installed; run tools/run",
+            rospy.logwarn("service %s is not available: %s is not built; run tools/run",
                           row.name, row.type)
             continue
         group, method = row.handler.split(".")
