@@ -39,6 +39,8 @@ _TABLE: Tuple[Tuple[str, Tuple[Tuple[str, str, str, str], ...]], ...] = (
         ("xml-no-root", ERROR, "The document has no root element.", "Add <sdf> or <robot>."),
         ("xml-malformed", EITHER, "The document is not well-formed XML; repaired with a warning "
          "where Gazebo's parser accepts it.", "Correct the given line."),
+        ("xml-end-tag", WARNING, "An end tag closes nothing and is ignored.",
+         "Correct its name, or remove it."),
         ("xml-truncated", ERROR, "The document ends inside an element.", "Restore the file."),
         ("xml-encoding", WARNING, "The text is not in its encoding; see the message.",
          "Save it as UTF-8."),

@@ -414,11 +414,14 @@ rosrun my_simulations spawn_object.py --package my_package my_object
 
 
 def test_a_package_with_an_object_fulfils_the_assignment_of_objects(tmp_path):
-    for name, place in (("right", "[1.0, 0.0, 0.1]"), ("beside", "[1.5, 0.0, 0.1]")):
+    wrong = OBJECT.replace("</visual>", "\n</visul>")
+    for name, place, object_ in (("right", "[1.0, 0.0, 0.1]", OBJECT),
+                                 ("beside", "[1.5, 0.0, 0.1]", OBJECT),
+                                 ("wrong", "[1.0, 0.0, 0.1]", wrong)):
         package = tmp_path / "submissions" / name
         for inside, text in (
                 ("package.xml", PACKAGE.format("my_package")), ("spawn.sh", SPAWN),
-                ("objects/my_object.urdf", OBJECT),
+                ("objects/my_object.urdf", object_),
                 ("config/empty_world/object_locations.yaml",
                  f"my_object: {{model: my_object, model_type: urdf, position: {place},"
                  " orientation: [0, 0, 0]}\n")):
@@ -430,3 +433,6 @@ def test_a_package_with_an_object_fulfils_the_assignment_of_objects(tmp_path):
     place = float(rows["beside"]["the object is at its place"])
     assert 1.0 < place < 2.0
     assert float(rows["beside"]["points"]) == pytest.approx(7.0 + place, abs=0.02)
+    assert float(rows["wrong"]["points"]) == 0.0
+    page = (tmp_path / "marks" / "students" / "wrong" / "index.html").read_text()
+    assert "&lt;/visul&gt; closes nothing" in page and "objects/my_object.urdf:5" in page

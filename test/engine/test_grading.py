@@ -59,13 +59,19 @@ def test_worlds_are_run_and_marked_with_partial_points(folder, capsys):
     (folder / "broken").mkdir()
     (folder / "broken" / "a.world").write_text("<sdf version='1.6'>\n<world>")
     (folder / "empty").mkdir()
-    status, rows = grade(folder, "good", "near", "none", "broken", "empty", "--jobs", "2")
+    submit(folder, "tag", ("ball", 0, 3))
+    text = (folder / "tag" / "a.world").read_text()
+    (folder / "tag" / "a.world").write_text(text.replace("</collision>", "</colision>"))
+    status, rows = grade(folder, "good", "near", "none", "broken", "empty", "tag", "--jobs", "2")
     assert status == 0, capsys.readouterr().err
     assert points(rows["good"]) == [1, 4, 4, 1, 0]
     assert points(rows["near"]) == [1, 2, 4, 1, 0]
     assert points(rows["none"]) == [1, 0, 0, 0, 0]
     assert points(rows["broken"])[1:] == points(rows["empty"])[1:] == [0, 0, 0, 0]
+    assert points(rows["tag"]) == [0, 0, 0, 0, 0]
     students = folder / "marks" / "students"
+    page = (students / "tag" / "index.html").read_text()
+    assert page.count("&lt;/colision&gt; closes nothing") == 5 and "a.world:4" in page
     found = json.loads((students / "near" / "results.json").read_text())
     assert "0.510 m from its place" in found["tests"][1]["output"]
     assert "touches ground_plane at 0." in found["tests"][4]["output"]

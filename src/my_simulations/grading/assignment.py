@@ -156,10 +156,13 @@ class SubmissionForm:
     Attributes:
         world: patterns of the world file's path; () if it contains none.
         run: patterns of the program's path; () if it contains none.
+        models: patterns of the paths of model files, which must parse for checks of the running
+            world to give points.
     """
 
     world: Tuple[str, ...] = ()
     run: Tuple[str, ...] = ()
+    models: Tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)

@@ -64,9 +64,9 @@ class _AssignmentReader(AssignmentValues):
 
     def _form(self, value: Any) -> SubmissionForm:
         path = ("submission",)
-        inside = self.mapping(value, path, ("world", "run"))
-        return SubmissionForm(self.names(inside.get("world"), (*path, "world")),
-                              self.names(inside.get("run"), (*path, "run")))
+        keys = ("world", "run", "models")
+        inside = self.mapping(value, path, keys)
+        return SubmissionForm(*(self.names(inside.get(key), (*path, key)) for key in keys))
 
     def _limits(self, value: Any) -> GradeLimits:
         inside = self.mapping(value, ("limits",), _LIMITS)

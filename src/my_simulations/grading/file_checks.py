@@ -1,16 +1,16 @@
-"""Checks of a world file: its faults, and the entities that it contains."""
+"""Checks of files: the faults of a world file and its entities, and model files that parse."""
 from __future__ import annotations
 
 import os
-from dataclasses import dataclass
-from typing import Callable, Dict, List, Sequence
+from dataclasses import dataclass, replace
+from typing import Callable, Dict, List, Optional, Sequence
 
 from ..description.flatten import flattened
 from ..description.model import Model
 from ..description.world import World
-from ..errors import InputError, Issue, error, errors_of, strictly
+from ..errors import InputError, Issue, Severity, error, errors_of, strictly
 from ..formats.reading import read_any
-from ..formats.xml.parsing import content
+from ..formats.xml.parsing import STRAY_END_TAG, content
 from ..resources.resolver import Resolver
 from .assignment import (
     DYNAMIC,
@@ -27,6 +27,7 @@ from .assignment import (
 from .mark import CheckResult, result
 
 MISSING = "the submission contains no world file"
+NO_WORLD = "the file contains no <world>"
 
 
 @dataclass(frozen=True)
@@ -45,7 +46,10 @@ class WorldFile:
 
 
 def read_world_file(folder: str, name: str, resolver: Resolver) -> WorldFile:
-    """Read a world file of a submission. Never raises for a fault of the file."""
+    """Read a world file of a submission. Never raises for a fault of the file.
+
+    A wrong end tag is an error: the editor guesses which elements it was to close, a mark must not.
+    """
     path = os.path.join(folder, name)
     try:
         loaded, issues = read_any(content(path), resolver, path)
@@ -54,7 +58,28 @@ def read_world_file(folder: str, name: str, resolver: Resolver) -> WorldFile:
     except OSError as fault:
         return WorldFile(name, None, [error(
             "file-unreadable", f"cannot be read: {fault.strerror or fault}", file=path)])
+    stray = [replace(issue, severity=Severity.ERROR) for issue in issues
+             if issue.code == STRAY_END_TAG and issue.file == path]
+    if stray:
+        return WorldFile(name, None, stray)
     return WorldFile(name, loaded if isinstance(loaded, World) else None, issues)
+
+
+def invalid_model_file(folder: str, names: Sequence[str], resolver: Resolver) -> Optional[Issue]:
+    """The first error of the first model file that does not parse; None if all parse.
+
+    Args:
+        folder: the submission.
+        names: paths of the files in it; `Issue.file` of the result is one of them.
+        resolver: finds what they refer to.
+    """
+    for name in names:
+        read = read_world_file(folder, name, resolver)
+        faults = [issue for issue in errors_of(read.issues) if issue.code.startswith("xml-")
+                  or issue.code == "file-unreadable"]
+        if faults:
+            return replace(faults[0], file=name)
+    return None
 
 
 def check_files(assignment: Assignment, file: "WorldFile | None") -> List[CheckResult]:
@@ -68,7 +93,7 @@ def _valid(check: ValidFile, file: "WorldFile | None") -> CheckResult:
         return result(check, 0.0, MISSING)
     faults = errors_of(strictly(file.issues) if check.strict else file.issues)
     if not faults and file.world is None:
-        return result(check, 0.0, "the file contains no <world>", file.name)
+        return result(check, 0.0, NO_WORLD, file.name)
     if not faults:
         return result(check, 1.0)
     first = faults[0]
@@ -82,7 +107,8 @@ def _counted(check: EntityCount, file: "WorldFile | None") -> CheckResult:
         return result(check, 0.0, MISSING)
     if file.world is None:
         first = errors_of(file.issues)[:1]
-        return result(check, 0.0, "the world file cannot be read", file.name,
+        why = f": {first[0].message}" if first else ""
+        return result(check, 0.0, f"the world file cannot be read{why}", file.name,
                       first[0].line if first else 0)
     names = _NAMES[check.kind](file.world) if not check.shape else _shaped(check, file.world)
     counted = [name for name in names if name not in check.excluded]

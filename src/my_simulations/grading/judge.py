@@ -15,19 +15,26 @@ from typing import Any, Dict, List, Optional
 
 from ..editor.logs.replay_page import write_replay
 from ..editor.logs.world_record import LogRecord
-from ..errors import InputError, SimulationError
+from ..errors import InputError, SimulationError, errors_of
 from ..python_api import OpenWorld
 from ..python_api.robots import RobotOptions
 from ..resources.resolver import Resolver
 from .assignment import Assignment, Launch, Rostest, Timed
 from .assignment_file import read_assignment
-from .file_checks import MISSING, WorldFile, check_files, read_world_file
+from .file_checks import (
+    MISSING,
+    NO_WORLD,
+    WorldFile,
+    check_files,
+    invalid_model_file,
+    read_world_file,
+)
 from .launch_checks import LaunchChecks, package_folders
 from .mark import CheckResult, GradingError, result
 from .program import OUTPUT, Program, submission_account
 from .program_graph import RosGraph, graph_environment
 from .result_stream import ResultWriter
-from .submission import matching
+from .submission import all_matching, matching
 from .world_run import WorldRun, choice_of
 
 _EVERY_S = 1.0 / 30.0   # between two states of the replay, s of sim time
@@ -90,13 +97,26 @@ class Judge:
         for found in check_files(self._assignment, file):
             self._writer.result(found)
         if self._assignment.of(Timed):
-            path = os.path.join(self._folder, name) if name else self._assignment.world
-            self._run_world(path, name)
+            self._check_running_world(name, file)
         launches = LaunchChecks(self._assignment, self._scratch, self._slot)
         for launch in self._assignment.of(Launch):
             self._writer.result(launches.launch(launch))
         for test in self._assignment.of(Rostest):
             self._writer.result(launches.rostest(test))
+
+    def _check_running_world(self, name: str, file: Optional[WorldFile]) -> None:
+        """Decide the checks of the running world if its files parse."""
+        if file is not None and file.world is None:
+            first = errors_of(file.issues)[:1]
+            self._refuse_timed(first[0].message if first else NO_WORLD, name,
+                               first[0].line if first else 0)
+            return
+        models = all_matching(self._folder, self._assignment.form.models)
+        fault = invalid_model_file(self._folder, models, self._resolver)
+        if fault is not None:
+            self._refuse_timed(fault.message, fault.file, fault.line)
+            return
+        self._run_world(os.path.join(self._folder, name) if name else self._assignment.world, name)
 
     def _run_world(self, path: str, name: str) -> None:
         if not path:

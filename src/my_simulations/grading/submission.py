@@ -88,12 +88,17 @@ def matching(folder: str, patterns: Sequence[str]) -> str:
     A pattern is a path in the submission, or a name alone, which is looked for in all folders;
     earlier patterns and shorter paths come first.
     """
+    return next(iter(all_matching(folder, patterns)), "")
+
+
+def all_matching(folder: str, patterns: Sequence[str]) -> List[str]:
+    """All files of a submission that fit one of the patterns, in the order of `matching`."""
     names = sorted((relative for relative, _ in regular_files(folder)),
                    key=lambda name: (name.count(os.sep), name))
-    for pattern in patterns:
-        for name in names:
-            whole = fnmatch.fnmatchcase(name, pattern)
-            if whole or ("/" not in pattern
-                         and fnmatch.fnmatchcase(os.path.basename(name), pattern)):
-                return name
-    return ""
+    found = [name for pattern in patterns for name in names if _fits(name, pattern)]
+    return list(dict.fromkeys(found))
+
+
+def _fits(name: str, pattern: str) -> bool:
+    return fnmatch.fnmatchcase(name, pattern) or (
+        "/" not in pattern and fnmatch.fnmatchcase(os.path.basename(name), pattern))

@@ -61,7 +61,7 @@ def test_a_line_beyond_what_the_parser_counts_is_unknown_not_wrong():
 def test_a_stray_end_tag_is_dropped_with_a_warning():
     model, issues = read(sdf("</wrong>\n" + MODEL))
     assert model.links[0].name == "l"
-    assert warnings(issues) == ["xml-malformed"]
+    assert warnings(issues) == ["xml-end-tag"]
 
 
 def test_attributes_without_quotes_or_blanks_are_read():

@@ -93,6 +93,12 @@ def test_faults_of_checks_have_their_lines(tmp_path, check, message):
     assert all(code.startswith("grade-") or code == "file-not-found" for _, code, _ in found)
 
 
+def test_model_files_of_a_submission_are_named_by_patterns(tmp_path):
+    found = read(tmp_path, "submission: {models: ['objects/*.urdf', b.sdf]}\nworld: "
+                           "worlds/empty.world\nchecks:\n  - {points: 1, place: a, at: [1, 2]}\n")
+    assert found.form.models == ("objects/*.urdf", "b.sdf")
+
+
 def test_faults_of_the_file_are_named(tmp_path):
     assert "a mapping" in faults(tmp_path, "- 1\n")[0][2]
     assert "'checks' must be a list" in faults(tmp_path, "lab: a\n")[0][2]

@@ -4,7 +4,11 @@ from __future__ import annotations
 import pytest
 
 from my_simulations.grading.assignment_file import read_assignment
-from my_simulations.grading.file_checks import check_files, read_world_file
+from my_simulations.grading.file_checks import (
+    check_files,
+    invalid_model_file,
+    read_world_file,
+)
 from my_simulations.resources.resolver import Resolver
 
 BOX = """<model name="{name}"><static>{static}</static><link name="l"><visual name="v"><geometry>
@@ -53,14 +57,33 @@ def test_faults_of_a_file_are_told_with_line(tmp_path):
                               "{points: 1, check_model: strict, name: s}")
     assert strict.points == 0 and strict.file == "a.world" and strict.line == 4
     assert "one" in strict.reason
-    repaired = models("a").replace("</box>", "</bx>\n</box>")
-    lenient, strict = results(tmp_path, repaired, "{points: 1, check_model: lenient, name: l}",
+    unclosed = models("a").replace("</box>", "<a></box>")
+    lenient, strict = results(tmp_path, unclosed, "{points: 1, check_model: lenient, name: l}",
                               "{points: 1, check_model: strict, name: s}")
-    assert (lenient.points, strict.points) == (1, 0) and "</bx> closes nothing" in strict.reason
+    assert (lenient.points, strict.points) == (1, 0) and "never closed" in strict.reason
     broken, counted = results(tmp_path, "<sdf><world>", "{points: 1, check_model: lenient}",
                               "{points: 1, count: model, at_least: 1}")
     assert (broken.points, counted.points) == (0, 0)
-    assert counted.reason == "the world file cannot be read"
+    assert counted.reason.startswith("the world file cannot be read: ")
+
+
+def test_a_wrong_end_tag_leaves_no_points_for_the_content(tmp_path):
+    wrong = models("a").replace("</box>", "\n</bx>")
+    for found in results(tmp_path, wrong, "{points: 1, check_model: lenient}",
+                         "{points: 1, count: model, at_least: 1}"):
+        assert found.points == 0 and "</bx> closes nothing" in found.reason
+        assert (found.file, found.line) == ("a.world", 4)
+
+
+def test_the_first_model_file_that_does_not_parse_is_found(tmp_path):
+    robot = "<robot name='r'>\n<link name='l'>{}</link></robot>"
+    texts = {"right.urdf": robot.format(""), "open.urdf": robot.format("<mesh>"),
+             "unknown.urdf": robot.format("<word/>"), "wrong.urdf": robot.format("\n</visul>")}
+    for name, text in texts.items():
+        (tmp_path / name).write_text(text)
+    fault = invalid_model_file(str(tmp_path), list(texts), Resolver())
+    assert (fault.file, fault.line, fault.message) == ("wrong.urdf", 3, "</visul> closes nothing")
+    assert invalid_model_file(str(tmp_path), list(texts)[:3], Resolver()) is None
 
 
 def test_a_submission_without_a_world_gets_no_points(tmp_path):

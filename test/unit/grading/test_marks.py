@@ -16,6 +16,7 @@ from my_simulations.grading.pages import write_pages
 from my_simulations.grading.program import python_error
 from my_simulations.grading.result_stream import ResultReader, ResultWriter
 from my_simulations.grading.submission import (
+    all_matching,
     content_key,
     matching,
     regular_files,
@@ -116,6 +117,8 @@ def test_submissions_are_named_and_their_content_decides(tmp_path):
     assert content_key(anna.path) != before
     assert matching(anna.path, ("*.sdf", "test.world")) == "world/test.world"
     assert matching(anna.path, ("other.world",)) == ""
+    (tmp_path / "anna" / "a.sdf").write_text("<sdf/>")
+    assert all_matching(anna.path, ("*.world", "*.sdf", "a.*")) == ["world/test.world", "a.sdf"]
     with pytest.raises(CommandError, match="the name anna"):
         submissions_of([str(tmp_path / "anna"), str(tmp_path / "anna")])
     with pytest.raises(CommandError, match="no submission"):

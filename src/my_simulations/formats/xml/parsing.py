@@ -26,6 +26,9 @@ _BOMS = (
 LARGEST = 64 << 20
 """Largest size of a document, bytes."""
 
+STRAY_END_TAG = "xml-end-tag"
+"""Code of the warning about an end tag that closes nothing."""
+
 _MOST_TAGS = 2000000
 _COMMENT = re.compile("<!--.*?-->", re.DOTALL)
 _LONG_TAG = re.compile(rb"<[^<]{8000,}")
@@ -250,9 +253,9 @@ def _recover(text: str, fault: Any, file: str, log: IssueCollector) -> Any:
         message = faults[-1].message if faults else fault.msg
         raise _fault("xml-malformed", f"not well formed: {message}", file, line, column)
     for repair in result.repairs:
-        log.add(warning("xml-malformed", repair.message, file=file, line=repair.line,
-                        column=repair.column, tolerated=True, hint="read as if it were closed there"
-                        if repair.unclosed else ""))
+        log.add(warning(STRAY_END_TAG if repair.stray else "xml-malformed", repair.message,
+                        file=file, line=repair.line, column=repair.column, tolerated=True,
+                        hint="read as if it were closed there" if repair.unclosed else ""))
     if faults:
         first = faults[0]
         more = f" (and {len(faults) - 1} more)" if len(faults) > 1 else ""

@@ -23,12 +23,18 @@ _SKIP = (("<!--", "-->"), ("<![CDATA[", "]]>"), ("<?", "?>"), ("<!", ">"))
 
 @dataclass(frozen=True)
 class Repair:
-    """One change of the text; `unclosed` is True for a missing end tag, False for a stray one."""
+    """One change of the text.
+
+    Attributes:
+        unclosed: whether an end tag was missing.
+        stray: whether an end tag closed nothing, such as one with a wrong name.
+    """
 
     message: str
     line: int
     column: int
     unclosed: bool
+    stray: bool = False
 
 
 @dataclass
@@ -72,7 +78,7 @@ class _Balancer:
         if text[:max(at, 0)].strip():
             self._parts.append("\n" * text.count("\n", 0, at))
             self._kept = at
-            self._repair("what precedes the first element is ignored", 0, unclosed=False)
+            self._repair("what precedes the first element is ignored", 0)
         while at >= 0 and not result.cut_off and not result.is_unrepairable:
             after = self._one(at)
             if result.elements and not self._open:
@@ -90,7 +96,7 @@ class _Balancer:
         rest = self._text[after:]
         self._text = self._text[:after]
         if rest.strip("\0 \t\r\n") and not rest.lstrip().startswith("<!--"):
-            self._repair("what follows the root element is ignored", after, unclosed=False)
+            self._repair("what follows the root element is ignored", after)
 
     def _one(self, at: int) -> int:
         """Handle the markup at position `at`; returns the position after it."""
@@ -156,7 +162,7 @@ class _Balancer:
         self._kept = end
         lacking = "quotes" if bare else "blank before it"
         name = (bare or tight)[0].group(1)
-        self._repair(f"attribute {name} has no {lacking}", at, unclosed=False)
+        self._repair(f"attribute {name} has no {lacking}", at)
 
     def _tag_end(self, position: int) -> int:
         """Position of the `>` of a start tag: the first one outside quotes."""
@@ -186,7 +192,7 @@ class _Balancer:
         elif any(name == opened for opened, _ in reversed(self._open)):
             self._close_down_to(name, at)
         else:
-            self._repair(f"</{name}> closes nothing", at, unclosed=False)
+            self._repair(f"</{name}> closes nothing", at, stray=True)
             self._parts.append(text[self._kept:at])
             # Line breaks are kept, so that line numbers stay correct.
             self._parts.append("\n" * text.count("\n", at, end))
@@ -202,9 +208,10 @@ class _Balancer:
             self._parts.append(f"</{inner}>")
         self._open.pop()
 
-    def _repair(self, message: str, at: int, unclosed: bool) -> None:
+    def _repair(self, message: str, at: int, unclosed: bool = False, stray: bool = False
+                ) -> None:
         line, column = self._place(at)
-        self._result.repairs.append(Repair(message, line, column, unclosed))
+        self._result.repairs.append(Repair(message, line, column, unclosed, stray))
         if len(self._result.repairs) > _MAX_REPAIRS:
             self._result.is_unrepairable = f"more than {_MAX_REPAIRS} mistakes in its markup"
 
