@@ -8,7 +8,12 @@ from robot_control import Arm, Message
 
 from my_simulations.description.model import JointAxis
 from my_simulations.plugins.control.hwi_switch import HwiSwitchGazeboRosControl
-from my_simulations.plugins.control.omni_wheels import OmniWheel, Steering, WheelState, moved
+from my_simulations.plugins.control.omni_wheels import (
+    OmniWheel,
+    Steering,
+    WheelState,
+    base_displacement,
+)
 
 WHEELS = ("fl", "b", "fr")
 AT = {"fl": (0.12, 0.22, 0.08), "b": (-0.25, 0.0, 0.08), "fr": (0.12, -0.22, 0.08)}
@@ -89,7 +94,7 @@ def test_a_steered_wheel_beside_its_axis_does_not_move_the_base():
     wheels = [OmniWheel("", "", x, y, 0.08, 0.03, coupling=0.2) for x, y, _ in AT.values()]
     before = [WheelState(0.1, 0.0)] * 3
     after = [WheelState(0.6, 0.5 * (0.03 / 0.08 - 0.2))] * 3
-    assert moved(wheels, before, after) == pytest.approx((0.0, 0.0, 0.0), abs=1e-12)
+    assert base_displacement(wheels, before, after) == pytest.approx((0.0, 0.0, 0.0), abs=1e-12)
 
 
 def test_a_wheel_rolls_backward_rather_than_turn_round():

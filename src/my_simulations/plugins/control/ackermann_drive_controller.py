@@ -17,7 +17,7 @@ _MIDDLE = ("mid_left", "mid_right")
 
 
 def rolling(x: float, y: float, speed: float, yaw_rate: float) -> Tuple[float, float]:
-    """Steering angle within a quarter turn, rad, and speed of a wheel at (x, y), m/s."""
+    """Return the steering angle, -pi/2..pi/2 rad, and the speed, m/s, of a wheel at (x, y)."""
     along, across = speed - yaw_rate * y, yaw_rate * x
     angle, size = math.atan2(across, along), math.hypot(along, across)
     if angle > math.pi / 2.0:
@@ -31,12 +31,13 @@ class AckermannDriveController(BaseController):
     """Joints `front_left_wheel`, `mid_left_wheel`, `front_left_steer` and so on."""
 
     def load_wheels(self) -> None:
-        """Read lengths; take the joints."""
+        """Read lengths; claim the joints."""
         s = self.settings
-        self._corners = [(self.take(VELOCITY, s.text(f"{name}_wheel", f"{name}_wheel_joint")),
-                          self.take(POSITION, s.text(f"{name}_steer", f"{name}_steer_joint")))
+        self._corners = [
+            (self.claim_joint(VELOCITY, s.text(f"{name}_wheel", f"{name}_wheel_joint")),
+             self.claim_joint(POSITION, s.text(f"{name}_steer", f"{name}_steer_joint")))
                          for name in _CORNERS]
-        self._middle = [self.take(VELOCITY, s.text(f"{name}_wheel", f"{name}_wheel_joint"))
+        self._middle = [self.claim_joint(VELOCITY, s.text(f"{name}_wheel", f"{name}_wheel_joint"))
                         for name in _MIDDLE]
         self._radius = s.number("wheel_radius", 0.0)
         self._width = s.number("mid_wheel_lat_separation", 0.0)
@@ -61,7 +62,7 @@ class AckermannDriveController(BaseController):
         """Store the present joint positions as the start of the odometry."""
         self._turned = [wheel.position for wheel in self._middle]
 
-    def way(self, dt: float) -> Planar:
+    def displacement(self, dt: float) -> Planar:
         """Return the motion of the base from the rotation of the middle wheels."""
         if self.open_loop:
             return self.last[0] * dt, 0.0, self.last[2] * dt

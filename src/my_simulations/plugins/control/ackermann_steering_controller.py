@@ -17,10 +17,10 @@ class AckermannSteeringController(BaseController):
     """Joints `rear_wheel`, by its rate, and `front_steer`, by its position."""
 
     def load_wheels(self) -> None:
-        """A wheel and a steering joint."""
+        """Claim the joints of the rear wheel and of the steering; read lengths."""
         s = self.settings
-        self._wheel = self.take(VELOCITY, s.text("rear_wheel", "rear_wheel_joint"))
-        self._steer = self.take(POSITION, s.text("front_steer", "front_steer_joint"))
+        self._wheel = self.claim_joint(VELOCITY, s.text("rear_wheel", "rear_wheel_joint"))
+        self._steer = self.claim_joint(POSITION, s.text("front_steer", "front_steer_joint"))
         base, radius = s.number("wheel_separation_h", 0.0), s.number("wheel_radius", 0.0)
         if s.get("wheel_separation_h") is None:
             base = abs(self._place(self._steer) - self._place(self._wheel))
@@ -35,10 +35,10 @@ class AckermannSteeringController(BaseController):
 
     def _place(self, joint: HardwareJoint) -> float:
         """Along x of the model, m."""
-        return self.place(self.context.joint(joint.name).spec)[0]
+        return self.joint_location(self.context.joint(joint.name).spec)[0]
 
     def drive(self, velocity: Planar) -> None:
-        """The rear wheel rolls, the front one is steered."""
+        """Drive the rear wheel, and steer the front wheel."""
         self._wheel.command(velocity[0] / self._radius)
         self._steer.command(velocity[2])
 
@@ -46,8 +46,8 @@ class AckermannSteeringController(BaseController):
         """Store the present joint positions as the start of the odometry."""
         self._turned = self._wheel.position
 
-    def way(self, dt: float) -> Planar:
-        """The rear wheel rolls along a circle that the front wheel's axle points to."""
+    def displacement(self, dt: float) -> Planar:
+        """Return the motion of the rear wheel about the centre on the front wheel's axis."""
         if self.open_loop:
             forward, angle = self.last[0] * dt, self.last[2]
         else:

@@ -30,9 +30,14 @@ Planar = Tuple[float, float, float]
 STANDING: Planar = (0.0, 0.0, 0.0)
 
 
-def along_arc(pose: Planar, way: Planar) -> Planar:
-    """Where a base at a pose gets to by a way in its own axes, turning evenly: m, m, rad."""
-    (x, y, yaw), (forward, sideways, turn) = pose, way
+def along_arc(pose: Planar, displacement: Planar) -> Planar:
+    """Return the pose after a displacement along an arc of a circle: m, m, rad.
+
+    Args:
+        pose: of the base before.
+        displacement: in the axes that the base has at the start.
+    """
+    (x, y, yaw), (forward, sideways, turn) = pose, displacement
     half = turn / 2.0
     chord = math.sin(half) / half if abs(half) > 1e-9 else 1.0
     c, s = chord * math.cos(yaw + half), chord * math.sin(yaw + half)
@@ -56,7 +61,7 @@ class BaseController(Controller):
     # -- for subclasses ----------------------------------------------------------------------------
 
     def load_wheels(self) -> None:
-        """Read the geometry; take the joints."""
+        """Read the geometry; claim the joints."""
         raise NotImplementedError
 
     def drive(self, velocity: Planar) -> None:
@@ -66,7 +71,7 @@ class BaseController(Controller):
     def begin_count(self) -> None:
         """Store the present joint positions as the start of the odometry."""
 
-    def way(self, dt: float) -> Planar:
+    def displacement(self, dt: float) -> Planar:
         """Return the motion of the base in the last `dt` s from its wheels: m, m, rad."""
         raise NotImplementedError
 
@@ -76,17 +81,17 @@ class BaseController(Controller):
             self.limits, wanted, self.last, self.before)]
         return found[0], found[1], found[2]
 
-    def tell_more(self) -> None:
+    def publish_more(self) -> None:
         """Publish further messages with the odometry."""
 
     def more_topics(self) -> List[Publication]:
-        """The topics of `tell_more`."""
+        """Return the topics of `publish_more`."""
         return []
 
     # -- Controller --------------------------------------------------------------------------------
 
     def load(self) -> None:
-        """Read parameters; take the wheels; offer topics."""
+        """Read parameters; claim the wheel joints; advertise topics."""
         s = self.settings
         self.load_wheels()
         self.publish_hz = s.number("publish_rate", 50.0)
@@ -107,7 +112,7 @@ class BaseController(Controller):
         self._limited = self.publish("cmd_vel_out", "geometry_msgs/TwistStamped", 100) \
             if s.flag("publish_cmd", False) else None
         self.command, self._told_of_numbers = STANDING, False
-        self.subscribe("cmd_vel", "geometry_msgs/Twist", self._hear, checks=True)
+        self.subscribe("cmd_vel", "geometry_msgs/Twist", self._receive, checks=True)
         self._pose: Planar = STANDING
 
     def start(self) -> None:
@@ -141,16 +146,16 @@ class BaseController(Controller):
             self._end.end()
             self._end = None
 
-    def _hear(self, message: Any) -> None:
-        self.obey_twist(message)
+    def _receive(self, message: Any) -> None:
+        self.follow_twist(message)
 
-    def obey_twist(self, message: Any) -> bool:
-        """Follow a geometry_msgs/Twist, see `obey`."""
-        return self.obey((float(message.linear.x),
+    def follow_twist(self, message: Any) -> bool:
+        """Follow a geometry_msgs/Twist; see `follow_command`."""
+        return self.follow_command((float(message.linear.x),
                           float(message.linear.y) if self.goes_sideways else 0.0,
                           float(message.angular.z)))
 
-    def obey(self, command: Planar) -> bool:
+    def follow_command(self, command: Planar) -> bool:
         """Follow a command from now on; ignore one that is not finite, and warn once."""
         finite = all(map(math.isfinite, command))
         if finite:
@@ -187,13 +192,13 @@ class BaseController(Controller):
         self._now_ns = now
         if dt <= 0.0:
             return
-        forward, sideways, turn = self.way(dt)
+        forward, sideways, turn = self.displacement(dt)
         self._pose = along_arc(self._pose, (forward, sideways, turn))
         self._velocities.append((forward / dt, sideways / dt, turn / dt))
 
     @property
     def velocity(self) -> Planar:
-        """The velocity that the odometry contains."""
+        """Return the velocity that the odometry message contains: m/s, m/s, rad/s."""
         count = max(1, len(self._velocities))
         forward, sideways, turn = (sum(one[axis] for one in self._velocities) / count
                                    for axis in range(3))
@@ -203,7 +208,7 @@ class BaseController(Controller):
         pose = planar(*self._pose)
         if self.broadcasts:
             self.context.transform(*self._frames, pose)
-        self.tell_more()
+        self.publish_more()
         if self._odom.wanted:
             self._odom.publish(self._odometry())
 
@@ -218,15 +223,18 @@ class BaseController(Controller):
 
     # -- geometry ----------------------------------------------------------------------------------
 
-    def place(self, joint: JointSpec) -> Vec3:
-        """Return the pose of a joint in the model at joint positions 0."""
+    def joint_location(self, joint: JointSpec) -> Vec3:
+        """Return the position of a joint in the model frame at joint positions 0, m."""
         for link in self.context.description.links:
             if link.name == joint.child:
                 return transform(link.pose, joint.pose.position)
         raise PluginError(f"joint '{joint.name}' has no child link")
 
     def radius_of(self, joint: JointSpec, rollers: bool = False) -> float:
-        """Of the round collision of the wheel, or of a roller on it."""
+        """Return the radius of a wheel's cylinder or sphere, m; `rollers`: of one of its rollers.
+
+        Raises PluginError: the collision has another shape.
+        """
         child = joint.child
         if rollers:
             child = next((one.child for one in self.context.description.joints

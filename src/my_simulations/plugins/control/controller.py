@@ -8,7 +8,7 @@ from ..context import Context, Ending, Handle, Publication
 from ..finite_messages import finite_only
 from .hardware import Hardware, HardwareJoint
 from .settings import Settings
-from .tuning import tunable
+from .tuning import offer_gains
 
 INITIALIZED, RUNNING, STOPPED = "initialized", "running", "stopped"
 
@@ -50,7 +50,7 @@ class Controller:
     def stop(self) -> None:
         """Stop the controller; its joints are released afterwards."""
 
-    def take(self, interface: str, name: str) -> HardwareJoint:
+    def claim_joint(self, interface: str, name: str) -> HardwareJoint:
         """Claim a joint. Raises PluginError."""
         joint = self.hardware.joint(interface, name)
         self.claimed.setdefault(interface, []).append(name)
@@ -96,7 +96,7 @@ class Controller:
             changed(wanted)
             joint.retune(wanted)
 
-        self.keep(tunable(self.context, f"{self.name}/{path}", gains, take))
+        self.keep(offer_gains(self.context, f"{self.name}/{path}", gains, take))
 
     def every(self, hertz: float, call: Callable[[], None]) -> None:
         """Call a function at a rate in Hz of sim time while the controller runs."""

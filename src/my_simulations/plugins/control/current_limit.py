@@ -14,17 +14,17 @@ _MESSAGE = "pal_control_msgs/ActuatorCurrentLimit"
 
 
 class CurrentLimitController(Controller):
-    """Accepts limits of `actuators` on `command`."""
+    """Checks the names in messages on `command`; the current limits have no effect."""
 
     def load(self) -> None:
-        """Read the names; offer the topic."""
+        """Read the names of the motors; subscribe to `command`."""
         self._names = set(self.settings.texts("actuators"))
         try:
-            self.subscribe("command", _MESSAGE, self._hear, checks=True)
+            self.subscribe("command", _MESSAGE, self._receive, checks=True)
         except PluginError as missing:
             self.context.info(f"controller '{self.name}' has no topic: {missing}")
 
-    def _hear(self, message: Any) -> None:
+    def _receive(self, message: Any) -> None:
         if set(message.actuator_names) != self._names:
             self.context.warn(f"controller '{self.name}' ignores limits that are not of the"
                               f" actuators {', '.join(sorted(self._names))}")

@@ -24,7 +24,7 @@ class DiffDriveController(BaseController):
     """Wheels `left_wheel` and `right_wheel`: a joint each, or several."""
 
     def load(self) -> None:
-        """Read parameters; take the wheels; offer topics, and values to dynamic_reconfigure."""
+        """Read parameters; claim the wheel joints; advertise topics and dynamic_reconfigure."""
         super().load()
         values: Dict[str, Value] = dict(zip(_MULTIPLIERS, self._multipliers))
         self.keep(Reconfigure(self.context, self.name, _OPTIONS, {
@@ -52,13 +52,13 @@ class DiffDriveController(BaseController):
         self._states.publish(self._rates(self.command))
 
     def load_wheels(self) -> None:
-        """Two sides with as many wheels."""
+        """Claim the joints of both sides, which have equally many wheels."""
         s = self.settings
         names = [s.texts("left_wheel"), s.texts("right_wheel")]
         if len(names[0]) != len(names[1]):
             raise PluginError(f"{self.name} has {len(names[0])} left and {len(names[1])} right"
                               " wheels")
-        self._sides = [[self.take(VELOCITY, name) for name in side] for side in names]
+        self._sides = [[self.claim_joint(VELOCITY, name) for name in side] for side in names]
         self._read_geometry(names[0][0], names[1][0])
         self._states: Optional[WheelStates] = None
         if s.flag("publish_wheel_joint_controller_state", False):
@@ -70,7 +70,7 @@ class DiffDriveController(BaseController):
         separation, radius = s.number("wheel_separation", 0.0), s.number("wheel_radius", 0.0)
         joints = [self.context.joint(name).spec for name in (left, right)]
         if s.get("wheel_separation") is None:
-            separation = norm(subtract(self.place(joints[0]), self.place(joints[1])))
+            separation = norm(subtract(*map(self.joint_location, joints)))
         if s.get("wheel_radius") is None:
             radius = self.radius_of(joints[0])
         factors = [s.number(name, 1.0) for name in _MULTIPLIERS]
@@ -107,7 +107,7 @@ class DiffDriveController(BaseController):
         """Store the present joint positions as the start of the odometry."""
         self._turned = [_mean(side) for side in self._sides]
 
-    def way(self, dt: float) -> Planar:
+    def displacement(self, dt: float) -> Planar:
         """Return the motion of the base from the rotation of the wheels."""
         if self.open_loop:
             return self.last[0] * dt, 0.0, self.last[2] * dt

@@ -1,4 +1,4 @@
-"""Controllers that pass commands on: of one joint (Float64), of a group (Float64MultiArray)."""
+"""Controllers that forward commands to joints. Source: forward_command_controller."""
 from __future__ import annotations
 
 from typing import Any, List
@@ -7,41 +7,41 @@ from .controller import Controller
 from .hardware import EFFORT, POSITION, VELOCITY, HardwareJoint
 
 
-class Forward(Controller):
-    """One joint: the parameter `joint`, the topic `command`."""
+class ForwardCommandController(Controller):
+    """Forwards std_msgs/Float64 on `command` to the joint in the parameter `joint`."""
 
     interface = ""
 
     def load(self) -> None:
-        """Take the joint."""
-        self._joint = self.take(self.interface, self.settings.text("joint"))
-        self.subscribe("command", "std_msgs/Float64", self._hear)
+        """Claim the joint."""
+        self._joint = self.claim_joint(self.interface, self.settings.text("joint"))
+        self.subscribe("command", "std_msgs/Float64", self._receive)
 
     def start(self) -> None:
-        """Hold the position, or command 0."""
-        self._joint.rest()
+        """Hold the position, or command rate or effort 0."""
+        self._joint.set_idle()
 
-    def _hear(self, message: Any) -> None:
+    def _receive(self, message: Any) -> None:
         self._joint.command(float(message.data))
 
 
-class Group(Controller):
-    """Several joints: the parameter `joints`, the topic `command`."""
+class ForwardGroupController(Controller):
+    """Forwards std_msgs/Float64MultiArray on `command` to the joints in the parameter `joints`."""
 
     interface = ""
 
     def load(self) -> None:
-        """Take the joints."""
-        self.joints: List[HardwareJoint] = [self.take(self.interface, name)
+        """Claim the joints."""
+        self.joints: List[HardwareJoint] = [self.claim_joint(self.interface, name)
                                             for name in self.settings.texts("joints")]
-        self.subscribe("command", "std_msgs/Float64MultiArray", self._hear)
+        self.subscribe("command", "std_msgs/Float64MultiArray", self._receive)
 
     def start(self) -> None:
-        """Hold the position, or command 0."""
+        """Hold the position, or command rate or effort 0."""
         for joint in self.joints:
-            joint.rest()
+            joint.set_idle()
 
-    def _hear(self, message: Any) -> None:
+    def _receive(self, message: Any) -> None:
         if len(message.data) != len(self.joints):
             self.context.warn(f"controller '{self.name}' has {len(self.joints)} joints, and"
                               f" ignores a command of {len(message.data)}")
@@ -50,41 +50,41 @@ class Group(Controller):
             self.command(joint, float(value))
 
     def command(self, joint: HardwareJoint, value: float) -> None:
-        """Pass a value on."""
+        """Command one joint."""
         joint.command(value)
 
 
-class PositionForward(Forward):
+class ForwardPositionController(ForwardCommandController):
     """position_controllers/JointPositionController."""
 
     interface = POSITION
 
 
-class VelocityForward(Forward):
+class ForwardVelocityController(ForwardCommandController):
     """velocity_controllers/JointVelocityController."""
 
     interface = VELOCITY
 
 
-class EffortForward(Forward):
+class ForwardEffortController(ForwardCommandController):
     """effort_controllers/JointEffortController."""
 
     interface = EFFORT
 
 
-class PositionGroup(Group):
+class ForwardPositionGroupController(ForwardGroupController):
     """position_controllers/JointGroupPositionController."""
 
     interface = POSITION
 
 
-class VelocityGroup(Group):
+class ForwardVelocityGroupController(ForwardGroupController):
     """velocity_controllers/JointGroupVelocityController."""
 
     interface = VELOCITY
 
 
-class EffortGroup(Group):
+class ForwardEffortGroupController(ForwardGroupController):
     """effort_controllers/JointGroupEffortController."""
 
     interface = EFFORT

@@ -40,8 +40,11 @@ def corners_of(track: float, base: float, offset: float) -> List[Corner]:
 
 
 def wheel_motions(corners: Sequence[Corner], motion: Planar) -> List[Tuple[float, float]]:
-    """For each wheel its steering angle, rad within a quarter turn, and the speed of its rim, m/s,
-    for a motion of the middle of the wheels.
+    """Return steering angle, -pi/2..pi/2 rad, and rim speed, m/s, of each wheel.
+
+    Args:
+        corners: the wheels.
+        motion: velocity of the midpoint of the wheels.
     """
     x, y, yaw = motion
     found = []
@@ -56,7 +59,7 @@ def wheel_motions(corners: Sequence[Corner], motion: Planar) -> List[Tuple[float
 
 
 def fitted_motion(corners: Sequence[Corner], wheels: Sequence[Tuple[float, float]]) -> Planar:
-    """The motion of the middle of the wheels that fits (angle, rim speed) of all wheels best."""
+    """Return the motion of the wheels' midpoint that fits (angle, rim speed) of all wheels best."""
     rows = []
     for corner, (angle, speed) in zip(corners, wheels):
         c, s = math.cos(angle), math.sin(angle)
@@ -79,20 +82,20 @@ class FourWheelSteeringController(BaseController):
     smooths = False
 
     def load_wheels(self) -> None:
-        """Read lengths; take the joints; hear commands by angles."""
+        """Read lengths; claim the joints; subscribe to commands with steering angles."""
         s = self.settings
         self._wheels = self._pairs(VELOCITY, "front_wheel", "rear_wheel")
         self._steers = self._pairs(POSITION, "front_steering", "rear_steering")
         wheels = [self.context.joint(one.name).spec for one in self._wheels]
         steer = self.context.joint(self._steers[0].name).spec
-        at = [self.place(joint) for joint in wheels]
+        at = [self.joint_location(joint) for joint in wheels]
         track = s.number("track", _distance(at[0], at[1]))
         base = s.number("wheel_base", _distance(at[0], at[2]))
         radius = s.get("wheel_radius")
         self._radius = self.radius_of(wheels[0]) if radius is None else s.number(
             "wheel_radius", 0.0)
         self._base, self._by_angles = base, False
-        offset = _distance(at[0], self.place(steer))
+        offset = _distance(at[0], self.joint_location(steer))
         self.positive(track=track, wheel_base=base, wheel_radius=self._radius,
                       steering_track=track - 2.0 * offset)
         self._corners = corners_of(track, base, offset)
@@ -112,16 +115,16 @@ class FourWheelSteeringController(BaseController):
             if len(names) != 2:
                 raise PluginError(f"parameter {self.name}/{axle} must name a left and a right"
                                   f" joint, it names {len(names)}")
-            found += [self.take(interface, name) for name in names]
+            found += [self.claim_joint(interface, name) for name in names]
         return found
 
     def _hear_angles(self, message: Any) -> None:
-        if self.obey((float(message.speed), float(message.front_steering_angle),
+        if self.follow_command((float(message.speed), float(message.front_steering_angle),
                       float(message.rear_steering_angle))):
             self._by_angles = True
 
-    def _hear(self, message: Any) -> None:
-        if self.obey_twist(message):
+    def _receive(self, message: Any) -> None:
+        if self.follow_twist(message):
             self._by_angles = False
 
     def limited(self, wanted: Planar, dt: float) -> Planar:
@@ -133,7 +136,7 @@ class FourWheelSteeringController(BaseController):
                 clamped(wanted[2], -_HALF_TURN, _HALF_TURN))
 
     def drive(self, velocity: Planar) -> None:
-        """Wheels roll, and stand across the lines to the centre of the turn."""
+        """Steer each wheel at right angles to the line to the centre of the turn, and drive it."""
         motions = self._by_two_angles(*velocity) if self._by_angles else self._by_twist(
             velocity[0], velocity[2])
         for wheel, steer, (angle, speed) in zip(self._wheels, self._steers, motions):
@@ -170,8 +173,8 @@ class FourWheelSteeringController(BaseController):
     def _positions(self) -> List[float]:
         return [wheel.position for wheel in self._wheels]
 
-    def way(self, dt: float) -> Planar:
-        """By what all wheels have rolled, and how they are steered."""
+    def displacement(self, dt: float) -> Planar:
+        """Return the motion of the base from rotation and steering angles of all wheels."""
         before, self._turned = self._turned, self._positions()
         ways = [(now - then) * self._radius for now, then in zip(self._turned, before)]
         angles = [steer.position for steer in self._steers]
@@ -188,11 +191,11 @@ class FourWheelSteeringController(BaseController):
         self._state = state
 
     def more_topics(self) -> List[Publication]:
-        """Of the steering."""
+        """Return the topic with the state of the steering."""
         return [] if self._odom_steer is None else [self._odom_steer]
 
-    def tell_more(self) -> None:
-        """Speed and steering of the axles."""
+    def publish_more(self) -> None:
+        """Publish speed and steering angle of each axle."""
         if self._odom_steer is None or not self._odom_steer.wanted or not self._changes:
             return
         means = [sum(one[k] for one in self._changes) / len(self._changes) for k in range(4)]

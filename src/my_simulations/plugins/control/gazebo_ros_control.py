@@ -58,7 +58,7 @@ class GazeboRosControl(Plugin):
 
     def reset(self) -> None:
         """Restart controllers at the initial joint positions, and hold the joints there."""
-        self._hardware.halt(self._stopped)
+        self._hardware.set_emergency_stop(self._stopped)
         self._manager.restart()
         self._hold.begin()
 
@@ -83,6 +83,6 @@ class GazeboRosControl(Plugin):
         if stopped == self._stopped:
             return
         self._stopped = stopped
-        self._hardware.halt(self._stopped)
+        self._hardware.set_emergency_stop(self._stopped)
         if not self._stopped:
             self._manager.restart()

@@ -23,7 +23,7 @@ class Gripper(Controller):
     def load(self) -> None:
         """Read parameters; take the joint; offer the action."""
         s = self.settings
-        self._joint = self.take(self.interface, s.text("joint"))
+        self._joint = self.claim_joint(self.interface, s.text("joint"))
         path = f"gains/{self._joint.name}"
         self._gains: Optional[PidGains] = None
         if self.interface == EFFORT:

@@ -15,7 +15,7 @@ from ..context import Context, Joint, PluginError
 from ..reconfigure import Reconfigure
 from .limits import JointLimits, holding_effort, limits_of
 from .settings import Settings
-from .tuning import tunable
+from .tuning import offer_gains
 
 STATE, EFFORT, VELOCITY, POSITION = (f"hardware_interface::{kind}Interface" for kind in (
     "JointState", "EffortJoint", "VelocityJoint", "PositionJoint"))
@@ -84,7 +84,7 @@ class HardwareJoint:
             most_effort=min(most_effort, self._servo.most_effort)))
 
     def hold(self) -> None:
-        """Hold the joint at its position until `command`, `follow` or `rest` is called."""
+        """Hold the joint at its position until `command`, `follow` or `set_idle` is called."""
         limits = self.limits   # the joint can be spawned outside of them
         self._steer(JointServo(0, "position", holds=True, lower=limits.lower, upper=limits.upper))
         self.is_held = True
@@ -95,7 +95,7 @@ class HardwareJoint:
 
     @property
     def drive_gains(self) -> Optional[PidGains]:
-        """Of the loop between the interface and the joint; None without one."""
+        """Gains of the loop between the interface and the joint; None without a loop."""
         return self._servo.drive_gains
 
     def retune(self, gains: PidGains) -> None:
@@ -109,7 +109,7 @@ class HardwareJoint:
         if not self.is_held:
             self._steer(replace(self._ordered, drive_gains=gains))
 
-    def rest(self) -> None:
+    def set_idle(self) -> None:
         """Hold the position, or command rate or effort 0, while no controller uses the joint."""
         if not self.halted:
             self._steer(replace(self._servo, holds=self.interface == POSITION))
@@ -167,7 +167,7 @@ class Hardware:
                                  None if self.switches else gains.gains(joint.name), holding)
             self._all.setdefault((interface, joint.name), made)
             if self._active.setdefault(joint.name, made) is made and made.drive_gains is not None:
-                self._tunings.append(tunable(
+                self._tunings.append(offer_gains(
                     context, f"{gains.name}/{joint.name}", made.drive_gains, made.retune_drive))
 
     def joint(self, interface: str, name: str) -> HardwareJoint:
@@ -180,7 +180,7 @@ class Hardware:
         return found
 
     def has(self, interface: str, name: str) -> bool:
-        """Whether `joint` would find one."""
+        """Whether a joint has an interface."""
         return (interface, name) in self._all
 
     @property
@@ -195,21 +195,21 @@ class Hardware:
         return self._context.joint(name)
 
     def efforts(self, names: Sequence[str]) -> List[float]:
-        """N m or N, in the last step."""
+        """Return the efforts of joints in the last step, N m or N."""
         return self._context.efforts(list(names))
 
-    def rest(self, but: Sequence[str] = ()) -> None:
-        """Call `rest` of all joints besides those named."""
+    def set_idle(self, but: Sequence[str] = ()) -> None:
+        """Call `set_idle` of all joints besides those named."""
         for name, joint in self._active.items():
             if name not in but:
-                joint.rest()
+                joint.set_idle()
 
     def claim(self, interface: str, name: str) -> None:
-        """Move a joint by this interface from now on. Raises PluginError."""
+        """Move a joint by this interface. Raises PluginError."""
         self._active[name] = self.joint(interface, name)
 
     def hold(self) -> None:
-        """Hold all joints at their positions until they are commanded or `rest` is called."""
+        """Hold all joints at their positions until they are commanded or `set_idle` is called."""
         for joint in self._active.values():
             joint.hold()
 
@@ -217,24 +217,24 @@ class Hardware:
         """End the holds, besides those of joints named; return joints that can move freely now."""
         held = [name for name, joint in self._active.items() if joint.is_held and name not in but]
         for name in held:
-            self._active[name].rest()
+            self._active[name].set_idle()
         return [name for name in held if self._active[name].interface == EFFORT]
 
-    def halt(self, halted: bool) -> None:
-        """Emergency stop: hold positions where they are now, rates and efforts at 0, until it ends.
+    def set_emergency_stop(self, active: bool) -> None:
+        """Begin or end an emergency stop, which holds positions and sets rates and efforts to 0.
 
         Controllers continue, but their commands are ignored (DefaultRobotHWSim::writeSim).
         """
         for joint in self._all.values():
             joint.halted = False
-        self.rest()
+        self.set_idle()
         for joint in self._all.values():
-            joint.halted = halted
+            joint.halted = active
 
     def release(self, name: str) -> None:
-        """Call `rest` of a joint that no controller uses any longer."""
+        """Call `set_idle` of a joint that no controller uses any longer."""
         if name in self._active:
-            self._active[name].rest()
+            self._active[name].set_idle()
 
 
 class SwitchingHardware(Hardware):

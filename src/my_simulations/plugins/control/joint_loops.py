@@ -8,7 +8,7 @@ from ...engine.drive_commands import PidGains
 from ...engine.servo_law import shortest
 from ..frames import stamped
 from .controller import Controller
-from .forward import Group
+from .forward import ForwardGroupController
 from .hardware import EFFORT, VELOCITY, HardwareJoint
 
 _STATE_HZ = 100.0   # of sim time: the originals tell each tenth update, at 1 kHz
@@ -24,9 +24,9 @@ class JointLoop(Controller):
     of_rate = False
 
     def load(self) -> None:
-        """Take the joint."""
+        """Claim the joint."""
         self._gains = self.settings.needed_gains("pid")
-        self._joint = self.take(self.interface, self.settings.text("joint"))
+        self._joint = self.claim_joint(self.interface, self.settings.text("joint"))
         self._wanted = 0.0
         self._state = self.publish("state", "control_msgs/JointControllerState")
         self.subscribe("command", "std_msgs/Float64", lambda message: self._go(message.data))
@@ -42,7 +42,7 @@ class JointLoop(Controller):
                      [self._state], efforts=[self._joint.name])
 
     def _go(self, wanted: float) -> None:
-        self._wanted = wanted if self.of_rate else within(self._joint, wanted)
+        self._wanted = wanted if self.of_rate else clamped_to_limits(self._joint, wanted)
         self._joint.follow(self._wanted, gains=self._gains, of_rate=self.of_rate)
 
     def _tell(self) -> None:
@@ -76,13 +76,13 @@ class VelocityPositionLoop(JointLoop):
     interface = VELOCITY
 
 
-class EffortPositionGroup(Group):
+class EffortPositionGroup(ForwardGroupController):
     """effort_controllers/JointGroupPositionController: gains in JOINT/pid."""
 
     interface = EFFORT
 
     def load(self) -> None:
-        """Take the joints and their gains."""
+        """Claim the joints; read their gains."""
         super().load()
         self._gains: Dict[str, PidGains] = {
             joint.name: self.settings.needed_gains(f"{joint.name}/pid") for joint in self.joints}
@@ -97,9 +97,9 @@ class EffortPositionGroup(Group):
 
     def command(self, joint: HardwareJoint, value: float) -> None:
         """Follow a position."""
-        joint.follow(within(joint, value), gains=self._gains[joint.name])
+        joint.follow(clamped_to_limits(joint, value), gains=self._gains[joint.name])
 
 
-def within(joint: HardwareJoint, position: float) -> float:
-    """A position within the limits of a joint."""
+def clamped_to_limits(joint: HardwareJoint, position: float) -> float:
+    """Return the position within the limits of a joint that is nearest to `position`."""
     return max(joint.limits.lower, min(joint.limits.upper, position))

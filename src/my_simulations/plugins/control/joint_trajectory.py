@@ -21,9 +21,9 @@ from .trajectory import (
     SUCCESSFUL,
     Tolerance,
     TrajectoryError,
-    joined,
     read_joints,
     read_points,
+    spliced_spline,
     updated,
 )
 
@@ -40,7 +40,7 @@ class JointTrajectory(Controller):
         """Read parameters; take joints; offer topics, the action and the service."""
         s = self.settings
         self._names = s.texts("joints")
-        self._joints = [self.take(self.interface, name) for name in self._names]
+        self._joints = [self.claim_joint(self.interface, name) for name in self._names]
         self._gains: List[Optional[PidGains]] = [None] * len(self._names)
         if self.interface != POSITION:
             for place, name in enumerate(self._names):
@@ -64,7 +64,7 @@ class JointTrajectory(Controller):
         self._begun = 0.0
         self._seen: List[_Tracked] = []
         self._seen_at, self._seen_of = -1, self._splines
-        self.subscribe("command", "trajectory_msgs/JointTrajectory", self._hear,
+        self.subscribe("command", "trajectory_msgs/JointTrajectory", self._receive,
                        checks=True)
         self._state = self.publish("state", "control_msgs/JointTrajectoryControllerState")
         self._action = ActionServer(self.context, f"{self.name}/follow_joint_trajectory", _ACTION,
@@ -87,7 +87,7 @@ class JointTrajectory(Controller):
 
     # -- commands ----------------------------------------------------------------------------------
 
-    def _hear(self, message: Any) -> None:
+    def _receive(self, message: Any) -> None:
         try:
             self._take_over(message)
         except TrajectoryError as fault:
@@ -142,7 +142,7 @@ class JointTrajectory(Controller):
                               f" each point: the trajectory names {len(places)} joints only")
         now, stamp = self._now, message.header.stamp.to_nsec()
         start = now if stamp == 0 else now + (stamp - self.context.now_ns) * 1e-9
-        made = {place: joined(self._splines[place], start, now, points, n,
+        made = {place: spliced_spline(self._splines[place], start, now, points, n,
                               self._joints[place].limits.wraps)
                 for n, place in enumerate(places)}
         self._splines = [made.get(place, spline) for place, spline in enumerate(self._splines)]

@@ -16,18 +16,18 @@ _MESSAGES = "controller_manager_msgs"
 
 TYPES: Mapping[str, str] = {
     "joint_state_controller/JointStateController": "joint_state:JointStateController",
-    "position_controllers/JointPositionController": "forward:PositionForward",
-    "position_controllers/JointGroupPositionController": "forward:PositionGroup",
+    "position_controllers/JointPositionController": "forward:ForwardPositionController",
+    "position_controllers/JointGroupPositionController": "forward:ForwardPositionGroupController",
     "position_controllers/JointTrajectoryController": "joint_trajectory:PositionTrajectory",
     "position_controllers/ScaledJointTrajectoryController": "joint_trajectory:PositionTrajectory",
     "position_controllers/GripperActionController": "gripper_action:PositionGripper",
-    "velocity_controllers/JointVelocityController": "forward:VelocityForward",
-    "velocity_controllers/JointGroupVelocityController": "forward:VelocityGroup",
+    "velocity_controllers/JointVelocityController": "forward:ForwardVelocityController",
+    "velocity_controllers/JointGroupVelocityController": "forward:ForwardVelocityGroupController",
     "velocity_controllers/JointPositionController": "joint_loops:VelocityPositionLoop",
     "velocity_controllers/JointTrajectoryController": "joint_trajectory:VelocityTrajectory",
     "velocity_controllers/ScaledJointTrajectoryController": "joint_trajectory:VelocityTrajectory",
-    "effort_controllers/JointEffortController": "forward:EffortForward",
-    "effort_controllers/JointGroupEffortController": "forward:EffortGroup",
+    "effort_controllers/JointEffortController": "forward:ForwardEffortController",
+    "effort_controllers/JointGroupEffortController": "forward:ForwardEffortGroupController",
     "effort_controllers/JointPositionController": "joint_loops:EffortPositionLoop",
     "effort_controllers/JointVelocityController": "joint_loops:EffortVelocityLoop",
     "effort_controllers/JointGroupPositionController": "joint_loops:EffortPositionGroup",
@@ -157,7 +157,7 @@ class ControllerManager:
         running = [one for one in self._loaded.values() if one.state == RUNNING]
         for one in running:
             one.switch_off()
-        self._hardware.rest()
+        self._hardware.set_idle()
         for one in running:
             self._start(one)
 

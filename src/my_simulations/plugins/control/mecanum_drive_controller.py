@@ -26,9 +26,9 @@ class MecanumDriveController(BaseController):
     goes_sideways = True
 
     def load_wheels(self) -> None:
-        """Four wheels of one radius."""
+        """Claim the joints of four wheels; read their radius."""
         s = self.settings
-        self._wheels = [self.take(VELOCITY, s.text(self.wheel_parameter(corner)))
+        self._wheels = [self.claim_joint(VELOCITY, s.text(self.wheel_parameter(corner)))
                         for corner in _CORNERS]
         joints = [self.context.joint(wheel.name).spec for wheel in self._wheels]
         if s.get("wheel_radius") is not None:
@@ -50,7 +50,7 @@ class MecanumDriveController(BaseController):
         self._more = self.publish("odomTopic", "nav_msgs/Odometry", 100)
 
     def wheel_parameter(self, corner: str) -> str:
-        """The name of the parameter with the joint of a wheel."""
+        """Return the name of the parameter that names the joint of a wheel."""
         return f"{corner}_wheel_joint"
 
     def _separations(self, joints: Sequence[Joint]) -> Tuple[float, float]:
@@ -58,12 +58,12 @@ class MecanumDriveController(BaseController):
         s = self.settings
         if s.get("wheel_separation_x") is not None or s.get("wheel_separation_y") is not None:
             return s.number("wheel_separation_x", 0.0), s.number("wheel_separation_y", 0.0)
-        places = [self.place(joint) for joint in joints]
+        places = [self.joint_location(joint) for joint in joints]
         xs, ys = ([place[axis] for place in places] for axis in (0, 1))
         return (xs[0] - xs[1] - xs[2] + xs[3]) / 2.0, (ys[0] + ys[1] - ys[2] - ys[3]) / 2.0
 
     def drive(self, velocity: Planar) -> None:
-        """Rollers roll freely, so each wheel sees the part of the motion along its own diagonal."""
+        """Drive each wheel by the velocity along its diagonal; its rollers turn freely."""
         x, y, yaw = velocity
         ox, oy, turn = self._offset
         c, s = math.cos(turn), math.sin(turn)
@@ -78,8 +78,8 @@ class MecanumDriveController(BaseController):
     def _positions(self) -> Tuple[float, ...]:
         return tuple(wheel.position for wheel in self._wheels)
 
-    def way(self, dt: float) -> Planar:
-        """What four wheels have rolled, by least squares."""
+    def displacement(self, dt: float) -> Planar:
+        """Return the motion of the base from the rotation of four wheels, by least squares."""
         before, self._turned = self._turned, self._positions()
         a, b, c, d = ((now - then) * self._radius / 4.0 for now, then in zip(self._turned, before))
         x, y, yaw = a + b + c + d, -a + b - c + d, (-a - b + c + d) / self._arm
@@ -89,11 +89,11 @@ class MecanumDriveController(BaseController):
         return cosine * x + sine * y, -sine * x + cosine * y, yaw
 
     def more_topics(self) -> List[Publication]:
-        """The other name of the odometry."""
+        """Return the second topic of the odometry."""
         return [self._more]
 
-    def tell_more(self) -> None:
-        """The same odometry under its other name."""
+    def publish_more(self) -> None:
+        """Publish the odometry on its second topic."""
         if self._more.wanted:
             self._more.publish(self._odometry())
 
@@ -102,6 +102,6 @@ class OmniDriveController(MecanumDriveController):
     """Joints `left_front_wheel`, `left_back_wheel` and those on the right."""
 
     def wheel_parameter(self, corner: str) -> str:
-        """The name of the parameter with the joint of a wheel."""
+        """Return the name of the parameter that names the joint of a wheel."""
         end, side = corner.split("_")
         return f"{side}_{end}_wheel"

@@ -18,7 +18,7 @@ from ..time_out import TimeOut
 from .base_controller import STANDING, Planar, along_arc
 from .controller import RUNNING, Controller
 from .hardware import VELOCITY
-from .omni_wheels import WheelState, WheelTarget, bounded, moved, read_wheels
+from .omni_wheels import WheelState, WheelTarget, base_displacement, bounded, read_wheels
 
 _UPDATE_HZ = 100.0
 _STILL = 1e-4   # rad/s, of the steering
@@ -32,8 +32,8 @@ class WheelController(Controller):
         """Read parameters; take the joints; offer topics."""
         s = self.settings
         self._wheels = read_wheels(self.context, s, steered=True)
-        self._steers = [self.take(VELOCITY, wheel.steer) for wheel in self._wheels]
-        self._drives = [self.take(VELOCITY, wheel.drive) for wheel in self._wheels]
+        self._steers = [self.claim_joint(VELOCITY, wheel.steer) for wheel in self._wheels]
+        self._drives = [self.claim_joint(VELOCITY, wheel.drive) for wheel in self._wheels]
         self._most_turn = s.number("max_rot_velocity", 0.0)
         self._most_speed = s.number("max_trans_velocity", 0.0)
         timeout = s.number("timeout", 1.0)
@@ -48,7 +48,7 @@ class WheelController(Controller):
         self._change = StepwiseChange(self.context, self._hertz, self._update)
         if s.number("pub_divider", 0.0) > 0.0:
             self._offer_commands()
-        self.subscribe("command", "geometry_msgs/Twist", self._hear, checks=True)
+        self.subscribe("command", "geometry_msgs/Twist", self._receive, checks=True)
 
     def _offer_commands(self) -> None:
         try:
@@ -73,7 +73,7 @@ class WheelController(Controller):
         for joint in (*self._steers, *self._drives):
             joint.command(0.0)
 
-    def _hear(self, message: Any) -> None:
+    def _receive(self, message: Any) -> None:
         """Follow a command; one that is not finite stops the base, as in the original."""
         wanted = (float(message.linear.x), float(message.linear.y), float(message.angular.z))
         if not all(map(math.isfinite, wanted)):
@@ -175,7 +175,7 @@ class OdometryController(Controller):
         if dt <= 0.0:
             return
         before, self._states = self._states, self._read()
-        way = moved(self._wheels, before, self._states)
+        way = base_displacement(self._wheels, before, self._states)
         self._pose = along_arc(self._pose, way)
         self._velocity = (way[0] / dt, way[1] / dt, way[2] / dt)
 

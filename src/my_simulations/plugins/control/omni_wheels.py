@@ -102,7 +102,7 @@ class OmniWheel:
 
     @property
     def induced(self) -> float:
-        """Turns of the drive joint that a turn of the steering causes if the base stands."""
+        """Rotation of the drive joint per rotation of the steering joint if the base stands."""
         return self.offset / self.radius - self.coupling
 
     def target(self, motion: Planar, angle: float, last: float) -> WheelTarget:
@@ -125,9 +125,9 @@ class OmniWheel:
                    + _LAST * abs(shortest(one.angle - last)))
 
 
-def moved(wheels: Sequence[OmniWheel], before: Sequence[WheelState],
-          now: Sequence[WheelState]) -> Planar:
-    """How far the base has moved between two states of its wheels: m, m, rad; least squares."""
+def base_displacement(wheels: Sequence[OmniWheel], before: Sequence[WheelState],
+                      now: Sequence[WheelState]) -> Planar:
+    """Return the motion of the base between two states of its wheels: m, m, rad; least squares."""
     rolled = []
     for wheel, then, state in zip(wheels, before, now):
         steered = state.angle - then.angle
@@ -137,7 +137,7 @@ def moved(wheels: Sequence[OmniWheel], before: Sequence[WheelState],
 
 
 def bounded(value: float, most: float) -> float:
-    """The value within -most and most; 0 is no limit."""
+    """Clamp a value to -most..most; a limit of 0 means none."""
     return max(-most, min(most, value)) if most else value
 
 

@@ -21,7 +21,7 @@ from .quadrotor_hardware import (
     QuadrotorHardware,
     TwistCommand,
     VectorLimits,
-    limits_at,
+    read_limits,
 )
 
 _GRAVITY = 9.8065   # m/s^2, of the controllers
@@ -68,26 +68,26 @@ class _OfQuadrotor(Controller):
         return resolve(prefix, message.header.frame_id)
 
     def start(self) -> None:
-        """Join the chain."""
+        """Add this controller to the chain of commands."""
         self.begin()
         self.hardware.join(self.place, self.update, self.begin, self.period)
 
     def stop(self) -> None:
-        """Leave the chain."""
+        """Remove this controller from the chain of commands."""
         self.hardware.leave(self.place)
 
     def begin(self) -> None:
-        """Forget commands and errors."""
+        """Clear commands and errors."""
         for pid in self._pids:
             pid.integral, pid.error = 0.0, None
 
     def update(self, dt: float) -> None:
-        """Work off the command; `dt` s have passed since the last call."""
+        """Compute the output; `dt` s have passed since the last call."""
         raise NotImplementedError
 
 
 class PositionController(_OfQuadrotor):
-    """From `command/pose` to a velocity in the world."""
+    """Computes a velocity in the world frame from the pose on `command/pose`."""
 
     place = _POSITION
 
@@ -102,13 +102,13 @@ class PositionController(_OfQuadrotor):
         self.listen("command/twist_limit", "geometry_msgs/Twist", self._hear_limit)
 
     def begin(self) -> None:
-        """No pose is commanded."""
+        """Clear the commanded pose."""
         super().begin()
         self._wanted: Optional[Vec3] = None
         self.hardware.twist, self.hardware.preempted = None, False
 
     def stop(self) -> None:
-        """The next controller has no command of this one."""
+        """Clear the command to the next controller."""
         self.begin()
         super().stop()
 
@@ -133,15 +133,16 @@ class PositionController(_OfQuadrotor):
         if self._wanted is None:
             return
         pose = self.hardware.link.pose
-        lack = subtract(self._limits.applied(self._wanted), pose.position)
+        lack = subtract(self._limits.clamped(self._wanted), pose.position)
         x, y, z = (pid.command(error, dt) for pid, error in zip(self._axes, lack))
         turn = math.remainder(self._wanted_yaw - self.hardware.yaw, 2.0 * math.pi)
         command = TwistCommand((x, y, z), self._yaw_pid.command(turn, dt), self.context.now_ns)
-        self.hardware.twist = command if self._most is None else within(command, self._most)
+        self.hardware.twist = (command if self._most is None
+                               else limited_velocity(command, self._most))
 
 
-def within(command: TwistCommand, most: TwistCommand) -> TwistCommand:
-    """A velocity whose parts across, along z and about z are limited; limits of 0 do not count."""
+def limited_velocity(command: TwistCommand, most: TwistCommand) -> TwistCommand:
+    """Limit the horizontal velocity, that along z and the yaw rate; a limit of 0 means none."""
     (x, y, z), yaw_rate = command.linear, command.yaw_rate
     across, most_across = math.hypot(x, y), max(most.linear[:2])
     if 0.0 < most_across < across:
@@ -154,7 +155,7 @@ def within(command: TwistCommand, most: TwistCommand) -> TwistCommand:
 
 
 class VelocityController(_OfQuadrotor):
-    """From `cmd_vel`, `command/twist` or a position controller to attitude and thrust."""
+    """Computes attitude and thrust from `cmd_vel`, `command/twist` or the position controller."""
 
     place = _VELOCITY
 
@@ -163,9 +164,9 @@ class VelocityController(_OfQuadrotor):
         super().load()
         self._axes = [self.pid(axis) for axis in "xyz"]
         self._limits = VectorLimits(self.settings)
-        self._yaw_limits = limits_at(self.settings, "yawrate/z")
+        self._yaw_limits = read_limits(self.settings, "yawrate/z")
         self._most_load = self.settings.number("limits/load_factor", 1.5)
-        self.listen("cmd_vel", "geometry_msgs/Twist", self._hear)
+        self.listen("cmd_vel", "geometry_msgs/Twist", self._receive)
         self.listen("command/twist", "geometry_msgs/TwistStamped", self._hear_stamped)
 
     def begin(self) -> None:
@@ -174,11 +175,11 @@ class VelocityController(_OfQuadrotor):
         self._command = TwistCommand()
 
     def stop(self) -> None:
-        """The next controller has no command of this one."""
+        """Clear the command to the next controller."""
         self.hardware.attitude = None
         super().stop()
 
-    def _hear(self, message: Any) -> None:
+    def _receive(self, message: Any) -> None:
         self._take(message, self.context.now_ns, False)
 
     def _hear_stamped(self, message: Any) -> None:
@@ -202,7 +203,7 @@ class VelocityController(_OfQuadrotor):
             self._command = hardware.twist
         command, yaw = self._command, hardware.yaw
         c, s = math.cos(yaw), math.sin(yaw)
-        x, y, z = self._limits.applied(command.linear)
+        x, y, z = self._limits.clamped(command.linear)
         if not command.in_world:
             x, y = c * x - s * y, s * x + c * y
         lack = subtract((x, y, z), hardware.link.twist.linear)
@@ -210,7 +211,7 @@ class VelocityController(_OfQuadrotor):
         forward, left = c * ax + s * ay, c * ay - s * ax
         hardware.attitude = AttitudeCommand(
             -_arc_sine(left / _GRAVITY), _arc_sine(forward / _GRAVITY),
-            self._yaw_limits.applied(command.yaw_rate),
+            self._yaw_limits.clamped(command.yaw_rate),
             hardware.link.inertial.mass * (az * self._load_factor() + _GRAVITY), command.stamp_ns)
 
     def _load_factor(self) -> float:
@@ -237,9 +238,9 @@ class AttitudeController(_OfQuadrotor):
         super().load()
         context, s = self.context, self.settings
         self._roll_pid, self._pitch_pid, self._yaw_pid = map(self.pid, ("roll", "pitch", "yawrate"))
-        self._roll_limits, self._pitch_limits = limits_at(s, "roll"), limits_at(s, "pitch")
+        self._roll_limits, self._pitch_limits = read_limits(s, "roll"), read_limits(s, "pitch")
         self._most_tilt = s.number("max_roll_pitch", math.inf)
-        self._yaw_limits = limits_at(s, "yawrate")
+        self._yaw_limits = read_limits(s, "yawrate")
         self._time_out_ns = round(float(context.parameter("command_timeout", 0.0)) * 1e9)
         self._deceleration = float(context.parameter("estop_deceleration", 1.0))
         self._stopped = False
@@ -259,7 +260,7 @@ class AttitudeController(_OfQuadrotor):
         self._sinking: Optional[float] = None
 
     def stop(self) -> None:
-        """Nothing pushes the body."""
+        """Remove the force and the torque."""
         self.hardware.command(((0.0, 0.0, 0.0), (0.0, 0.0, 0.0)))
         super().stop()
 
@@ -279,7 +280,7 @@ class AttitudeController(_OfQuadrotor):
         self._stamps[2] = self.stamp_of(message)
 
     def update(self, dt: float) -> None:
-        """Push the body."""
+        """Apply a force and a torque to the body."""
         hardware = self.hardware
         if hardware.attitude is not None:
             self._command = hardware.attitude
@@ -306,12 +307,12 @@ class AttitudeController(_OfQuadrotor):
                                 * self.hardware.link.inertial.mass * dt)
             return 0.0, 0.0, 0.0, self._sinking
         self._sinking = None
-        roll = self._roll_limits.applied(command.roll)
-        pitch = self._pitch_limits.applied(command.pitch)
+        roll = self._roll_limits.clamped(command.roll)
+        pitch = self._pitch_limits.clamped(command.pitch)
         tilt = math.hypot(roll, pitch)
         if tilt > self._most_tilt:
             roll, pitch = roll * self._most_tilt / tilt, pitch * self._most_tilt / tilt
-        return roll, pitch, self._yaw_limits.applied(command.yaw_rate), command.thrust
+        return roll, pitch, self._yaw_limits.clamped(command.yaw_rate), command.thrust
 
 
 def _arc_sine(value: float) -> float:

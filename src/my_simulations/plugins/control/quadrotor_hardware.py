@@ -39,35 +39,35 @@ class AttitudeCommand(NamedTuple):
     stamp_ns: int = 0
 
 
-class Limits(NamedTuple):
-    """Of a number; none are infinite. Source: hector_quadrotor_interface, FieldLimiter."""
+class ScalarLimits(NamedTuple):
+    """Limits of a number; infinite for none. Source: hector_quadrotor_interface, FieldLimiter."""
 
     least: float
     most: float
 
-    def applied(self, value: float) -> float:
-        """The value within them."""
+    def clamped(self, value: float) -> float:
+        """Return the value, or the nearest limit."""
         return max(self.least, min(self.most, value))
 
 
-def limits_at(s: Settings, path: str) -> Limits:
+def read_limits(s: Settings, path: str) -> ScalarLimits:
     """Read `min` and `max` below a path; `min` is the opposite of `max` by default."""
     most = s.number(f"{path}/max", math.inf)
-    return Limits(s.number(f"{path}/min", -most), most)
+    return ScalarLimits(s.number(f"{path}/min", -most), most)
 
 
 class VectorLimits:
-    """Of a vector: of x, y, z, of its size, and of that across. Source: Vector3Limiter."""
+    """Limits of x, y, z, of the norm, and of the norm of (x, y). Source: Vector3Limiter."""
 
     def __init__(self, s: Settings, path: str = "") -> None:
         below = f"{path}/" if path else ""
-        self._axes = [limits_at(s, f"{below}{axis}") for axis in "xyz"]
+        self._axes = [read_limits(s, f"{below}{axis}") for axis in "xyz"]
         self._most = s.number(f"{below}max", math.inf)
         self._most_across = s.number(f"{below}max_xy", math.inf)
 
-    def applied(self, vector: Vec3) -> Vec3:
-        """The vector within them."""
-        x, y, z = (limits.applied(value) for limits, value in zip(self._axes, vector))
+    def clamped(self, vector: Vec3) -> Vec3:
+        """Return the vector within the limits."""
+        x, y, z = (limits.clamped(value) for limits, value in zip(self._axes, vector))
         across = math.hypot(x, y)
         found: Vec3 = (x, y, z)
         if across > self._most_across:
@@ -121,7 +121,7 @@ class QuadrotorHardware(Hardware):
         return rpy_from_quat(self.link.pose.orientation)[2]
 
     def to_body(self, vector: Vec3) -> Vec3:
-        """A vector of the world in the axes of the body."""
+        """Rotate a vector from world axes to body axes."""
         return rotate(conjugate(self.link.pose.orientation), vector)
 
     # -- the chain -------------------------------------------------------------------------------
@@ -150,8 +150,8 @@ class QuadrotorHardware(Hardware):
             self._end()
 
     def command(self, value: Wrench) -> None:
-        """Push the body with a wrench, within the limits, until the next one."""
-        force, torque = (limits.applied(part) for limits, part in zip(self._limits, value))
+        """Apply a wrench, within the limits, to the body until the next call."""
+        force, torque = (limits.clamped(part) for limits, part in zip(self._limits, value))
         self._wrench = (force, torque)
 
     def _enable_asked(self, request: Any, response: Any) -> None:

@@ -8,12 +8,12 @@ from ..context import Context, PluginError
 
 
 class Settings:
-    """What the parameter server says below a name. Values of a wrong type raise PluginError.
+    """The parameters of a controller. Values of a wrong type raise PluginError.
 
     Args:
-        context: of the plugin.
-        name: of the parameter.
-        found: its value; default what the parameter server says.
+        context: context of the plugin.
+        name: name of the controller, below which the parameters are.
+        found: the parameters as a tree of dictionaries; default: read from the parameter server.
     """
 
     def __init__(self, context: Context, name: str, found: Optional[Dict[str, Any]] = None) -> None:
@@ -23,7 +23,7 @@ class Settings:
         self._tree: Any = found if isinstance(found, dict) else {}
 
     def get(self, path: str) -> Any:
-        """Whatever is there; None for nothing. Names with slashes may be one key, or several."""
+        """Return the value at a path; None if there is none."""
         found = self._tree
         for part in path.split("/"):
             if not isinstance(found, dict) or part not in found:
@@ -32,7 +32,7 @@ class Settings:
         return found
 
     def number(self, path: str, default: float) -> float:
-        """A number."""
+        """Return a number."""
         value = self.get(path)
         if value is None:
             return default
@@ -41,7 +41,7 @@ class Settings:
         return float(value)
 
     def flag(self, path: str, default: bool) -> bool:
-        """true or false."""
+        """Return a boolean."""
         value = self.get(path)
         if value is None:
             return default
@@ -50,7 +50,7 @@ class Settings:
         return bool(value)
 
     def text(self, path: str, default: Optional[str] = None) -> str:
-        """A text; without a default it must be there."""
+        """Return a text; the parameter is required if there is no default."""
         value = self.get(path)
         if value is None:
             if default is None:
@@ -61,7 +61,7 @@ class Settings:
         return value
 
     def texts(self, path: str, default: Optional[List[str]] = None) -> List[str]:
-        """A list of texts, or one; without a default it must be there."""
+        """Return a list of texts, also for one text; required if there is no default."""
         value = self.get(path)
         if value is None:
             if default is None:
@@ -74,7 +74,7 @@ class Settings:
         return found
 
     def numbers(self, path: str, count: int, default: List[float]) -> List[float]:
-        """A list of so many numbers."""
+        """Return a list of `count` numbers."""
         value = self.get(path)
         if value is None:
             return default
@@ -84,7 +84,7 @@ class Settings:
         return [float(one) for one in value]
 
     def gains(self, path: str) -> Optional[PidGains]:
-        """PID gains; None where there is no p. Source: control_toolbox::Pid::init."""
+        """Return PID gains; None if there is no p. Source: control_toolbox::Pid::init."""
         if self.get(f"{path}/p") is None:
             return None
         clamp = abs(self.number(f"{path}/i_clamp", 0.0))
@@ -95,7 +95,7 @@ class Settings:
             self.flag(f"{path}/antiwindup", False))
 
     def needed_gains(self, path: str) -> PidGains:
-        """PID gains that must be there."""
+        """Return PID gains. Raises PluginError: there is no p."""
         found = self.gains(path)
         if found is None:
             raise PluginError(f"no p gain is specified: parameter {self.name}/{path}/p is missing")

@@ -9,14 +9,27 @@ from .settings import Settings
 
 @dataclass(frozen=True)
 class SpeedLimits:
-    """Limits of one velocity: (least, greatest), or None; m/s or rad/s, and per s, and per s^2."""
+    """Limits of one component of a velocity.
+
+    Attributes:
+        velocity: least and greatest velocity, m/s or rad/s; None for no limits.
+        acceleration: likewise, m/s^2 or rad/s^2.
+        jerk: likewise, m/s^3 or rad/s^3.
+    """
 
     velocity: Optional[Tuple[float, float]] = None
     acceleration: Optional[Tuple[float, float]] = None
     jerk: Optional[Tuple[float, float]] = None
 
     def limited(self, wanted: float, last: float, before: float, dt: float) -> float:
-        """A velocity within the limits, after `last`, and `before` that."""
+        """Return the velocity within the limits that is nearest to `wanted`.
+
+        Args:
+            wanted: commanded velocity.
+            last: velocity at the last update.
+            before: velocity at the update before the last.
+            dt: time between updates, s.
+        """
         if self.jerk is not None:
             change = 2.0 * dt * dt
             wanted = last + (last - before) + clamped(
@@ -30,7 +43,7 @@ class SpeedLimits:
 
 
 def speed_limits(settings: Settings, path: str) -> SpeedLimits:
-    """Of `linear/x` or `angular/z`."""
+    """Read the limits below a path such as `linear/x` or `angular/z`."""
     found: List[Optional[Tuple[float, float]]] = []
     for kind in ("velocity", "acceleration", "jerk"):
         most = settings.number(f"{path}/max_{kind}", 0.0)
@@ -40,5 +53,5 @@ def speed_limits(settings: Settings, path: str) -> SpeedLimits:
 
 
 def clamped(value: float, least: float, most: float) -> float:
-    """The value, or the nearer limit."""
+    """Return the value, or the nearest limit."""
     return max(least, min(most, value))

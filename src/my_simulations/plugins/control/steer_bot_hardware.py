@@ -66,11 +66,11 @@ class JointGroup(HardwareJoint):
             joint.hold()
         self.is_held = True
 
-    def rest(self) -> None:
+    def set_idle(self) -> None:
         """Hold positions, or command rate 0."""
         if not self.halted:
             for joint, _ in self._parts:
-                joint.rest()
+                joint.set_idle()
             self.is_held = False
 
 

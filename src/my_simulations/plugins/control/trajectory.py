@@ -28,7 +28,7 @@ class Waypoint(NamedTuple):
 
 
 def read_joints(named: Sequence[str], joints: Sequence[str], partial: bool) -> List[int]:
-    """Which of `joints` each name of a message is. Raises TrajectoryError."""
+    """Return the index in `joints` of each name of a message. Raises TrajectoryError."""
     unknown = [name for name in named if name not in joints]
     if unknown:
         raise TrajectoryError(f"'{unknown[0]}' is not a joint of this controller; there are"
@@ -69,19 +69,20 @@ def read_points(points: Sequence[Any], count: int) -> List[Waypoint]:
     return found
 
 
-def joined(current: Spline, start: float, now: float, points: Sequence[Waypoint], place: int,
-           wraps: bool) -> Spline:
-    """What one joint does from now on: the current spline until the new points begin, then these.
+def spliced_spline(current: Spline, start: float, now: float, points: Sequence[Waypoint],
+                   place: int, wraps: bool) -> Spline:
+    """Return the spline of one joint: the current one until the new points begin, then these.
 
     Args:
-        current: of the joint.
-        start: of the points, s of the spline's time.
-        now: likewise; points before it are left out.
-        points: at least one of them later than now.
-        place: of the joint in the points.
-        wraps: the joint turns without limits: it takes the shorter way.
+        current: the spline that the joint follows.
+        start: start time of the points, s of the spline's time.
+        now: present time, likewise; points before it are left out.
+        points: the new points.
+        place: index of the joint in the points.
+        wraps: whether the joint turns without limits and takes the shorter way.
 
-    Raises TrajectoryError where all points are past.
+    Raises:
+        TrajectoryError: all points are in the past.
     """
     coming = [(start + point.time, point.states[place]) for point in points
               if start + point.time > now]
@@ -114,19 +115,19 @@ class Tolerance(NamedTuple):
     acceleration: float = 0.0
 
     def holds(self, position_error: float, velocity_error: float) -> bool:
-        """Whether errors are within."""
+        """Whether errors are within the tolerance."""
         return not (0.0 < self.position < abs(position_error)
                     or 0.0 < self.velocity < abs(velocity_error))
 
     def updated(self, message: Any) -> "Tolerance":
-        """With what a control_msgs/JointTolerance says: 0 leaves a value, negative ends it."""
+        """Apply a control_msgs/JointTolerance: 0 keeps a limit, a negative number removes it."""
         return Tolerance(*(old if new == 0.0 else max(0.0, float(new)) for old, new in zip(
             self, (message.position, message.velocity, message.acceleration))))
 
 
 def updated(tolerances: Sequence[Tolerance], joints: Sequence[str],
             messages: Sequence[Any]) -> List[Tolerance]:
-    """Tolerances of joints with what messages say."""
+    """Apply control_msgs/JointTolerance messages to the tolerances of joints."""
     said: Dict[str, Any] = {message.name: message for message in messages}
     return [tolerance.updated(said[name]) if name in said else tolerance
             for name, tolerance in zip(joints, tolerances)]

@@ -17,9 +17,9 @@ _OPTIONS = (
 )
 
 
-def tunable(context: Context, name: str, gains: PidGains,
+def offer_gains(context: Context, name: str, gains: PidGains,
             changed: Callable[[PidGains], None]) -> Reconfigure:
-    """Offer gains under a name; `changed` gets those that were set."""
+    """Let dynamic_reconfigure change gains below a name; `changed` receives the new gains."""
     def take(values: Dict[str, Value]) -> None:
         changed(PidGains(float(values["p"]), float(values["i"]), float(values["d"]),
                          float(values["i_clamp_min"]), float(values["i_clamp_max"]),

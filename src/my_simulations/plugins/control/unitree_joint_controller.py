@@ -26,11 +26,11 @@ class UnitreeJointController(Controller):
 
     def load(self) -> None:
         """Take the joint."""
-        self._joint = self.take(EFFORT, self.settings.text("joint"))
+        self._joint = self.claim_joint(EFFORT, self.settings.text("joint"))
         self._hertz = self.settings.number("publish_rate", _STATE_HZ)
         self._state = self.publish("state", "unitree_legged_msgs/MotorState")
         self._mode = _BRAKE
-        self.subscribe("command", "unitree_legged_msgs/MotorCmd", self._hear)
+        self.subscribe("command", "unitree_legged_msgs/MotorCmd", self._receive)
 
     def start(self) -> None:
         """Brake until a command comes."""
@@ -38,7 +38,7 @@ class UnitreeJointController(Controller):
         self.observe(min(self._hertz, 1.0 / self.period) if self.period else self._hertz,
                      self._tell, [self._state], efforts=[self._joint.name])
 
-    def _hear(self, message: Any) -> None:
+    def _receive(self, message: Any) -> None:
         """A command in another mode leaves the motor as it is."""
         mode = int(message.mode)
         if mode == _BRAKE:
