@@ -93,6 +93,10 @@ FourWheelSteering: float32 front_steering_angle; float32 rear_steering_angle; fl
     front_steering_angle_velocity; float32 rear_steering_angle_velocity; float32 speed; float32
     acceleration; float32 jerk
 FourWheelSteeringStamped: Header header; FourWheelSteering data
+[gazebo_conveyor]
+ConveyorBeltControlRequest: float64 power
+ConveyorBeltControlResponse: bool success
+ConveyorBeltState: bool enabled; float64 power
 [gazebo_msgs]
 ContactState: string info; string collision1_name; string collision2_name; geometry_msgs/Wrench[]
     wrenches; geometry_msgs/Wrench total_wrench; geometry_msgs/Vector3[] contact_positions;

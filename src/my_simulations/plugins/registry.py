@@ -55,6 +55,8 @@ BUILT_IN: Mapping[str, str] = {
     "libHarnessPlugin.so": "gripping.harness:Harness",
     "libgazebo_ros_harness.so": "gripping.harness:Harness",
     "libElevatorPlugin.so": "world.elevator:Elevator",
+    "libROSConveyorBeltPlugin.so": "world.conveyor_belt:ConveyorBelt",
+    "libConveyorBeltPlugin.so": "world.conveyor_belt:ConveyorBelt",
     "libgazebo_ros_elevator.so": "world.elevator:Elevator",
     "libWindPlugin.so": "world.wind:Wind",
     "libgazebo_ros_f3d.so": "state.f3d:F3d",
