@@ -206,7 +206,7 @@ def test_a_student_reaches_no_files_processes_and_tokens_of_others(class_of_two)
             "processes": [os.getpid(), other.pid], "user": ben.user}
         world.start()
         held.callback(world.stop, "the test ended")
-        wait_for(lambda: world.look() or world.state == ENDED, "the end of the attempts", SECONDS)
+        wait_for(lambda: world.poll() or world.state == ENDED, "the end of the attempts", SECONDS)
     said = Path(log_file(plan, anna)).read_text()
     reached = json.loads(said.partition("REACHED ")[2].splitlines()[0])
     assert reached == [], said

@@ -24,7 +24,7 @@ _AGAIN_S = 5.0           # between two starts of a world that ends
 IDLE = "no browser was connected"
 
 
-class Place:
+class MonitoredWorld:
     """A student's world with its monitor."""
 
     def __init__(self, world: World, monitor: Monitor) -> None:
@@ -50,10 +50,11 @@ class ClassManager:
     def __init__(self, plan: ClassPlan, version: int, tell: Callable[[str], None]) -> None:
         self._plan, self._tell = plan, tell
         self._state = ClassState(plan)
-        self._state.hold()
+        self._state.acquire_lock()
         tokens = self._state.tokens(plan)
-        self._places = {student.name: Place(_world(plan, student, tokens[student.name]),
-                                            Monitor(version)) for student in plan.students}
+        self._worlds = {student.name: MonitoredWorld(
+            _world(plan, student, tokens[student.name]), Monitor(version))
+            for student in plan.students}
         self._page = TutorPage(plan, tokens[TUTOR], self)
         self._ended: Optional[asyncio.Event] = None
 
@@ -67,121 +68,122 @@ class ClassManager:
         for number in (signal.SIGINT, signal.SIGTERM):
             loop.add_signal_handler(number, self._ended.set)
         address = await self._page.start()
-        self._state.announce(address)
+        self._state.store_address(address)
         self._tell(f"tutor: {address}")
-        for place in self._places.values():
-            self._tell(f"{place.world.student.name}: {self.link(place.world.student)}")
+        for monitored in self._worlds.values():
+            self._tell(f"{monitored.world.student.name}: {self.link(monitored.world.student)}")
         starting = asyncio.ensure_future(self._start_all())
         try:
             while not self._ended.is_set():
-                self._look()
+                self._poll()
                 with contextlib.suppress(asyncio.TimeoutError):
                     await asyncio.wait_for(self._ended.wait(), _LOOK_S)
         finally:
             starting.cancel()
-            for place in self._places.values():
-                self._unwait(place)
-            await asyncio.gather(*(self._stop(place, "the class ended")
-                                   for place in self._places.values()))
+            for monitored in self._worlds.values():
+                self._unwait(monitored)
+            await asyncio.gather(*(self._stop(monitored, "the class ended")
+                                   for monitored in self._worlds.values()))
             await self._page.close()
-            for place in self._places.values():
-                if place.world.listening is not None:
-                    place.world.listening.close()
+            for monitored in self._worlds.values():
+                if monitored.world.listening is not None:
+                    monitored.world.listening.close()
 
     def link(self, student: Student) -> str:
         """Address of a student's editor, with its token."""
-        token = self._places[student.name].world.token
+        token = self._worlds[student.name].world.token
         return f"http://{_shown_host(self._plan.host)}:{student.port}/?token={token}"
 
     # -- worlds ----------------------------------------------------------------------------------
 
     async def _start_all(self) -> None:
         """Start the worlds one after the other: each uses a whole processor until it runs."""
-        for place in self._places.values():
-            if place.world.state == STOPPED and not place.world.reason:
-                self._start(place)
+        for monitored in self._worlds.values():
+            if monitored.world.state == STOPPED and not monitored.world.reason:
+                self._start(monitored)
             until = time.monotonic() + _STARTING_S
-            while place.world.state == STARTING and time.monotonic() < until:
+            while monitored.world.state == STARTING and time.monotonic() < until:
                 await asyncio.sleep(_LOOK_S / 4)
 
-    def _start(self, place: Place) -> None:
-        self._unwait(place)
-        place.started = time.monotonic()
-        place.monitor.error = ""
-        place.world.start()
-        place.task = asyncio.ensure_future(place.monitor.follow(place.world.monitor,
-                                                                place.world.token))
+    def _start(self, monitored: MonitoredWorld) -> None:
+        self._unwait(monitored)
+        monitored.started = time.monotonic()
+        monitored.monitor.error = ""
+        monitored.world.start()
+        monitored.task = asyncio.ensure_future(monitored.monitor.follow(monitored.world.monitor,
+                                                                monitored.world.token))
 
-    async def _stop(self, place: Place, reason: str) -> None:
-        await asyncio.get_running_loop().run_in_executor(None, place.world.stop, reason)
-        if place.task is not None:
-            place.task.cancel()
-            place.task = None
+    async def _stop(self, monitored: MonitoredWorld, reason: str) -> None:
+        await asyncio.get_running_loop().run_in_executor(None, monitored.world.stop, reason)
+        if monitored.task is not None:
+            monitored.task.cancel()
+            monitored.task = None
 
-    def _look(self) -> None:
+    def _poll(self) -> None:
         idle_s = 60.0 * self._plan.idle_minutes
-        for place in self._places.values():
-            world = place.world
-            world.look()
-            if world.state == STARTING and place.monitor.is_connected:
+        for monitored in self._worlds.values():
+            world = monitored.world
+            world.poll()
+            if world.state == STARTING and monitored.monitor.is_connected:
                 world.state = RUNNING
-            if place.monitor.people:
+            if monitored.monitor.people:
                 world.active = time.monotonic()
             if world.is_alive and idle_s and time.monotonic() > world.active + idle_s:
-                asyncio.ensure_future(self._sleep(place))
+                asyncio.ensure_future(self._sleep(monitored))
             if world.state == ENDED or (world.state == STOPPED and world.reason == IDLE):
-                if place.task is not None:
-                    place.task.cancel()
-                    place.task = None
-                self._wait(place)
+                if monitored.task is not None:
+                    monitored.task.cancel()
+                    monitored.task = None
+                self._wait(monitored)
 
-    async def _sleep(self, place: Place) -> None:
-        await self._stop(place, IDLE)
+    async def _sleep(self, monitored: MonitoredWorld) -> None:
+        await self._stop(monitored, IDLE)
 
-    def _wait(self, place: Place) -> None:
+    def _wait(self, monitored: MonitoredWorld) -> None:
         """Start the world again when a browser connects; the relay answers it then."""
-        listening = place.world.listening
-        if (listening is not None and not place.waits
-                and time.monotonic() > place.started + _AGAIN_S):
-            place.waits = True
-            asyncio.get_running_loop().add_reader(listening.fileno(), self._start, place)
+        listening = monitored.world.listening
+        if (listening is not None and not monitored.waits
+                and time.monotonic() > monitored.started + _AGAIN_S):
+            monitored.waits = True
+            asyncio.get_running_loop().add_reader(listening.fileno(), self._start, monitored)
 
-    def _unwait(self, place: Place) -> None:
-        if place.waits and place.world.listening is not None:
-            place.waits = False
-            asyncio.get_running_loop().remove_reader(place.world.listening.fileno())
+    def _unwait(self, monitored: MonitoredWorld) -> None:
+        if monitored.waits and monitored.world.listening is not None:
+            monitored.waits = False
+            asyncio.get_running_loop().remove_reader(monitored.world.listening.fileno())
 
     # -- requests of the tutor's page ------------------------------------------------------------
 
     def tiles(self) -> List[Dict[str, Any]]:
         """What the page shows of each student."""
-        return [_tile(place, self.link(place.world.student)) for place in self._places.values()]
+        return [_tile(monitored, self.link(monitored.world.student))
+                for monitored in self._worlds.values()]
 
     def picture(self, name: str) -> str:
         """A picture of the world of a student, SVG. Raises CommandError: no such student."""
-        return self._place(name).monitor.picture.svg()
+        return self._monitored(name).monitor.picture.svg()
 
     async def start_world(self, name: str) -> None:
         """Start the world of a student if it does not run. Raises CommandError: no such student."""
-        place = self._place(name)
-        if not place.world.is_alive:
-            self._start(place)
+        monitored = self._monitored(name)
+        if not monitored.world.is_alive:
+            self._start(monitored)
 
     async def stop_world(self, name: str) -> None:
         """Stop the world of a student. Raises CommandError: no such student."""
-        place = self._place(name)
-        self._unwait(place)
-        await self._stop(place, "stopped by the tutor")
+        monitored = self._monitored(name)
+        self._unwait(monitored)
+        await self._stop(monitored, "stopped by the tutor")
 
-    def _place(self, name: str) -> Place:
-        place = self._places.get(name)
-        if place is None:
+    def _monitored(self, name: str) -> MonitoredWorld:
+        monitored = self._worlds.get(name)
+        if monitored is None:
             raise CommandError(f"there is no student {name!r}")
-        return place
+        return monitored
 
 
-def _tile(place: Place, link: str) -> Dict[str, Any]:
-    world, monitor = place.world, place.monitor
+def _tile(monitored: MonitoredWorld, link: str) -> Dict[str, Any]:
+    world, monitor = monitored.world, monitored.monitor
     return {"name": world.student.name, "state": world.state, "reason": world.reason,
             "world": monitor.world, "models": monitor.models, "factor": monitor.factor,
             "time": monitor.time, "paused": monitor.is_paused, "error": monitor.error,

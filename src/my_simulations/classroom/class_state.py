@@ -35,8 +35,8 @@ class ClassState:
         except OSError as fault:
             raise CommandError(f"{self._folder} cannot be made: {fault.strerror}") from None
 
-    def hold(self) -> None:
-        """Make this process the manager of the class. Raises CommandError: another one runs."""
+    def acquire_lock(self) -> None:
+        """Lock the class for this process. Raises CommandError: another manager runs."""
         self._lock = os.open(self._path(_LOCK), os.O_RDWR | os.O_CREAT, 0o600)
         try:
             fcntl.flock(self._lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
@@ -46,15 +46,15 @@ class ClassState:
             raise CommandError("the class runs already") from None
 
     def tokens(self, plan: ClassPlan) -> Dict[str, str]:
-        """Tokens of tutor and students, by name; new ones are made and kept."""
+        """Return the tokens of tutor and students by name; create and store missing ones."""
         known = self._read(_TOKENS)
         names = (TUTOR, *(student.name for student in plan.students))
         found = {name: str(known.get(name) or secrets.token_urlsafe(24)) for name in names}
         self._write(_TOKENS, found)
         return found
 
-    def announce(self, address: str) -> None:
-        """Keep the address of the tutor's page, and the id of this process."""
+    def store_address(self, address: str) -> None:
+        """Store the address of the tutor's page, and the id of this process."""
         self._write(_MANAGER, {"pid": os.getpid(), "address": address})
 
     def manager(self) -> Dict[str, Any]:

@@ -59,8 +59,8 @@ class ContainerWorld:
         """Whether the container was started and runs."""
         return self.state not in (STOPPED, ENDED)
 
-    def look(self) -> None:
-        """Notice an end, and measure the memory every few seconds."""
+    def poll(self) -> None:
+        """Check whether the container runs; measure its memory every few seconds."""
         if not self.is_alive:
             return
         if self._starting is not None:

@@ -77,7 +77,7 @@ class LocalWorld:
         self.monitor = monitoring.getsockname()[1]
         monitoring.close()
         assert self._process.stdin is not None
-        with contextlib.suppress(BrokenPipeError):   # it has ended: `look` says so
+        with contextlib.suppress(BrokenPipeError):   # it has ended: `poll` says so
             self._process.stdin.write(json.dumps(self._specification(home, passed)).encode())
             self._process.stdin.close()
         self._activity = reading
@@ -111,8 +111,8 @@ class LocalWorld:
         """Whether processes run."""
         return self._process is not None and self._process.poll() is None
 
-    def look(self) -> None:
-        """Notice an end, activity of browsers, and too much memory."""
+    def poll(self) -> None:
+        """Check whether browsers are active; stop the processes if they use too much memory."""
         if self._process is None:
             return
         with contextlib.suppress(BlockingIOError):

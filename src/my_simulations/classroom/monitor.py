@@ -22,7 +22,7 @@ _INVALID = (ArithmeticError, AttributeError, LookupError, RecursionError, TypeEr
 
 
 class Monitor:
-    """What the manager of a class shows of a world. Runs in an event loop.
+    """Follows the editor of a world in an event loop, for the manager of the class.
 
     Args:
         version: of the editor's protocol.
@@ -36,21 +36,21 @@ class Monitor:
         is_paused: whether sim time stands still.
         error: the last error that pages showed; "" for none.
         people: number of browsers.
-        picture: of the world.
+        picture: picture of the world.
     """
 
     def __init__(self, version: int) -> None:
         self._version = version
         self.error = ""
         self.picture = WorldPicture()
-        self._forget()
+        self._clear()
 
-    def _forget(self) -> None:
+    def _clear(self) -> None:
         self.is_connected = self.is_paused = False
         self.world = ""
         self.models = self.people = 0
         self.factor = self.time = 0.0
-        self.picture.forget()
+        self.picture.clear()
 
     async def follow(self, port: int, token: str) -> None:
         """Follow the editor at a port of this machine until the task is cancelled."""
@@ -65,23 +65,23 @@ class Monitor:
                             await self._read(socket)
                     except (aiohttp.ClientError, asyncio.TimeoutError, OSError):
                         pass   # it starts, or has ended: the manager sees the processes
-                    self._forget()
+                    self._clear()
                     await asyncio.sleep(_RETRY_S)
         finally:
-            self._forget()
+            self._clear()
 
     async def _read(self, socket: "aiohttp.ClientWebSocketResponse") -> None:
         await socket.send_str(json.dumps({"type": "hello", "id": 1, _VERSION_KEY: self._version,
                                           "name": "tutor"}))
         async for message in socket:
             if message.type in (aiohttp.WSMsgType.TEXT, aiohttp.WSMsgType.BINARY):
-                self.take(message.data)
+                self.receive(message.data)
 
-    def take(self, data: Union[str, bytes]) -> None:
-        """Take a message of the editor; an invalid one changes a part of what is shown at most."""
+    def receive(self, data: Union[str, bytes]) -> None:
+        """Process a message of the editor; ignore invalid messages."""
         with contextlib.suppress(*_INVALID):   # it comes from a student's processes
             if isinstance(data, bytes):
-                self.picture.take_poses(data)
+                self.picture.update_poses(data)
             else:
                 self._take(json.loads(data))
 
@@ -91,14 +91,14 @@ class Monitor:
             document = message["document"]
             self.world, self.models = str(document["name"])[:100], len(document["models"])
             self.is_connected = True
-            self.picture.forget()
-            self.picture.take_models({one["name"]: one for one in document["models"]})
+            self.picture.clear()
+            self.picture.update_models({one["name"]: one for one in document["models"]})
         elif kind == "stats":
             self.factor, self.time = float(message["factor"]), float(message["sim_ns"]) * 1e-9
             self.is_paused = bool(message["paused"])
         elif kind == "change":
             self.models = len(message["order"]) if message.get("order") else self.models
-            self.picture.take_models(message.get("models") or {})
+            self.picture.update_models(message.get("models") or {})
         elif kind == "people":
             self.people = max(0, len(message["people"]) - 1)
         elif kind == "issue" and message["issue"]["severity"] == "error":

@@ -28,8 +28,8 @@ _BUSY = (b"HTTP/1.1 503 Service Unavailable\r\nContent-Type: text/plain\r\nRetry
          b" in some seconds.\n")
 
 
-def own_head(head: bytes, cookie: str) -> bytes:
-    """The head of an HTTP request with one cookie at most, for one request of the connection.
+def filtered_head(head: bytes, cookie: str) -> bytes:
+    """Return the head of an HTTP request with one cookie; the connection ends after the request.
 
     Args:
         head: up to and including the empty line.
@@ -56,11 +56,11 @@ def own_head(head: bytes, cookie: str) -> bytes:
 
 
 class Relay:
-    """Connections to one editor.
+    """Relays connections of browsers to one editor.
 
     Args:
-        port: of the editor.
-        cookie: name of its cookie.
+        port: port of the editor.
+        cookie: name of the editor's cookie.
         activity: descriptor that receives a byte while browsers are connected.
     """
 
@@ -96,7 +96,7 @@ class Relay:
                 writer.write(_BUSY)
                 await writer.drain()
                 return
-            editor[1].write(own_head(head, self._cookie))
+            editor[1].write(filtered_head(head, self._cookie))
             await _join(reader, writer, *editor)
         except (OSError, asyncio.IncompleteReadError, asyncio.LimitOverrunError,
                 asyncio.TimeoutError):

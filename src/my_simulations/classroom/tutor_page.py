@@ -25,13 +25,13 @@ Handler = Callable[[web.Request], Awaitable[web.StreamResponse]]
 
 
 class ClassControl(Protocol):
-    """The class that the page shows."""
+    """What the page requires of the manager of the class."""
 
     def tiles(self) -> List[Dict[str, Any]]:
-        """What the page shows of each student."""
+        """Return the values that the page shows, one dictionary for each student."""
 
     def picture(self, name: str) -> str:
-        """A picture of the world of a student, SVG. Raises CommandError: no such student."""
+        """Return a picture of a student's world, SVG. Raises CommandError: no such student."""
 
     async def start_world(self, name: str) -> None:
         """Start the world of a student. Raises CommandError: no such student."""

@@ -42,7 +42,7 @@ class _Part:
 
 
 class WorldPicture:
-    """What a picture shows.
+    """The models of a world, drawn as SVG.
 
     The input comes from a student's processes: invalid input raises various exceptions, and what
     is kept of it has a limit.
@@ -52,12 +52,12 @@ class WorldPicture:
         self._parts: Dict[str, List[_Part]] = {}
         self._poses: Dict[int, Pose] = {}
 
-    def forget(self) -> None:
-        """Show nothing."""
+    def clear(self) -> None:
+        """Remove all models."""
         self._parts, self._poses = {}, {}
 
-    def take_models(self, models: Mapping[str, Optional[Mapping[str, Any]]]) -> None:
-        """Take the protocol's `Model`s by name; None removes one."""
+    def update_models(self, models: Mapping[str, Optional[Mapping[str, Any]]]) -> None:
+        """Add or replace models of the protocol, by name; None removes a model."""
         for name, model in models.items():
             for part in self._parts.pop(name, []):
                 self._poses.pop(part.link, None)
@@ -74,8 +74,8 @@ class WorldPicture:
             if parts:
                 self._parts[name] = parts
 
-    def take_poses(self, frame: bytes) -> None:
-        """Take a binary frame of the editor; others than those of poses are ignored."""
+    def update_poses(self, frame: bytes) -> None:
+        """Apply the poses of a binary frame of the editor; other frames are ignored."""
         if int.from_bytes(frame[:4], "little") != LIVE:
             return
         for number, *values in RECORD_STRUCT.iter_unpack(frame[HEAD_BYTES:]):
@@ -83,7 +83,7 @@ class WorldPicture:
                 self._poses[number] = _pose(values)
 
     def svg(self) -> str:
-        """The picture; empty if nothing is known."""
+        """Return the picture as SVG; an empty picture without models."""
         boxes = [box for parts in self._parts.values() for part in parts
                  for box in self._box(part)]
         if not boxes:

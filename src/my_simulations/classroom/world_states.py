@@ -23,17 +23,17 @@ class World(Protocol):
 
     @property
     def listening(self) -> Optional[socket.socket]:
-        """Socket that browsers connect to, if this process owns it."""
+        """The socket that browsers connect to; None if another process owns it."""
 
     @property
     def is_alive(self) -> bool:
-        """Whether it runs."""
+        """Whether the world runs."""
 
     def start(self) -> None:
-        """Start it."""
+        """Start the world."""
 
-    def look(self) -> None:
-        """Notice its end, and measure it."""
+    def poll(self) -> None:
+        """Update state, memory and time of activity; call it about once a second."""
 
     def stop(self, reason: str) -> None:
-        """Stop it; waits for the end."""
+        """Stop the world, and wait for its end."""

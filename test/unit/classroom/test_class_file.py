@@ -93,11 +93,11 @@ def test_a_class_runs_once(plan):
     first = ClassState(plan)
     with pytest.raises(CommandError, match="does not run"):
         first.manager()
-    first.hold()
-    first.announce("http://127.0.0.1:12000/?token=t")
+    first.acquire_lock()
+    first.store_address("http://127.0.0.1:12000/?token=t")
     assert first.manager()["address"].endswith("token=t")
     with pytest.raises(CommandError, match="runs already"):
-        ClassState(plan).hold()
+        ClassState(plan).acquire_lock()
 
 
 def test_compose_isolates_and_limits_each_student(plan):

@@ -12,7 +12,7 @@ from free_ports import free_port
 
 from my_simulations.classroom.class_file import read_class
 from my_simulations.classroom.monitor import Monitor
-from my_simulations.classroom.relay import Relay, own_head
+from my_simulations.classroom.relay import Relay, filtered_head
 from my_simulations.classroom.tutor_page import TutorPage
 from my_simulations.errors import CommandError
 from my_simulations.grading.mark import GRADED, CheckResult, Mark
@@ -22,17 +22,18 @@ HEAD = (b"GET / HTTP/1.1\r\nHost: h:1\r\nCookie: a=1; my_simulations_editor_5=mi
 
 
 def test_an_editor_receives_its_own_cookie_only():
-    found = own_head(HEAD, "my_simulations_editor_5")
+    found = filtered_head(HEAD, "my_simulations_editor_5")
     assert found == (b"GET / HTTP/1.1\r\nHost: h:1\r\nCookie: my_simulations_editor_5=mine\r\n"
                      b"Connection: close\r\n\r\n")
-    assert b"mine" not in own_head(HEAD, "my_simulations_editor_55")
-    assert b"ookie" not in own_head(HEAD.replace(b"Cookie", b"cOOkie"), "my_simulations_editor")
+    assert b"mine" not in filtered_head(HEAD, "my_simulations_editor_55")
+    other = HEAD.replace(b"Cookie", b"cOOkie")
+    assert b"ookie" not in filtered_head(other, "my_simulations_editor")
 
 
 def test_a_web_socket_stays_open():
     head = (b"GET /ws HTTP/1.1\r\nConnection: Upgrade\r\nUpgrade: websocket\r\n"
             b"Cookie: other=1\r\n\r\n")
-    assert own_head(head, "mine") == (b"GET /ws HTTP/1.1\r\nConnection: Upgrade\r\n"
+    assert filtered_head(head, "mine") == (b"GET /ws HTTP/1.1\r\nConnection: Upgrade\r\n"
                                       b"Upgrade: websocket\r\n\r\n")
 
 
@@ -78,7 +79,7 @@ def test_a_monitor_shows_what_the_editor_says():
             {"type": "people", "people": [{}, {}]},
             {"type": "issue", "issue": {"severity": "warning", "message": "harmless"}},
             {"type": "issue", "issue": {"severity": "error", "message": "x" * 1000}}):
-        monitor.take(json.dumps(message))
+        monitor.receive(json.dumps(message))
     assert (monitor.world, monitor.models, monitor.factor, monitor.time) == ("lab", 2, 0.5, 2.0)
     assert monitor.is_connected and monitor.people == 1 and len(monitor.error) == 300
 
@@ -90,14 +91,14 @@ def test_a_monitor_shows_what_the_editor_says():
     {"type": "change", "models": {"a": {"pose": 1}}}])
 def test_a_monitor_survives_what_is_no_message_of_the_editor(message):
     monitor = Monitor(1)
-    monitor.take(json.dumps(message))
+    monitor.receive(json.dumps(message))
     assert not monitor.is_connected
 
 
 @pytest.mark.parametrize("data", ["no JSON", "[" * 100000, b"", b"\1\0\0\0" + b"x" * 77])
 def test_a_monitor_survives_what_is_no_message_at_all(data):
     monitor = Monitor(1)
-    monitor.take(data)
+    monitor.receive(data)
     assert not monitor.is_connected
 
 

@@ -121,7 +121,7 @@ def test_a_container_that_does_not_run_is_named(plan, tmp_path, monkeypatch):
 def looked(world, condition):
     until = time.monotonic() + SECONDS
     while not condition() and time.monotonic() < until:
-        world.look()
+        world.poll()
     assert condition(), (world.state, world.reason)
 
 

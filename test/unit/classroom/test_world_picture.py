@@ -35,7 +35,7 @@ def moved(number, *pose):
 def test_a_box_shows_three_faces_in_its_colour_inside_of_the_picture():
     picture = WorldPicture()
     assert polygons(picture) == []
-    picture.take_models({"box": model()})
+    picture.update_models({"box": model()})
     found = polygons(picture)
     assert len(found) == 3 and all(re.match("#[0-9a-f]{2}0000$", fill) for _, fill in found)
     assert all(0 <= x <= 320 and 0 <= y <= 200 for points, _ in found for x, y in points)
@@ -44,26 +44,26 @@ def test_a_box_shows_three_faces_in_its_colour_inside_of_the_picture():
 
 def test_poses_move_links_and_only_known_ones():
     picture = WorldPicture()
-    picture.take_models({"floor": model((10, 10, 0.1), number=1, static=True), "box": model()})
+    picture.update_models({"floor": model((10, 10, 0.1), number=1, static=True), "box": model()})
     before = polygons(picture)
-    picture.take_poses(moved(99, 3, 3, 0, 0, 0, 0, 1))
+    picture.update_poses(moved(99, 3, 3, 0, 0, 0, 0, 1))
     assert polygons(picture) == before
-    picture.take_poses(moved(7, 2, 0, 0.5, 0, 0, 0, 1))
+    picture.update_poses(moved(7, 2, 0, 0.5, 0, 0, 0, 1))
     after = polygons(picture)
     assert len(after) == len(before) and after != before
     x = [max(x for points, _ in found[-3:] for x, _ in points) for found in (before, after)]
     assert x[1] > x[0]      # to the east
-    picture.take_models({"box": None})
+    picture.update_models({"box": None})
     assert len(polygons(picture)) == 3
 
 
 def test_walls_hide_nothing_and_ceilings_are_left_out():
     picture = WorldPicture()
-    picture.take_models({"wall": model((5, 0.1, 4), (0, 0, 2), 1, static=True),
+    picture.update_models({"wall": model((5, 0.1, 4), (0, 0, 2), 1, static=True),
                          "ceiling": model((5, 5, 0.1), (0, 0, 4), 2, static=True)})
     (points, _), *rest = polygons(picture)
     assert len(rest) == 2
-    picture.take_models({"wall": model((5, 0.1, 1), (0, 0, 0.5), 1, static=True)})
+    picture.update_models({"wall": model((5, 0.1, 1), (0, 0, 0.5), 1, static=True)})
     assert polygons(picture)[0][0] == points
 
 
@@ -73,7 +73,7 @@ def test_walls_hide_nothing_and_ceilings_are_left_out():
     {"type": "polyline", "loops": [[[0, 0], [1, 0], [1, 1]]], "height": 1.0}, {"type": "mesh"}])
 def test_shapes_and_meshes_are_boxes(geometry):
     picture = WorldPicture()
-    picture.take_models({"one": model(geometry=geometry)})
+    picture.update_models({"one": model(geometry=geometry)})
     assert len(polygons(picture)) == 3
 
 
@@ -82,7 +82,7 @@ def test_shapes_and_meshes_are_boxes(geometry):
     {"at": (1e5, 0, 0)}, {"geometry": {"type": "plane"}}, {"geometry": {"type": "<script>"}}])
 def test_what_cannot_be_drawn_is_left_out(more):
     picture = WorldPicture()
-    picture.take_models({"one": model(**more), "two": model(number=8)})
+    picture.update_models({"one": model(**more), "two": model(number=8)})
     assert len(polygons(picture)) == 3
 
 
@@ -90,10 +90,10 @@ def test_a_student_can_neither_fill_the_memory_nor_insert_text():
     monitor = Monitor(1)
     picture = monitor.picture
     for number in range(3000):
-        picture.take_models({f"<script>{number}": model(
+        picture.update_models({f"<script>{number}": model(
             at=(number % 50, number // 50, 0), number=number,
             material={"diffuse": ["1", 0, 0, "0"]})})
     assert len(polygons(picture)) == 900 and "script" not in picture.svg()
-    picture.take_poses(moved(7, *[float("nan")] * 7))
+    picture.update_poses(moved(7, *[float("nan")] * 7))
     assert "nan" not in picture.svg()
     assert len(polygons(picture)) == 897
