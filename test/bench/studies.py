@@ -24,7 +24,7 @@ import time
 from typing import Dict, Iterator, List
 
 from my_simulations.python_api import OpenWorld
-from my_simulations.studies.case_world import choice_of
+from my_simulations.studies.case_world import world_choice_of
 from my_simulations.studies.command import main
 from my_simulations.studies.plan import Case, CasePlan
 from my_simulations.studies.slot import final_hash
@@ -66,7 +66,7 @@ def bare(path: str, part: int) -> None:
     plan = CasePlan(read_study(path)[0])
     world = None
     for case in list(plan.cases())[part::2]:
-        choice, _ = choice_of(plan, case)
+        choice, _ = world_choice_of(plan, case)
         if world is None:
             world = OpenWorld(choice)
         else:

@@ -35,7 +35,7 @@ from .program import OUTPUT, Program, submission_account
 from .program_graph import RosGraph, graph_environment
 from .result_stream import ResultWriter
 from .submission import all_matching, matching
-from .world_run import WorldRun, choice_of
+from .world_run import WorldRun, world_choice_of
 
 _EVERY_S = 1.0 / 30.0   # between two states of the replay, s of sim time
 REPLAY = "replay.html"
@@ -54,7 +54,7 @@ def main(words: List[str]) -> int:
     return 0
 
 
-class ThinRecord:
+class ThinnedRecorder:
     """Records 30 states for each second of sim time."""
 
     def __init__(self, record: LogRecord) -> None:
@@ -126,10 +126,10 @@ class Judge:
         try:
             # With a program, the node of the graph runs the plugins of robots.
             robots = RobotOptions(plugins=not self._assignment.form.run, sensors=False)
-            with OpenWorld(choice_of(self._assignment, path), resolver=self._resolver,
+            with OpenWorld(world_choice_of(self._assignment, path), resolver=self._resolver,
                            robots=robots) as world:
                 with contextlib.closing(LogRecord(log)) as record:
-                    self._decide(world, name, ThinRecord(record))
+                    self._decide(world, name, ThinnedRecorder(record))
         except GradingError:
             raise
         except InputError as fault:
@@ -142,7 +142,7 @@ class Judge:
             return
         self._send_replay(log)
 
-    def _decide(self, world: OpenWorld, name: str, record: ThinRecord) -> None:
+    def _decide(self, world: OpenWorld, name: str, record: ThinnedRecorder) -> None:
         """Run the world, with the program if the submission has one."""
         patterns = self._assignment.form.run
         file = matching(self._folder, patterns) if patterns else ""

@@ -17,7 +17,7 @@ from .assignment import Assignment, Launch, Rostest
 from .mark import CheckResult, GradingError, result
 from .program import TESTS, Program, submission_account, tester_account
 from .program_graph import free_port, graph_environment, start_master
-from .rostest_parts import STARTED, divided
+from .rostest_parts import STARTED, split_rostest
 from .submission import matching
 
 _POLL_S = 0.1
@@ -131,7 +131,7 @@ class LaunchChecks:
         Each has the files beside the rostest, as its user can read them.
         """
         try:
-            parts = divided(file)
+            parts = split_rostest(file)
         except InputError as fault:
             raise GradingError(str(fault.first)) from None
         copies = []

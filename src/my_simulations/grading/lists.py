@@ -63,13 +63,13 @@ def _table(rows: Sequence[Sequence[Any]]) -> bytes:
 def gradescope(mark: Mark) -> Dict[str, Any]:
     """The content of Gradescope's `results.json`."""
     tests = [{"name": one.name, "score": one.points, "max_score": one.most,
-              "status": "passed" if one.passed else "failed", "output": said(one)}
+              "status": "passed" if one.passed else "failed", "output": reason_with_location(one)}
              for one in mark.results]
     return {"score": mark.points, "tests": tests, "output": "\n".join(mark.notes)}
 
 
-def said(one: CheckResult) -> str:
-    """The reason of a result, with file and line before it."""
+def reason_with_location(one: CheckResult) -> str:
+    """Return the reason of a result, with file and line in front."""
     if not one.reason or not one.file:
         return one.reason
     return f"{one.file}:{one.line}: {one.reason}" if one.line else f"{one.file}: {one.reason}"
@@ -89,7 +89,7 @@ def _junit(assignment: Assignment, marks: Sequence[Mark]) -> bytes:
             if not one.passed:
                 kind = "failure" if mark.status == GRADED else "error"
                 etree.SubElement(case, kind, message=_xml(
-                    f"{one.points:g} of {one.most:g} points: {said(one)}"))
+                    f"{one.points:g} of {one.most:g} points: {reason_with_location(one)}"))
     text: bytes = etree.tostring(root, encoding="UTF-8", xml_declaration=True, pretty_print=True)
     return text
 

@@ -26,7 +26,7 @@ _START_S = 5.0        # processor time to start, s
 
 
 class Lockstep:
-    """Waits for one program.
+    """Waits until one program has processed each step of the world.
 
     Args:
         program: the program.
@@ -52,7 +52,7 @@ class Lockstep:
         self._began = time.monotonic()
 
     def wait(self, seconds: float) -> None:
-        """Wait after steps of so many s of sim time; never faster than real time."""
+        """Wait after steps of `seconds` of sim time; not faster than real time."""
         if not self._program.running:
             return
         self._wait(seconds)
@@ -83,7 +83,7 @@ class Lockstep:
             is_quiet = not _bytes_under_way()
 
     def close(self) -> None:
-        """Look no longer."""
+        """Close the files of the thread states."""
         self._threads.close()
 
     def _used(self) -> float:

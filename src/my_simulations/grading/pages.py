@@ -9,7 +9,7 @@ from urllib.parse import quote
 from ..simulator.safe_file import write_atomically
 from .assignment import Assignment
 from .grader import STUDENTS
-from .lists import said
+from .lists import reason_with_location
 from .mark import GRADED, Mark
 
 REPLAY = "replay.html"
@@ -71,7 +71,7 @@ def _overview(assignment: Assignment, marks: Sequence[Mark]) -> str:
     for mark in marks:
         link = f"{STUDENTS}/{quote(os.fsencode(mark.student))}/index.html"
         cells = "".join(f'<td class="number {_colour(one.points, one.most)}" title='
-                        f'"{escape(said(one), quote=True)}">{one.points:g}</td>'
+                        f'"{escape(reason_with_location(one), quote=True)}">{one.points:g}</td>'
                         for one in mark.results)
         status = "" if mark.status == GRADED else f" ({escape(mark.status)})"
         rows.append(f'<tr><td><a href="{link}">{escape(mark.student)}</a>{status}</td>'

@@ -14,8 +14,8 @@ _SCOPES = ("group",)
 _KEPT = ("arg", "env", "remap", "test")   # besides groups, of the second part
 
 
-def divided(path: str) -> Tuple[bytes, bytes]:
-    """The two roslaunch files of a rostest.
+def split_rostest(path: str) -> Tuple[bytes, bytes]:
+    """Return the two roslaunch files of a rostest.
 
     The first one has no tests, and sets the parameter `STARTED`. The second one has the tests of
     the file, with its arguments, groups, remappings and variables, and nothing else: tests in

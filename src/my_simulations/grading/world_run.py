@@ -42,12 +42,12 @@ class Graph(Protocol):
 
 
 class WorldRun:
-    """A world and the checks of it.
+    """Runs a world, and decides the checks of an assignment meanwhile.
 
     Args:
         assignment: the assignment.
         world: the open world, before its first step.
-        name: of the world file in the submission; "" for that of the assignment.
+        name: name of the world file in the submission; "" for that of the assignment.
         graph: the ROS graph; None for a world that runs alone.
     """
 
@@ -117,8 +117,8 @@ class WorldRun:
         return _DECIDE[type(check)](check, samples, self._name)
 
 
-def choice_of(assignment: Assignment, path: str) -> WorldChoice:
-    """The world of an assignment with its models; `path` is the world file."""
+def world_choice_of(assignment: Assignment, path: str) -> WorldChoice:
+    """Return the arguments of `OpenWorld`: the world file `path` and the assignment's models."""
     return WorldChoice(path, models=tuple((model.name, model.file, model.pose)
                                           for model in assignment.models))
 

@@ -12,8 +12,8 @@ from .variation import needed_of
 _SLICE = 1000  # steps at a time
 
 
-def choice_of(plan: CasePlan, case: Case) -> Tuple[WorldChoice, CaseChanges]:
-    """What to open for a case, and the changes that it brings.
+def world_choice_of(plan: CasePlan, case: Case) -> Tuple[WorldChoice, CaseChanges]:
+    """Return the arguments of `OpenWorld` for a case, and the changes that they contain.
 
     Raises InputError for a value that cannot be set, such as a drawn mass below 0.
     """
@@ -33,8 +33,8 @@ def choice_of(plan: CasePlan, case: Case) -> Tuple[WorldChoice, CaseChanges]:
 
 
 def open_case(plan: CasePlan, case: Case) -> OpenWorld:
-    """The world of a case, before its first step. Raises InputError if it cannot be used."""
-    world = OpenWorld(choice_of(plan, case)[0])
+    """Open the world of a case. Raises InputError: the world file has errors."""
+    world = OpenWorld(world_choice_of(plan, case)[0])
     if errors_of(world.issues):
         world.close()
         raise InputError(world.issues)

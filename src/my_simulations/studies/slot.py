@@ -20,7 +20,7 @@ from ..python_api.kept_files import FileCache
 from ..python_api.world_choice import WorldChoice
 from ..simulator.watchdog import process_time
 from .attempts import until_no_crash
-from .case_world import choice_of
+from .case_world import world_choice_of
 from .kept import CaseTrajectory
 from .plan import Case, CasePlan
 from .row import CRASHED, DIVERGED, FAILED, OK, REFUSED, TIMED_OUT, TOO_LARGE, Row
@@ -228,7 +228,7 @@ class Slot:
         return CaseTrajectory(np.array(run.times), run.names, np.array(run.frames))
 
     def _opened(self, case: Case) -> OpenWorld:
-        choice, changes = choice_of(self._plan, case)
+        choice, changes = world_choice_of(self._plan, case)
         if self._world is None:
             self._world = self._in_new_engine(choice)
         else:

@@ -5,7 +5,7 @@ import pytest
 from lxml import etree
 
 from my_simulations.errors import InputError
-from my_simulations.grading.rostest_parts import STARTED, divided
+from my_simulations.grading.rostest_parts import STARTED, split_rostest
 
 ROSTEST = """<launch>
   <!-- a comment -->
@@ -29,7 +29,7 @@ def tags(document):
 
 def test_nodes_and_tests_are_in_separate_files(tmp_path):
     (tmp_path / "lab.test").write_text(ROSTEST)
-    started, tests = divided(str(tmp_path / "lab.test"))
+    started, tests = split_rostest(str(tmp_path / "lab.test"))
     assert tags(started) == ["arg", "include", "param", "node", "group", "remap", "node", "param"]
     assert etree.fromstring(started)[-1].get("name") == STARTED
     assert tags(tests) == ["arg", "group", "remap", "test", "param", "test"]
@@ -40,4 +40,4 @@ def test_nodes_and_tests_are_in_separate_files(tmp_path):
 def test_a_file_without_tests_is_refused(tmp_path, text):
     (tmp_path / "lab.test").write_text(text)
     with pytest.raises(InputError):
-        divided(str(tmp_path / "lab.test"))
+        split_rostest(str(tmp_path / "lab.test"))
