@@ -47,7 +47,10 @@ class DriveSettings:
 
 
 class Drives:
-    """Owns joint motors and planar velocities. Changes take the structure lock."""
+    """Owns joint motors, joint servos, planar velocities and wheel slips.
+
+    Changes hold the structure lock.
+    """
 
     def __init__(self, session: Session) -> None:
         self._session = session

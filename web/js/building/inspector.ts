@@ -39,7 +39,7 @@ export async function inspectItem(session: Session, ref: Ref) {
   level.end();
 }
 
-/** The inspector of the level being drawn. */
+/** Opens the dialog with the properties of the current level; resolves when it closes. */
 export async function inspectLevel(session: Session) {
   const level = followLevel(session);
   await inspect({

@@ -72,7 +72,11 @@ export function setOuterLength(plan: Plan, at: number, id: number, length: numbe
   return moveEnd(plan, at, id, 'end', polar(wall.start, wallYaw(wall), inner));
 }
 
-/** Moves items. Walls that are linked with a moved wall are stretched; openings slide along walls. */
+/**
+ * Returns a plan with moved items. Walls that are linked with a moved wall are stretched; openings
+ * in walls move with their wall.
+ * @param at  index of the level
+ */
 export function moveItems(plan: Plan, at: number, refs: Ref[], by: Point) {
   const walls = refs.filter(({kind}) => kind === 'walls').map(({id}) => id);
   let made = walls.length ? moveWalls(plan, at, walls, by) : plan;

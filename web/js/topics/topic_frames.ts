@@ -5,8 +5,8 @@ import type {TopicHead} from '../protocol.js';
 const HEAD_BYTES = 8;
 
 /**
- * @returns null for another kind;
- * `start` is where the numbers begin, at a multiple of 8
+ * Decodes the head of a binary frame.
+ * @returns null for another kind of frame; `start`: offset of the numbers, bytes, a multiple of 8
  */
 export function decodeTopicFrame(buffer: ArrayBuffer): {head: TopicHead, buffer: ArrayBuffer,
     start: number}|null {

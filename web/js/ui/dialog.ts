@@ -32,6 +32,7 @@ export interface DialogButton {
   primary?: boolean;
   danger?: boolean;
 }
+/** A window over the page; `closed` resolves to the `value` of the button that closed it. */
 export class Dialog {
   modal;
   element;

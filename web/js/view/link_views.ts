@@ -29,7 +29,7 @@ export class ModelView {
   }
 }
 
-/** @returns of its visuals about its origin, m */
+/** @returns radius of a sphere about the origin of a link that contains its visuals, m */
 export function radiusOf({items}: LinkView): number {
   const corner = new Vector3();
   let farthest = 0.05;

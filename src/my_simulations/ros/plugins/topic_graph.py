@@ -40,14 +40,14 @@ class ListedTopic(NamedTuple):
 
 
 class TopicSubscription:
-    """A subscription."""
+    """A subscription to a topic, which counts the received bytes."""
 
     def __init__(self, subscriber: rospy.Subscriber) -> None:
         self._subscriber = subscriber
 
     @property
     def received_bytes(self) -> int:
-        """Bytes that have come so far, of all publishers."""
+        """Bytes received from all publishers."""
         implementation = self._subscriber.impl
         if implementation is None:
             return 0

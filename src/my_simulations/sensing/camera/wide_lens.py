@@ -45,11 +45,11 @@ class Side:
 
 
 class LensMap:
-    """Where each pixel of a wide-angle picture comes from.
+    """Maps pixels of pinhole pictures, to the sides of a cube, to a wide-angle picture.
 
     Attributes:
-        spec: of the pinhole pictures.
-        sides: those that are needed.
+        spec: camera of each pinhole picture.
+        sides: the sides of the cube that the lens shows.
     """
 
     def __init__(self, spec: CameraSpec, lens: WideLens) -> None:
@@ -66,7 +66,7 @@ class LensMap:
                                   for turn, pixels in zip(turns, found) if len(pixels)]
 
     def composed(self, drawn: Sequence[Drawn]) -> Drawn:
-        """The picture made of those to the sides; black, at no distance, outside of the lens."""
+        """Compose the picture; outside of the lens it is black, without label, with depth inf."""
         size = self._whole.width * self._whole.height
         shape = (self._whole.height, self._whole.width)
         rgb: Optional[np.ndarray] = None
