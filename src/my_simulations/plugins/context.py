@@ -9,9 +9,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any, Callable, Dict, List, Optional, Protocol, Sequence, Tuple
 
+from ..description.light import Light
 from ..description.model import Inertial, Model
 from ..description.model import Joint as JointSpec
 from ..description.sensor import Sensor
+from ..description.shapes import Material
 from ..description.surroundings import SphericalCoordinates
 from ..description.transmission import Transmission
 from ..engine.commands import JointWrench
@@ -295,6 +297,22 @@ class Context(Protocol):
 
     def models(self) -> "Dict[str, Model]":
         """The flattened descriptions of all models by name, the plugin's own among them."""
+
+    def lights(self) -> "Dict[str, Light]":
+        """The lights of the world by name."""
+
+    def set_light(self, light: Light) -> None:
+        """Replace the light of that name, for cameras and the editor.
+
+        Raises PluginError for a light that the world does not have.
+        """
+
+    def set_material(self, link: str, visual: str, material: Material) -> None:
+        """Show a visual of a link of the model in another material, for cameras and the editor.
+
+        It replaces the whole material; the model keeps it, also in a saved world. Raises
+        PluginError for a visual that the link does not have.
+        """
 
     def attach(self, name: str, parent: str, child: str) -> None:
         """Fix a link (scoped name) to one of another model, or to `world`, as they are now.

@@ -5,9 +5,11 @@ from collections import deque
 from dataclasses import replace
 from typing import Any, Callable, Deque, Dict, List, NamedTuple, Optional, Sequence, Tuple
 
+from ..description.light import Light
 from ..description.model import Joint as JointSpec
 from ..description.model import Mimic, Model
 from ..description.sensor import Sensor
+from ..description.shapes import Material
 from ..description.surroundings import SphericalCoordinates
 from ..description.transmission import Transmission
 from ..engine.commands import Command, JointWrench
@@ -93,7 +95,10 @@ class SimulatedContext(GraphUser):
 
     def bind(self, entity: Entity) -> None:
         """Use the model's new rows and name. Raises PluginError for a missing link or joint."""
+        has_same_rows = self.entity.model_id == entity.model_id
         self.entity = self._rows.entity = entity
+        if has_same_rows:   # it only looks different
+            return
         self.model = entity.model.name
         for link in self._links.values():
             self._find(link)
@@ -331,6 +336,26 @@ class SimulatedContext(GraphUser):
         """All models."""
         return {entity.model.name: entity.model
                 for entity in self.simulator.models.inventory()[1]}
+
+    def lights(self) -> Dict[str, Light]:
+        """Return the lights of the world by name."""
+        return {light.name: light for light in self.simulator.lights.all()}
+
+    def set_light(self, light: Light) -> None:
+        """Replace the light of that name."""
+        try:
+            self.simulator.lights.set(light.name, light)
+        except CommandError as fault:
+            raise PluginError(str(fault)) from fault
+
+    def set_material(self, link: str, visual: str, material: Material) -> None:
+        """Show a visual in another material."""
+        row = self._rows.link(link)
+        name = self.entity.link_names[row - self.entity.first_link_row]
+        try:
+            self.simulator.models.set_material(self.model, name, visual, material)
+        except CommandError as fault:
+            raise PluginError(str(fault)) from fault
 
     def attach(self, name: str, parent: str, child: str) -> None:
         """Fix a link to another."""

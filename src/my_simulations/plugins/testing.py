@@ -11,9 +11,11 @@ from __future__ import annotations
 
 from typing import Any, Callable, Dict, List, Optional, Sequence, Tuple
 
+from ..description.light import Light
 from ..description.model import Joint as JointSpec
 from ..description.model import Model
 from ..description.sensor import Sensor
+from ..description.shapes import Material
 from ..description.surroundings import SphericalCoordinates
 from ..description.transmission import Transmission
 from ..engine.commands import JointWrench
@@ -68,6 +70,8 @@ class FakeContext(FakeGraph):
         followers: (leader, multiplier, offset) of joints that mimic others.
         others: descriptions of the models in the world.
         attached: (parent, child) by the name of the joint.
+        world_lights: the lights of the world by name, which a test puts there.
+        materials: what was given to `set_material`, by link and visual.
         description: of the model.
     """
 
@@ -93,6 +97,8 @@ class FakeContext(FakeGraph):
         self.seed = 0
         self.step_size, self.step = step_size, 0
         self.wrenches: Dict[str, Tuple[Vec3, Vec3]] = {}
+        self.world_lights: Dict[str, Light] = {}
+        self.materials: Dict[Tuple[str, str], Material] = {}
         self._laws: Dict[str, Tuple[WrenchLaw, str]] = {}
         self.level: Optional[Tuple[float, float, float]] = None
         self.touching: List[Any] = []
@@ -239,6 +245,21 @@ class FakeContext(FakeGraph):
     def models(self) -> Dict[str, Model]:
         """Return the value set by the test."""
         return self.others
+
+    def lights(self) -> Dict[str, Light]:
+        """The lights that a test has put into `world_lights`."""
+        return dict(self.world_lights)
+
+    def set_light(self, light: Light) -> None:
+        """Replace the light of that name."""
+        if light.name not in self.world_lights:
+            raise PluginError(f"unknown light '{light.name}'")
+        self.world_lights[light.name] = light
+
+    def set_material(self, link: str, visual: str, material: Material) -> None:
+        """Record the call, by link and visual."""
+        self.link(link)
+        self.materials[link, visual] = material
 
     def attach(self, name: str, parent: str, child: str) -> None:
         """Record the call."""

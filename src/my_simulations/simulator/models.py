@@ -1,13 +1,14 @@
 """Spawns, deletes and edits models in a running world."""
 from __future__ import annotations
 
+from copy import copy
 from dataclasses import replace as replaced
 from typing import Dict, List, Optional, Sequence
 
 from ..description.flatten import flattened
 from ..description.model import Inertial, Model
 from ..description.model_plugins import has_plugins
-from ..description.shapes import MeshTable
+from ..description.shapes import Material, MeshTable
 from ..description.world import World
 from ..engine.commands import (
     Batch,
@@ -238,6 +239,35 @@ class Models(ConnectedModels):
             links[index] = replaced(old, inertial=inertial,
                                     gravity=old.gravity if gravity is None else gravity)
             self.edit(entity.model.name, replaced(entity.model, links=links))
+
+    def set_material(self, name: str, link: str, visual: str, material: Material) -> None:
+        """Show a visual in another material, as cameras and the editor do; nothing else changes.
+
+        Args:
+            name: of the model.
+            link: its name in the model.
+            visual: its name in the link.
+            material: the new one, whole.
+
+        Raises CommandError for an unknown model, link or visual.
+        """
+        with self._session.structure_lock, self._session.registry_lock:
+            old = self._session.registry.model(name)
+            at = next((n for n, one in enumerate(old.model.links) if one.name == link), None)
+            if at is None:
+                raise CommandError(f"model '{name}' has no link '{link}'")
+            visuals = old.model.links[at].visuals
+            if not any(one.name == visual for one in visuals):
+                names = ", ".join(one.name for one in visuals) or "none"
+                raise CommandError(f"link '{name}::{link}' has no visual '{visual}'; it has"
+                                   f" {names}")
+            links = list(old.model.links)
+            links[at] = replaced(links[at], visuals=[
+                replaced(one, material=material) if one.name == visual else one
+                for one in visuals])
+            entity = copy(old)
+            entity.model = replaced(old.model, links=links)
+            self._session.registry.swap(old, entity)
 
     def set_launched(self, names: Sequence[str]) -> None:
         """Set which models the launch file spawned; clears the flag of all others."""
