@@ -126,6 +126,32 @@ def recorded(path, topic):
         log.close()
 
 
+def check_plot(replay, variable):
+    """A plot shows its curve; numbers are added and removed, and a click moves the time."""
+    plot = replay.page.locator("#plot")
+    canvas = plot.get_by_role("img", name="Plot")
+    keys = plot.locator(".plot-key")
+    assert keys.all_inner_texts() == [variable]
+    assert canvas.evaluate(COLORS) > 0, "the curve"
+    plot.get_by_label("Plot a number of a topic").select_option("/scan.nearest")
+    assert keys.all_inner_texts() == [variable, "/scan.nearest"]
+    box = canvas.bounding_box()
+    replay.page.mouse.click(box["x"] + 63, box["y"] + box["height"] / 2.0)
+    replay.until("editor.store.log.time < editor.store.log.begin + 0.5", "the beginning")
+    for name in (variable, "/scan.nearest"):
+        plot.get_by_role("button", name=f"Remove {name}").click()
+    wait_for(lambda: not canvas.is_visible(), "a page without a plot")
+
+
+COLORS = """(canvas) => {
+  const {data} = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height);
+  let count = 0;
+  for (let at = 0; at < data.length; at += 4) count += data[at] > 180 && data[at + 2] < 90;
+  return count;
+}"""
+"""Number of pixels in the orange of the first curve."""
+
+
 def test_contacts_and_chosen_topics_are_shown_by_switches(browser, launch, tmp_path, monkeypatch):
     folder = tmp_path / "recorded"
     monkeypatch.setenv("MY_SIMULATIONS_RECORD", str(folder))
@@ -136,7 +162,8 @@ def test_contacts_and_chosen_topics_are_shown_by_switches(browser, launch, tmp_p
     wait_for(lambda: min(recorded(log, "/scan"), recorded(log, "/odom")) > 5, "messages")
     node.close()
     page = tmp_path / "run.html"
-    assert my_simulations.replay(str(folder), str(page)) == []
+    speed = "/odom.twist.twist.linear.x"
+    assert my_simulations.replay(str(folder), str(page), plot=[speed, "/missing.x"]) == []
     replay = browser.open(page.as_uri())
     replay.until("editor.topics.list.map(({name}) => name).sort().join() === '/odom,/scan'",
                  "the list of topics")
@@ -149,5 +176,6 @@ def test_contacts_and_chosen_topics_are_shown_by_switches(browser, launch, tmp_p
     replay.until("editor.view.contactMarks > 0", "the contacts of the wheels")
     replay.page.get_by_label("/scan").uncheck()
     replay.until("editor.view.drawnTopics.join() === '/odom'", "the odometry alone")
+    check_plot(replay, speed)
     assert replay.faults == []
     replay.close()

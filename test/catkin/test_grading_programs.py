@@ -12,6 +12,7 @@ import sys
 from pathlib import Path
 
 import pytest
+from replay_content import replay_content
 from waiting import wait_for
 
 from my_simulations.grading import box, cell
@@ -98,6 +99,22 @@ world: worlds/empty.world
   - {{points: 4, name: moved, require: pose.box.x > 0.1, within: 0.3}}
   - {{points: 2, name: talks, topic: /chat, rate: 20, within: 0.3}}
 """
+RECORD = f"""{MODELS}record: [/chat, /numbers.data, /odd, /never]
+checks:
+  - {{points: 1, name: talks, topic: /numbers, type: std_msgs/Float64, within: 2}}
+"""
+TALK = """import rospy
+from std_msgs.msg import Float64, String
+
+rospy.init_node("talk")
+chat = rospy.Publisher("/chat", String, queue_size=10)
+numbers = rospy.Publisher("/numbers", Float64, queue_size=10)
+rate = rospy.Rate(20)
+while not rospy.is_shutdown():
+    chat.publish("here")
+    numbers.publish(rospy.get_time())
+    rate.sleep()
+"""
 LIMITS = ("limits: {processor_seconds: 20, memory_mb: 1000, processes: 100, file_mb: 50}\n")
 LAUNCH = """lab: launch
 checks:
@@ -165,6 +182,17 @@ def test_a_robot_is_driven_by_its_topic_and_its_plugins_run_once(tmp_path):
     # One command more or less, each 0.1 s, changes the way by 3 %.
     assert points(rows["other"], "way")[0] == pytest.approx(points(rows["driver"], "way")[0],
                                                             rel=0.1)
+
+
+def test_the_replay_contains_topics_of_the_assignment(tmp_path):
+    world = "submission: {run: go.py}\nworld: worlds/empty.world\n"
+    rows, students = grade(tmp_path, world + RECORD, {"talk": TALK})
+    assert points(rows["talk"], "talks") == [1]
+    head, messages = replay_content(students / "talk" / "replay.html", tmp_path / "state.log")
+    assert head["curves"] == ["/numbers.data"]
+    assert set(messages) == {"/chat", "/numbers"}
+    times = [float(view["text"].partition(": ")[2]) for view in messages["/numbers"]]
+    assert len(times) > 8 and times == sorted(times) and times[-1] > 1.5
 
 
 def test_hostile_programs_change_no_other_mark(tmp_path):

@@ -6,6 +6,8 @@ import subprocess
 import sys
 from pathlib import Path
 
+from replay_content import replay_content
+
 from my_simulations.cli.rostest_replay import has_failed
 
 TEST = """<launch>
@@ -37,6 +39,7 @@ def run(tmp_path, name, topic, seconds):
          "--package=their_package", str(package / f"{name}.test")],
         env={**os.environ, "PATH": os.pathsep.join([os.path.dirname(sys.executable),
                                                     os.environ["PATH"]]),
+             "MY_SIMULATIONS_RECORD_TOPICS": "/gazebo/link_states",
              "TMPDIR": str(temporary), "ROS_HOME": str(tmp_path / "home"),
              "ROS_PACKAGE_PATH": f"{package}{os.pathsep}{os.environ['ROS_PACKAGE_PATH']}"},
         capture_output=True, text=True, timeout=600)
@@ -49,7 +52,9 @@ def test_a_failed_rostest_leaves_a_replay_beside_its_results(tmp_path):
     done, files = run(tmp_path, "fails", "/nothing", 3)
     assert done.returncode != 0
     assert has_failed(str(files["rosunit-fails.xml"])), done.stdout
-    assert 'id="data"' in files["rosunit-fails.html"].read_text(encoding="utf-8"), done.stdout
+    page = files["rosunit-fails.html"]
+    _, messages = replay_content(page, tmp_path / "state.log")
+    assert "ground_plane::link" in messages["/gazebo/link_states"][-1]["text"]
 
 
 def test_a_rostest_that_passes_leaves_none(tmp_path):

@@ -1,10 +1,12 @@
 import assert from 'node:assert/strict';
 import {test} from 'node:test';
 import {LogConnection} from '../../web/js/replay/log_connection.js';
+import {seriesOf} from '../../web/js/replay/log_plot.js';
 import {partsOf, pathOf, resolverOf, unpacked} from '../../web/js/replay/page_files.js';
 import {between, StateLog} from '../../web/js/replay/state_log.js';
 import {Store} from '../../web/js/store.js';
 import {decodeTopicFrame} from '../../web/js/topics/topic_frames.js';
+import {numbersOf} from '../../web/js/topics/view_numbers.js';
 import {near} from './near.mjs';
 
 const DOCUMENT = 1;
@@ -124,13 +126,14 @@ test('an edit is refused', async () => {
 });
 
 test('the data of a page is taken apart, and addresses lead into it', async () => {
-  const head = bytes(JSON.stringify({name: 'run', log: [0, 3], files: {'/resource/a b.png': [3, 2, 'image/png']}}));
+  const head = bytes(JSON.stringify({name: 'run', log: [0, 3], files: {'/resource/a b.png': [3, 2, 'image/png']},
+    curves: ['/odom.twist.twist.linear.x']}));
   const size = new Uint8Array(new Uint32Array([head.length]).buffer);
   const data = joined([size, head, bytes('logPN')]);
   const packed = new Response(new Blob([data]).stream().pipeThrough(new CompressionStream('gzip')));
   const base64 = Buffer.from(await packed.arrayBuffer()).toString('base64');
-  const {name, log, files} = partsOf(await unpacked(`\n${base64}\n`));
-  assert.deepEqual([name, new TextDecoder().decode(log)], ['run', 'log']);
+  const {name, log, files, curves} = partsOf(await unpacked(`\n${base64}\n`));
+  assert.deepEqual([name, new TextDecoder().decode(log), curves], ['run', 'log', ['/odom.twist.twist.linear.x']]);
   const resolve = resolverOf(files);
   assert.match(resolve('file:///resource/x/../a%20b.png'), /^blob:/);
   assert.match(resolve('/resource/other.png'), /^data:/);
@@ -190,4 +193,31 @@ test('a path is shown from its beginning, where the robot was then, also after a
   assert.deepEqual(take(), [['/odom', 0, 0], ['/odom', 0.1, 2], ['contacts', 2]]);
   await connection.request('log_seek', {time: 0.1});
   assert.deepEqual(take().filter(([name]) => name === '/odom'), [['/odom', 0, 0], ['/odom', 0.1, 1]]);
+});
+
+test('numbers of recorded messages are curves over the time of the log', () => {
+  const curves = seriesOf(noted().log);
+  assert.deepEqual([...curves.keys()].filter((name) => /position|range/.test(name)), [
+    '/odom.pose.pose.position.x', '/odom.pose.pose.position.y', '/odom.pose.pose.position.z', '/range.range']);
+  const {times, values} = curves.get('/odom.pose.pose.position.x');
+  near(times, [0, 0.1]);
+  near(values, [0, 1]);
+  near(curves.get('/range.range').values, [5, 4]);
+});
+
+test('numbers of a message as text have the path of their field', () => {
+  const text = ['header:', '  seq: 5', '  stamp: 1.500', 'linear:', '  x: 0.3', '  y: -1e-05', 'on: True', 'name: a',
+    'data: [1, nan, 3, ... (30)]', 'empty: []', 'status: (2)', '  -', '    level: 1', '    values: (1)', '      -',
+    '        key: 2', '  -', '    level: 4', 'covariance: [1, 2]', 'last:', '  z: 7', '      lost: 1'].join('\n');
+  assert.deepEqual([...numbersOf({type: 'text', text}, new ArrayBuffer(0))], [['linear.x', 0.3], ['linear.y', -1e-5],
+    ['on', 1], ['data[0]', 1], ['data[2]', 3], ['status[0].level', 1], ['status[0].values[0].key', 2],
+    ['status[1].level', 4], ['last.z', 7]]);
+});
+
+test('a laser scan has the distance of the nearest object, others have none', () => {
+  const scan = (ranges) => numbersOf({type: 'scan', count: ranges.length}, new Float32Array(ranges).buffer);
+  assert.deepEqual([...scan([NaN, 2, 0.5, NaN])], [['nearest', 0.5]]);
+  assert.equal(scan([NaN]).size + scan([]).size, 0);
+  assert.equal(numbersOf({...range(null)}, new ArrayBuffer(0)).size, 0);
+  assert.equal(numbersOf({type: 'contacts', positions: [], normals: []}, new ArrayBuffer(0)).size, 0);
 });

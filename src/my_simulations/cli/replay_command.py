@@ -34,6 +34,9 @@ def parser() -> argparse.ArgumentParser:
                       " %(default)g)")
     made.add_argument("--last", type=float, default=math.inf, metavar="SECONDS",
                       help="only so many seconds of sim time at the end of the run (default: all)")
+    made.add_argument("--plot", metavar="NAMES", default="", help="numbers of recorded topics that"
+                      " the page plots from the start, such as"
+                      " /odom.twist.twist.linear.x,/scan.nearest")
     return made
 
 
@@ -51,7 +54,8 @@ def main(argv: Optional[Sequence[str]] = None) -> int:
     stem = os.path.splitext(os.path.basename(os.path.abspath(options.run)))[0]
     output = options.output or f"{stem}.html"
     try:
-        missing = replay(options.run, output, options.title, options.rate, options.last)
+        missing = replay(options.run, output, options.title, options.rate, options.last,
+                         options.plot.replace(",", " ").split())
     except CommandError as fault:
         print(f"{NAME}: {fault}", file=sys.stderr)
         return 1
@@ -63,7 +67,7 @@ def main(argv: Optional[Sequence[str]] = None) -> int:
 
 
 def replay(run: str, output: str, title: str = "", rate: float = STATES_HZ,
-           last: float = math.inf) -> List[str]:
+           last: float = math.inf, plot: Sequence[str] = ()) -> List[str]:
     """Write a recorded run as one HTML file.
 
     Args:
@@ -72,6 +76,8 @@ def replay(run: str, output: str, title: str = "", rate: float = STATES_HZ,
         title: title of the page; default: name of the run.
         rate: states for each second of sim time, between which the page interpolates.
         last: only so many seconds of sim time at the end of the run.
+        plot: numbers of recorded topics that the page plots from the start, such as
+            `/odom.twist.twist.linear.x`.
 
     Returns:
         Addresses of meshes and pictures that were not found.
@@ -79,7 +85,8 @@ def replay(run: str, output: str, title: str = "", rate: float = STATES_HZ,
     Raises:
         CommandError: the run cannot be read or the file cannot be written.
     """
-    return write_replay(log_of(run), output, Resolver.from_environment(), title, rate, last)
+    return write_replay(log_of(run), output, Resolver.from_environment(), title, rate, last,
+                        plot)
 
 
 def log_of(run: str) -> str:

@@ -43,7 +43,8 @@ def rostest_replay(options: ServerOptions, words: Sequence[str],
     folder = os.path.join(tempfile.gettempdir(), f"my_simulations_rostest_{secrets.token_hex(8)}")
     tests = _Tests(launch.pid)
     try:
-        yield dataclasses.replace(options, recording=Recording(True, path=folder, period=_PERIOD_S))
+        yield dataclasses.replace(options, recording=Recording(
+            True, path=folder, period=_PERIOD_S, topics=options.recording.topics))
     finally:
         failed = [file for file in tests.end() if has_failed(file)]
         if failed:

@@ -198,6 +198,8 @@ class Assignment:
         limits: of each submission.
         checks: in the order of the file.
         may_change_world: whether programs can call services of /gazebo that change the world.
+        recorded: topics that the replay contains, with a leading slash; a name such as
+            `/cmd_vel.linear.x` also has a curve in its plot.
     """
 
     lab: str
@@ -209,6 +211,17 @@ class Assignment:
     limits: GradeLimits
     checks: Tuple[Check, ...] = field(default_factory=tuple)
     may_change_world: bool = True
+    recorded: Tuple[str, ...] = ()
+
+    @property
+    def recorded_topics(self) -> Tuple[str, ...]:
+        """Names of the recorded topics."""
+        return tuple(dict.fromkeys(name.partition(".")[0] for name in self.recorded))
+
+    @property
+    def curves(self) -> Tuple[str, ...]:
+        """Numbers of recorded topics that the plot of the replay shows from the start."""
+        return tuple(name for name in self.recorded if "." in name)
 
     @property
     def points(self) -> float:

@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import os
+import re
 from typing import Any, Dict, List, Mapping, Optional, Tuple
 
 from ..errors import Issue
@@ -18,7 +19,9 @@ from .assignment import (
 from .assignment_values import AssignmentValues
 from .check_reader import CheckReader
 
-_KEYS = ("lab", "submission", "world", "models", "services", "sample", "limits", "checks")
+_KEYS = ("lab", "submission", "world", "models", "services", "record", "sample", "limits",
+         "checks")
+_RECORDED = re.compile(r"/?[A-Za-z]\w*(/\w+)*(\.\w+(\[\d+\])?)*\Z")
 _READ, _ALL = "read", "all"
 _LIMITS = ("seconds", "processor_seconds", "memory_mb", "processes", "file_mb")
 _LONGEST_S = 3600.0
@@ -60,13 +63,25 @@ class _AssignmentReader(AssignmentValues):
             self.text(top.get("lab", stem), ("lab",)), file, form, world,
             self.models(top.get("models")),
             self.number(top.get("sample", 0.01), ("sample",), above=0.0, most=_LONGEST_S),
-            self._limits(top.get("limits")), checks, services == _ALL)
+            self._limits(top.get("limits")), checks, services == _ALL,
+            self._recorded(top.get("record"), form))
 
     def _form(self, value: Any) -> SubmissionForm:
         path = ("submission",)
         keys = ("world", "run", "models")
         inside = self.mapping(value, path, keys)
         return SubmissionForm(*(self.names(inside.get(key), (*path, key)) for key in keys))
+
+    def _recorded(self, value: Any, form: SubmissionForm) -> Tuple[str, ...]:
+        names = self.names(value, ("record",))
+        for name in names:
+            if not _RECORDED.match(name):
+                self.fault(("record",), f"{name!r} is neither a topic nor a number of its messages",
+                           "write for instance /scan, or /cmd_vel.linear.x for a curve")
+        if names and not form.run:
+            self.fault(("record",), "'record' needs a program: worlds alone have no topics",
+                       "add submission: {run: NAME}", "grade-key")
+        return tuple("/" + name.lstrip("/") for name in names)
 
     def _limits(self, value: Any) -> GradeLimits:
         inside = self.mapping(value, ("limits",), _LIMITS)

@@ -11,7 +11,7 @@ import contextlib
 import json
 import os
 import sys
-from typing import Any, Dict, List, Optional
+from typing import Any, Dict, Iterator, List, Optional
 
 from ..editor.logs.replay_page import write_replay
 from ..editor.logs.world_record import LogRecord
@@ -39,6 +39,10 @@ from .world_run import WorldRun, world_choice_of
 
 _EVERY_S = 1.0 / 30.0   # between two states of the replay, s of sim time
 REPLAY = "replay.html"
+_MOST_TOPIC_BYTES = 20e6
+"""Of all recorded messages."""
+
+_MOST_REPLAY_BYTES = 50e6
 
 
 def main(words: List[str]) -> int:
@@ -58,13 +62,13 @@ class ThinnedRecorder:
     """Records 30 states for each second of sim time."""
 
     def __init__(self, record: LogRecord) -> None:
-        self._record = record
+        self.record = record
         self._next = 0.0
 
     def record_state(self, world: OpenWorld) -> None:
         """Add the present state if it is due."""
         if world.time >= self._next - 1e-9:
-            self._record.record_state(world)
+            self.record.record_state(world)
             self._next = world.time + _EVERY_S
 
 
@@ -155,10 +159,23 @@ class Judge:
         with contextlib.closing(RosGraph(self._assignment, world, self._resolver)) as graph:
             with contextlib.closing(self._program(file, graph.uri)) as program:
                 graph.run(program)
-                WorldRun(self._assignment, world, name, graph).run(record, self._writer.result)
+                with self._recorded_topics(world, graph, record.record):
+                    WorldRun(self._assignment, world, name, graph).run(record, self._writer.result)
                 for note in filter(None, (program.why_ended(), graph.refused)):
                     self._writer.note(note)
                 self._writer.file(OUTPUT, program.output())
+
+    @contextlib.contextmanager
+    def _recorded_topics(self, world: OpenWorld, graph: RosGraph, record: LogRecord
+                         ) -> Iterator[None]:
+        """Record the topics of the assignment until the graph ends."""
+        names = self._assignment.recorded_topics
+        if names:
+            record.record_topics(world, graph.topics, names, _MOST_TOPIC_BYTES)
+        try:
+            yield
+        finally:
+            record.end_topics()
 
     def _program(self, file: str, uri: str) -> Program:
         path = os.path.join(self._folder, file)
@@ -178,9 +195,14 @@ class Judge:
     def _send_replay(self, log: str) -> None:
         page = os.path.join(self._own, REPLAY)
         try:
-            write_replay(log, page, self._resolver, self._assignment.lab)
+            write_replay(log, page, self._resolver, self._assignment.lab,
+                         curves=self._assignment.curves)
         except SimulationError as fault:
             self._writer.note(f"there is no replay: {fault}")
+            return
+        size = os.path.getsize(page)
+        if size > _MOST_REPLAY_BYTES:
+            self._writer.note(f"there is no replay: it has {size * 1e-6:.0f} MB")
             return
         with open(page, "rb") as stream:
             self._writer.file(REPLAY, stream.read())

@@ -8,6 +8,7 @@ import time
 from typing import List, Optional
 
 from ..child_process import wait_or_kill
+from ..editor.topic_source import TopicSource
 from ..python_api import OpenWorld
 from ..resources.resolver import Resolver
 from .assignment import Assignment, ServiceAnswer, Timed, TopicRate
@@ -70,6 +71,12 @@ class RosGraph:
         if time.monotonic() > self._upkeep + _UPKEEP_S:
             self._upkeep = time.monotonic()
             self._node.keep_up()
+
+    @property
+    def topics(self) -> TopicSource:
+        """All topics by name."""
+        found: TopicSource = self._node.topics
+        return found
 
     @property
     def refused(self) -> str:

@@ -48,6 +48,11 @@ class AttachedNode:
         self._subscribers: Dict[str, Any] = {}
 
     @property
+    def topics(self) -> Any:
+        """All topics of the graph by name (`TopicGraph`)."""
+        return self._node.topic_graph()
+
+    @property
     def refused(self) -> Tuple[str, ...]:
         """Names of the services and topics of /gazebo that were used but are not permitted."""
         return self._refused.used

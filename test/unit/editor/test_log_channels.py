@@ -120,6 +120,33 @@ def test_messages_of_a_topic_are_written_as_pages_show_them(writer):
     assert (head["topic"], head["frame"], head["stamp"]) == ("/sonar", "sonar", 1.0)
 
 
+def test_messages_keep_their_time_while_nothing_moves(writer):
+    source = Source("/sonar")
+    notes = TopicChannel(source, ["/sonar"], lambda: 0.0)
+    writer.document(0.0, {"name": "w", "models": []})
+    pose = np.array([[0, 0, 0, 0, 0, 0, 1]], dtype=np.float32)
+    for step in range(4):
+        time = 0.2 * step
+        writer.poses(Poses(np.array([1]), pose, 0, time, time))
+        if step:
+            source.calls["/sonar"](range_message(float(step)))
+        notes.write(writer, time)
+    log = finished(writer)
+    assert log.times(0.0) == pytest.approx([0.0, 0.2, 0.4, 0.6])
+    assert [ranges(log.records(at - 1, at)) for at in range(4)] == [[], [1.0], [2.0], [3.0]]
+
+
+def test_messages_beyond_a_size_are_left_out(writer):
+    source = Source("/sonar")
+    notes = TopicChannel(source, ["/sonar"], lambda: 0.0, most_bytes=400)
+    for step in range(10):
+        state(writer, step)
+        if step:
+            source.calls["/sonar"](range_message(float(step)))
+        notes.write(writer, step)
+    assert ranges(finished(writer).records(-1, 9)) == [1.0, 2.0]
+
+
 def test_a_recorder_subscribes_to_the_topics_of_its_options(tmp_path):
     source, issues = Source("/sonar"), []
     sim = Simulator(World(models=[box("a")]), paused=True, log=issues.append,

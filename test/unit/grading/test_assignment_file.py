@@ -99,6 +99,26 @@ def test_model_files_of_a_submission_are_named_by_patterns(tmp_path):
     assert found.form.models == ("objects/*.urdf", "b.sdf")
 
 
+RECORD = """submission: {{run: go.py}}
+world: worlds/empty.world
+record: {}
+checks:
+  - {{points: 1, place: a, at: [1, 2], within: 1}}
+"""
+
+
+def test_topics_and_numbers_of_them_are_recorded(tmp_path):
+    names = "[/scan, cmd_vel.linear.x, /cmd_vel.angular.z, '/a.b[2].c']"
+    found = read(tmp_path, RECORD.format(names))
+    assert found.recorded_topics == ("/scan", "/cmd_vel", "/a")
+    assert found.curves == ("/cmd_vel.linear.x", "/cmd_vel.angular.z", "/a.b[2].c")
+    assert read(tmp_path, RECORD.format("/odom")).recorded_topics == ("/odom",)
+    assert faults(tmp_path, RECORD.format("[/sc an]")) == [
+        (3, "grade-value", "'/sc an' is neither a topic nor a number of its messages")]
+    assert faults(tmp_path, RECORD.format("/scan").replace("{run: go.py}", "{}")) == [
+        (3, "grade-key", "'record' needs a program: worlds alone have no topics")]
+
+
 def test_faults_of_the_file_are_named(tmp_path):
     assert "a mapping" in faults(tmp_path, "- 1\n")[0][2]
     assert "'checks' must be a list" in faults(tmp_path, "lab: a\n")[0][2]

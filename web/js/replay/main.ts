@@ -10,6 +10,7 @@ import {Topics} from '../topics/topics.js';
 import {mountView} from '../view/view.js';
 import {Watches} from '../watches.js';
 import {LogConnection} from './log_connection.js';
+import {LogPlot} from './log_plot.js';
 import {partsOf, resolverOf, unpacked} from './page_files.js';
 import {StateLog} from './state_log.js';
 import type {Connection} from '../connection.js';
@@ -51,7 +52,7 @@ function onKey(event: KeyboardEvent, {store, actions}: Page) {
 
 async function start() {
   const data = byId('data');
-  const {name, log, files} = partsOf(await unpacked(data.textContent ?? ''));
+  const {name, log, files, curves} = partsOf(await unpacked(data.textContent ?? ''));
   data.remove();
   const recorded = new StateLog(log);
   const player = new LogConnection(recorded, name);
@@ -74,6 +75,7 @@ async function start() {
   player.open();
   topics.read();
   byId('switches').append(...switchesOf(recorded, page));
+  new LogPlot(byId('plot'), page, recorded, curves);
   document.title = `${name} – replay`;
   Object.assign(window, {editor: page});
 }

@@ -7,6 +7,8 @@ export interface ReplayHead {
   log: [number, number];
   /** offset, size, content type by address */
   files: Record<string, [number, number, string]>;
+  /** variables that the plot shows from the start, such as `/cmd_vel.linear.x` */
+  curves: string[];
 }
 
 /** The bytes of a page's data: base64 of a gzip stream. */
@@ -18,13 +20,14 @@ export async function unpacked(base64: string): Promise<Uint8Array> {
 }
 
 /** The parts of the unpacked data: a u32 with the size of the head, the head in JSON, then all bytes. */
-export function partsOf(data: Uint8Array): {name: string, log: Uint8Array, files: Map<string, Blob>} {
+export function partsOf(data: Uint8Array): {name: string, log: Uint8Array, files: Map<string, Blob>,
+    curves: string[]} {
   const size = new DataView(data.buffer, data.byteOffset).getUint32(0, true);
   const head: ReplayHead = JSON.parse(new TextDecoder().decode(data.subarray(4, 4 + size)));
   const rest = data.slice(4 + size);
   const files = new Map(Object.entries(head.files).map(([address, [at, length, type]]) =>
     [address, new Blob([rest.subarray(at, at + length)], {type})]));
-  return {name: head.name, log: rest.slice(head.log[0], head.log[0] + head.log[1]), files};
+  return {name: head.name, log: rest.slice(head.log[0], head.log[0] + head.log[1]), files, curves: head.curves};
 }
 
 /** The path of an address as the page's files are named: decoded, from the root of the server. */

@@ -21,6 +21,7 @@ export type Curve = {series: Series, color: string};
 export type PlotBox = {left: number, top: number, width: number, height: number};
 /** What the axes show. */
 export type Range = {from: number, to: number, low: number, high: number};
+export type Drawn = {box: PlotBox, range: Range};
 
 const LEFT = 62;
 const BOTTOM = 22;
@@ -29,17 +30,19 @@ const RIGHT = 10;
 
 /**
  * @param options  `cursor`: px from the
- * left, where the values are read off; `now`: sim time, s
+ * left, where the values are read off; `mark`: sim time, s, where they are read off without a cursor;
+ * `now`: sim time, s
+ * @returns null without samples
  */
 export function drawPlot(canvas: HTMLCanvasElement, curves: Curve[], {span, cursor,
-    now}: {span: number|null, cursor: number|null, now: number}) {
+    mark = NaN, now}: {span: number|null, cursor: number|null, mark?: number, now: number}): Drawn|null {
   const {clientWidth: width, clientHeight: height} = canvas;
   const ratio = window.devicePixelRatio || 1;
-  if (!width || !height) return;
+  if (!width || !height) return null;
   canvas.width = Math.round(width * ratio);
   canvas.height = Math.round(height * ratio);
   const pen = canvas.getContext('2d');
-  if (!pen) return;
+  if (!pen) return null;
   pen.scale(ratio, ratio);
   pen.fillStyle = themeColor('panel-2');
   pen.fillRect(0, 0, width, height);
@@ -53,7 +56,7 @@ export function drawPlot(canvas: HTMLCanvasElement, curves: Curve[], {span, curs
     pen.fillStyle = themeColor('text-faint');
     pen.textAlign = 'center';
     pen.fillText(curves.length ? 'No data yet' : 'Drop a variable here', width / 2, height / 2);
-    return;
+    return null;
   }
   const box = {left: LEFT, top: TOP, width: width - LEFT - RIGHT, height: height - TOP - BOTTOM};
   const across = (time: number) => box.left + ((time - range.from) / (range.to - range.from)) * box.width;
@@ -65,10 +68,9 @@ export function drawPlot(canvas: HTMLCanvasElement, curves: Curve[], {span, curs
   pen.clip();
   for (const curve of curves) drawCurve(pen, curve, range, across, down, box.width);
   pen.restore();
-  if (cursor !== null && cursor > box.left && cursor < box.left + box.width) {
-    const time = range.from + ((cursor - box.left) / box.width) * (range.to - range.from);
-    drawCursor(pen, box, curves, time, across, down);
-  }
+  const time = cursor === null ? mark : range.from + ((cursor - box.left) / box.width) * (range.to - range.from);
+  if (time >= range.from && time <= range.to) drawCursor(pen, box, curves, time, across, down);
+  return {box, range};
 }
 
 function drawAxes(pen: CanvasRenderingContext2D, box: PlotBox, range: Range,

@@ -3,6 +3,7 @@ from __future__ import annotations
 
 import contextlib
 import json
+import math
 import threading
 import time as wall
 from typing import Any, Callable, Dict, List, Optional, Protocol, Sequence, Tuple
@@ -65,12 +66,14 @@ class TopicChannel:
         source: the topics.
         names: names of topics, with a leading slash; they need not exist yet.
         now: sim time, s.
+        most_bytes: of all messages; those that follow are left out.
     """
 
     def __init__(self, source: TopicSource, names: Sequence[str],
-                 now: Callable[[], float]) -> None:
+                 now: Callable[[], float], most_bytes: float = math.inf) -> None:
         self._source = source
         self._now = now
+        self._left_bytes = most_bytes
         self._missing: List[str] = list(dict.fromkeys(names))
         self._recorded: Dict[str, "_RecordedTopic"] = {}
         self._listed: List[Dict[str, Any]] = []
@@ -82,7 +85,8 @@ class TopicChannel:
         writer.add_record(TOPICS, time, json.dumps(self._listed, separators=(",", ":")).encode())
         for topic in self._recorded.values():
             frame = topic.frame(time)
-            if frame:
+            self._left_bytes -= len(frame)
+            if frame and self._left_bytes >= 0:
                 writer.add_record(MESSAGE, time, frame)
 
     def close(self) -> None:

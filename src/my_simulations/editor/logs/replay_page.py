@@ -8,7 +8,7 @@ import math
 import os
 import struct
 import tempfile
-from typing import Any, Dict, Iterable, List, Tuple
+from typing import Any, Dict, Iterable, List, Sequence, Tuple
 
 from ...errors import CommandError
 from ...resources.resolver import Resolver
@@ -37,7 +37,8 @@ _SIZE = struct.Struct("<I")
 
 
 def write_replay(log: str, path: str, resolver: Resolver, name: str = "",
-                 states_hz: float = STATES_HZ, last: float = math.inf) -> List[str]:
+                 states_hz: float = STATES_HZ, last: float = math.inf,
+                 curves: Sequence[str] = ()) -> List[str]:
     """Write the page.
 
     Args:
@@ -47,6 +48,8 @@ def write_replay(log: str, path: str, resolver: Resolver, name: str = "",
         name: title of the page; default: the folder of the log, or its file.
         states_hz: most states for each second of sim time.
         last: only so many s of sim time at the end of the log.
+        curves: numbers of recorded topics that the plot shows from the start, such as
+            `/cmd_vel.linear.x`.
 
     Returns:
         Addresses of meshes and pictures that were not found.
@@ -57,7 +60,7 @@ def write_replay(log: str, path: str, resolver: Resolver, name: str = "",
     """
     files = ReplayFiles(resolver)
     states = _thinned(log, states_hz, last, files)
-    data = _packed(_container(name or _name_of(log), states, files.found))
+    data = _packed(_container(name or _name_of(log), states, files.found, curves))
     page = (_template().replace("/*STYLE*/", _styles()).replace("/*PROGRAM*/", _program())
             .replace("/*DATA*/", data))
     write_atomically(os.path.abspath(path), page.encode(), overwrite=True)
@@ -148,14 +151,15 @@ def _shown(document: Dict[str, Any], files: ReplayFiles) -> Dict[str, Any]:
     return document
 
 
-def _container(name: str, log: bytes, files: Dict[str, bytes]) -> bytes:
+def _container(name: str, log: bytes, files: Dict[str, bytes], curves: Sequence[str]) -> bytes:
     """The head in JSON, the log and the files, as `web/js/replay/page_files.ts` reads them."""
     at = len(log)
     places: Dict[str, Tuple[int, int, str]] = {}
     for address, content in files.items():
         places[address] = (at, len(content), resource_type(address))
         at += len(content)
-    head = json.dumps({"name": name, "log": [0, len(log)], "files": places}).encode()
+    head = json.dumps({"name": name, "log": [0, len(log)], "files": places,
+                       "curves": list(curves)}).encode()
     return b"".join([_SIZE.pack(len(head)), head, log, *files.values()])
 
 

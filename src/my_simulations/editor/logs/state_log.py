@@ -77,12 +77,16 @@ class LogWriter:
     def add_record(self, kind: int, time: float, data: bytes) -> None:
         """Add contacts, a list of topics or a message to the last state; s of sim time.
 
-        Contacts and lists are written only if they differ from the last ones.
+        Contacts and lists are written only if they differ from the last ones. A message that comes
+        while nothing moves has a state of its own, without poses: else it would lose its time.
         """
         if self._notes.get(kind) == data:
             return
         if kind != MESSAGE:
             self._notes[kind] = data
+        elif time > self._written:
+            self._write(MOVED, time, b"")
+            self._written = time
         self._write(kind, time, data)
 
     def flush(self) -> None:

@@ -3,14 +3,15 @@ from __future__ import annotations
 
 import contextlib
 import os
-from typing import Optional
+from typing import List, Optional, Sequence
 
 from ...python_api import OpenWorld
 from ...resources.resolver import Resolver
 from ..scene.scene_changes import Mirror
 from ..scene.scene_json import Documents
+from ..topic_source import TopicSource
 from ..transport.pose_reader import PoseReader
-from .log_channels import ContactChannel
+from .log_channels import ContactChannel, LogChannel, TopicChannel
 from .state_log import LogWriter
 
 
@@ -31,6 +32,7 @@ class LogRecord:
         self._documents = Documents(Resolver.from_environment())
         self._reader: Optional[PoseReader] = None
         self._contacts: Optional[ContactChannel] = None
+        self._topics: List[LogChannel] = []
         self._revision = -1
 
     def record_state(self, world: OpenWorld) -> None:
@@ -45,8 +47,28 @@ class LogRecord:
         if poses is not None:
             self._writer.poses(poses)
             self._contacts = self._contacts or ContactChannel(simulator)
-            self._contacts.write(self._writer, poses.sim_time)
+            for channel in (self._contacts, *self._topics):
+                channel.write(self._writer, poses.sim_time)
+
+    def record_topics(self, world: OpenWorld, source: TopicSource, names: Sequence[str],
+                      most_bytes: float) -> None:
+        """Record messages of topics of ROS from now on, until `end_topics`.
+
+        Args:
+            world: whose states are recorded.
+            source: the topics.
+            names: with a leading slash; they need not exist yet.
+            most_bytes: of all messages; those that follow are left out.
+        """
+        clock = world.simulator.clock
+        self._topics.append(TopicChannel(source, names, lambda: clock.sim_ns * 1e-9, most_bytes))
+
+    def end_topics(self) -> None:
+        """End all subscriptions, before the source of the topics ends."""
+        while self._topics:
+            self._topics.pop().close()
 
     def close(self) -> None:
         """Finish the file."""
+        self.end_topics()
         self._writer.close()

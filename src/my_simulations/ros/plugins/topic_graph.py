@@ -4,6 +4,7 @@ from __future__ import annotations
 import contextlib
 from typing import Any, Callable, Dict, Iterable, List, NamedTuple, Set, Tuple
 
+import genpy
 import rospy
 
 from ...geometry import IDENTITY, Pose, compose
@@ -81,8 +82,24 @@ class TopicGraph(RosGraph):
         """Subscribe. Raises MissingTypeError."""
         # rospy shares one connection among the subscribers of a process: its queue is left as the
         # one who came first has made it, so a plugin that hears the topic loses nothing.
-        return TopicSubscription(rospy.Subscriber(name, self._type(kind, "msg"), call,
-                                                  tcp_nodelay=True))
+        made = self._type(kind, "msg")
+
+        def take(message: Any) -> None:
+            read = _decoded(message, made) if isinstance(message, rospy.AnyMsg) else message
+            if read is not None:
+                call(read)
+
+        return TopicSubscription(rospy.Subscriber(name, made, take, tcp_nodelay=True))
+
+
+def _decoded(message: rospy.AnyMsg, made: Any) -> Any:
+    """A message whose first subscriber in this process asked for any type; None for other types."""
+    if message._connection_header.get("md5sum") != made._md5sum:
+        return None
+    try:
+        return made().deserialize(message._buff)
+    except genpy.DeserializationError:
+        return None
 
 
 def listed(state: Tuple[Any, Any, Any], kinds: Dict[str, str], uses: Iterable[TopicUse],
