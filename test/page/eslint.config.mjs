@@ -2,35 +2,7 @@
 import js from '@eslint/js';
 import globals from 'globals';
 import ts from 'typescript-eslint';
-
-/** The folders of the page from the lowest layer up, with those that each may import; '.': modules of web/js. */
-const LAYERS = {
-  ui: [],
-  '.': ['ui'],
-  topics: ['.', 'ui'],
-  view: ['.', 'ui', 'topics'],
-  building: ['.', 'ui'],
-  panels: ['.', 'ui', 'topics'],
-  model_editor: ['.', 'ui', 'panels'],
-  replay: ['.', 'ui', 'topics', 'panels', 'view'],
-};
-
-/** Types of any layer may be named, as these leave nothing in the page; the toolkit knows of none. */
-const layers = Object.entries(LAYERS).map(([folder, allowed]) => {
-  const others = Object.keys(LAYERS).filter((name) => name !== '.' && name !== folder && !allowed.includes(name));
-  const patterns = [{
-    regex: `^(\\.{1,2}/)+(${others.join('|')})/`,
-    allowTypeImports: folder !== 'ui',
-    message: 'This layer must not import that one: see LAYERS in test/page/eslint.config.mjs.',
-  }];
-  if (folder === 'ui') patterns.push({regex: '^\\.\\./\\w+\\.js$', message: 'The toolkit knows nothing of the simulator.'});
-  return {
-    files: [folder === '.' ? 'web/js/*.ts' : `web/js/${folder}/**/*.ts`],
-    ignores: ['web/js/main.ts'],
-    plugins: {ts: ts.plugin},
-    rules: {'ts/no-restricted-imports': ['error', {patterns}]},
-  };
-});
+import {layerRule} from './layers.mjs';
 
 export default [
   js.configs.recommended,
@@ -55,10 +27,11 @@ export default [
   },
   {
     files: ['web/js/**/*.ts'],
-    plugins: {ts: ts.plugin},
+    plugins: {page: {rules: {layers: layerRule}}, ts: ts.plugin},
     languageOptions: {parser: ts.parser, globals: globals.browser},
     rules: {
-      // TypeScript tells these itself, and knows types.
+      'page/layers': 'error',
+      // TypeScript checks these itself, and has the types.
       'no-undef': 'off',
       'no-unused-vars': 'off',
       'no-redeclare': 'off',
@@ -74,5 +47,4 @@ export default [
     files: ['test/page/**/*.mjs', 'tools/**/*.mjs'],
     languageOptions: {globals: globals.node},
   },
-  ...layers,
 ];

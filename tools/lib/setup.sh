@@ -288,14 +288,15 @@ prepare_page_checks() {
   PAGE_CHECKS="$OWN/page_checks"
   local source="$CLONE/test/page" stamp
   stamp=$(printf '%s' "$CLONE $PAGE_CHECKS" |
-    cat - "$source/package-lock.json" "$source/eslint.config.mjs" "$source/tsconfig.json" | sha256sum)
+    cat - "$source/package-lock.json" "$source/eslint.config.mjs" "$source/layers.mjs" "$source/tsconfig.json" |
+    sha256sum)
   if [ "$(cat "$PAGE_CHECKS/.stamp" 2>/dev/null || true)" = "$stamp" ]; then
     finish "all there"
     return
   fi
   mkdir -p -- "$PAGE_CHECKS"
   rm -f -- "$PAGE_CHECKS/.stamp"
-  cp -- "$source/package.json" "$source/package-lock.json" "$source/eslint.config.mjs" "$PAGE_CHECKS/"
+  cp -- "$source/package.json" "$source/package-lock.json" "$source/eslint.config.mjs" "$source/layers.mjs" "$PAGE_CHECKS/"
   logged npm-checks "Is there a network? Then run $COMMAND again." \
     npm ci --prefix "$PAGE_CHECKS" --ignore-scripts --no-audit --no-fund
   # TypeScript looks for packages beside the modules, where there are none.
