@@ -43,8 +43,8 @@ def case():
         World(models=list(models), gravity=(0.0, 0.0, -G)), BulletBackend, parameters=parameters))
 
 
-def fly(one, seconds, x=0.0, y=0.0, z=0.0, yaw=0.0):
-    one.deliver("cmd_vel", linear={"x": x, "y": y, "z": z}, angular={"x": 0.0, "y": 0.0, "z": yaw})
+def fly(one, seconds, x=0.0, y=0.0, z=0.0, yaw=0.0, topic="cmd_vel"):
+    one.deliver(topic, linear={"x": x, "y": y, "z": z}, angular={"x": 0.0, "y": 0.0, "z": yaw})
     one.sim.clock.advance(round(seconds * 1000))
     return one.sim.states.model_state("quadrotor")
 
@@ -75,6 +75,34 @@ def test_a_quadrotor_rises_hovers_and_follows_velocity_commands(case):
     _, twist = fly(one, 4.0, x=0.8)   # forward is where the body looks
     assert twist.linear[:2] == pytest.approx((0.8 * math.cos(heading), 0.8 * math.sin(heading)),
                                              abs=0.02)
+
+
+def fly_drone(one, seconds, **command):
+    return fly(one, seconds, topic="/cmd_vel", **command)
+
+
+def test_an_sjtu_drone_takes_off_hovers_flies_to_a_place_and_lands(case):
+    gains = {**GAINS, "velocityXYDifferentialGain": 2.3, "velocityZDifferentialGain": 1.0,
+             "yawDifferentialGain": 1.0, "positionXYProportionalGain": 1.1,
+             "positionXYDifferentialGain": 0.0, "positionXYLimit": 5.0,
+             "positionZProportionalGain": 1.0, "positionZDifferentialGain": 0.2}
+    one = case(quadrotor(plugin("libplugin_drone.so", "".join(
+        f"<{name}>{value}</{name}>" for name, value in gains.items()))))
+    assert fly_drone(one, 0.1, z=1.0)[1].linear[2] == pytest.approx(-0.98)   # its motors are off
+    one.deliver("drone/takeoff")
+    fly_drone(one, 1.0)
+    before = fly_drone(one, 4.0)[0]
+    # It hovers, but for g / 2 per step: its loop of gain 1 for the acceleration is not damped.
+    assert fly_drone(one, 1.0)[0].position == pytest.approx(before.position, abs=0.006)
+    fly_drone(one, 4.0, x=0.5)
+    assert fly_drone(one, 1.0, x=0.5)[1].linear == pytest.approx((0.5, 0.0, 0.0), abs=0.02)
+    one.deliver("drone/posctrl", data=True)
+    fly_drone(one, 15.0, x=1.0, y=-0.5, z=1.2)
+    pose, _ = fly_drone(one, 1.0, x=1.0, y=-0.5, z=1.2)
+    assert pose.position == pytest.approx((1.0, -0.5, 1.2), abs=0.02)
+    one.deliver("drone/land")
+    sinking = fly_drone(one, 2.0)[1].linear[2]
+    assert fly_drone(one, 1.0)[1].linear[2] == pytest.approx(sinking - G)   # its motors are off
 
 
 def balance(voltage):

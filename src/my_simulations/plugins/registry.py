@@ -30,6 +30,7 @@ BUILT_IN: Mapping[str, str] = {
     "librobotnik_force_based_move.so": "drive.force_based_move:RobotnikForceBasedMove",
     "libridgeback_ros_force_based_move.so":
         "drive.force_based_move:RidgebackForceBasedMove",
+    "libwpr_plugin.so": "drive.force_based_move:WprForceBasedMove",
     "libgazebo_ros_joint_state_publisher.so": "state.joint_state_publisher:JointStatePublisher",
     "libgazebo_ros_control.so": "control.gazebo_ros_control:GazeboRosControl",
     "libhwi_switch_gazebo_ros_control.so": "control.hwi_switch:HwiSwitchGazeboRosControl",
@@ -97,6 +98,7 @@ BUILT_IN: Mapping[str, str] = {
     "libhector_gazebo_quadrotor_propulsion.so": "flight.quadrotor_propulsion:QuadrotorPropulsion",
     "libhector_gazebo_quadrotor_aerodynamics.so":
         "flight.quadrotor_aerodynamics:QuadrotorAerodynamics",
+    "libplugin_drone.so": "flight.sjtu_drone:SjtuDrone",
     "libArduPilotPlugin.so": "flight.ardupilot:ArduPilot",
     "librotors_gazebo_motor_model.so": "flight.motor_model:MotorModel",
     "librotors_gazebo_multirotor_base_plugin.so": "flight.multirotor_base:MultirotorBase",

@@ -14,6 +14,7 @@ from my_simulations.plugins.drive.force_based_move import (
     ForceBasedMove,
     RidgebackForceBasedMove,
     RobotnikForceBasedMove,
+    WprForceBasedMove,
 )
 from my_simulations.plugins.drive.limo_ackermann import LimoAckermann
 from my_simulations.plugins.drive.planar_move import PlanarMove
@@ -343,6 +344,16 @@ def test_a_base_moved_by_forces_goes_sideways_unless_it_must_not():
         context.deliver("cmd_vel", linear={"x": 0.0, "y": 0.3}, angular={"z": 0.0})
         context.advance(0.1)
         assert context.wrenches["base_footprint"][0] == pytest.approx((0.0, force, 0.0))
+
+
+def test_the_base_of_wpr_simulation_has_gains_of_its_own_and_keeps_its_command():
+    context = moved_by_forces(WprForceBasedMove)
+    context.deliver("cmd_vel", linear={"x": 0.2, "y": 0.1}, angular={"z": 0.5})
+    context.advance(10.0)
+    force, torque = context.wrenches["base_footprint"]
+    assert force == pytest.approx((8000.0, 3000.0, 0.0))
+    assert torque == pytest.approx((0.0, 0.0, 250.0))
+    assert context.published["odom"]
 
 
 def test_forces_push_the_base_of_a_nested_model_and_not_the_first_link():

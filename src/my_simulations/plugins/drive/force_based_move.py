@@ -1,11 +1,11 @@
 """libgazebo_ros_force_based_move.so (hector): forces on the base make it follow a velocity command.
 
 Parameters, defaults, topics and laws are those of hector_gazebo_plugins and of its copies
-(librobotnik_force_based_move.so, libridgeback_ros_force_based_move.so), which differ in their
-watchdogs: in every step a force along x and y of the base, and a torque about its vertical, in
-proportion to its velocity error, which the engine computes. Odometry is the true pose relative to
-the initial one. Where it differs: Robotnik's robots brake when the watchdog has stopped them
-(original: they are put back to one place), and continue to publish their odometry.
+(librobotnik_force_based_move.so, libridgeback_ros_force_based_move.so, libwpr_plugin.so), which
+differ in their watchdogs and gains: in every step a force along x and y of the base, and a torque
+about its vertical, in proportion to its velocity error, which the engine computes. Odometry is the
+true pose relative to the initial one. Where it differs: Robotnik's robots brake when the watchdog
+has stopped them (original: they are put back to one place), and continue to publish their odometry.
 """
 from __future__ import annotations
 
@@ -33,6 +33,9 @@ class ForceBasedMove(Plugin):
     never: Optional[float] = 0.0
     """The time that means never; None where any time ends, one of 0 after a single step."""
 
+    usual_gains = (10000.0, 10000.0, 100.0)
+    """Where the elements are missing: N s/m along x and y, N m s/rad about z."""
+
     def load(self) -> None:
         """Read parameters."""
         context, p = self.context, self.context.parameters
@@ -42,9 +45,9 @@ class ForceBasedMove(Plugin):
             self._base = context.link(base)
         except PluginError:  # the frame of its messages alone
             self._base = context.link(context.description.links[0].name)
-        self._gains = (p.number("x_velocity_p_gain", 10000.0),
-                       p.number("y_velocity_p_gain", 10000.0),
-                       p.number("yaw_velocity_p_gain", 100.0))
+        self._gains = (p.number("x_velocity_p_gain", self.usual_gains[0]),
+                       p.number("y_velocity_p_gain", self.usual_gains[1]),
+                       p.number("yaw_velocity_p_gain", self.usual_gains[2]))
         self._odometer = Odometer(context, p.text("odometryTopic", "odom"),
                                   p.text("odometryFrame", "odom"), base,
                                   (1e-3, 1e-3, 1e12, 1e12, 1e12, 0.01),
@@ -117,3 +120,9 @@ class RidgebackForceBasedMove(ForceBasedMove):
 
     watchdog = ("cmdVelTimeOut", 0.25)
     never = None
+
+
+class WprForceBasedMove(ForceBasedMove):
+    """The copy in wpr_simulation."""
+
+    usual_gains = (40000.0, 30000.0, 500.0)

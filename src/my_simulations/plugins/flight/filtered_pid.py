@@ -1,6 +1,8 @@
 """The PID controller of hector_gazebo_quadrotor_simple_controller."""
 from __future__ import annotations
 
+from typing import Tuple
+
 from ..parameters import Parameters
 
 
@@ -14,15 +16,21 @@ class FilteredPid:
     Args:
         parameters: of the plugin.
         prefix: of the elements, e.g. `yaw` reads `<yawProportionalGain>`.
+        gains: p, i and d where the elements are missing.
+        filters_rate: the rate of the command is (u - y) / (dt + T) with the new y, as sjtu_drone
+            has it: without a time constant, a jump of the command gives no rate.
 
     Attributes:
         integral: of the error.
     """
 
-    def __init__(self, parameters: Parameters, prefix: str) -> None:
-        self._p = parameters.number(f"{prefix}ProportionalGain", 0.0)
-        self._i = parameters.number(f"{prefix}IntegralGain", 0.0)
-        self._d = parameters.number(f"{prefix}DifferentialGain", 0.0)
+    def __init__(self, parameters: Parameters, prefix: str,
+                 gains: Tuple[float, float, float] = (0.0, 0.0, 0.0),
+                 filters_rate: bool = False) -> None:
+        self._p = parameters.number(f"{prefix}ProportionalGain", gains[0])
+        self._i = parameters.number(f"{prefix}IntegralGain", gains[1])
+        self._d = parameters.number(f"{prefix}DifferentialGain", gains[2])
+        self._filters_rate = filters_rate
         self._time_constant = max(0.0, parameters.number(f"{prefix}TimeConstant", 0.0))
         self._limit = parameters.number(f"{prefix}Limit", -1.0)
         self.reset()
@@ -37,6 +45,8 @@ class FilteredPid:
             command = max(-self._limit, min(self._limit, command))
         command_rate = (command - self._filtered) / (dt + self._time_constant)
         self._filtered += command_rate * dt
+        if self._filters_rate:
+            command_rate = (command - self._filtered) / (dt + self._time_constant)
         error = self._filtered - value
         self.integral += error * dt
         return self._p * error + self._d * (command_rate - rate) + self._i * self.integral

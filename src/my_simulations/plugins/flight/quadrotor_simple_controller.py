@@ -11,7 +11,17 @@ from __future__ import annotations
 import math
 from typing import Any, Optional
 
-from ...geometry import Vec3, conjugate, dot, norm, rotate, rpy_from_quat, scale, subtract
+from ...geometry import (
+    Quat,
+    Vec3,
+    conjugate,
+    dot,
+    norm,
+    rotate,
+    rpy_from_quat,
+    scale,
+    subtract,
+)
 from ..base import Plugin
 from ..context import Ending
 from ..finite_messages import finite_only
@@ -122,7 +132,7 @@ class QuadrotorSimpleController(Plugin):
         acceleration = scale(subtract(self._velocity, before), 1.0 / dt)
         roll, pitch, yaw = rpy_from_quat(pose.orientation)
         spin = rotate(conjugate(pose.orientation), twist.angular)
-        velocity, change = _to_heading(yaw, self._velocity), _to_heading(yaw, acceleration)
+        velocity, change = to_heading(yaw, self._velocity), to_heading(yaw, acceleration)
         gravity = norm(self.context.gravity)
         per_gravity = 1.0 / gravity if gravity > 0.0 else 0.0
         pitch_command = self._x.update(self._command[0], velocity[0], change[0], dt) * per_gravity
@@ -131,17 +141,10 @@ class QuadrotorSimpleController(Plugin):
                   inertial.iyy * self._pitch.update(pitch_command, pitch, spin[1], dt),
                   inertial.izz * self._yaw.update(self._yaw_rate, twist.angular[2], 0.0, dt))
         lift = inertial.mass * (self._z.update(self._command[2], velocity[2], change[2], dt)
-                                + self._load_factor() * gravity)
+                                + load_factor(self.context.gravity, pose.orientation) * gravity)
         if self._most_force > 0.0:
             lift = min(lift, self._most_force)
         self._wrench = ((0.0, 0.0, max(0.0, lift)), torque)
-
-    def _load_factor(self) -> float:
-        """1 / cos of the tilt, by which the thrust of a tilted body carries its weight."""
-        gravity = self.context.gravity
-        along = dot(gravity, rotate(self._link.pose.orientation, gravity))
-        square = dot(gravity, gravity)
-        return square / along if abs(along) > 1e-6 * square else 0.0
 
     def _apply(self) -> None:
         hold_wrench(self.context, self._link, self._wrench)
@@ -153,7 +156,13 @@ class QuadrotorSimpleController(Plugin):
             self._wrenches.publish(message)
 
 
-def _to_heading(yaw: float, vector: Vec3) -> Vec3:
+def load_factor(gravity: Vec3, orientation: Quat) -> float:
+    """1 / cos of the tilt, by which the thrust of a tilted body carries its weight."""
+    along, square = dot(gravity, rotate(orientation, gravity)), dot(gravity, gravity)
+    return square / along if abs(along) > 1e-6 * square else 0.0
+
+
+def to_heading(yaw: float, vector: Vec3) -> Vec3:
     """A vector of the world in axes that turn with the yaw angle."""
     c, s = math.cos(yaw), math.sin(yaw)
     return c * vector[0] + s * vector[1], c * vector[1] - s * vector[0], vector[2]

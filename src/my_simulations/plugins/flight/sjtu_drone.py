@@ -1,0 +1,186 @@
+"""libplugin_drone.so: the quadrotor of sjtu_drone, which takes off, lands and flies by `/cmd_vel`.
+
+Parameters, defaults, topics and laws are those of sjtu_drone. The loops of the hector quadrotor
+(quadrotor_simple_controller) turn velocity or position commands into roll and pitch, and these into
+a thrust along the z axis of the body and a torque. Where it differs: `<imuTopic>` is ignored, as
+the original does; `drone/gt_vel` and `drone/gt_acc` are in the axes of the body, where the original
+turns them the wrong way.
+"""
+from __future__ import annotations
+
+import random
+from typing import Any, Tuple
+
+from ...geometry import Vec3, conjugate, norm, rotate, rpy_from_quat, scale, subtract
+from ..base import Plugin
+from ..finite_messages import finite_only
+from ..parameters import namespace_or
+from .body_wrench import NO_WRENCH, hold_wrench
+from .filtered_pid import FilteredPid
+from .quadrotor_simple_controller import load_factor, to_heading
+
+_LANDED, _FLYING, _TAKING_OFF, _LANDING = range(4)    # the numbers on the topic `state`
+_SECONDS = {_TAKING_OFF: 0.5, _LANDING: 1.0}          # of the two manoeuvres
+_NEXT = {_TAKING_OFF: _FLYING, _LANDING: _LANDED}
+_STRENGTH = {_FLYING: 1.0, _TAKING_OFF: 1.5, _LANDING: 0.8}   # factor of thrust and torque
+
+
+class SjtuDrone(Plugin):
+    """Flies the link `<bodyName>`, or the model's first one, after a message on `takeoff`.
+
+    On the ground its motors are off. `posctrl` true makes the linear part of a command a position
+    in the world, m. While it takes off or lands, `angular.x` and `angular.y` are roll and pitch in
+    rad, or velocities in m/s after a true on `vel_mode`.
+    """
+
+    def load(self) -> None:
+        """Read parameters; offer topics."""
+        context, p = self.context, self.context.parameters
+        self._link = context.link(p.text("bodyName"))
+        self._most_force = p.number("maxForce", -1.0)
+        self._noise = (p.number("motionSmallNoise", 0.0), p.number("motionDriftNoise", 0.0))
+        self._drift_ns = round(p.number("motionDriftNoiseTime", 1.0) * 1e9)
+        self._roll, self._pitch, self._yaw, self._vx, self._vy, self._vz, self._px, self._py, \
+            self._pz = self._pids = [_pid(self.context.parameters, name) for name in (
+                "rollpitch", "rollpitch", "yaw", "velocityXY", "velocityXY", "velocityZ",
+                "positionXY", "positionXY", "positionZ")]
+        own = p.text("rosNamespace")
+        context.use_namespace(own or namespace_or(p, ""))
+        place = "" if own else "drone/"
+        self._poses = context.publish(f"{place}gt_pose", "geometry_msgs/Pose", 10)
+        self._velocities = context.publish(f"{place}gt_vel", "geometry_msgs/Twist", 10)
+        self._accelerations = context.publish(f"{place}gt_acc", "geometry_msgs/Twist", 10)
+        command = "cmd_vel" if own else "/cmd_vel"
+        context.subscribe(command, "geometry_msgs/Twist",
+                          finite_only(context, command, self._receive))
+        context.subscribe(f"{place}takeoff", "std_msgs/Empty", lambda message: self._take_off())
+        context.subscribe(f"{place}land", "std_msgs/Empty", lambda message: self._land())
+        context.subscribe(f"{place}posctrl", "std_msgs/Bool", self._choose_positions)
+        context.subscribe("dronevel_mode" if own else "/drone/vel_mode", "std_msgs/Bool",
+                          self._choose_velocities)
+        self._moves_to_positions = self._tilts_by_velocity = False
+        self.reset()
+        context.every(0.0, self.update)
+
+    def reset(self) -> None:
+        """The drone has landed."""
+        for pid in self._pids:
+            pid.reset()
+        self._linear: Vec3 = (0.0, 0.0, 0.0)
+        self._angular: Vec3 = (0.0, 0.0, 0.0)
+        self._random = random.Random(f"{self.context.seed}::{self.context.model}::drone")
+        self._drift: Tuple[float, ...] = (0.0,) * 4
+        self._drift_until_ns = self.context.now_ns + self._drift_ns
+        self._velocity, self._position = self._link.twist.linear, self._link.pose.position
+        self._state = _LANDED
+        self.clock_set()
+        hold_wrench(self.context, self._link, NO_WRENCH)
+
+    def clock_set(self) -> None:
+        """Restart the time since the last update, and a manoeuvre."""
+        self._last_ns = self._since_ns = self.context.now_ns
+
+    def _receive(self, message: Any) -> None:
+        """Keep a command, with the noise of its motion."""
+        small, drift = self._noise
+        if self.context.now_ns > self._drift_until_ns:
+            self._drift = tuple(drift * self._random.uniform(-1.0, 1.0) for _ in range(4))
+            self._drift_until_ns = self.context.now_ns + self._drift_ns
+        roll, pitch, yaw, up = (one + small * self._random.uniform(-1.0, 1.0)
+                                for one in self._drift)
+        linear, angular = message.linear, message.angular
+        self._linear = linear.x, linear.y, linear.z + up
+        self._angular = angular.x + roll, angular.y + pitch, angular.z + yaw
+
+    def _choose_positions(self, message: Any) -> None:
+        self._moves_to_positions = message.data
+
+    def _choose_velocities(self, message: Any) -> None:
+        self._tilts_by_velocity = message.data
+
+    def _take_off(self) -> None:
+        if self._state == _LANDED:
+            self._start(_TAKING_OFF)
+
+    def _land(self) -> None:
+        if self._state in (_FLYING, _TAKING_OFF):
+            self._start(_LANDING)
+
+    def _start(self, state: int) -> None:
+        self._state, self._since_ns = state, self.context.now_ns
+
+    def update(self) -> None:
+        """In each step."""
+        elapsed_ns = self.context.now_ns - self._last_ns
+        if elapsed_ns <= 0:
+            return
+        self._last_ns = self.context.now_ns
+        dt = elapsed_ns * 1e-9
+        pose, twist = self._link.pose, self._link.twist
+        acceleration = scale(subtract(twist.linear, self._velocity), 1.0 / dt)
+        self._velocity = twist.linear
+        self._publish(acceleration)
+        if self._state in _SECONDS and \
+                self._last_ns - self._since_ns > _SECONDS[self._state] * 1e9:
+            self._start(_NEXT[self._state])
+            if self._state == _LANDED:
+                hold_wrench(self.context, self._link, NO_WRENCH)
+        change = subtract(pose.position, self._position)
+        self._position = pose.position
+        if self._state != _LANDED:
+            self._control(acceleration, change, dt)
+
+    def _control(self, acceleration: Vec3, change: Vec3, dt: float) -> None:
+        """Push the body; `change` is that of its position since the last step, m."""
+        link, inertial = self._link, self._link.inertial
+        roll, pitch, yaw = rpy_from_quat(link.pose.orientation)
+        spin = rotate(conjugate(link.pose.orientation), link.twist.angular)
+        gravity = norm(self.context.gravity)
+        to_positions = self._moves_to_positions and self._state == _FLYING
+        wanted, flat = self._linear, self._angular[:2]
+        if to_positions:
+            p = link.pose.position
+            # The original passes the change per step, not per second, as the rate.
+            wanted = (self._px.update(wanted[0], p[0], change[0], dt),
+                      self._py.update(wanted[1], p[1], change[1], dt),
+                      self._pz.update(wanted[2], p[2], change[2], dt))
+            flat = to_heading(yaw, wanted)[:2]
+        elif self._state == _FLYING:
+            flat = wanted[0], wanted[1]
+        if self._state == _FLYING or self._tilts_by_velocity:
+            speed, slope = to_heading(yaw, self._velocity), to_heading(yaw, acceleration)
+            per_gravity = 1.0 / gravity if gravity > 0.0 else 0.0
+            flat = (-self._vy.update(flat[1], speed[1], slope[1], dt) * per_gravity,
+                    self._vx.update(flat[0], speed[0], slope[0], dt) * per_gravity)
+        torque = (inertial.ixx * self._roll.update(flat[0], roll, spin[0], dt),
+                  inertial.iyy * self._pitch.update(flat[1], pitch, spin[1], dt),
+                  0.0 if to_positions else inertial.izz * self._yaw.update(
+                      self._angular[2], link.twist.angular[2], 0.0, dt))
+        lift = inertial.mass * (
+            self._vz.update(wanted[2], self._velocity[2], acceleration[2], dt)
+            + load_factor(self.context.gravity, link.pose.orientation) * gravity)
+        if self._most_force > 0.0:
+            lift = min(lift, self._most_force)
+        strength = _STRENGTH[self._state]
+        hold_wrench(self.context, link, ((0.0, 0.0, max(0.0, lift) * strength),
+                                         scale(torque, strength)))
+
+    def _publish(self, acceleration: Vec3) -> None:
+        pose = self._link.pose
+        if self._poses.wanted:
+            message = self.context.message("geometry_msgs/Pose")
+            at, turn = message.position, message.orientation
+            at.x, at.y, at.z = pose.position
+            turn.x, turn.y, turn.z, turn.w = pose.orientation
+            self._poses.publish(message)
+        for topic, vector in ((self._velocities, self._velocity),
+                              (self._accelerations, acceleration)):
+            if topic.wanted:
+                message = self.context.message("geometry_msgs/Twist")
+                linear = message.linear
+                linear.x, linear.y, linear.z = rotate(conjugate(pose.orientation), vector)
+                topic.publish(message)
+
+
+def _pid(parameters: Any, prefix: str) -> FilteredPid:
+    return FilteredPid(parameters, prefix, (5.0, 0.0, 1.0), filters_rate=True)
