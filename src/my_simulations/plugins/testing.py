@@ -72,7 +72,8 @@ class FakeContext(FakeGraph):
         attached: (parent, child) by the name of the joint.
         world_lights: the lights of the world by name, which a test puts there.
         materials: what was given to `set_material`, by link and visual.
-        description: of the model.
+        description: description of the model.
+        log_messages: the texts of `info` and `warn`, and faults of parameters.
     """
 
     def __init__(self, xml: str = "<plugin/>", *, model: str = "robot",
@@ -83,8 +84,8 @@ class FakeContext(FakeGraph):
         self.model, self.sensor = model, sensor
         self.sensor_link, self.sensor_joint = sensor_link, sensor_joint
         self.joint_wrenches: Dict[str, JointWrench] = {}
-        self.said: List[str] = []
-        self.parameters = Parameters(xml, self.said.append)
+        self.log_messages: List[str] = []
+        self.parameters = Parameters(xml, self.log_messages.append)
         self.joints = {name: FakeJoint(name) for name in joints}
         self.links: Dict[str, FakeLink] = {name: FakeLink(name) for name in links or ()}
         self._closed_links = links is not None
@@ -311,8 +312,8 @@ class FakeContext(FakeGraph):
 
     def info(self, text: str) -> None:
         """Record the call."""
-        self.said.append(text)
+        self.log_messages.append(text)
 
     def warn(self, text: str) -> None:
         """Record the call."""
-        self.said.append(text)
+        self.log_messages.append(text)

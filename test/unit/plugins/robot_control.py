@@ -61,8 +61,8 @@ class Arm:
     def run(self, *names):
         """Load and start."""
         for name in names:
-            assert self.load(name), self.context.said
-        assert self.switch(names), self.context.said
+            assert self.load(name), self.context.log_messages
+        assert self.switch(names), self.context.log_messages
 
     def states(self):
         return {one.name: one.state for one in self.ask("list_controllers").controller}

@@ -98,7 +98,7 @@ def test_a_vehicle_whose_autopilot_is_gone_stops(vehicle, autopilot):
     context.advance(0.02)
     context.advance(0.001)   # no packet comes
     assert context.joints["rotor"].servo.target == 0.0
-    assert any("no more packets" in text for text in context.said)
+    assert any("no more packets" in text for text in context.log_messages)
     autopilot.send(0.5)      # a new one flies it again
     for _ in range(21):
         if context.joints["rotor"].servo.target == 0.0:
@@ -121,6 +121,6 @@ def test_faults_of_a_file_are_named(vehicle, autopilot):
     context = vehicle(ROTOR)
     autopilot.send()
     context.advance(0.02)
-    assert any("none for channel 0" in text for text in context.said)
+    assert any("none for channel 0" in text for text in context.log_messages)
     with pytest.raises(PluginError, match="cannot listen"):
         vehicle(ROTOR)

@@ -148,7 +148,7 @@ def test_a_twist_that_is_no_number_changes_nothing_of_a_command_by_angles():
         robot.deliver("drive/cmd_vel", linear={"x": math.nan, "y": 0.0}, angular={"z": 0.0})
         robot.context.advance(0.1)
     assert [robot.at(name) for name in STEERS] == pytest.approx([0.3] * 4, abs=1e-6)
-    assert [text for text in robot.context.said if "not finite" in text] == [
+    assert [text for text in robot.context.log_messages if "not finite" in text] == [
         "controller 'drive' ignores commands that are not finite"]
 
 
@@ -266,7 +266,7 @@ def test_sensors_of_the_robot_are_published_by_their_names():
 def test_a_robot_without_such_sensors_is_told(kind):
     arm = Arm(sense={"type": kind, "publish_rate": 50})
     assert not arm.load("sense")
-    assert "<sensor type=" in arm.context.said[-1]
+    assert "<sensor type=" in arm.context.log_messages[-1]
 
 
 def test_messages_that_are_not_installed_leave_the_rest_working():
@@ -282,7 +282,7 @@ def test_messages_that_are_not_installed_leave_the_rest_working():
     assert robot.switch((), ["drive"])
     assert robot.ask("unload_controller", name="drive").ok
     robot.run("drive")
-    assert "cmd_vel only" in robot.context.said[-1]
+    assert "cmd_vel only" in robot.context.log_messages[-1]
     go(robot, 0.2, x=0.5)
     assert robot.published("drive/odom")[-1].KIND == "nav_msgs/Odometry"
 
@@ -395,9 +395,9 @@ def test_limits_of_currents_must_name_all_actuators():
                         "actuators": ["a", "b"]})
     robot.run("limits")
     robot.deliver("limits/command", actuator_names=["b", "a"], current_limits=[1.0, 1.0])
-    assert robot.context.said == []
+    assert robot.context.log_messages == []
     robot.deliver("limits/command", actuator_names=["b"], current_limits=[1.0])
-    assert any("actuators a, b" in text for text in robot.context.said)
+    assert any("actuators a, b" in text for text in robot.context.log_messages)
 
 
 def test_commands_of_joints_are_published_by_their_interfaces():

@@ -107,7 +107,7 @@ def test_numbers_that_no_camera_has_are_replaced_and_told(wrong, drawn):
     context.advance(0.15)
     spec = context.views[0][0].camera
     assert (spec.hfov, spec.near, spec.far) == pytest.approx(drawn)
-    assert len(context.said) == 1 and "is drawn" in context.said[0]
+    assert len(context.log_messages) == 1 and "is drawn" in context.log_messages[0]
 
 
 def test_a_lens_is_told_of_in_the_order_of_the_message():
@@ -172,7 +172,7 @@ def test_encodings_have_their_types_and_sizes(encoding, kind, size):
 def test_an_unknown_format_is_told():
     context = camera(block=CameraBlock(width=8, height=6, format="YUV"))
     context.advance(0.1)
-    assert "YUV" in context.said[0] and context.published[RAW][0].encoding == "bgr8"
+    assert "YUV" in context.log_messages[0] and context.published[RAW][0].encoding == "bgr8"
 
 
 def test_the_noise_of_a_picture_belongs_to_its_moment():
@@ -374,7 +374,7 @@ def test_points_of_a_realsense_have_limits_of_their_own():
 def test_a_realsense_does_without_a_camera_that_the_model_lacks():
     context = realsense(names=("depth",))
     context.advance(0.1)
-    assert len(context.published["camera/depth/image_raw"]) == 1 and len(context.said) == 3
+    assert len(context.published["camera/depth/image_raw"]) == 1 and len(context.log_messages) == 3
     with pytest.raises(PluginError, match="d_color"):
         realsense(names=())
 
@@ -406,7 +406,7 @@ def test_a_custom_lens_has_the_numbers_of_its_function():
     assert context.views[-1][0].camera.lens == WideLens(2.1, 4.0, 0.1, "tan", 3.0, 512)
     scaled = wide(hfov=3.5, type="custom", **numbers).views[-1][0].camera.lens
     assert scaled.scale == pytest.approx(1.0 / math.tan(1.75 / 4.0 + 0.1))
-    assert not context.said
+    assert not context.log_messages
     focal = context.published[INFO][-1].K[0]
     assert focal == pytest.approx(4.0 * 2.1 / math.cos(0.1) ** 2 / 4.0)
 

@@ -30,14 +30,14 @@ def test_what_cannot_be_loaded_is_told_with_the_reason():
                       ("lost", "joint 'three' has no transmission"), ("wrong", "a text"),
                       ("absent", "absent/type is missing")):
         assert not arm.load(name)
-        assert why in arm.context.said[-1]
+        assert why in arm.context.log_messages[-1]
     assert arm.states() == {}
 
 
 def test_an_interface_that_the_joint_lacks_is_named_with_the_one_it_has():
     arm = Arm(forward={"type": "effort_controllers/JointEffortController", "joint": "one"})
     assert not arm.load("forward")
-    assert "PositionJointInterface" in arm.context.said[-1]
+    assert "PositionJointInterface" in arm.context.log_messages[-1]
 
 
 def test_two_controllers_of_a_joint_cannot_run_together():
@@ -45,7 +45,7 @@ def test_two_controllers_of_a_joint_cannot_run_together():
     arm.run("forward")
     assert arm.load("group")
     assert not arm.switch(["group"])
-    assert "both drive joint 'one'" in arm.context.said[-1]
+    assert "both drive joint 'one'" in arm.context.log_messages[-1]
     assert arm.states() == {"forward": "running", "group": "initialized"}
     assert arm.switch(["group"], ["forward"])
     assert arm.states() == {"forward": "stopped", "group": "running"}
@@ -117,7 +117,7 @@ def test_joint_states_are_in_the_order_that_the_controller_is_told():
 def test_a_rate_is_needed_for_joint_states():
     arm = Arm(states={"type": STATE["type"]})
     assert not arm.load("states")
-    assert "publish_rate" in arm.context.said[-1]
+    assert "publish_rate" in arm.context.log_messages[-1]
 
 
 def test_positions_are_held_until_somebody_controls_them():
@@ -140,7 +140,7 @@ def test_interfaces_are_known_in_all_spellings(spelling):
 def test_an_unknown_interface_leaves_the_state_of_its_joint():
     arm = Arm(interfaces=("franka_hw/FrankaStateInterface",
                           "hardware_interface/EffortJointInterface"), states=STATE)
-    assert "FrankaStateInterface" in arm.context.said[0]
+    assert "FrankaStateInterface" in arm.context.log_messages[0]
     arm.run("states")
     arm.context.advance(0.02)
     assert arm.published("joint_states")[0].name == ["one", "two"]
@@ -274,7 +274,7 @@ def test_a_reset_starts_controllers_anew_where_joints_are():
 
 def test_a_robot_without_transmissions_is_told_so():
     arm = Arm(interfaces=(), joint_state_controller=STATE)
-    assert "no <transmission>" in arm.context.said[0]
+    assert "no <transmission>" in arm.context.log_messages[0]
     arm.run("joint_state_controller")
     arm.context.advance(0.1)
     assert [one.name for one in arm.published("joint_states")] == [[]] * 5
@@ -285,7 +285,7 @@ def test_what_comes_while_a_controller_does_not_run_is_told_once():
     assert arm.load("forward")
     for _ in range(3):
         arm.deliver("forward/command", data=2.0)
-    assert sum("does not run" in text for text in arm.context.said) == 1
+    assert sum("does not run" in text for text in arm.context.log_messages) == 1
 
 
 @pytest.mark.parametrize(("inside", "place"), [

@@ -32,7 +32,7 @@ def test_a_group_takes_a_value_for_each_joint():
     arm.context.advance(0.5)
     assert (arm.at("one"), arm.at("two")) == pytest.approx((0.5, -1.0))
     arm.deliver("group/command", data=[1.0])
-    assert "of 1" in arm.context.said[-1]
+    assert "of 1" in arm.context.log_messages[-1]
 
 
 def test_stopping_a_velocity_controller_stops_the_joint():
@@ -266,7 +266,7 @@ def test_wheels_without_a_radius_are_told():
                                "left_wheel": "one", "right_wheel": "two",
                                "wheel_separation": 0.5})
     assert not arm.load("drive")
-    assert "wheel_radius" in arm.context.said[-1]
+    assert "wheel_radius" in arm.context.log_messages[-1]
 
 
 @pytest.mark.parametrize("kind", ["Velocity", "Position", "Effort"])

@@ -52,7 +52,7 @@ def test_a_belt_never_reaches_its_limit():
 def test_a_power_beyond_its_range_is_refused():
     context, _ = belt()
     assert not set_power(context, power=101.0) and speed(context) == 0.0
-    assert any("0 to 100" in text for text in context.said)
+    assert any("0 to 100" in text for text in context.log_messages)
     with pytest.raises(PluginError, match="<power> must be 0 to 100"):
         belt("<power>-1</power>")
 

@@ -153,7 +153,7 @@ def test_a_joint_that_is_not_there_is_named():
 
 def test_a_value_that_is_no_number_is_told_and_the_default_used():
     context, plugin = diff_drive("<wheelDiameter>big</wheelDiameter>")
-    assert "wheelDiameter" in context.said[0] and plugin._radius == 0.075
+    assert "wheelDiameter" in context.log_messages[0] and plugin._radius == 0.075
 
 
 def test_skid_steering_drives_both_wheels_of_a_side_alike():

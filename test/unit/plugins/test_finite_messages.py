@@ -34,7 +34,8 @@ def test_a_drive_passes_over_a_command_that_is_not_finite_and_says_so_once(value
         context.deliver("robot/cmd_vel", linear={"x": 0.0}, angular={"z": value})
     context.advance(0.02)
     assert context.joints["left_joint"].motor[0] == pytest.approx(4.0)
-    assert [said for said in context.said if "cmd_vel" in said and "NaN" in said] == context.said
+    (text,) = context.log_messages
+    assert "cmd_vel" in text and "NaN" in text
 
 
 def test_a_wrench_that_is_not_finite_leaves_the_last_one():
@@ -60,7 +61,7 @@ def test_wheels_of_no_size_are_those_of_the_default(made, name, text):
     context = FakeContext(f"<plugin><{name}>{text}</{name}></plugin>", joints=WHEELS)
     made(context).load()
     context.advance(0.02)
-    assert name in context.said[0] and "above 0" in context.said[0]
+    assert name in context.log_messages[0] and "above 0" in context.log_messages[0]
 
 
 def test_a_kobuki_without_a_usable_wheel_is_refused():

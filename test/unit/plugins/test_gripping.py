@@ -41,7 +41,7 @@ def test_a_vacuum_gripper_holds_what_is_near_while_it_is_on():
     assert list(context.attached.values()) == [("robot::palm", "cube::link")]
     assert context.published["r/grasping"][-1].data is True
     context.services["r/on"](None, None)
-    assert context.said == ["it is on already"]
+    assert context.log_messages == ["it is on already"]
     context.services["r/off"](None, None)
     context.advance(0.1)
     assert not context.attached and context.published["r/grasping"][-1].data is False
@@ -176,7 +176,7 @@ def test_collisions_that_a_gripper_cannot_switch_off_are_told():
                                       "</disable_collisions_on_attach><arm>"),
                           links=("palm", "left", "right"))
     GraspFix(context).load()
-    assert "disable_collisions_on_attach" in context.said[-1]
+    assert "disable_collisions_on_attach" in context.log_messages[-1]
 
 
 def test_an_opened_finger_lets_go_and_a_closing_one_does_not(gripper):
@@ -188,7 +188,7 @@ def test_an_opened_finger_lets_go_and_a_closing_one_does_not(gripper):
     assert gripper.attached
     gripper.links["left"].pose = Pose((0.0, 0.003, 0.0))
     gripper.advance(0.1)
-    assert not gripper.attached and "lets go" in gripper.said[-1]
+    assert not gripper.attached and "lets go" in gripper.log_messages[-1]
 
 
 def test_a_gripper_without_an_arm_is_the_users_fault():
@@ -197,7 +197,7 @@ def test_a_gripper_without_an_arm_is_the_users_fault():
     context = FakeContext(ARM.replace("palm<", "nowhere<"), links=("palm",))
     with pytest.raises(PluginError, match="none of its <arm>s"):
         GraspFix(context).load()
-    assert "no link 'nowhere'" in context.said[-1]
+    assert "no link 'nowhere'" in context.log_messages[-1]
 
 
 @pytest.mark.parametrize("bad", [
@@ -211,7 +211,7 @@ def test_an_arm_or_a_finger_that_is_not_there_leaves_the_others_holding(bad):
                           links=("palm", "left", "right"))
     world(context)
     GraspFix(context).load()
-    assert len(context.said) >= 2
+    assert len(context.log_messages) >= 2
     context.touching = squeezed()
     context.advance(0.4)
     assert list(context.attached) == ["robot::arm::grasp"]
@@ -223,7 +223,7 @@ def test_a_second_arm_of_a_name_is_left_out():
     context = FakeContext(ARM.replace(arm, arm + arm), links=("palm", "left", "right"))
     world(context)
     GraspFix(context).load()
-    assert "there is an arm 'arm' already" in context.said[-1]
+    assert "there is an arm 'arm' already" in context.log_messages[-1]
 
 
 def test_the_link_attacher_attaches_and_detaches_by_the_same_names():
@@ -238,7 +238,7 @@ def test_the_link_attacher_attaches_and_detaches_by_the_same_names():
     detach(request, response)
     assert response.ok and not context.attached
     detach(request, response)
-    assert not response.ok and "not attached" in context.said[-1]
+    assert not response.ok and "not attached" in context.log_messages[-1]
 
 
 def test_a_gripper_in_a_nested_model_holds(gripper):

@@ -90,7 +90,7 @@ def test_a_harness_pulls_along_its_joints_axis_also_where_the_pose_is_no_pose(po
     context.links["link"].pose = Pose(tuple(-part / 400.0 for part in way))
     context.advance(0.001)
     assert context.wrenches["link"][0] == pytest.approx(way, abs=1e-4)
-    assert any("<pose>" in text for text in context.said) == (len(pose.split()) != 6)
+    assert any("<pose>" in text for text in context.log_messages) == (len(pose.split()) != 6)
 
 
 def test_a_harness_without_a_joint_is_told():
@@ -188,7 +188,7 @@ def test_a_lift_that_waits_while_the_clock_is_set_back_goes_on():
 def test_what_is_no_floor_is_told(floor):
     context, _ = lift()
     context.deliver("elevator", data=floor)
-    assert floor in context.said[-1]
+    assert floor in context.log_messages[-1]
     context.advance(0.05)
     assert targets(context) == (0.0, 0.0)
 
@@ -300,7 +300,7 @@ def test_joints_are_held_as_their_controllers_say():
         assert (servo.target, servo.gains.p, servo.gains.d, servo.of_rate) == (0.5, 10.0, 2.0,
                                                                                False)
     assert context.joints["wheel"].servo.target == 3.0
-    assert "none" in context.said[-1]
+    assert "none" in context.log_messages[-1]
 
 
 def test_a_held_joint_that_is_blocked_winds_up_no_more_than_in_gazebo():

@@ -203,7 +203,7 @@ def test_motors_stop_without_commands():
     assert context.published["motor_status"][-1].on
     context.advance(0.2)
     assert not context.published["motor_status"][-1].on
-    assert any("no motor command" in text for text in context.said)
+    assert any("no motor command" in text for text in context.log_messages)
     assert len(context.published["quadro/trigger"]) == 110
 
 
@@ -329,10 +329,10 @@ def test_commands_in_other_frames_are_ignored():
         "orientation": {"x": 0.0, "y": 0.0, "z": 0.0, "w": 1.0}})
     robot.context.advance(0.1)
     assert push(robot.context)[0][2] == pytest.approx(MASS * 9.8065)
-    assert any("world" in text and "map" in text for text in robot.context.said)
+    assert any("world" in text and "map" in text for text in robot.context.log_messages)
 
 
 def test_controllers_of_quadrotors_need_their_hardware():
     robot = Arm(**LOOPS)
     assert not robot.load("attitude")
-    assert any("QuadrotorHardwareSim" in text for text in robot.context.said)
+    assert any("QuadrotorHardwareSim" in text for text in robot.context.log_messages)

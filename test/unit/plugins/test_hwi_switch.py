@@ -46,7 +46,7 @@ def test_a_joint_is_driven_by_the_interface_that_its_controller_claims():
                         ("by_position", "position")):
         assert name in robot.states() or robot.load(name)
         running = [one for one, state in robot.states().items() if state == "running"]
-        assert robot.switch([name], running), robot.context.said
+        assert robot.switch([name], running), robot.context.log_messages
         assert drive_of(robot) == drive
     robot.switch(["by_velocity"], ["by_position"])
     robot.deliver("by_velocity/command", data=1.0)
@@ -76,7 +76,8 @@ def test_gains_do_not_change_the_interface():
 def test_the_default_hardware_has_the_first_interface_only():
     robot = arm(kind=GazeboRosControl)
     assert not robot.load("by_velocity")
-    assert "has no transmission with hardware_interface::VelocityJoint" in robot.context.said[-1]
+    message = robot.context.log_messages[-1]
+    assert "has no transmission with hardware_interface::VelocityJoint" in message
 
 
 def test_the_hardware_can_be_named_in_the_default_library():

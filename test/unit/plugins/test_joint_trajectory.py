@@ -237,7 +237,7 @@ def test_values_of_joints_that_a_partial_trajectory_does_not_name_are_ignored():
     arm.context.advance(0.6)
     assert [one[:3] for one in client.results] == [(goal, SUCCEEDED, 0)]
     assert (arm.at("one"), arm.at("two")) == pytest.approx((0.0, 1.0), abs=1e-6)
-    assert "ignores the last 1 positions" in arm.context.said[-1]
+    assert "ignores the last 1 positions" in arm.context.log_messages[-1]
 
 
 def test_a_partial_goal_does_not_judge_the_other_joints():
@@ -337,4 +337,4 @@ def test_the_state_is_told_and_can_be_asked_for():
 def test_gains_are_needed_for_effort_joints():
     arm = Arm("hardware_interface/EffortJointInterface", arm={**EFFORT, "gains": {}})
     assert not arm.load("arm")
-    assert "arm/gains/one/p" in arm.context.said[-1]
+    assert "arm/gains/one/p" in arm.context.log_messages[-1]

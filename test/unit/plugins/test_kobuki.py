@@ -193,7 +193,7 @@ def test_without_kobuki_msgs_it_drives():
 
     context.publish = missing
     plugin.load()
-    assert "kobuki_msgs" in context.said[-1]
+    assert "kobuki_msgs" in context.log_messages[-1]
     context.deliver("mobile_base/commands/velocity", linear={"x": 0.2}, angular={"z": 0.0})
     context.advance(0.1)
     assert rates(context)[0] > 0.0

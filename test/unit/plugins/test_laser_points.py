@@ -153,4 +153,4 @@ def test_rays_as_a_scan_and_as_a_range():
 
 def test_an_unknown_output_of_rays_is_reported():
     context = laser(RaySensor, [1.0, 2.0], "<outputType>Rays</outputType>")
-    assert any("outputType" in text for text in context.said)
+    assert any("outputType" in text for text in context.log_messages)

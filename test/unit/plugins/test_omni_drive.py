@@ -134,7 +134,7 @@ def test_a_command_that_is_not_finite_stops_the_base():
     go(robot, 0.5, x=0.2)
     go(robot, 0.2, x=math.nan)
     assert robot.context.joints["b_drive"].velocity == 0.0
-    assert "not finite" in robot.context.said[-1]
+    assert "not finite" in robot.context.log_messages[-1]
 
 
 def test_velocities_stay_within_the_limits():
@@ -184,7 +184,7 @@ def test_parameters_of_a_wheel_come_before_defaults_and_the_description():
 def test_what_is_wrong_is_told(settings, words):
     robot = base(run=False, **settings)
     assert not (robot.load("drive") and robot.load("odom"))
-    assert words in robot.context.said[-1]
+    assert words in robot.context.log_messages[-1]
 
 
 def test_the_odometry_can_be_set_to_the_origin():

@@ -212,7 +212,7 @@ def test_joint_states_of_a_list_with_blanks():
 def test_a_joint_that_is_not_there_leaves_the_states_of_the_others():
     context = FakeContext("<plugin><jointName>none, b</jointName></plugin>", joints=("b",))
     JointStatePublisher(context).load()
-    assert "no joint 'none'" in context.said[-1]
+    assert "no joint 'none'" in context.log_messages[-1]
     context.advance(0.01)
     assert context.published["robot/joint_states"][-1].name == ["b"]
 

@@ -75,12 +75,12 @@ def test_another_trajectory_replaces_the_rest_of_the_first(arm):
 def test_joints_that_are_not_there_are_told_and_skipped(arm):
     play(arm, point(0.0, 7.0, 0.2), names=("c", "b"))
     assert positions(arm) == [0.0, 0.2]
-    assert "no joint 'c'" in arm.said[0]
+    assert "no joint 'c'" in arm.log_messages[0]
 
 
 def test_a_point_of_another_length_is_refused_whole(arm):
     play(arm, point(0.0, 0.1, 0.1), point(0.1, 0.1))
-    assert positions(arm) == [0.0, 0.0] and "point 1 of the trajectory has 1" in arm.said[0]
+    assert positions(arm) == [0.0, 0.0] and "point 1 of the trajectory has 1" in arm.log_messages[0]
 
 
 def test_the_service_answers_and_sets_the_pose(arm):
@@ -118,7 +118,7 @@ def test_the_link_of_the_frame_stays_where_it_is():
 @pytest.mark.parametrize("value", [math.nan, math.inf])
 def test_a_trajectory_with_what_is_no_number_is_refused_and_the_next_is_played(arm, value):
     play(arm, point(0.0, 0.1, 0.2), point(0.5, value, 0.4))
-    assert arm.said == ["a position of point 1 of the trajectory is not finite"]
+    assert arm.log_messages == ["a position of point 1 of the trajectory is not finite"]
     request = Message(model_name="robot", set_model_pose=True, disable_physics_updates=True,
                       model_pose={"position": {"x": value, "y": 0.0, "z": 0.0},
                                   "orientation": {"x": 0.0, "y": 0.0, "z": 0.0, "w": 1.0}})
@@ -176,7 +176,7 @@ def test_the_hand_of_god_pulls_like_a_critically_damped_spring():
     hand.twist = Twist((0.1, 0.0, 0.0), (0.0, 0.0, 0.2))
     HandOfGod(context).load()
     context.advance(0.002)
-    assert len(context.said) == 1
+    assert len(context.log_messages) == 1
     assert context.wrenches["hand"] == (pytest.approx((0.0, 0.0, 2 * 9.8)), (0.0, 0.0, 0.0))
     context.deliver("/tf", transforms=[transform("base", "hog_desired", 0.5, 0.4),
                                     transform("/world", "base", 1.0)])

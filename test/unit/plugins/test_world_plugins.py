@@ -96,7 +96,7 @@ def buoy(inside, *collisions, com=(0.0, 0.0, 0.0)):
 def test_a_volume_that_cannot_be_is_told_and_that_of_the_collisions_counts(block):
     """As in Gazebo."""
     context = buoy(block, Collision("a", geometry=Box((1.0, 0.5, 0.2))))
-    assert "volume" in context.said[-1]
+    assert "volume" in context.log_messages[-1]
     force, torque = context.wrenches["hull"]
     assert force[2] == pytest.approx(999.1026 * 0.1 * 9.8)
     assert torque == pytest.approx((0.0, 0.0, 0.0))
@@ -125,7 +125,7 @@ def test_a_given_volume_counts_and_turns_with_the_link():
 
 def test_a_mesh_without_a_volume_is_told():
     context = buoy("", Collision("a", geometry=Mesh("model://boat.dae")))
-    assert not context.wrenches and "give its <volume>" in context.said[0]
+    assert not context.wrenches and "give its <volume>" in context.log_messages[0]
 
 
 # -- magnets -------------------------------------------------------------------------------------
