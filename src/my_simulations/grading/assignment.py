@@ -4,7 +4,6 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Any, Optional, Tuple
 
-from ..geometry import Vec3
 from ..studies.expressions import Expression
 from ..studies.study import PlacedModel
 
@@ -231,9 +230,3 @@ class Assignment:
     def of(self, *kinds: type) -> "Tuple[Any, ...]":
         """The checks of these kinds, in order."""
         return tuple(check for check in self.checks if isinstance(check, kinds))
-
-
-def position_of(place: Place) -> Vec3:
-    """The wanted position; z 0 where any height will do."""
-    x, y, z = place.at
-    return x, y, z or 0.0

@@ -8,14 +8,14 @@ import stat
 from dataclasses import replace
 
 import pytest
+from box_models import arm, box
 from lxml import etree
 
 from my_simulations.description.compare import differences
 from my_simulations.description.flatten import flattened
 from my_simulations.description.light import Light
-from my_simulations.description.model import Inertial, Joint, JointAxis, Link, Model, PluginSpec
+from my_simulations.description.model import Joint, JointAxis, PluginSpec
 from my_simulations.description.model_group import group_of
-from my_simulations.description.shapes import Box, Collision
 from my_simulations.description.unflatten import unflattened
 from my_simulations.description.world import World
 from my_simulations.engine.inline_engine import InlineEngine
@@ -32,18 +32,6 @@ from my_simulations.simulator.saving import allowed_path, default_roots, present
 from my_simulations.simulator.simulator import Simulator
 
 AWAY = Pose((1.25, -2.5, 0.125), quat_from_rpy(0.1, 0.2, 0.3))
-
-
-def box(name, links=("link",), **changes):
-    return Model(name, links=[Link(link, Pose((float(n), 0, 0)), Inertial(),
-                                   [Collision("c", Box(), Pose((0, 0, 2.0)))])
-                              for n, link in enumerate(links)], **changes)
-
-
-def arm(name):
-    made = box(name, ("base", "tip"))
-    made.joints.append(Joint("hinge", "revolute", "base", "tip", axis=JointAxis()))
-    return made
 
 
 def cabinet(name):

@@ -6,9 +6,10 @@ import threading
 import time
 
 import pytest
+from box_models import arm, box
 
-from my_simulations.description.model import Inertial, Joint, JointAxis, Link, Model
-from my_simulations.description.shapes import Box, Collision, Mesh
+from my_simulations.description.model import Model
+from my_simulations.description.shapes import Collision, Mesh
 from my_simulations.description.world import World
 from my_simulations.engine.commands import FOREVER
 from my_simulations.engine.inline_engine import InlineEngine
@@ -20,18 +21,6 @@ from my_simulations.simulator.feeds import ROW_WIDTH
 from my_simulations.simulator.registry import UnknownEntityError, UnknownFrameError
 from my_simulations.simulator.row_allocator import RowAllocator
 from my_simulations.simulator.simulator import Simulator
-
-
-def box(name, links=("link",), **changes):
-    return Model(name, links=[Link(link, Pose((float(n), 0, 0)), Inertial(),
-                                   [Collision("c", Box(), Pose((0, 0, 2.0)))])
-                              for n, link in enumerate(links)], **changes)
-
-
-def arm(name):
-    made = box(name, ("base", "tip"))
-    made.joints.append(Joint("hinge", "revolute", "base", "tip", axis=JointAxis()))
-    return made
 
 
 class Case:
