@@ -1,39 +1,56 @@
-"""Compute extents and approach speeds of bodies."""
+"""Compute extents and motions of bodies that approach others."""
 from __future__ import annotations
 
 from math import dist
-from typing import Optional, Tuple
+from typing import AbstractSet, Dict, Tuple
 
 import pybullet
 
-from ...geometry import Vec3, add, dot, norm
+from ...geometry import Vec3, add, norm
 from ..body_plan import BASE
 from .bodies import Body
-from .link_states import motion
+from .link_states import AT_REST, Motion, motion
 
 _SAME = 1e-9  # m/s, or share: rounding errors of a velocity
+
+
+class Motions:
+    """The motions of bodies between two steps, each read once.
+
+    Args:
+        moving: PyBullet's numbers of the bodies that move; all others are at rest.
+    """
+
+    def __init__(self, moving: AbstractSet[int]) -> None:
+        self._moving = moving
+        self._read: Dict[int, Motion] = {}
+
+    def clear(self) -> None:
+        """Read all motions again, as after a step."""
+        self._read.clear()
+
+    def forget(self, uid: int) -> None:
+        """Read the motion of one body again, after it was set."""
+        self._read.pop(uid, None)
+
+    def of(self, uid: int) -> Motion:
+        """Return the motion of the base of a body; `AT_REST` for a static one."""
+        found = self._read.get(uid)
+        if found is None:
+            found = self._read[uid] = motion(uid, BASE) if uid in self._moving else AT_REST
+        return found
 
 
 def extent(body: Body) -> Tuple[Vec3, Vec3]:
     """Return the lowest and highest corner of the axis-aligned bounding box of a body."""
     boxes = [pybullet.getAABB(body.uid, part.index) for part in body.colliders]
-    low = (min(box[0][0] for box in boxes), min(box[0][1] for box in boxes),
-           min(box[0][2] for box in boxes))
-    high = (max(box[1][0] for box in boxes), max(box[1][1] for box in boxes),
-            max(box[1][2] for box in boxes))
-    return low, high
-
-
-def approach(uid: int, other: Optional[int], place: Vec3, normal: Vec3) -> float:
-    """Return the approach speed of two bodies at a point, m/s; `other` None: a static one."""
-    speed = -dot(motion(uid, BASE).velocity_at(place), normal)
-    return speed if other is None else speed + dot(motion(other, BASE).velocity_at(place), normal)
-
-
-def speed_of(uid: int) -> float:
-    """Return the linear speed of the base of a body, m/s."""
-    linear: Vec3 = pybullet.getBaseVelocity(uid)[0]
-    return norm(linear)
+    if len(boxes) == 1:
+        low, high = boxes[0]
+        return low, high
+    lows, highs = zip(*boxes)
+    x, y, z = map(min, zip(*lows))
+    u, v, w = map(max, zip(*highs))
+    return (x, y, z), (u, v, w)
 
 
 def flies(body: Body, before: Vec3, now: Vec3, pull: Vec3) -> bool:

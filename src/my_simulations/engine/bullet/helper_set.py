@@ -82,9 +82,9 @@ class HelperSet:
         """Create all helpers that store nothing but data of bodies."""
         self._parameters = WorldParameters()
         self._residual = ResidualFriction(lambda uid: self._rolling.rolls(uid))
-        self._rolling = RollingContacts(lambda links, step: self._landing.see_rolling(links, step),
-                                        lambda: self.forces.loaded_bodies,
-                                        lambda uid, step: self._landing.flies(uid, step),
+        self._landing = LandingContacts(lambda uid, normal: self._rolling.landed(uid, normal),
+                                        self._parameters)
+        self._rolling = RollingContacts(self._landing, lambda: self.forces.loaded_bodies,
                                         self._parameters.find_pairs)
         self._seams = SeamContacts(self._rolling, self._parameters)
         self._level = LevelSeams(lambda: self._residual.fast, self._parameters)
@@ -105,7 +105,6 @@ class HelperSet:
             self._parameters, lambda: self.forces.loaded_bodies,
             lambda row: self.motors.rate_of(row) or self.forces.servos.rate_of(row),
             self._notify)
-        self._landing = LandingContacts(self._rolling.landed, self._parameters)
         self.restored_sleep = RestoredSleep(self.settling.hold)
         self._stop = SurfaceStop()
         self.divergence = DivergenceStop(self.notices.stopped, lambda: self.forces.loaded_bodies,

@@ -18,6 +18,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from math import acos, asin
+from operator import attrgetter, itemgetter
 from typing import AbstractSet, Callable, Dict, List, Optional, Set, Tuple
 
 import pybullet
@@ -36,7 +37,7 @@ from ...geometry import (
     subtract,
 )
 from . import collision_groups
-from .approach import approach, extent, flies, speed_of
+from .approach import Motions, extent, flies
 from .bodies import Body, Part
 from .body_events import COMMANDED, BodyEvent
 from .contact_points import DISTANCE, LOAD, NORMAL, OTHER_PLACE, PLACE
@@ -70,6 +71,8 @@ class _Flight:
         on_ground: consecutive checks at which it touched something.
         seen: step of the last check at which it flew, and its velocity then, m/s.
         beside: flying bodies near it at the last check.
+        pairs: by other bodies near it, the step of the next check with that body, and the step
+            before which they cannot touch.
         through: bodies with which it does not collide.
         tried: bodies that it overlapped when contact points were searched.
     """
@@ -80,6 +83,7 @@ class _Flight:
     on_ground: int = 0
     seen: Optional[Tuple[int, Vec3]] = None
     beside: Set[int] = field(default_factory=set)
+    pairs: Dict[int, Tuple[int, int]] = field(default_factory=dict)
     through: Set[int] = field(default_factory=set)
     tried: Set[int] = field(default_factory=set)
 
@@ -104,6 +108,7 @@ class LandingContacts(StepHelper):
         self._alone: Dict[int, Tuple[Vec3, ...]] = {}   # axes of single boxes or cylinders
         self._order: Optional[List[int]] = None
         self._moving: Set[int] = set()
+        self._motions = Motions(self._moving)
         self._uneven: Dict[int, None] = {}  # with other shapes than boxes, spheres and planes
         self._asleep: Dict[int, int] = {}   # turns for which a body is left out
         self._flights: Dict[int, _Flight] = {}
@@ -170,6 +175,7 @@ class LandingContacts(StepHelper):
         if step % EVERY == 0:
             self._ask(turn_of(self._watched(), step // EVERY, _ROUNDS))
         touches: List[Touch] = []
+        self._motions.clear()
         for flight in list(self._flights.values()):
             if flight.look <= step:
                 touches += self._look(flight, step, dt, gravity)
@@ -229,11 +235,13 @@ class LandingContacts(StepHelper):
         for flight in self._flights.values():
             if uid in flight.beside:
                 flight.look = min(flight.look, step + 1)
+                flight.pairs.pop(uid, None)
 
     def _look(self, flight: _Flight, step: int, dt: float, gravity: Vec3) -> List[Touch]:
         """Return the deepest contact of a body in this step, if any, and plan its next check."""
         body, uid = flight.body, flight.body.uid
-        linear, angular = pybullet.getBaseVelocity(uid)
+        here = self._motions.of(uid)
+        linear = here.linear
         flew = flight.seen is not None and flies(
             body, flight.seen[1], linear, scale(gravity, dt * (step - flight.seen[0])))
         if not flew and self._is_on_ground(flight, step, linear):
@@ -243,55 +251,64 @@ class LandingContacts(StepHelper):
         flight.beside.clear()
         low, high = extent(flight.body)
         fall = norm(gravity) * dt
-        spin = norm(angular) * norm(subtract(high, low))
+        rate = norm(here.angular)
+        spin = rate * norm(subtract(high, low))
         speed = norm(linear) + spin + _AHEAD * fall
         reach = speed * dt * (_AHEAD + 2)
-        ahead = free = _AHEAD
         touches: List[Touch] = []
+        later = step + _AHEAD
+        pairs: Dict[int, Tuple[int, int]] = {}
         for other in self._within(flight, low, high, reach):
-            moves = other in self._moving
-            if moves and other in self._flights and self._flights[other].seen is not None:
+            if other in self._moving and other in self._flights and (
+                    self._flights[other].seen is not None):
                 flight.beside.add(other)   # checked again once the other body has landed
                 continue
-            way = dt * (speed + (speed_of(other) if moves else 0.0))   # in one step, at most
+            known = flight.pairs.get(other)
+            if known is not None and known[0] > step:
+                pairs[other] = known
+                continue
+            pairs[other] = later, later
+            there = self._motions.of(other)
+            way = dt * (speed + norm(there.linear))   # in one step, at most
             points = pybullet.getClosestPoints(uid, other, way * (_AHEAD + 2))
             if not points or way == 0.0:   # without gravity a body at rest stays there
                 continue
-            nearest = min(points, key=lambda point: point[DISTANCE])
+            nearest = min(points, key=itemgetter(DISTANCE))
             gap: float = nearest[DISTANCE]
+            at: Vec3 = nearest[PLACE]
             normal: Vec3 = nearest[NORMAL]
-            at, turn = pybullet.getBasePositionAndOrientation(uid)
-            speed_in = approach(uid, other if moves else None, nearest[PLACE], normal)
+            speed_in = dot(there.velocity_at(at), normal) - dot(here.velocity_at(at), normal)
             steps = max(0.0, gap) / max(1e-9, dt * (speed_in + spin + _AHEAD * fall))
-            free = int(min(free, steps))
-            tilt = self._tilt_beyond_flat(uid, turn, normal)
+            free = step + int(min(_AHEAD, steps))
+            tilt = self._tilt_beyond_flat(uid, here.orientation, normal)
             if tilt > 0.0:   # it lands on a corner, for which one point is enough
-                steps = max(steps, tilt / max(dt * norm(angular), tilt / _AHEAD))
+                steps = max(steps, tilt / max(dt * rate, tilt / _AHEAD))
             lands = speed_in > max(_SOFT, _SETTLES * fall)
             if gap <= 0.0 and not lands:   # it rests there, or moves away
                 steps = max(steps, _BOUNCE)
-            ahead = int(min(ahead, steps))
-            if gap > 0.0 or tilt > 0.0:
-                continue
-            if lands and not self._lies_in(flight, other):
-                width, breadth = extents_across(low, high, normal)
-                touches.append(Touch(uid, other, gap, nearest[OTHER_PLACE], normal, at, turn,
-                                      (linear, angular), width, breadth))
-        flight.look, flight.arrives = step + max(1, ahead), step + free
-        touches.sort(key=lambda touch: touch.gap)
+            pairs[other] = step + max(1, int(min(_AHEAD, steps))), free
+            if gap <= 0.0 and tilt <= 0.0 and lands and not self._lies_in(flight, other):
+                touches.append(Touch(uid, other, gap, nearest[OTHER_PLACE], normal, here,
+                                     *extents_across(low, high, normal)))
+        flight.pairs = pairs
+        flight.look = min([look for look, _ in pairs.values()], default=later)
+        flight.arrives = min([free for _, free in pairs.values()], default=later)
         if touches:
-            self._landed(uid, touches[0].normal)
+            touch = min(touches, key=attrgetter("gap"))
+            self._landed(uid, touch.normal)
             self._look_at_those_beside(uid, step)
-        return touches[:1]
+            return [touch]
+        return []
 
     def _tilt_beyond_flat(self, uid: int, turn: Quat, normal: Vec3) -> float:
         """Return the turn, rad, until a body can land on a face or its side; 0 if it can now."""
         axes = self._alone.get(uid)
         if axes is None:
             return 0.0
-        along = [min(1.0, abs(dot(normal, rotate(turn, axis)))) for axis in axes]
-        tilt = acos(max(along))
-        return max(0.0, (tilt if len(axes) > 1 else min(tilt, asin(along[0]))) - MOST_TILT)
+        own = rotate(conjugate(turn), normal)
+        along = min(1.0, max([abs(dot(own, axis)) for axis in axes]))
+        tilt = acos(along)
+        return max(0.0, (tilt if len(axes) > 1 else min(tilt, asin(along))) - MOST_TILT)
 
     def _within(self, flight: _Flight, low: Vec3, high: Vec3, reach: float) -> List[int]:
         """Return the bodies within `reach`, m, with which a body may collide, by number."""

@@ -9,6 +9,7 @@ import pybullet
 from ...geometry import Quat, Vec3, add, cross, dot, multiply, norm, rotate, scale, subtract
 from . import collision_groups
 from .contact_points import DISTANCE, PLACE
+from .link_states import Motion
 
 MOST_TILT = 0.15
 """Largest tilt of a flat body, rad: a body with a larger one lands on a corner."""
@@ -31,7 +32,7 @@ class Touch(NamedTuple):
     Attributes:
         gap: m, below 0 for an overlap.
         normal: points to the body.
-        at, turn: pose of the body.
+        motion: of the body.
         width, breadth: the least and largest extent of the body across the normal, m.
     """
 
@@ -40,9 +41,7 @@ class Touch(NamedTuple):
     gap: float
     place: Vec3
     normal: Vec3
-    at: Vec3
-    turn: Quat
-    velocity: Tuple[Vec3, Vec3]
+    motion: Motion
     width: float
     breadth: float
 
@@ -108,7 +107,8 @@ class LandingPoints:
         for touch, angle, _, _ in trials:
             sunk = max(0.0, touch.gap + _HINT * touch.breadth)  # else points would not touch
             _tilt(touch, angle - _QUARTER, _HINT, -sunk)
-            pybullet.resetBaseVelocity(touch.uid, *touch.velocity)  # setting the pose resets it
+            # Setting the pose has reset the velocity.
+            pybullet.resetBaseVelocity(touch.uid, touch.motion.linear, touch.motion.angular)
         return found
 
     def _drop_points(self, uid: int) -> None:
@@ -135,21 +135,21 @@ def _sides(normal: Vec3) -> Tuple[Vec3, Vec3]:
 
 def _tilt(touch: Touch, angle: float, tilt: float, raised: float) -> None:
     """Tilt a body about its contact, and lift it by `raised`, m."""
-    normal = touch.normal
+    normal, at = touch.normal, touch.motion.position
     side, fore = _sides(normal)
     axis = add(scale(side, cos(angle)), scale(fore, sin(angle)))
     s = sin(tilt / 2.0)
     by: Quat = (axis[0] * s, axis[1] * s, axis[2] * s, cos(tilt / 2.0))
-    pivot = subtract(touch.at, scale(normal, dot(subtract(touch.at, touch.place), normal)))
-    centre = add(pivot, rotate(by, subtract(touch.at, pivot)))
+    pivot = subtract(at, scale(normal, dot(subtract(at, touch.place), normal)))
+    centre = add(pivot, rotate(by, subtract(at, pivot)))
     pybullet.resetBasePositionAndOrientation(
-        touch.uid, add(centre, scale(normal, raised)), multiply(by, touch.turn))
+        touch.uid, add(centre, scale(normal, raised)), multiply(by, touch.motion.orientation))
 
 
 def _lowest(touch: Touch) -> float:
     """Return the first of four directions, so that the last tilt lowers the lowest point."""
     side, fore = _sides(touch.normal)
-    lever = subtract(touch.place, touch.at)
+    lever = subtract(touch.place, touch.motion.position)
     return atan2(dot(lever, fore), dot(lever, side)) - 2.0 * _QUARTER
 
 
@@ -163,8 +163,8 @@ def _leaning(trials: List[_Trial]) -> List[_Trial]:
 def _stands(touch: Touch) -> bool:
     """Whether the centre of mass is above the polygon of the contact points."""
     side, fore = _sides(touch.normal)
-    levers = [subtract(point[PLACE], touch.at) for point in pybullet.getContactPoints(touch.uid)
-              if point[DISTANCE] <= 0.0]
+    levers = [subtract(point[PLACE], touch.motion.position)
+              for point in pybullet.getContactPoints(touch.uid) if point[DISTANCE] <= 0.0]
     angles = sorted(atan2(dot(lever, fore), dot(lever, side)) for lever in levers)
     around = [*angles[1:], angles[0] + 2.0 * pi] if angles else []
     return bool(angles) and max(b - a for a, b in zip(angles, around)) < pi

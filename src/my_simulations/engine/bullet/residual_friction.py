@@ -258,18 +258,17 @@ class ResidualFriction(StepHelper):
     def _mend(self, uid: int, seen: Set[int], dt: float) -> int:
         """Undo the residual friction at the contacts of a body. Returns the class of the body."""
         contacts = pybullet.getContactPoints(bodyA=uid)
+        if not contacts:
+            return _FLIES
         if len(contacts) > _MOST_CONTACTS:
             return _PILED if any(each[OTHER_BODY] in self._moving for each in contacts) else _SLIDES
-        neighbour, left = -1, []
-        for contact in contacts:
-            other = contact[OTHER_BODY]
-            if other != neighbour and other in self._moving:
-                if neighbour >= 0:
-                    return _PILED
-                neighbour = other
-            # Bodies with joints use another solver, which leaves no residual friction.
-            if _is_left(contact) and other not in seen and other not in self._trees:
-                left.append(contact)
+        neighbours = {each[OTHER_BODY] for each in contacts} & self._moving
+        if len(neighbours) > 1:
+            return _PILED
+        # Bodies with joints use another solver, which leaves no residual friction.
+        left = [each for each in contacts if each[LOAD] <= 0.0 and _is_left(each)]
+        if neighbours and left and not neighbours.isdisjoint(seen | self._trees):
+            left = [each for each in left if each[OTHER_BODY] not in neighbours]
         if left:
             linear, angular = pybullet.getBaseVelocity(uid)
             if max(dot(linear, linear), dot(angular, angular)) <= _FAST * _FAST:
@@ -281,7 +280,7 @@ class ResidualFriction(StepHelper):
         for contact in left:
             self._take_back(contact, dt)
         seen.add(uid)
-        return _MENDED if left else _SLIDES if contacts else _FLIES
+        return _MENDED if left else _SLIDES
 
     def _take_back(self, contact: ContactPoint, dt: float) -> None:
         """Undo the friction impulses of one contact; the first direction opposes the slip."""

@@ -44,6 +44,7 @@ from .bodies import Body, Part
 from .body_events import ACTUATED, COMMANDED, BodyEvent
 from .contact_points import DISTANCE, NORMAL, OTHER_BODY, LinkKey
 from .extra_surfaces import SOFT
+from .landing_contacts import LandingContacts
 from .link_states import place
 from .step_helper import FAR, StepHelper, next_multiple
 
@@ -98,9 +99,8 @@ class RollingContacts(StepHelper):
     """Drops the contact points of lying cylinders before each step.
 
     Args:
-        dropping: called before that with the links whose points are dropped, and the step.
+        landing: knows which bodies fly; reads contact points of others before they are dropped.
         loaded: returns the bodies that timed forces act on in this step.
-        flies: returns whether a body is known to touch nothing in a step.
         find_pairs: finds new pairs before a step with the point spacing for cylinders on
             triangles; otherwise all new pairs would get this spacing.
 
@@ -110,12 +110,9 @@ class RollingContacts(StepHelper):
 
     events = COMMANDED
 
-    def __init__(self, dropping: Callable[[AbstractSet[LinkKey], int], None],
-                 loaded: Callable[[], AbstractSet[int]],
-                 flies: Callable[[int, int], bool],
+    def __init__(self, landing: LandingContacts, loaded: Callable[[], AbstractSet[int]],
                  find_pairs: Callable[[], None]) -> None:
-        self._find_pairs = find_pairs
-        self._dropping, self._loaded, self._flies = dropping, loaded, flies
+        self._landing, self._loaded, self._find_pairs = landing, loaded, find_pairs
         self.on_seams: Dict[LinkKey, Vec3] = {}
         self._rollers: Dict[LinkKey, _Roller] = {}
         self._rolling: Dict[LinkKey, collision_groups.Filter] = {}
@@ -190,7 +187,7 @@ class RollingContacts(StepHelper):
             for key, roller in self._rollers.items():
                 if roller.wait:
                     roller.wait -= 1
-                elif self._flies(key[0], step):
+                elif self._landing.flies(key[0], step):
                     continue
                 elif self._rolls(roller, dt, gravity, roller.body.uid in loaded):
                     self._rolling[key] = roller.meets
@@ -203,7 +200,7 @@ class RollingContacts(StepHelper):
             linear, angular = pybullet.getBaseVelocity(uid)
             if (linear != _NONE or angular != _NONE) and _slow(linear, angular):
                 pybullet.resetBaseVelocity(uid, _NONE, _NONE)
-        self._dropping(self._rolling.keys(), step)
+        self._landing.see_rolling(self._rolling.keys(), step)
         self._drop(False, step)
         if self.on_seams:
             if not self._moving.issubset({uid for uid, _ in self.on_seams}):
@@ -213,7 +210,7 @@ class RollingContacts(StepHelper):
     def _drop(self, on_seams: bool, step: int) -> None:
         """Drop the contact points of links that roll on triangles, or of all others."""
         for key, meets in self._rolling.items():
-            if (key in self.on_seams) is on_seams and not self._flies(key[0], step):
+            if (key in self.on_seams) is on_seams and not self._landing.flies(key[0], step):
                 pybullet.setCollisionFilterGroupMask(*key, meets.group, meets.mask)
 
     def due(self, step: int) -> int:
@@ -240,16 +237,24 @@ class RollingContacts(StepHelper):
             return False
         else:
             turn = place(uid, index)[1]
-        axis = rotate(turn, roller.axis)
         contacts = pybullet.getContactPoints(bodyA=uid, linkIndexA=index)
+        depth, least, most, on_moving, seamed = 0.0, 1.0, 0.0, False, False
+        x, y, z = rotate(turn, roller.axis)
+        for contact in contacts:
+            a, b, c = contact[NORMAL]
+            along = abs(a * x + b * y + c * z)
+            least, most = min(least, along), max(most, along)
+            depth = max(depth, -contact[DISTANCE])
+            on_moving = on_moving or contact[OTHER_BODY] in self._moving
+            seamed = seamed or contact[OTHER_BODY] in self._seams
         if roller.hard:
-            self._part(roller, contacts, dt, norm(gravity))
+            self._part(roller, 0.0 if on_moving or seamed and not roller.body.rigid else depth,
+                       dt, norm(gravity))
         if not contacts:
             return (uid, index) in self._rolling
-        roller.seamed = any(contact[OTHER_BODY] in self._seams for contact in contacts)
-        if any(abs(dot(contact[NORMAL], axis)) > _LYING for contact in contacts):
-            roller.wait = _PATIENCE if all(
-                abs(dot(contact[NORMAL], axis)) > _UPRIGHT for contact in contacts) else 0
+        roller.seamed = seamed
+        if most > _LYING:
+            roller.wait = _PATIENCE if least > _UPRIGHT else 0
             return False
         if roller.body.rigid:
             before = self._standing.pop(uid, None)
@@ -257,25 +262,22 @@ class RollingContacts(StepHelper):
             rocks = seen is not None and norm(linear) < _CREEP + norm(gravity) * dt and _slow(
                 *_mean(seen, at, EVERY * dt))
             if ((rocks or _slow(linear, angular)) and not loaded and not roller.body.ties
-                    and self._on_level(contacts, gravity)):
+                    and not on_moving and _is_level(contacts, gravity)):
                 self._stand(uid, before)
                 return False
         else:
             roller.wait = _HINGED
         return True
 
-    def _part(self, roller: _Roller, contacts: Tuple[Any, ...], dt: float, weight: float) -> None:
-        """Set the separation rate of the overlaps of a link. `weight`: gravity, m/s^2.
+    def _part(self, roller: _Roller, depth: float, dt: float, weight: float) -> None:
+        """Set the separation rate of the overlaps of a link with static bodies, m deep.
 
         Wheels on triangles keep the usual rate; a higher one at edges would accelerate them.
+        `weight`: gravity, m/s^2.
         """
         share = least = min(_MOST, _PARTING * dt)
         key = roller.body.uid, roller.part.index
-        depth = max((-contact[DISTANCE] for contact in contacts), default=0.0)
-        if depth > 0.0 and key in self._rolling and not any(
-                contact[OTHER_BODY] in self._moving
-                or (contact[OTHER_BODY] in self._seams and not roller.body.rigid)
-                for contact in contacts):
+        if depth > 0.0 and key in self._rolling:
             share = min(_MOST, max(least, _PUSH * weight * dt * dt / depth))
         if abs(share - (roller.share or least)) > _CHANGE * share:
             roller.share = share
@@ -291,15 +293,15 @@ class RollingContacts(StepHelper):
             pybullet.resetBasePositionAndOrientation(uid, at.position, at.orientation)
         self._standing[uid] = at
 
-    def _on_level(self, contacts: Tuple[Any, ...], gravity: Vec3) -> bool:
-        """Whether all contacts of a body are with static, level floors.
 
-        Points without overlap, as of triangle edges beside it, may be inclined.
-        """
-        limit = _LEVEL * norm(gravity)
-        return all(contact[OTHER_BODY] not in self._moving and (
-            contact[DISTANCE] > 0.0 or norm(cross(contact[NORMAL], gravity)) <= limit)
-                   for contact in contacts)
+def _is_level(contacts: Tuple[Any, ...], gravity: Vec3) -> bool:
+    """Whether all contacts of a body are with level floors.
+
+    Points without overlap, as of triangle edges beside it, may be inclined.
+    """
+    limit = _LEVEL * norm(gravity)
+    return all(contact[DISTANCE] > 0.0 or norm(cross(contact[NORMAL], gravity)) <= limit
+               for contact in contacts)
 
 
 def _slow(linear: Vec3, angular: Vec3) -> bool:

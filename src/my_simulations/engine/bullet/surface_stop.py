@@ -17,17 +17,17 @@ from __future__ import annotations
 
 from heapq import heappop, heappush
 from math import dist, inf
+from operator import itemgetter
 from typing import Dict, List, Set, Tuple
 
 import pybullet
 
 from ...geometry import Vec3, add, dot, norm, scale, subtract
-from ..body_plan import BASE
-from .approach import extent
+from .approach import Motions, extent
 from .bodies import Body
 from .body_events import COMMANDED, BodyEvent
 from .contact_points import DISTANCE, NORMAL, PLACE
-from .link_states import AT_REST, Motion, motion
+from .link_states import AT_REST, Motion
 from .step_helper import FAR, StepHelper
 from .surface_coefficients import of_link, restitution
 from .world_parameters import LEAST_BOUNCE
@@ -38,8 +38,6 @@ _DEEPEST = 3.0   # largest factor of the depth for longer steps, else slow rolli
 _AHEAD_S = 0.016 # s between two checks of a fast body
 _AHEAD = 16      # the same in steps, at most
 _SELDOM = 256    # steps between two checks of a slow body, at most
-
-
 
 
 class SurfaceStop(StepHelper):
@@ -54,7 +52,7 @@ class SurfaceStop(StepHelper):
         self._radii: Dict[int, float] = {}        # of bounding spheres of rigid bodies, m
         self._floors: Set[int] = set()            # boxes below planes
         self._next: Dict[int, int] = {}           # the step of the next check, by body
-        self._seen: Dict[int, Motion] = {}        # motions of other bodies in this step
+        self._motions = Motions(self._moving)
         self._looks: List[Tuple[int, int]] = []   # a heap of (step, body), valid if in `_next`
 
     def add(self, body: Body) -> None:
@@ -100,7 +98,7 @@ class SurfaceStop(StepHelper):
             if not self._is_old(*look):
                 now.append(look[1])
                 del self._next[look[1]]
-        self._seen.clear()
+        self._motions.clear()
         for uid in sorted(now):
             self._plan(uid, step + self._look(self._bodies[uid], dt, gravity))
 
@@ -114,7 +112,8 @@ class SurfaceStop(StepHelper):
 
     def _look(self, body: Body, dt: float, gravity: Vec3) -> int:
         """Move a body back if it would go deep. Returns the steps until its next check."""
-        linear, angular = pybullet.getBaseVelocity(body.uid)
+        here = self._motions.of(body.uid)
+        linear, angular = here.linear, here.angular
         bounces = body.uid in self._bouncing
         deep = _LEAST if bounces else _DEEP * min(_DEEPEST, max(1.0, dt / 1e-3))
         speed, fall = norm(linear), norm(gravity) * dt
@@ -122,7 +121,6 @@ class SurfaceStop(StepHelper):
         ahead = max(1, min(_AHEAD, round(_AHEAD_S / dt)))
         if speed + fall < fast:
             return min(_SELDOM, max(ahead, int((fast - speed) / max(fall, 1e-9))))
-        here = motion(body.uid, BASE)
         ahead, late = self._way(body, here, ahead, deep, dt, gravity)
         if late > 0.0 or bounces and late > -1.0:
             end = add(here.position, scale(add(linear, scale(gravity, dt)), (1.0 - late) * dt))
@@ -132,7 +130,7 @@ class SurfaceStop(StepHelper):
             start = subtract(end, scale(add(linear, scale(gravity, dt)), dt))
             pybullet.resetBasePositionAndOrientation(body.uid, start, here.orientation)
             pybullet.resetBaseVelocity(body.uid, linear, angular)  # setting the pose resets it
-            self._seen.pop(body.uid, None)
+            self._motions.forget(body.uid)
         return ahead
 
     def _way(self, body: Body, here: Motion, ahead: int, deep: float, dt: float, gravity: Vec3,
@@ -154,7 +152,7 @@ class SurfaceStop(StepHelper):
             high = (high[0] + reach, high[1] + reach, high[2] + reach)
         near = pybullet.getOverlappingObjects(low, high) or ()
         for other in sorted({pair[0] for pair in near} - {uid} - self._floors):
-            there = self._motion(other) if other in self._moving else AT_REST
+            there = self._motions.of(other)
             nearing = (_nearing(here, there, radius) + fall) * dt
             # Bodies that move together do not collide, and their closest points are expensive.
             if nearing <= deep:
@@ -167,7 +165,7 @@ class SurfaceStop(StepHelper):
             points = pybullet.getClosestPoints(uid, other, towards * dt * (ahead + 2))
             if not points:
                 continue
-            nearest = min(points, key=_depth)
+            nearest = min(points, key=itemgetter(DISTANCE))
             gap, normal = nearest[DISTANCE], nearest[NORMAL]
             if gap <= 0.0 or gap > ahead * towards * dt:
                 continue
@@ -181,13 +179,6 @@ class SurfaceStop(StepHelper):
                     late = max(late, 1.0 - (gap + deep) / (inward * dt))
         return ahead, late
 
-    def _motion(self, uid: int) -> Motion:
-        """Return the motion of a body in this step."""
-        found = self._seen.get(uid)
-        if found is None:
-            found = self._seen[uid] = motion(uid, BASE)
-        return found
-
 
 def _radius(centre: Vec3, low: Vec3, high: Vec3) -> float:
     """Return the largest distance of a point in a box from a point in it, m."""
@@ -199,8 +190,3 @@ def _nearing(one: Motion, other: Motion, radius: float) -> float:
     """Return an upper bound, m/s, of the approach speed of points within `radius`, m."""
     return norm(subtract(one.linear, other.linear)) + norm(one.angular) * radius + (
         norm(other.angular) * (dist(one.position, other.position) + radius))
-
-
-def _depth(point: Tuple[float, ...]) -> float:
-    """Return the distance at a closest point, m, below 0 for an overlap."""
-    return point[DISTANCE]
