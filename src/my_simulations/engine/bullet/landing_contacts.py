@@ -19,7 +19,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from math import acos, asin
 from operator import attrgetter, itemgetter
-from typing import AbstractSet, Callable, Dict, List, Optional, Set, Tuple
+from typing import AbstractSet, Callable, Dict, List, NamedTuple, Optional, Set, Tuple
 
 import pybullet
 
@@ -42,6 +42,7 @@ from .bodies import Body, Part
 from .body_events import COMMANDED, BodyEvent
 from .contact_points import DISTANCE, LOAD, NORMAL, OTHER_PLACE, PLACE
 from .landing_points import MOST_TILT, Filters, LandingPoints, Touch, extents_across
+from .link_states import Motion
 from .step_helper import FAR, StepHelper, looks_until_turn, turn_of
 from .world_parameters import Accuracy, WorldParameters
 
@@ -86,6 +87,26 @@ class _Flight:
     pairs: Dict[int, Tuple[int, int]] = field(default_factory=dict)
     through: Set[int] = field(default_factory=set)
     tried: Set[int] = field(default_factory=set)
+
+
+class _Path(NamedTuple):
+    """A body before a step.
+
+    Attributes:
+        low, high: corners of its bounding box, m.
+        fall: speed that gravity adds in a step, m/s.
+        spin, speed: upper bounds of the speed of its points until the next check, m/s: by
+            rotation, and in all.
+    """
+
+    step: int
+    dt: float
+    motion: Motion
+    low: Vec3
+    high: Vec3
+    fall: float
+    spin: float
+    speed: float
 
 
 class LandingContacts(StepHelper):
@@ -251,45 +272,20 @@ class LandingContacts(StepHelper):
         flight.beside.clear()
         low, high = extent(flight.body)
         fall = norm(gravity) * dt
-        rate = norm(here.angular)
-        spin = rate * norm(subtract(high, low))
-        speed = norm(linear) + spin + _AHEAD * fall
-        reach = speed * dt * (_AHEAD + 2)
-        touches: List[Touch] = []
+        spin = norm(here.angular) * norm(subtract(high, low))
+        path = _Path(step, dt, here, low, high, fall, spin,
+                     norm(linear) + spin + _AHEAD * fall)
         later = step + _AHEAD
+        touches: List[Touch] = []
         pairs: Dict[int, Tuple[int, int]] = {}
-        for other in self._within(flight, low, high, reach):
+        for other in self._within(flight, path):
             if other in self._moving and other in self._flights and (
                     self._flights[other].seen is not None):
                 flight.beside.add(other)   # checked again once the other body has landed
-                continue
-            known = flight.pairs.get(other)
-            if known is not None and known[0] > step:
-                pairs[other] = known
-                continue
-            pairs[other] = later, later
-            there = self._motions.of(other)
-            way = dt * (speed + norm(there.linear))   # in one step, at most
-            points = pybullet.getClosestPoints(uid, other, way * (_AHEAD + 2))
-            if not points or way == 0.0:   # without gravity a body at rest stays there
-                continue
-            nearest = min(points, key=itemgetter(DISTANCE))
-            gap: float = nearest[DISTANCE]
-            at: Vec3 = nearest[PLACE]
-            normal: Vec3 = nearest[NORMAL]
-            speed_in = dot(there.velocity_at(at), normal) - dot(here.velocity_at(at), normal)
-            steps = max(0.0, gap) / max(1e-9, dt * (speed_in + spin + _AHEAD * fall))
-            free = step + int(min(_AHEAD, steps))
-            tilt = self._tilt_beyond_flat(uid, here.orientation, normal)
-            if tilt > 0.0:   # it lands on a corner, for which one point is enough
-                steps = max(steps, tilt / max(dt * rate, tilt / _AHEAD))
-            lands = speed_in > max(_SOFT, _SETTLES * fall)
-            if gap <= 0.0 and not lands:   # it rests there, or moves away
-                steps = max(steps, _BOUNCE)
-            pairs[other] = step + max(1, int(min(_AHEAD, steps))), free
-            if gap <= 0.0 and tilt <= 0.0 and lands and not self._lies_in(flight, other):
-                touches.append(Touch(uid, other, gap, nearest[OTHER_PLACE], normal, here,
-                                     *extents_across(low, high, normal)))
+            elif flight.pairs.get(other, (0, 0))[0] > step:
+                pairs[other] = flight.pairs[other]
+            else:
+                pairs[other] = self._look_at(flight, other, path, touches) or (later, later)
         flight.pairs = pairs
         flight.look = min([look for look, _ in pairs.values()], default=later)
         flight.arrives = min([free for _, free in pairs.values()], default=later)
@@ -299,6 +295,33 @@ class LandingContacts(StepHelper):
             self._look_at_those_beside(uid, step)
             return [touch]
         return []
+
+    def _look_at(self, flight: _Flight, other: int, path: _Path, touches: List[Touch],
+                 ) -> Optional[Tuple[int, int]]:
+        """Return an entry of `_Flight.pairs`, or None; add a contact in this step to `touches`."""
+        uid, (step, dt, here, low, high, fall, spin, speed) = flight.body.uid, path
+        there = self._motions.of(other)
+        way = dt * (speed + norm(there.linear))   # in one step, at most
+        points = pybullet.getClosestPoints(uid, other, way * (_AHEAD + 2))
+        if not points or way == 0.0:   # without gravity a body at rest stays there
+            return None
+        nearest = min(points, key=itemgetter(DISTANCE))
+        gap: float = nearest[DISTANCE]
+        at: Vec3 = nearest[PLACE]
+        normal: Vec3 = nearest[NORMAL]
+        speed_in = dot(there.velocity_at(at), normal) - dot(here.velocity_at(at), normal)
+        steps = max(0.0, gap) / max(1e-9, dt * (speed_in + spin + _AHEAD * fall))
+        free = step + int(min(_AHEAD, steps))
+        tilt = self._tilt_beyond_flat(uid, here.orientation, normal)
+        if tilt > 0.0:   # it lands on a corner, for which one point is enough
+            steps = max(steps, tilt / max(dt * norm(here.angular), tilt / _AHEAD))
+        lands = speed_in > max(_SOFT, _SETTLES * fall)
+        if gap <= 0.0 and not lands:   # it rests there, or moves away
+            steps = max(steps, _BOUNCE)
+        if gap <= 0.0 and tilt <= 0.0 and lands and not self._lies_in(flight, other):
+            touches.append(Touch(uid, other, gap, nearest[OTHER_PLACE], normal, here,
+                                 *extents_across(low, high, normal)))
+        return step + max(1, int(min(_AHEAD, steps))), free
 
     def _tilt_beyond_flat(self, uid: int, turn: Quat, normal: Vec3) -> float:
         """Return the turn, rad, until a body can land on a face or its side; 0 if it can now."""
@@ -310,10 +333,12 @@ class LandingContacts(StepHelper):
         tilt = acos(along)
         return max(0.0, (tilt if len(axes) > 1 else min(tilt, asin(along))) - MOST_TILT)
 
-    def _within(self, flight: _Flight, low: Vec3, high: Vec3, reach: float) -> List[int]:
-        """Return the bodies within `reach`, m, with which a body may collide, by number."""
-        uid, margin = flight.body.uid, (reach, reach, reach)
-        found = pybullet.getOverlappingObjects(subtract(low, margin), add(high, margin)) or ()
+    def _within(self, flight: _Flight, path: _Path) -> List[int]:
+        """Return the bodies in reach with which a body may collide, by number."""
+        uid, reach = flight.body.uid, path.speed * path.dt * (_AHEAD + 2)
+        margin = (reach, reach, reach)
+        found = pybullet.getOverlappingObjects(
+            subtract(path.low, margin), add(path.high, margin)) or ()
         return sorted({other for other, _ in found if other != uid
                        and other not in flight.through
                        and (uid in self._uneven or other in self._uneven)})
