@@ -37,23 +37,23 @@ from ...geometry import (
     subtract,
 )
 from . import collision_groups
+from .agenda import Agenda
 from .approach import Motions, extent, flies
 from .bodies import Body, Part
 from .body_events import COMMANDED, BodyEvent
 from .contact_points import DISTANCE, LOAD, NORMAL, OTHER_PLACE, PLACE
 from .landing_points import MOST_TILT, Filters, LandingPoints, Touch, extents_across
 from .link_states import Motion
-from .step_helper import FAR, StepHelper, looks_until_turn, turn_of
+from .step_helper import FAR, StepHelper, next_multiple
 from .world_parameters import Accuracy, WorldParameters
 
-EVERY = 16
-"""Steps between two checks for flying bodies."""
-
-_ROUNDS = 2        # checks until every body had its turn
+_EVERY = 16          # checks for flying bodies are at multiples of this number of steps
+_MOVES_EVERY = 32    # steps between two such checks of a body that moves
+_RESTS_EVERY = 64    # the same for a body at rest
+_SLEEPS_EVERY = 256  # the same for a sleeping body
 _RESTS = 0.03      # m/s: a body in free fall is faster after 3 ms
 _BOUNCE = 8        # steps until a landed body is checked again
 _BOUNCES = 4       # such checks until only the periodic check applies
-_PATIENCE = 7      # turns that a sleeping body is left out; 1 for a body at rest
 _SOFT = 2e-3       # m/s: a slower impact does not tilt the body
 _SETTLES = 2.5     # steps of free fall: a body placed at rest on a surface gains less speed
 _AHEAD = 16        # steps, at most, until the next check of a flying body
@@ -67,7 +67,6 @@ class _Flight:
     """One body that flies, or has just landed.
 
     Attributes:
-        look: step of its next check.
         arrives: step before which it can touch only bodies that fly beside it.
         on_ground: consecutive checks at which it touched something.
         seen: step of the last check at which it flew, and its velocity then, m/s.
@@ -79,7 +78,6 @@ class _Flight:
     """
 
     body: Body
-    look: int = 0
     arrives: int = 0
     on_ground: int = 0
     seen: Optional[Tuple[int, Vec3]] = None
@@ -127,13 +125,11 @@ class LandingContacts(StepHelper):
         self._meets: Dict[int, Filters] = {}
         self._points = LandingPoints(self._meets)
         self._alone: Dict[int, Tuple[Vec3, ...]] = {}   # axes of single boxes or cylinders
-        self._order: Optional[List[int]] = None
         self._moving: Set[int] = set()
         self._motions = Motions(self._moving)
         self._uneven: Dict[int, None] = {}  # with other shapes than boxes, spheres and planes
-        self._asleep: Dict[int, int] = {}   # turns for which a body is left out
         self._flights: Dict[int, _Flight] = {}
-        self._next = FAR                    # the step of the first due check
+        self._agenda: Agenda[int] = Agenda()
 
     def add(self, body: Body) -> None:
         """Register a new body; only bodies that can tilt as they land matter."""
@@ -149,34 +145,29 @@ class LandingContacts(StepHelper):
                 if axes:
                     self._alone[body.uid] = axes
                 self._flights[body.uid] = _Flight(body)
-                self._next = 0
+                self._agenda.plan(body.uid, 0)
                 self._meets[body.uid] = [(part.index, collision_groups.moving(part.link))
                                          for part in body.colliders]
-        self._order = None
 
     def forget(self, body: Body) -> None:
         """Discard the data of a removed body."""
-        for table in (self._bodies, self._meets, self._alone, self._uneven, self._asleep,
-                      self._flights):
+        for table in (self._bodies, self._meets, self._alone, self._uneven, self._flights):
             table.pop(body.uid, None)
         self._moving.discard(body.uid)
-        self._order = None
+        self._agenda.drop(body.uid)
 
     def handle_event(self, event: BodyEvent, body: Body) -> None:
         """Check a body that a command changed: it may fly from the next step on."""
-        self._asleep.pop(body.uid, None)
-        if body.uid in self._bodies and self._watched():
+        if body.uid in self._bodies:
             self._flights[body.uid] = _Flight(body)
-            self._next = 0
+            self._agenda.plan(body.uid, 0)
 
     def due(self, step: int) -> int:
-        """The step of the next check of a flight, or for new flights."""
-        watched = self._watched()
-        if not watched:
-            return FAR
-        look = -(-step // EVERY)
-        turn = EVERY * (look + looks_until_turn(len(watched), look, _ROUNDS))
-        return max(step, min(turn, self._next))
+        """The step of the next check; none if all bodies consist of boxes, spheres and planes.
+
+        Bullet finds all points of two boxes by itself.
+        """
+        return max(step, self._agenda.next) if self._uneven else FAR
 
     def flies(self, uid: int, step: int) -> bool:
         """Whether a body certainly touches nothing in this step."""
@@ -185,22 +176,20 @@ class LandingContacts(StepHelper):
 
     def see_rolling(self, links: AbstractSet[Tuple[int, int]], step: int) -> None:
         """Record rolling links before their contacts are dropped: their bodies do not fly."""
-        if self._next > step:
+        if self._agenda.next > step:
             return
         for uid in dict.fromkeys(uid for uid, _ in links if uid in self._flights):
-            if self._flights[uid].look <= step:
+            if self._agenda.at(uid) <= step:
                 self._is_on_ground(self._flights[uid], step, pybullet.getBaseVelocity(uid)[0])
 
     def before(self, step: int, dt: float, gravity: Vec3) -> None:
         """Find flights periodically, and the contact points of those that end in this step."""
-        if step % EVERY == 0:
-            self._ask(turn_of(self._watched(), step // EVERY, _ROUNDS))
         touches: List[Touch] = []
         self._motions.clear()
-        for flight in list(self._flights.values()):
-            if flight.look <= step:
+        for uid in self._agenda.take(step):
+            flight = self._flights.get(uid) or self._find_flight(uid, step)
+            if flight is not None:
                 touches += self._look(flight, step, dt, gravity)
-        self._plan()
         if touches:
             self._parameters.request_step_accuracy(_FOR_IMPACTS)
             self._parameters.restore_spacing()
@@ -213,29 +202,15 @@ class LandingContacts(StepHelper):
             self._points.find(list(now.values()))
             touches = [touch for touch in touches if touch.uid not in now]
 
-    def _ask(self, uids: List[int]) -> None:
-        """Find bodies that may fly; bodies at rest are checked less often."""
-        for uid in uids:
-            if self._asleep.get(uid):
-                self._asleep[uid] -= 1
-                continue
-            linear = pybullet.getBaseVelocity(uid)[0]
-            if norm(linear) <= _RESTS:
-                self._asleep[uid] = _PATIENCE if linear == _NONE else 1
-            elif uid not in self._flights:
-                self._flights[uid] = _Flight(self._bodies[uid], on_ground=_BOUNCES)
-
-    def _watched(self) -> List[int]:
-        """Return the bodies to check; none if all bodies consist of boxes, spheres and planes.
-
-        Bullet finds all points of two boxes by itself.
-        """
-        if self._order is None:
-            self._order = list(self._bodies) if self._uneven else []
-        return self._order
-
-    def _plan(self) -> None:
-        self._next = min((flight.look for flight in self._flights.values()), default=FAR)
+    def _find_flight(self, uid: int, step: int) -> Optional[_Flight]:
+        """Return a new flight of a body that may fly; a body at rest is checked less often."""
+        linear = pybullet.getBaseVelocity(uid)[0]
+        if norm(linear) <= _RESTS:
+            wait = _SLEEPS_EVERY if linear == _NONE else _RESTS_EVERY
+            self._agenda.plan(uid, next_multiple(step + wait, _EVERY))
+            return None
+        flight = self._flights[uid] = _Flight(self._bodies[uid], on_ground=_BOUNCES)
+        return flight
 
     def _is_on_ground(self, flight: _Flight, step: int, linear: Vec3) -> bool:
         """Whether a body touches something; then its next check is some steps later."""
@@ -244,18 +219,19 @@ class LandingContacts(StepHelper):
             return False
         if flight.on_ground >= _BOUNCES or norm(linear) <= _RESTS:
             del self._flights[uid]
+            self._agenda.plan(uid, next_multiple(step + _MOVES_EVERY, _EVERY))
         else:
-            self._flights[uid] = _Flight(flight.body, step + _BOUNCE,
-                                         on_ground=flight.on_ground + 1)
+            self._flights[uid] = _Flight(flight.body, on_ground=flight.on_ground + 1)
+            self._agenda.plan(uid, step + _BOUNCE)
         if flight.seen is not None:
             self._look_at_those_beside(uid, step)
         return True
 
     def _look_at_those_beside(self, uid: int, step: int) -> None:
         """Check the bodies that flew beside a landed one: they may hit it."""
-        for flight in self._flights.values():
+        for other, flight in self._flights.items():
             if uid in flight.beside:
-                flight.look = min(flight.look, step + 1)
+                self._agenda.plan(other, min(self._agenda.at(other), step + 1))
                 flight.pairs.pop(uid, None)
 
     def _look(self, flight: _Flight, step: int, dt: float, gravity: Vec3) -> List[Touch]:
@@ -287,7 +263,7 @@ class LandingContacts(StepHelper):
             else:
                 pairs[other] = self._look_at(flight, other, path, touches) or (later, later)
         flight.pairs = pairs
-        flight.look = min([look for look, _ in pairs.values()], default=later)
+        self._agenda.plan(uid, min([look for look, _ in pairs.values()], default=later))
         flight.arrives = min([free for _, free in pairs.values()], default=later)
         if touches:
             touch = min(touches, key=attrgetter("gap"))

@@ -14,16 +14,17 @@ A world without such surfaces has no extra cost.
 from __future__ import annotations
 
 import math
-from typing import Callable, Dict, FrozenSet, List, Set, Tuple
+from typing import Callable, Dict, FrozenSet, List, Set
 
 import numpy as np
 import pybullet
 
 from ...geometry import Vec3
+from .agenda import Agenda
 from .bodies import Body
 from .body_events import COMMANDED, BodyEvent
 from .contact_points import LINK, LOAD, OTHER_BODY, OTHER_LINK, LinkKey
-from .step_helper import FAR, StepHelper
+from .step_helper import FAR, StepHelper, next_multiple
 
 Pair = FrozenSet[LinkKey]
 
@@ -32,7 +33,6 @@ EVERY = 4
 
 _MOST_LOOKS = 4       # checks, at most, until the next turn of a surface with unchanged contacts
 _AT_REST = 16         # the same for a body at rest
-_SLOTS = 32           # must exceed the longest wait
 _RING_EVERY = 8       # checks between two solutions of a ring
 _LEAST_WEIGHT = 1e-3  # of a contact without load
 _COUNTS = 0.1         # share of the largest load: contacts below it cause no warning
@@ -58,13 +58,11 @@ class FrictionBalance(StepHelper):
         self._fixed: Dict[LinkKey, float] = {}
         self._free: Dict[LinkKey, float] = {}
         self._touching: Dict[LinkKey, Set[Pair]] = {}
-        # Surfaces by check, modulo _SLOTS, so that a change of the step count does not matter.
-        self._slots: List[List[LinkKey]] = [[] for _ in range(_SLOTS)]
-        self._wait: Dict[LinkKey, Tuple[int, int]] = {}   # slot, checks between two turns
-        self._soon: Dict[LinkKey, None] = {}              # due at the next check
+        self._agenda: Agenda[LinkKey] = Agenda()
+        self._wait: Dict[LinkKey, int] = {}   # checks between two turns
         self._rigid: Set[int] = set()
         self._pairs: Dict[Pair, float] = {}
-        self._ring = 0
+        self._ring = FAR   # the step of the next solution of a ring
 
     def add(self, body: Body) -> None:
         """Register a new body."""
@@ -75,7 +73,7 @@ class FrictionBalance(StepHelper):
             self._mu[node] = max(part.mu, _SMALLEST)
             if body.moves and part.mu != 1.0:
                 self._free[node] = part.friction
-                self._soon[node] = None
+                self._agenda.plan(node, 0)
             else:
                 self._fixed[node] = max(part.friction, _SMALLEST)
 
@@ -86,15 +84,15 @@ class FrictionBalance(StepHelper):
             node = uid, part.index
             for pair in list(self._touching.get(node, ())):
                 self._part(pair)
-            for table in (self._mu, self._fixed, self._free, self._touching, self._wait,
-                          self._soon):
+            for table in (self._mu, self._fixed, self._free, self._touching, self._wait):
                 table.pop(node, None)
+            self._agenda.drop(node)
 
     def handle_event(self, event: BodyEvent, body: Body) -> None:
         """Check the contacts of a moved or activated body soon."""
         for part in body.colliders:
             if (body.uid, part.index) in self._free:
-                self._soon[body.uid, part.index] = None
+                self._agenda.plan((body.uid, part.index), 0)
 
     def before(self, step: int, dt: float, gravity: Vec3) -> None:
         """Check contacts periodically; if pairs have changed, store new coefficients.
@@ -103,48 +101,32 @@ class FrictionBalance(StepHelper):
         """
         if step % EVERY:
             return
-        changed = self._ask_due(step // EVERY)
-        if not changed:
-            if not self._ring:
-                return
-            self._ring -= 1
-            if self._ring:
-                return
+        if not self._ask_due(step) and step < self._ring:
+            return
+        self._ring = FAR
         nodes = sorted({node for pair in self._pairs for node in pair if node in self._free})
         if nodes:
-            self._solve(nodes, sorted(self._pairs, key=sorted))
+            self._solve(nodes, sorted(self._pairs, key=sorted), step)
 
     def due(self, step: int) -> int:
         """The step of the next check at which a surface is due."""
-        if not self._free:
-            return FAR
-        look = -(-step // EVERY)
-        if not (self._soon or self._ring):
-            look = next((each for each in range(look, look + _SLOTS)
-                         if self._slots[each % _SLOTS]), FAR)
-        return look * EVERY
+        return next_multiple(max(step, min(self._agenda.next, self._ring)), EVERY)
 
-    def _ask_due(self, look: int) -> bool:
+    def _ask_due(self, step: int) -> bool:
         """Read the contacts of the surfaces that are due. Returns whether a pair has changed."""
-        slot = look % _SLOTS
-        due = {node for node in self._slots[slot] if self._wait.get(node, (-1,))[0] == slot}
-        due.update(self._soon)
-        self._soon.clear()
-        self._slots[slot].clear()
         changed = False
-        for node in sorted(due):
+        for node in self._agenda.take(step):
             if node[0] in self._rigid and pybullet.getBaseVelocity(node[0]) == _NO_VELOCITY:
                 looks = _AT_REST
             elif self._ask(node):
                 changed, looks = True, 1
             else:
-                looks = min(2 * self._wait.get(node, (0, 1))[1], _MOST_LOOKS)
-            at = (look + looks) % _SLOTS
-            self._wait[node] = at, looks
-            self._slots[at].append(node)
+                looks = min(2 * self._wait.get(node, 1), _MOST_LOOKS)
+            self._wait[node] = looks
+            self._agenda.plan(node, step + looks * EVERY)
         return changed
 
-    def _solve(self, nodes: List[LinkKey], pairs: List[Pair]) -> None:
+    def _solve(self, nodes: List[LinkKey], pairs: List[Pair], step: int) -> None:
         column = {node: n for n, node in enumerate(nodes)}
         rows, targets = np.zeros((len(pairs), len(nodes))), np.zeros(len(pairs))
         for n, pair in enumerate(pairs):
@@ -158,7 +140,8 @@ class FrictionBalance(StepHelper):
         weights = carried / max(float(carried.max()), 1e-9) + _LEAST_WEIGHT
         solution = np.linalg.lstsq(rows * weights[:, None], targets * weights, rcond=None)[0]
         off = np.abs(np.expm1(rows @ solution - targets))
-        self._ring = _RING_EVERY if float(off.max()) > 1e-6 else 0
+        if float(off.max()) > 1e-6:
+            self._ring = step + _RING_EVERY * EVERY
         self._tell(pairs, off * (weights > _COUNTS))
         for node, value in zip(nodes, np.exp(solution).tolist()):
             if abs(value - self._free[node]) > 1e-9:

@@ -17,13 +17,14 @@ a pile. The selection depends on the step count and their state only, so runs re
 from __future__ import annotations
 
 from math import inf
-from typing import Callable, Dict, List, Optional, Sequence, Set, Tuple
+from typing import Callable, Dict, List, Sequence, Set
 
 import pybullet
 
 from ...geometry import Vec3, add, conjugate, cross, dot, norm, rotate, scale, subtract
 from ..body_plan import BASE
 from . import collision_groups
+from .agenda import Agenda
 from .bodies import Body
 from .body_events import COMMANDED, BodyEvent
 from .contact_points import (
@@ -41,25 +42,21 @@ from .contact_points import (
     friction_force,
 )
 from .link_states import Motion, motion
-from .step_helper import FAR, StepHelper, looks_until_turn, turn_of
+from .step_helper import StepHelper, next_multiple
 from .surface_coefficients import directed, of_link
 
-EVERY = 8
-"""Steps between two checks of the fast bodies."""
-
-_FAST_ROUNDS = 2   # checks until the contacts of each fast body were read
-_ROUNDS = 16       # checks until the speed of each moving body was read
-_SLOW_ROUNDS = 64  # the same for those found at rest
+_EVERY = 8         # checks are at multiples of this number of steps
+_FAST_EVERY = 16   # steps between two checks of a body that slides fast
+_SLOW_EVERY = 128  # the same for all other bodies that move
+_REST_EVERY = 512  # the same for a body at rest
+_CLEAR = 192       # steps until a body that flies far from others is checked again
 _FAST = 2e-3       # m/s, or rad/s: slower bodies may be at rest
 _MAY_STOP = 0.5    # m/s: slower bodies are checked in each step, as such friction may stop them
 _STUCK = 2e-5      # m/s: a smaller slip has no direction
 _BEYOND = 1.001    # of mu N: more friction violates Coulomb's law
 _TUMBLES = 1.5     # rad/s across gravity: the slip of a body that turns over is not predictable
-_CLEAR = 24        # checks for which a body that flies far from others is left out
 _REACH = 0.02      # m: contacts exist a little before surfaces meet
-_KEPT = 16         # checks for which a body is read in each step, once it slides or was corrected
 _MOST_CONTACTS = 8 # a body with more that touches a moving body, or two bodies, is in a pile
-_SOON = -1         # instead of a check number: the next check is not known yet
 _NONE = (0.0, 0.0, 0.0)
 
 # Classes of bodies by their contacts:
@@ -80,14 +77,12 @@ class ResidualFriction(StepHelper):
         self._bodies: Dict[int, Body] = {}
         self._trees: Set[int] = set()
         self._moving: Set[int] = set()
-        self._watched: Dict[int, None] = {}
+        self._agenda: Agenda[int] = Agenda()
         self._fast: Dict[int, None] = {}
-        self._mended: Dict[int, int] = {}   # until which check
-        self._asleep: Set[int] = set()
-        self._clear: Dict[int, int] = {}    # until which check
+        self._each_step: Dict[int, bool] = {}  # whether corrected since the last check
+        self._new: Set[int] = set()            # changed by a command since the last step
         self._planes: Set[int] = set()
         self._mu: Dict[LinkKey, float] = {}    # of surfaces with one coefficient
-        self._rounds: Optional[Tuple[List[int], List[int]]] = None
 
     def add(self, body: Body) -> None:
         """Register a new body; only rigid ones that move and can have several contacts matter."""
@@ -102,8 +97,7 @@ class ResidualFriction(StepHelper):
             return
         self._bodies[body.uid] = body
         if not body.is_ball:
-            self._watched[body.uid] = None
-            self._rounds = None
+            self._agenda.plan(body.uid, 0)
 
     @property
     def fast(self) -> List[int]:
@@ -112,126 +106,93 @@ class ResidualFriction(StepHelper):
 
     def forget(self, body: Body) -> None:
         """Discard the data of a removed body."""
-        for table in (self._bodies, self._watched, self._fast, self._mended, self._clear):
+        for table in (self._bodies, self._fast, self._each_step):
             table.pop(body.uid, None)
-        for group in (self._moving, self._trees, self._asleep, self._planes):
+        for group in (self._moving, self._trees, self._planes, self._new):
             group.difference_update(body.uids)
         for uid, part in body.surfaces:
             self._mu.pop((uid, part.index), None)
-        self._rounds = None
+        self._agenda.drop(body.uid)
 
     def handle_event(self, event: BodyEvent, body: Body) -> None:
-        """Check a body soon after a command changed its pose or velocity."""
-        if body.uid in self._watched:
-            self._fast[body.uid] = None
-            self._mended[body.uid] = _SOON
-            self._clear.pop(body.uid, None)
-            if body.uid in self._asleep:
-                self._asleep.discard(body.uid)
-                self._rounds = None
+        """Check a body in each step after a command changed its pose or velocity."""
+        uid = body.uid
+        if uid in self._bodies and not body.is_ball:
+            self._fast[uid], self._each_step[uid] = None, False
+            self._new.add(uid)
+            self._agenda.plan(uid, 0)
 
     def due(self, step: int) -> int:
         """Each step while bodies are corrected, otherwise the step of the next check."""
-        if not self._watched:
-            return FAR
-        if self._mended:
-            return step
-        look = -(-step // EVERY)
-        awake, asleep = self._lists()
-        return EVERY * (look + min(looks_until_turn(len(awake), look, _ROUNDS),
-                                   looks_until_turn(len(asleep), look, _SLOW_ROUNDS),
-                                   looks_until_turn(len(self._fast), look, _FAST_ROUNDS)))
+        return step if self._each_step else max(step, self._agenda.next)
 
     def after(self, step: int, dt: float, gravity: Vec3) -> None:
         """Correct bodies after the step that began at count `step`; periodically check others."""
-        look = step // EVERY
         seen: Set[int] = set()
-        flying = [uid for uid in list(self._mended)
-                  if not self._keep_on(uid, self._mend(uid, seen, dt), look)]
-        if step % EVERY == 0:
-            flying += self._look(look, seen, dt, gravity)
-        for uid in flying:
-            self._look_ahead(uid, look, dt, gravity)
+        for uid in list(self._each_step):
+            found = self._mend(uid, seen, dt)
+            if found == _MENDED:
+                self._each_step[uid] = True
+            elif found != _SLIDES or uid not in self._new and self._rolls(uid):
+                del self._each_step[uid]
+                if found == _FLIES:
+                    self._look_ahead(uid, step, dt, gravity)
+                else:
+                    self._fast.pop(uid, None)
+        for uid in self._agenda.take(step):
+            wait = self._look(uid, seen, dt, gravity)
+            if wait:
+                self._agenda.plan(uid, next_multiple(step + wait, _EVERY))
+            else:
+                self._look_ahead(uid, step, dt, gravity)
+        self._new.clear()
 
     # -- selection -------------------------------------------------------------------------------
 
-    def _keep_on(self, uid: int, found: int, look: int) -> bool:
-        """Decide whether to check a body in each step. Returns False if it flies."""
-        until = self._mended[uid]
-        if found == _SLIDES and until != _SOON and self._rolls(uid):
-            found = _PILED
-        if found == _MENDED:
-            self._mended[uid] = look + _KEPT
-        elif found == _SLIDES and until == _SOON:
-            self._mended[uid] = look + _KEPT
-        elif found != _SLIDES or look > until:
-            del self._mended[uid]
-            if found == _PILED:
-                self._fast.pop(uid, None)
-        return found != _FLIES
+    def _look(self, uid: int, seen: Set[int], dt: float, gravity: Vec3) -> int:
+        """Decide how often to check a body. Returns the steps until the next check; 0 if it flies.
 
-    def _look(self, look: int, seen: Set[int], dt: float, gravity: Vec3) -> List[int]:
-        """Check the bodies that are due. Returns those that fly."""
-        awake, asleep = self._lists()
-        flying = [uid for uid in turn_of(awake, look, _ROUNDS) + turn_of(
-            asleep, look, _SLOW_ROUNDS) if not self._ask(uid, look, gravity)]
-        for uid in turn_of(list(self._fast), look, _FAST_ROUNDS):
-            if uid in self._mended:
-                continue
-            found = self._mend(uid, seen, dt)
-            if found == _MENDED:
-                self._mended[uid] = look + _KEPT
-            elif found == _PILED:
-                del self._fast[uid]
-            elif found == _FLIES:
-                flying.append(uid)
-        return flying
-
-    def _lists(self) -> Tuple[List[int], List[int]]:
-        """Return the bodies whose speed is checked: those that moved when last checked, others."""
-        if self._rounds is None:
-            self._rounds = ([uid for uid in self._watched if uid not in self._asleep],
-                            [uid for uid in self._watched if uid in self._asleep])
-        return self._rounds
-
-    def _ask(self, uid: int, look: int, gravity: Vec3) -> bool:
-        """Classify a body as fast, slow or at rest. Returns False if it flew until now."""
-        until = self._clear.pop(uid, None)
-        if until is not None and until > look:
-            self._clear[uid] = until
-            return True
+        Bodies that slide slowly, or were corrected since the last check, are checked in each step.
+        """
+        if uid in self._new:
+            return _SLOW_EVERY
         linear, angular = pybullet.getBaseVelocity(uid)
         speed = max(dot(linear, linear), dot(angular, angular))
-        if (speed == 0.0) != (uid in self._asleep):
-            (self._asleep.add if speed == 0.0 else self._asleep.discard)(uid)
-            self._rounds = None
-        rests = speed <= _FAST * _FAST and self._mended.get(uid, look) <= look
-        if (rests and (speed == 0.0 or not self._is_held(uid))
-                or _tumbles(angular, gravity) or self._rolls(uid)):
+        mended = self._each_step.get(uid, False)
+        rests = speed <= _FAST * _FAST and not mended and (speed == 0.0 or not self._is_held(uid))
+        if rests or _tumbles(angular, gravity) or self._rolls(uid):
             self._fast.pop(uid, None)
-            self._mended.pop(uid, None)
-        elif until is not None:
-            return False
-        elif uid not in self._fast or speed < _MAY_STOP * _MAY_STOP:
-            self._fast[uid] = None
-            self._mended[uid] = look + _KEPT
-        return True
+            self._each_step.pop(uid, None)
+            return _SLOW_EVERY if speed > 0.0 else _REST_EVERY
+        if mended or speed < _MAY_STOP * _MAY_STOP or uid not in self._fast:
+            self._fast[uid], self._each_step[uid] = None, False
+            return _SLOW_EVERY
+        if self._each_step.pop(uid, None) is not None:
+            return _FAST_EVERY
+        found = self._mend(uid, seen, dt)
+        if found == _MENDED:
+            self._each_step[uid] = True
+        elif found == _PILED:
+            del self._fast[uid]
+        return {_FLIES: 0, _SLIDES: _FAST_EVERY}.get(found, _SLOW_EVERY)
 
-    def _look_ahead(self, uid: int, look: int, dt: float, gravity: Vec3) -> None:
+    def _look_ahead(self, uid: int, step: int, dt: float, gravity: Vec3) -> None:
         """Skip a flying body while no other body is near its path; otherwise check it often."""
         centre = pybullet.getBasePositionAndOrientation(uid)[0]
         linear = pybullet.getBaseVelocity(uid)[0]
-        reach, span = self._bodies[uid].radius + _REACH, (_CLEAR + _ROUNDS) * EVERY * dt
+        reach, span = self._bodies[uid].radius + _REACH, (_CLEAR + _EVERY) * dt
         ways = [v * span + g * span * span / 2.0 for v, g in zip(linear, gravity)]
         rise = norm(gravity) * span * span / 8.0  # largest height of a parabola above its chord
         low = [c + min(0.0, way) - reach - rise for c, way in zip(centre, ways)]
         high = [c + max(0.0, way) + reach + rise for c, way in zip(centre, ways)]
         near = pybullet.getOverlappingObjects(low, high) or ()
         if all(other == uid or other in self._planes for other, _ in near):
-            self._clear[uid] = look + _CLEAR
             self._fast.pop(uid, None)
+            wait = _CLEAR
         else:
             self._fast[uid] = None
+            wait = _FAST_EVERY
+        self._agenda.plan(uid, next_multiple(step + wait, _EVERY))
 
     # -- correction ------------------------------------------------------------------------------
 

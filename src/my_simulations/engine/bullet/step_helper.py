@@ -3,16 +3,13 @@ from __future__ import annotations
 
 from collections import deque
 from itertools import repeat, starmap
-from typing import Callable, List, Optional, Sequence, Set, TypeVar
+from typing import Callable, List, Optional, Sequence, Set
 
 from ...geometry import Vec3
+from .agenda import FAR as FAR
 from .bodies import Body
 from .body_events import COMMANDED, BodyEvent, BodyObserver
 
-FAR = 1 << 30
-"""More steps than any run makes in one call."""
-
-Item = TypeVar("Item")
 _Call = Callable[[int, float, Vec3], None]
 
 
@@ -131,21 +128,3 @@ class StepLoop(BodyObserver):
 def next_multiple(step: int, every: int) -> int:
     """Return the first multiple of `every` that is not below `step`."""
     return step + -step % every
-
-
-_FEWEST = 8  # items per turn: a check costs about as much as two items
-
-
-def turn_of(items: List[Item], look: int, rounds: int) -> List[Item]:
-    """Return the items that are due at check `look`; each is due once in `rounds` checks."""
-    share = max(_FEWEST, -(-len(items) // rounds))
-    at = look % rounds * share
-    return items[at:at + share]
-
-
-def looks_until_turn(count: int, look: int, rounds: int) -> int:
-    """Return the number of checks after `look` until one of `count` items is due; 0: now."""
-    if not count:
-        return FAR
-    at = look % rounds
-    return 0 if at * max(_FEWEST, -(-count // rounds)) < count else rounds - at

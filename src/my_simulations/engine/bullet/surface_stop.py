@@ -15,20 +15,20 @@ collision detection (CCD) instead.
 """
 from __future__ import annotations
 
-from heapq import heappop, heappush
 from math import dist, inf
 from operator import itemgetter
-from typing import Dict, List, Set, Tuple
+from typing import Dict, Set, Tuple
 
 import pybullet
 
 from ...geometry import Vec3, add, dot, norm, scale, subtract
+from .agenda import Agenda
 from .approach import Motions, extent
 from .bodies import Body
 from .body_events import COMMANDED, BodyEvent
 from .contact_points import DISTANCE, NORMAL, PLACE
 from .link_states import AT_REST, Motion
-from .step_helper import FAR, StepHelper
+from .step_helper import StepHelper
 from .surface_coefficients import of_link, restitution
 from .world_parameters import LEAST_BOUNCE
 
@@ -51,9 +51,8 @@ class SurfaceStop(StepHelper):
         self._bouncing: Set[int] = set()
         self._radii: Dict[int, float] = {}        # of bounding spheres of rigid bodies, m
         self._floors: Set[int] = set()            # boxes below planes
-        self._next: Dict[int, int] = {}           # the step of the next check, by body
+        self._agenda: Agenda[int] = Agenda()
         self._motions = Motions(self._moving)
-        self._looks: List[Tuple[int, int]] = []   # a heap of (step, body), valid if in `_next`
 
     def add(self, body: Body) -> None:
         """Register a new body."""
@@ -63,7 +62,7 @@ class SurfaceStop(StepHelper):
         self._moving.add(body.uid)
         if body.base is not None and not (body.swept and body.is_ball):
             self._bodies[body.uid] = body
-            self._plan(body.uid, 0)
+            self._agenda.plan(body.uid, 0)
             if any(restitution(of_link(part.link)) > 0.0 for part in body.colliders):
                 self._bouncing.add(body.uid)
         if body.rigid:
@@ -74,7 +73,7 @@ class SurfaceStop(StepHelper):
         """Discard the data of a removed body."""
         self._bodies.pop(body.uid, None)
         self._radii.pop(body.uid, None)
-        self._next.pop(body.uid, None)
+        self._agenda.drop(body.uid)
         self._moving.discard(body.uid)
         self._bouncing.discard(body.uid)
         self._floors.difference_update(body.uids)
@@ -82,33 +81,17 @@ class SurfaceStop(StepHelper):
     def handle_event(self, event: BodyEvent, body: Body) -> None:
         """Check a body that a command changed: it may be fast from the next step on."""
         if body.uid in self._bodies:
-            self._plan(body.uid, 0)
+            self._agenda.plan(body.uid, 0)
 
     def due(self, step: int) -> int:
         """The step of the next check."""
-        while self._looks and self._is_old(*self._looks[0]):
-            heappop(self._looks)
-        return max(step, self._looks[0][0]) if self._looks else FAR
+        return max(step, self._agenda.next)
 
     def before(self, step: int, dt: float, gravity: Vec3) -> None:
         """Check the bodies that are due; move back those that would go deep in this step."""
-        now: List[int] = []
-        while self._looks and self._looks[0][0] <= step:
-            look = heappop(self._looks)
-            if not self._is_old(*look):
-                now.append(look[1])
-                del self._next[look[1]]
         self._motions.clear()
-        for uid in sorted(now):
-            self._plan(uid, step + self._look(self._bodies[uid], dt, gravity))
-
-    def _plan(self, uid: int, step: int) -> None:
-        if self._next.get(uid) != step:
-            self._next[uid] = step
-            heappush(self._looks, (step, uid))
-
-    def _is_old(self, step: int, uid: int) -> bool:
-        return self._next.get(uid) != step
+        for uid in self._agenda.take(step):
+            self._agenda.plan(uid, step + self._look(self._bodies[uid], dt, gravity))
 
     def _look(self, body: Body, dt: float, gravity: Vec3) -> int:
         """Move a body back if it would go deep. Returns the steps until its next check."""
