@@ -12,17 +12,19 @@ Only bodies that turn fast are corrected; a periodic check finds them.
 from __future__ import annotations
 
 from math import ceil, sqrt
-from typing import Callable, Dict, List, NamedTuple, Set
+from typing import Callable, Dict, NamedTuple, Set
 
 import pybullet
 
 from ...geometry import Quat, Vec3, conjugate, norm, normalised, rotate, scale
+from .agenda import Agenda
 from .approach import flies
 from .bodies import Body
 from .body_events import COMMANDED, BodyEvent
-from .step_helper import FAR, StepHelper, next_multiple
+from .step_helper import StepHelper, next_multiple
 
-_EVERY = 16        # steps between two checks for fast bodies
+_EVERY = 16        # steps between two checks of a body that does not turn fast
+_MET_EVERY = 32    # steps until the next check of a fast body that touched something
 _FAST = 1.0        # rad/s
 _ROUND = 0.02      # relative difference below which moments count as equal
 _SPAN = 8.1e-3     # s of free flight after which an attitude is corrected
@@ -45,12 +47,12 @@ class GyroscopicRigid(StepHelper):
     def __init__(self, loaded: Callable[[], Set[int]]) -> None:
         """`loaded` returns the rows of the links on which a timed force acts in this step."""
         self._loaded = loaded
-        self._flights: Dict[int, _Flight] = {}   # since the last multiple of `_steps`
-        self._steps = 1
+        self._flights: Dict[int, _Flight] = {}
+        self._agenda: Agenda[int] = Agenda()
+        self._steps = 1                          # between two corrections
         self._moments: Dict[int, Vec3] = {}
         self._bodies: Dict[int, Body] = {}
         self._damped: Set[int] = set()
-        self._fast: List[int] = []
 
     def add(self, body: Body) -> None:
         """Register a body; only rigid, moving ones with different moments matter."""
@@ -58,6 +60,7 @@ class GyroscopicRigid(StepHelper):
         if body.rigid and body.moves and max(moments) - min(moments) > _ROUND * max(moments):
             self._moments[body.uid] = moments
             self._bodies[body.uid] = body
+            self._agenda.plan(body.uid, 0)
             if body.parts[0].link.linear_decay or body.parts[0].link.angular_decay:
                 self._damped.add(body.uid)
 
@@ -67,45 +70,51 @@ class GyroscopicRigid(StepHelper):
         self._bodies.pop(body.uid, None)
         self._flights.pop(body.uid, None)
         self._damped.discard(body.uid)
-        if body.uid in self._fast:
-            self._fast.remove(body.uid)
+        self._agenda.drop(body.uid)
 
     def handle_event(self, event: BodyEvent, body: Body) -> None:
-        """Discard the state of a body that was recorded before a command."""
-        self._flights.pop(body.uid, None)
+        """Discard the state of a body that was recorded before a command; check it soon."""
+        if body.uid in self._bodies:
+            self._flights.pop(body.uid, None)
+            self._agenda.plan(body.uid, 0)
 
     def due(self, step: int) -> int:
-        """Each step for damped bodies, otherwise the start and end of 8 ms."""
-        if not self._damped.isdisjoint(self._fast):
-            return step
-        if not self._fast:
-            return next_multiple(step, _EVERY) if self._moments else FAR
-        return min(next_multiple(step, self._steps), next_multiple(step + 1, self._steps) - 1)
+        """The start or end of the next free flight of 8 ms; each step for damped bodies."""
+        begins = max(step, self._agenda.next)
+        if not self._flights:
+            return begins
+        damped = not self._damped.isdisjoint(self._flights)
+        return min(begins, step if damped else next_multiple(step + 1, self._steps) - 1)
 
     def before(self, step: int, dt: float, gravity: Vec3) -> None:
-        """Find fast bodies periodically, and record their motion."""
-        if step % _EVERY == 0:
-            self._steps = next((n for n in (8, 4, 2) if n * dt <= _SPAN), 1)
-            self._fast = [uid for uid in self._moments if _is_fast(uid)]
-        begins = step % self._steps == 0
-        loaded = self._loaded() if self._fast else ()
-        for uid in self._fast:
-            if (begins or uid in self._damped) and self._bodies[uid].parts[0].row not in loaded:
-                self._flights[uid] = _Flight(pybullet.getBasePositionAndOrientation(uid)[1],
-                                             *pybullet.getBaseVelocity(uid))
+        """Check bodies that are due; record the motion of those that turn fast."""
+        self._steps = next((n for n in (8, 4, 2) if n * dt <= _SPAN), 1)
+        loaded = self._loaded()
+        for uid in self._agenda.take(step):
+            linear, angular = pybullet.getBaseVelocity(uid)
+            if norm(angular) <= _FAST or self._bodies[uid].parts[0].row in loaded:
+                self._agenda.plan(uid, next_multiple(step + _EVERY, _EVERY))
+            elif step % self._steps and uid not in self._damped:
+                self._agenda.plan(uid, next_multiple(step, self._steps))
+            else:
+                turn = pybullet.getBasePositionAndOrientation(uid)[1]
+                self._flights[uid] = _Flight(turn, linear, angular)
 
     def after(self, step: int, dt: float, gravity: Vec3) -> None:
         """Set attitude and velocity of freely flying bodies to match their angular momentum."""
         ends = (step + 1) % self._steps == 0
         for uid, flight in list(self._flights.items()):
-            body = self._bodies[uid]
-            if not (ends or uid in self._damped):
+            body, damped = self._bodies[uid], uid in self._damped
+            if not (ends or damped):
                 continue
             del self._flights[uid]
-            steps = 1 if uid in self._damped else self._steps
-            if not (self._met_something(body, flight, steps * dt, gravity)
-                    or body.ties or body.parts[0].row in self._loaded()):
-                self._correct(uid, flight, steps * dt)
+            follows = step + 1
+            span = dt if damped else self._steps * dt
+            if self._met_something(body, flight, span, gravity):
+                follows = next_multiple(step + _MET_EVERY, self._steps)
+            elif not (body.ties or body.parts[0].row in self._loaded()):
+                self._correct(uid, flight, span)
+            self._agenda.plan(uid, follows)
 
     def _met_something(self, body: Body, flight: _Flight, span: float, gravity: Vec3) -> bool:
         """Whether anything but gravity has changed the velocity of a body in `span` s."""
@@ -126,11 +135,6 @@ class GyroscopicRigid(StepHelper):
         pybullet.resetBasePositionAndOrientation(
             uid, pybullet.getBasePositionAndOrientation(uid)[0], turn)
         pybullet.resetBaseVelocity(uid, linear, _velocity(turn, momentum, moments))
-
-
-def _is_fast(uid: int) -> bool:
-    x, y, z = pybullet.getBaseVelocity(uid)[1]
-    return x * x + y * y + z * z > _FAST * _FAST
 
 
 def _momentum(turn: Quat, angular: Vec3, moments: Vec3) -> Vec3:
