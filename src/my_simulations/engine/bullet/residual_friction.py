@@ -97,6 +97,7 @@ class ResidualFriction(StepHelper):
             return
         self._bodies[body.uid] = body
         if not body.is_ball:
+            self._new.add(body.uid)
             self._agenda.plan(body.uid, 0)
 
     @property
@@ -137,8 +138,10 @@ class ResidualFriction(StepHelper):
                 del self._each_step[uid]
                 if found == _FLIES:
                     self._look_ahead(uid, step, dt, gravity)
-                else:
-                    self._fast.pop(uid, None)
+                    continue
+                self._fast.pop(uid, None)
+                if found == _SLIDES:
+                    self._agenda.plan(uid, next_multiple(step + _FAST_EVERY, _EVERY))
         for uid in self._agenda.take(step):
             wait = self._look(uid, seen, dt, gravity)
             if wait:
@@ -160,10 +163,11 @@ class ResidualFriction(StepHelper):
         speed = max(dot(linear, linear), dot(angular, angular))
         mended = self._each_step.get(uid, False)
         rests = speed <= _FAST * _FAST and not mended and (speed == 0.0 or not self._is_held(uid))
-        if rests or _tumbles(angular, gravity) or self._rolls(uid):
+        rolls = self._rolls(uid)
+        if rests or rolls or _tumbles(angular, gravity):
             self._fast.pop(uid, None)
             self._each_step.pop(uid, None)
-            return _SLOW_EVERY if speed > 0.0 else _REST_EVERY
+            return _REST_EVERY if speed == 0.0 else _FAST_EVERY if rolls else _SLOW_EVERY
         if mended or speed < _MAY_STOP * _MAY_STOP or uid not in self._fast:
             self._fast[uid], self._each_step[uid] = None, False
             return _SLOW_EVERY
