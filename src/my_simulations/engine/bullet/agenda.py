@@ -25,7 +25,7 @@ class Agenda(Generic[Key]):
             self._steps[key] = step
             heappush(self._heap, (step, key))
 
-    def drop(self, key: Key) -> None:
+    def pop(self, key: Key, _: None = None) -> None:
         """Check a body or link no longer."""
         self._steps.pop(key, None)
 

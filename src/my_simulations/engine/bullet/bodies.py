@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
-from typing import Dict, List, Optional, Set, Tuple
+from typing import Dict, List, Optional, Set, Tuple, Union
 
 import pybullet
 
@@ -171,6 +171,11 @@ class Body:
         if self.carriers:
             return tuple(zip(self.uids, self.carriers))
         return tuple((self.uid, part) for part in self.colliders)
+
+    @property
+    def keys(self) -> Tuple[Union[int, Tuple[int, int]], ...]:
+        """PyBullet's numbers of its bodies, and of its bodies with their links and pieces."""
+        return (*self.uids, *((uid, part.index) for uid, part in self.surfaces))
 
     @property
     def owners(self) -> Dict[int, int]:

@@ -2,8 +2,9 @@
 from __future__ import annotations
 
 from enum import Enum
-from typing import ClassVar, FrozenSet
+from typing import Any, ClassVar, Dict, FrozenSet, Sequence, Set, Union
 
+from .agenda import Agenda
 from .bodies import Body
 
 
@@ -34,15 +35,19 @@ ACTUATED = frozenset((BodyEvent.FORCE_APPLIED, BodyEvent.MOTOR_TARGET_CHANGED,
 
 COMMANDED = ACTUATED | {BodyEvent.ACTIVATED}
 
+BodyTable = Union[Dict[Any, Any], Set[Any], Agenda[Any]]
+
 
 class BodyObserver:
     """Stores data of single bodies.
 
     Attributes:
         events: the events for which `handle_event` is called.
+        body_tables: what is stored by PyBullet's numbers of bodies, or of bodies and links.
     """
 
     events: ClassVar[FrozenSet[BodyEvent]] = frozenset()
+    body_tables: Sequence[BodyTable] = ()
 
     def add(self, body: Body) -> None:
         """Store what is needed of a new body."""
@@ -52,3 +57,10 @@ class BodyObserver:
 
     def forget(self, body: Body) -> None:
         """Drop what is stored about a removed body."""
+        keys = body.keys if self.body_tables else ()
+        for table in self.body_tables:
+            for key in keys:
+                if isinstance(table, set):
+                    table.discard(key)
+                else:
+                    table.pop(key, None)

@@ -60,6 +60,7 @@ class DivergenceStop(StepHelper):
         self._new: Dict[int, Body] = {}
         self._stops: Dict[int, RestPlace] = {}
         self._period = 1
+        self.body_tables = (self._bodies, self._starts, self._new, self._stops)
 
     def configure(self, step_size: float) -> None:
         """Use another step size, s."""
@@ -86,11 +87,6 @@ class DivergenceStop(StepHelper):
         """Keep bodies in place, at rest."""
         for body in bodies:
             self._stops[body.uid] = read_place(body)
-
-    def forget(self, body: Body) -> None:
-        """Forget a removed body."""
-        for table in (self._bodies, self._starts, self._stops, self._new):
-            table.pop(body.uid, None)
 
     def due(self, step: int) -> int:
         """Each step while a body is stopped or new, else each period."""

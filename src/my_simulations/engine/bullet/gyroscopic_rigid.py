@@ -53,6 +53,7 @@ class GyroscopicRigid(StepHelper):
         self._moments: Dict[int, Vec3] = {}
         self._bodies: Dict[int, Body] = {}
         self._damped: Set[int] = set()
+        self.body_tables = (self._flights, self._agenda, self._moments, self._bodies, self._damped)
 
     def add(self, body: Body) -> None:
         """Register a body; only rigid, moving ones with different moments matter."""
@@ -63,14 +64,6 @@ class GyroscopicRigid(StepHelper):
             self._agenda.plan(body.uid, 0)
             if body.parts[0].link.linear_decay or body.parts[0].link.angular_decay:
                 self._damped.add(body.uid)
-
-    def forget(self, body: Body) -> None:
-        """Discard the data of a removed body."""
-        self._moments.pop(body.uid, None)
-        self._bodies.pop(body.uid, None)
-        self._flights.pop(body.uid, None)
-        self._damped.discard(body.uid)
-        self._agenda.drop(body.uid)
 
     def handle_event(self, event: BodyEvent, body: Body) -> None:
         """Discard the state of a body that was recorded before a command; check it soon."""

@@ -130,6 +130,8 @@ class LandingContacts(StepHelper):
         self._uneven: Dict[int, None] = {}  # with other shapes than boxes, spheres and planes
         self._flights: Dict[int, _Flight] = {}
         self._agenda: Agenda[int] = Agenda()
+        self.body_tables = (self._bodies, self._meets, self._alone, self._moving, self._uneven,
+                            self._flights, self._agenda)
 
     def add(self, body: Body) -> None:
         """Register a new body; only bodies that can tilt as they land matter."""
@@ -148,13 +150,6 @@ class LandingContacts(StepHelper):
                 self._agenda.plan(body.uid, 0)
                 self._meets[body.uid] = [(part.index, collision_groups.moving(part.link))
                                          for part in body.colliders]
-
-    def forget(self, body: Body) -> None:
-        """Discard the data of a removed body."""
-        for table in (self._bodies, self._meets, self._alone, self._uneven, self._flights):
-            table.pop(body.uid, None)
-        self._moving.discard(body.uid)
-        self._agenda.drop(body.uid)
 
     def handle_event(self, event: BodyEvent, body: Body) -> None:
         """Check a body that a command changed: it may fly from the next step on."""

@@ -58,6 +58,7 @@ class LevelSeams(StepHelper):
         self._sliding: Dict[int, Set[int]] = {}   # and the floors with its wide points
         self._level: Dict[int, Set[int]] = {}  # bodies near a seam, and level floors there
         self._before: Dict[int, _Velocity] = {}
+        self.body_tables = (self._bodies, self._static, self._floors, self._sliding, self._level)
 
     def add(self, body: Body) -> None:
         """Register a new body; of moving ones, upright cylinders without joints."""
@@ -73,13 +74,6 @@ class LevelSeams(StepHelper):
         self._static.update(body.uids)
         if not any(isinstance(each, Plane) for each in shapes):
             self._floors.update(body.uids)
-
-    def forget(self, body: Body) -> None:
-        """Discard the data of a removed body."""
-        for table in (self._bodies, self._sliding, self._level, self._before):
-            table.pop(body.uid, None)
-        self._static.difference_update(body.uids)
-        self._floors.difference_update(body.uids)
 
     def due(self, step: int) -> int:
         """Each step while a body is near a seam, otherwise the step of the next check."""
@@ -106,7 +100,8 @@ class LevelSeams(StepHelper):
         """Find the bodies that slide, and those that can reach a seam before the next check."""
         self._level.clear()
         fast = self._fast()
-        self._sliding = {uid: self._sliding[uid] for uid in fast if uid in self._sliding}
+        for uid in [uid for uid in self._sliding if uid not in fast]:
+            del self._sliding[uid]
         if gravity[0] == gravity[1] == 0.0:
             for uid in fast:
                 floors = self._floors_under(uid) if uid in self._bodies else []

@@ -61,6 +61,8 @@ class FrictionBalance(StepHelper):
         self._agenda: Agenda[LinkKey] = Agenda()
         self._wait: Dict[LinkKey, int] = {}   # checks between two turns
         self._rigid: Set[int] = set()
+        self.body_tables = (self._mu, self._fixed, self._free, self._touching, self._agenda,
+                            self._wait, self._rigid)
         self._pairs: Dict[Pair, float] = {}
         self._ring = FAR   # the step of the next solution of a ring
 
@@ -79,14 +81,10 @@ class FrictionBalance(StepHelper):
 
     def forget(self, body: Body) -> None:
         """Discard the data of a removed body."""
-        self._rigid.discard(body.uid)
         for uid, part in body.surfaces:
-            node = uid, part.index
-            for pair in list(self._touching.get(node, ())):
+            for pair in list(self._touching.get((uid, part.index), ())):
                 self._part(pair)
-            for table in (self._mu, self._fixed, self._free, self._touching, self._wait):
-                table.pop(node, None)
-            self._agenda.drop(node)
+        super().forget(body)
 
     def handle_event(self, event: BodyEvent, body: Body) -> None:
         """Check the contacts of a moved or activated body soon."""

@@ -83,6 +83,8 @@ class ResidualFriction(StepHelper):
         self._new: Set[int] = set()            # changed by a command since the last step
         self._planes: Set[int] = set()
         self._mu: Dict[LinkKey, float] = {}    # of surfaces with one coefficient
+        self.body_tables = (self._bodies, self._trees, self._moving, self._agenda, self._fast,
+                            self._each_step, self._new, self._planes, self._mu)
 
     def add(self, body: Body) -> None:
         """Register a new body; only rigid ones that move and can have several contacts matter."""
@@ -104,16 +106,6 @@ class ResidualFriction(StepHelper):
     def fast(self) -> List[int]:
         """The bodies that slide now, as of their last check."""
         return list(self._fast)
-
-    def forget(self, body: Body) -> None:
-        """Discard the data of a removed body."""
-        for table in (self._bodies, self._fast, self._each_step):
-            table.pop(body.uid, None)
-        for group in (self._moving, self._trees, self._planes, self._new):
-            group.difference_update(body.uids)
-        for uid, part in body.surfaces:
-            self._mu.pop((uid, part.index), None)
-        self._agenda.drop(body.uid)
 
     def handle_event(self, event: BodyEvent, body: Body) -> None:
         """Check a body in each step after a command changed its pose or velocity."""

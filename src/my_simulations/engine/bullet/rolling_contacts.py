@@ -119,6 +119,8 @@ class RollingContacts(StepHelper):
         self._standing: Dict[int, Pose] = {}
         self._moving: Set[int] = set()
         self._seams: Set[int] = set()   # floors of triangles
+        self.body_tables = (self.on_seams, self._rollers, self._rolling, self._standing,
+                            self._moving, self._seams)
 
     def add(self, body: Body) -> None:
         """Register a new body; only moving links that are cylinders about one axis matter."""
@@ -134,15 +136,6 @@ class RollingContacts(StepHelper):
                     body, part, rotate(conjugate(part.link_from_com.orientation), axis),
                     collision_groups.moving(part.link),
                     part.link.collisions[0].surface.kp >= SOFT)
-
-    def forget(self, body: Body) -> None:
-        """Discard the data of a removed body."""
-        self._standing.pop(body.uid, None)
-        self._moving.discard(body.uid)
-        self._seams.difference_update(body.uids)
-        for part in body.parts:
-            for table in (self._rollers, self._rolling, self.on_seams):
-                table.pop((body.uid, part.index), None)
 
     def handle_event(self, event: BodyEvent, body: Body) -> None:
         """Treat a rigid body as rolling after a command changed its pose or velocity.
@@ -194,8 +187,9 @@ class RollingContacts(StepHelper):
                 else:
                     self._rolling.pop(key, None)
             if self._seams:
-                self.on_seams = {key: self._rollers[key].axis for key in self._rolling
-                                 if self._rollers[key].seamed}
+                self.on_seams.clear()
+                self.on_seams.update((key, self._rollers[key].axis) for key in self._rolling
+                                     if self._rollers[key].seamed)
         for uid in self._standing:
             linear, angular = pybullet.getBaseVelocity(uid)
             if (linear != _NONE or angular != _NONE) and _slow(linear, angular):

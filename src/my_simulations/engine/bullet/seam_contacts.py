@@ -49,11 +49,7 @@ class SeamContacts(StepHelper):
         self._rolling, self._parameters = rolling, parameters
         self._at: Dict[LinkKey, Tuple[Vec3, Vec3]] = {}   # centre and axis before the step
         self._pushes: Dict[LinkKey, List[_Push]] = {}
-
-    def forget(self, body: Body) -> None:
-        """Discard the data of a removed body."""
-        for key in [key for key in self._pushes if key[0] == body.uid]:
-            del self._pushes[key]
+        self.body_tables = (self._pushes,)
 
     def handle_event(self, event: BodyEvent, body: Body) -> None:
         """Discard the forces on a body that a command changed."""

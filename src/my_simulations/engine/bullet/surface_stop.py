@@ -53,6 +53,8 @@ class SurfaceStop(StepHelper):
         self._floors: Set[int] = set()            # boxes below planes
         self._agenda: Agenda[int] = Agenda()
         self._motions = Motions(self._moving)
+        self.body_tables = (self._bodies, self._radii, self._agenda, self._moving, self._bouncing,
+                            self._floors)
 
     def add(self, body: Body) -> None:
         """Register a new body."""
@@ -68,15 +70,6 @@ class SurfaceStop(StepHelper):
         if body.rigid:
             # `radius` reaches the corners of the bounding box; that of a ball is smaller.
             self._radii[body.uid] = body.radius * (3.0 ** -0.5 if body.is_ball else 1.0)
-
-    def forget(self, body: Body) -> None:
-        """Discard the data of a removed body."""
-        self._bodies.pop(body.uid, None)
-        self._radii.pop(body.uid, None)
-        self._agenda.drop(body.uid)
-        self._moving.discard(body.uid)
-        self._bouncing.discard(body.uid)
-        self._floors.difference_update(body.uids)
 
     def handle_event(self, event: BodyEvent, body: Body) -> None:
         """Check a body that a command changed: it may be fast from the next step on."""
