@@ -1,11 +1,12 @@
 /**
  * Many bodies in few draws: what has equal geometry and material becomes one instanced mesh, from a
- * handful on, or one merged mesh where a processor draws; fewer are meshes of their own, which are
- * left out when they are not in sight.
+ * handful on, or one merged mesh where a processor draws, which also merges different small meshes of
+ * one material; fewer are meshes of their own, which are left out when they are not in sight.
  */
 import {InstancedMesh, Mesh, DynamicDrawUsage} from 'three';
 import {CASTERS} from './contact_shadows.js';
 import {MergedMesh, mergeable} from './merged_mesh.js';
+import {MixedMesh, mixable} from './mixed_mesh.js';
 import type {BufferGeometry, Material, Matrix4, Object3D} from 'three';
 import type {Owner} from './model_views.js';
 
@@ -35,16 +36,18 @@ class Batch {
   scene;
   sample;
   merging;
+  mixed;
   items: Item[] = [];
   #meshes: Mesh[] = [];
   /** All of them in one. */
-  #crowd: InstancedMesh|MergedMesh|null = null;
+  #crowd: InstancedMesh|MergedMesh|MixedMesh|null = null;
   #capacity = 0;
 
-  constructor(scene: Object3D, sample: Item, merging: boolean) {
+  constructor(scene: Object3D, sample: Item, {merging, mixed}: {merging: boolean, mixed: boolean}) {
     this.scene = scene;
     this.sample = sample;
     this.merging = merging;
+    this.mixed = mixed;
   }
 
   add(item: Item) {
@@ -75,12 +78,20 @@ class Batch {
     if (!this.items.length) this.#drop();
   }
 
-  move({slot, matrix}: Item) {
-    if (this.#crowd) {
+  /** Before a picture. */
+  prepare() {
+    if (this.#crowd instanceof MixedMesh) this.#crowd.prepare();
+  }
+
+  move(item: Item) {
+    const {slot, matrix, geometry} = item;
+    if (this.#crowd instanceof MixedMesh) this.#crowd.move(slot, item);
+    else if (this.#crowd) {
       this.#crowd.setMatrixAt(slot, matrix);
       if (this.#crowd instanceof InstancedMesh) this.#crowd.instanceMatrix.needsUpdate = true;
     } else {
       const mesh = this.#meshes[slot];
+      mesh.geometry = geometry;
       mesh.matrix.copy(matrix);
       mesh.matrixWorldNeedsUpdate = true;
     }
@@ -89,7 +100,7 @@ class Batch {
   #grow() {
     this.#drop();
     const {geometry, material} = this.sample;
-    this.#capacity = Math.max(16, 2 * this.items.length);
+    this.#capacity = this.mixed ? Infinity : Math.max(16, 2 * this.items.length);
     const plainer = this.items.length > CROWD ? geometry.userData.plainer : null;
     const mesh = this.#mesh(plainer ?? geometry, material);
     // Its bounds would have to follow every body at every frame.
@@ -101,11 +112,13 @@ class Batch {
   }
 
   #count() {
-    if (this.#crowd instanceof MergedMesh) this.#crowd.show(this.items.length);
+    if (this.#crowd instanceof MixedMesh) this.#crowd.show(this.items);
+    else if (this.#crowd instanceof MergedMesh) this.#crowd.show(this.items.length);
     else if (this.#crowd) this.#crowd.count = this.items.length;
   }
 
   #mesh(geometry: BufferGeometry, material: Material|Material[]) {
+    if (this.mixed) return new MixedMesh([material].flat()[0]);
     if (this.merging && mergeable(geometry, material)) {
       return new MergedMesh(geometry, [material].flat()[0], this.#capacity);
     }
@@ -152,11 +165,12 @@ export class Batches {
       'geometry'|'material'|'matrix'|'owner'> & Partial<Item>): Item {
     // What is seen through is sorted by distance, which instances are not.
     const alone = [wanted.material].flat().some(({transparent}) => transparent);
-    const key = [wanted.geometry.uuid, materialKey(wanted.material), castShadow, receiveShadow,
+    const mixed = this.#merging && mixable(wanted.geometry, wanted.material);
+    const key = [mixed ? 'mixed' : wanted.geometry.uuid, materialKey(wanted.material), castShadow, receiveShadow,
       renderOrder, alone ? this.#nextAlone++ : ''].join(' ');
     const item = {...wanted, castShadow, receiveShadow, renderOrder, key, slot: 0};
     let batch = this.#batches.get(item.key);
-    if (!batch) this.#batches.set(item.key, batch = new Batch(this.#scene, item, this.#merging));
+    if (!batch) this.#batches.set(item.key, batch = new Batch(this.#scene, item, {merging: this.#merging, mixed}));
     batch.add(item);
     return item;
   }
@@ -172,6 +186,11 @@ export class Batches {
   /** Applies an item's changed matrix. */
   moved(item: Item) {
     this.#batches.get(item.key)?.move(item);
+  }
+
+  /** Write what has changed, before a picture. */
+  prepare() {
+    for (const batch of this.#batches.values()) batch.prepare();
   }
 
   /** Everything that is drawn. */

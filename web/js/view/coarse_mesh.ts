@@ -3,9 +3,9 @@
  * a grid become one corner (vertex clustering: Rossignac and Borrel, 1993). Pure.
  */
 /** Triangles of all meshes of a world together. */
-const BUDGET = 200000;
+const BUDGET = 120000;
 /** A mesh keeps at least, and at most, so many triangles. */
-const LEAST = 800;
+const LEAST = 600;
 const MOST = 80000;
 /** Cells along the longest side at most: the grid takes 4 bytes for each cell. */
 const MOST_CELLS = 128;
@@ -16,8 +16,8 @@ const ROUND = 0.6;
 export const limitFor = (files: number) => Math.min(MOST, Math.max(LEAST,
     Math.round(BUDGET / Math.max(files, 1))));
 
-/** nine numbers for each triangle */
-export type Corners = {position: Float32Array, normal: Float32Array};
+/** Three numbers for each corner; three corners for each triangle. */
+export type Shape = {position: Float32Array, normal: Float32Array, index: Uint32Array};
 
 /**
  * A mesh of about `limit` triangles at most; null for one that has no more.
@@ -26,12 +26,12 @@ export type Corners = {position: Float32Array, normal: Float32Array};
  * @param index  of the corners of the triangles; null: three corners each
  */
 export function coarse(position: ArrayLike<number>, normal: ArrayLike<number>,
-    index: ArrayLike<number>|null, limit: number): Corners|null {
+    index: ArrayLike<number>|null, limit: number): Shape|null {
   if ((index ?? position).length / (index ? 3 : 9) <= limit) return null;
   let cells = Math.min(MOST_CELLS, Math.max(4, Math.round(Math.sqrt(limit / 6))));
   for (;;) {
     const found = clustered(position, normal, index, cells);
-    const count = found.position.length / 9;
+    const count = found.index.length / 3;
     if (count <= 1.2 * limit || cells <= 4) return found;
     cells = Math.max(4, Math.min(cells - 1, Math.floor(cells * Math.sqrt(limit / count))));
   }
@@ -112,29 +112,50 @@ function triangles(cornerOf: Int32Array, index: ArrayLike<number>|null, middle: 
     seen.add(key);
     kept.push(a, b, c);
   }
-  const position = new Float32Array(3 * kept.length);
-  const normal = new Float32Array(3 * kept.length);
-  for (let at = 0; at < kept.length; at += 3) writeTriangle(kept, at, middle, facing, position, normal);
-  return {position, normal};
+  return withSharedCorners(kept, middle, facing);
 }
 
-function writeTriangle(kept: number[], at: number, middle: Float64Array, facing: Float64Array,
-    position: Float32Array, normal: Float32Array) {
-  for (let corner = 0; corner < 3; corner += 1) {
-    for (let part = 0; part < 3; part += 1) position[3 * (at + corner) + part] = middle[3 * kept[at + corner] + part];
+/**
+ * Corners of curved surfaces are shared by their triangles: a processor that draws computes each once.
+ * Corners at edges belong to one triangle, with its normal.
+ * @param kept  places in `middle`, three for each triangle
+ */
+function withSharedCorners(kept: number[], middle: Float64Array, facing: Float64Array): Shape {
+  const cells = middle.length / 3;
+  const mean = new Float32Array(facing.length);
+  for (let at = 0; at < facing.length; at += 3) writeUnit(mean, at, facing[at], facing[at + 1], facing[at + 2]);
+  const sharedAt = new Int32Array(cells).fill(-1);
+  const index = new Uint32Array(kept.length);
+  const position: number[] = [];
+  const normal: number[] = [];
+  const flat = [0, 0, 0];
+  for (let at = 0; at < kept.length; at += 3) {
+    const [a, b, c] = [3 * kept[at], 3 * kept[at + 1], 3 * kept[at + 2]];
+    const [ux, uy, uz] = [middle[b] - middle[a], middle[b + 1] - middle[a + 1], middle[b + 2] - middle[a + 2]];
+    const [vx, vy, vz] = [middle[c] - middle[a], middle[c + 1] - middle[a + 1], middle[c + 2] - middle[a + 2]];
+    writeUnit(flat, 0, uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx);
+    for (let corner = at; corner < at + 3; corner += 1) {
+      const cell = 3 * kept[corner];
+      const isRound = mean[cell] * flat[0] + mean[cell + 1] * flat[1] + mean[cell + 2] * flat[2] > ROUND;
+      if (isRound && sharedAt[kept[corner]] >= 0) {
+        index[corner] = sharedAt[kept[corner]];
+        continue;
+      }
+      index[corner] = position.length / 3;
+      position.push(middle[cell], middle[cell + 1], middle[cell + 2]);
+      if (isRound) {
+        sharedAt[kept[corner]] = index[corner];
+        normal.push(mean[cell], mean[cell + 1], mean[cell + 2]);
+      } else normal.push(flat[0], flat[1], flat[2]);
+    }
   }
-  const start = 3 * at;
-  const [ux, uy, uz, vx, vy, vz] = [3, 4, 5, 6, 7, 8].map((one) => position[start + one] - position[start + one % 3]);
-  const flat = unit([uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx]);
-  for (let corner = 0; corner < 3; corner += 1) {
-    const cell = 3 * kept[at + corner];
-    const mean = unit([facing[cell], facing[cell + 1], facing[cell + 2]]);
-    const round = mean[0] * flat[0] + mean[1] * flat[1] + mean[2] * flat[2] > ROUND;
-    for (let part = 0; part < 3; part += 1) normal[start + 3 * corner + part] = (round ? mean : flat)[part];
-  }
+  return {position: Float32Array.from(position), normal: Float32Array.from(normal), index};
 }
 
-function unit(vector: number[]) {
-  const size = Math.hypot(...vector) || 1;
-  return vector.map((part) => part / size);
+/** Write a vector of length 1 at a place; zeros stay. */
+function writeUnit(into: {[index: number]: number}, at: number, x: number, y: number, z: number) {
+  const size = Math.sqrt(x * x + y * y + z * z) || 1;
+  into[at] = x / size;
+  into[at + 1] = y / size;
+  into[at + 2] = z / size;
 }

@@ -4,7 +4,7 @@
  * them); corners that come in one piece cost it a tenth of that.
  */
 import {BufferAttribute, BufferGeometry, DynamicDrawUsage, Mesh} from 'three';
-import type {Material, Matrix4} from 'three';
+import type {Material, Matrix4, TypedArray} from 'three';
 
 /** Geometries of more corners are cheaper as instances. */
 const MOST_CORNERS = 256;
@@ -46,30 +46,39 @@ export class MergedMesh extends Mesh {
 
   /** Puts a copy where its matrix says. */
   setMatrixAt(slot: number, matrix: Matrix4) {
-    const m = matrix.elements;
-    // The inverse of a turned and scaled matrix, transposed, is the matrix with its columns divided so.
-    const a = 1 / (m[0] * m[0] + m[1] * m[1] + m[2] * m[2]);
-    const b = 1 / (m[4] * m[4] + m[5] * m[5] + m[6] * m[6]);
-    const c = 1 / (m[8] * m[8] + m[9] * m[9] + m[10] * m[10]);
-    const from = this.#source.attributes;
-    const [points, normals] = [from.position.array, from.normal.array];
-    const [places, directions] = [this.#place.array, this.#direction.array];
-    let to = 3 * slot * this.#corners;
-    for (let at = 0; at < 3 * this.#corners; at += 3, to += 3) {
-      const [x, y, z] = [points[at], points[at + 1], points[at + 2]];
-      places[to] = m[0] * x + m[4] * y + m[8] * z + m[12];
-      places[to + 1] = m[1] * x + m[5] * y + m[9] * z + m[13];
-      places[to + 2] = m[2] * x + m[6] * y + m[10] * z + m[14];
-      const [u, v, w] = [a * normals[at], b * normals[at + 1], c * normals[at + 2]];
-      directions[to] = m[0] * u + m[4] * v + m[8] * w;
-      directions[to + 1] = m[1] * u + m[5] * v + m[9] * w;
-      directions[to + 2] = m[2] * u + m[6] * v + m[10] * w;
-    }
+    placeCorners(this.#source, matrix, this.#place.array, this.#direction.array, 3 * slot * this.#corners);
     this.#place.needsUpdate = this.#direction.needsUpdate = true;
   }
 
   override dispose() {
     this.geometry.dispose();
+  }
+}
+
+/**
+ * Write the moved corners and normals of a geometry.
+ * @param places  receives the corners, three numbers each
+ * @param directions  receives the normals
+ * @param to  place of the first number
+ */
+export function placeCorners(source: BufferGeometry, matrix: Matrix4, places: TypedArray,
+    directions: TypedArray, to: number) {
+  const m = matrix.elements;
+  // The inverse of a turned and scaled matrix, transposed, is the matrix with its columns divided so.
+  const a = 1 / (m[0] * m[0] + m[1] * m[1] + m[2] * m[2]);
+  const b = 1 / (m[4] * m[4] + m[5] * m[5] + m[6] * m[6]);
+  const c = 1 / (m[8] * m[8] + m[9] * m[9] + m[10] * m[10]);
+  const points = source.attributes.position.array;
+  const normals = source.attributes.normal.array;
+  for (let at = 0; at < points.length; at += 3, to += 3) {
+    const [x, y, z] = [points[at], points[at + 1], points[at + 2]];
+    places[to] = m[0] * x + m[4] * y + m[8] * z + m[12];
+    places[to + 1] = m[1] * x + m[5] * y + m[9] * z + m[13];
+    places[to + 2] = m[2] * x + m[6] * y + m[10] * z + m[14];
+    const [u, v, w] = [a * normals[at], b * normals[at + 1], c * normals[at + 2]];
+    directions[to] = m[0] * u + m[4] * v + m[8] * w;
+    directions[to + 1] = m[1] * u + m[5] * v + m[9] * w;
+    directions[to + 2] = m[2] * u + m[6] * v + m[10] * w;
   }
 }
 

@@ -248,7 +248,8 @@ function coarser(part: MeshPart, limit: number): MeshPart {
   if (!found) return part;
   part.geometry.dispose();
   return {...part, geometry: new BufferGeometry().setAttribute('position', new BufferAttribute(found.position, 3))
-    .setAttribute('normal', new BufferAttribute(found.normal, 3))};
+    .setAttribute('normal', new BufferAttribute(found.normal, 3))
+    .setIndex(new BufferAttribute(found.index, 1))};
 }
 
 export class Meshes {

@@ -129,7 +129,7 @@ export class View {
       boxSelect: new BoxSelect(element, store, (name) =>
         // The box never selects the ground.
         (this.footprint(name) ? this.pixelOf(name) : null))});
-    this.#connect();
+    this.#connect(batches);
     this.#hands = new AbortController();
     giveWayTo(element, stage, this.#hands.signal);
     actions.attachView(this);
@@ -171,7 +171,7 @@ export class View {
     this.#stage.dispose();
   }
 
-  #connect() {
+  #connect(batches: Batches) {
     this.#models.onArrived = () => this.#rig.frameAll();
     this.#models.onMoved = (ids) => {
       this.#rig.follow();
@@ -194,6 +194,7 @@ export class View {
     this.#stage.onBeforeDraw = (now) => {
       this.#markFirstPicture();
       this.#models.catchUp();
+      batches.prepare();
       const moving = this.#rig.advance(now);
       this.#forces.update();
       this.#coverWithShadow();

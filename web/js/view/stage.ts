@@ -23,8 +23,9 @@ const SOFTWARE = /swiftshader|llvmpipe|softpipe|software/i;
  * pays for each change of size, so it begins with the coarsest.
  */
 const QUALITY = {card: {start: 1, best: 1}, processor: {start: COARSEST, best: 1.5}};
-/** Milliseconds of rest before the full picture. */
+/** Milliseconds of rest before the full picture, and times the last picture took: a hand that drags pauses as long. */
 const REST = 600;
+const REST_PICTURES = 3;
 /** Milliseconds between pictures of what creeps: they are drawn in full, for the rest goes on. */
 const CREEP = 1000;
 
@@ -74,6 +75,8 @@ export class Stage {
   #crept = -CREEP;
   #fence: WebGLSync|null = null;
   #begun = 0;
+  /** Milliseconds of the last picture. */
+  #took = 0;
   #waited = false;
   #shadowed = -SLOW_SHADOWS;
   #drawn = false;
@@ -223,7 +226,7 @@ export class Stage {
 
   #watchRest() {
     clearTimeout(this.#restTimer);
-    this.#restTimer = setTimeout(() => this.#rest(), REST);
+    this.#restTimer = setTimeout(() => this.#rest(), Math.max(REST, REST_PICTURES * this.#took));
   }
 
   /** Returns whether the last picture is still being drawn. Records its duration when it is done. */
@@ -238,6 +241,7 @@ export class Stage {
     }
     gl.deleteSync(this.#fence);
     this.#fence = null;
+    this.#took = took;
     this.#way.pictured(took, performance.now());
     // Without an earlier check, a late end does not mean that the picture was slow.
     if (this.#waited || took < SLOW) this.#adapt(took);
