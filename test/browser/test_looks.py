@@ -228,6 +228,14 @@ def test_a_large_mesh_is_drawn_with_fewer_triangles_without_a_graphics_card(node
     assert 10000 < editor.get("editor.view.meshTriangles") < 120000
     bounds = editor.get("(({min, max}) => [...min, ...max])(editor.view.bounds('large'))")
     assert bounds == pytest.approx([-1.0, -1.0, 0.0, 1.0, 1.0, 2.0], abs=0.03)
+    simplified = editor.page.get_by_role("menuitemcheckbox", name="Simplified Meshes")
+    for shown, faces in (("true", len(ball.faces)), ("false", None)):
+        editor.page.get_by_role("menuitem", name="View", exact=True).click()
+        assert simplified.get_attribute("aria-checked") == shown
+        simplified.click()
+        editor.until("editor.view.meshTriangles > 0 && editor.view.waiting === 0", "the mesh")
+        triangles = editor.get("editor.view.meshTriangles")
+        assert triangles == faces if faces else triangles < 120000
     editor.get("editor.actions.edit({kind: 'delete', names: ['large']})")
     editor.until("!editor.store.model('large')", "the mesh is gone")
 

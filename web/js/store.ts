@@ -15,7 +15,7 @@ export type Mode = 'select'|'translate'|'rotate'|'scale'|'snap'|'measure'|'inser
  *  mouse passes through it
  */
 export type OverlayFlag = 'grid'|'origin'|'transparent'|'wireframe'|'collisions'|'joints'|'com'|'inertia'|
-    'contacts'|'frames'|'skeleton'|'hidden'|'locked'|'cameraColors';
+    'contacts'|'frames'|'skeleton'|'hidden'|'locked'|'cameraColors'|'simplifiedMeshes';
 
 /** What follows the mouse until it is placed. */
 export type Placing = {op: (pose: Pose7) => Operation, items?: CopiedItem[], keepHeight?: boolean,
@@ -83,7 +83,7 @@ export interface StoreEvents {
 
 const OVERLAY_FLAGS: readonly OverlayFlag[] = Object.freeze([
   'grid', 'origin', 'transparent', 'wireframe', 'collisions', 'joints', 'com', 'inertia',
-  'contacts', 'frames', 'skeleton', 'hidden', 'locked', 'cameraColors',
+  'contacts', 'frames', 'skeleton', 'hidden', 'locked', 'cameraColors', 'simplifiedMeshes',
 ]);
 
 /** What is never mentioned in a world file: how much of it the user wants to see. */

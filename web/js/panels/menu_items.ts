@@ -28,11 +28,12 @@ const OVERLAYS: ([OverlayFlag, string]|null)[] = [
   ['skeleton', 'Skeletons'],
   null,
   ['cameraColors', 'Colors as in Cameras'],
+  ['simplifiedMeshes', 'Simplified Meshes (cameras see the full ones)'],
 ];
 
 /** Those of one model: no grid, no origin, no contacts. */
 const OF_A_MODEL = OVERLAYS.flatMap((row) =>
-  row && !['grid', 'origin', 'contacts', 'cameraColors'].includes(row[0]) ? [row] : [],
+  row && !['grid', 'origin', 'contacts', 'cameraColors', 'simplifiedMeshes'].includes(row[0]) ? [row] : [],
 );
 
 /** What can be shown of the selected models alone. */

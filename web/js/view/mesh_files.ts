@@ -255,7 +255,7 @@ function coarser(part: MeshPart, limit: number): MeshPart {
 export class Meshes {
   onProblem;
   /** Whether large meshes are simplified, for browsers without a graphics card. */
-  simplified = false;
+  #simplified = false;
   /** Reports pictures that arrive after their mesh. */
   manager = new LoadingManager();
   #busy = false;
@@ -307,6 +307,15 @@ export class Meshes {
       sum + (geometry.index ?? geometry.getAttribute('position')).count / 3, 0);
   }
 
+  /** Choose whether meshes read from now on are simplified, and forget those that are there. */
+  simplify(simplified: boolean) {
+    if (simplified === this.#simplified) return;
+    this.#simplified = simplified;
+    for (const {geometry} of [...this.#ready.values()].flat()) geometry.dispose();
+    this.#ready.clear();
+    this.#files.clear();
+  }
+
   /** How many meshes and pictures are under way. */
   get waiting() {
     return this.#meshes[1] + this.#textures[1] - this.#meshes[0] - this.#textures[0];
@@ -336,7 +345,7 @@ export class Meshes {
         this.#count();
         const limit = limitFor(this.#meshes[1]);
         const ready = (found ?? []).map((part) => (whole ? {...part, whole} : part))
-          .map((part) => (this.simplified ? coarser(part, limit) : part));
+          .map((part) => (this.#simplified ? coarser(part, limit) : part));
         this.#ready.set(url, ready);
         return ready;
       });

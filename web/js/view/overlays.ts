@@ -190,7 +190,7 @@ export class Overlays {
 
   #flagsChanged({flag, model, layer}: {flag?: OverlayFlag, model?: string|undefined, layer?: number}) {
     const names = model ? [model] : this.#store.document?.models.map(({name}) => name) ?? [];
-    if (layer !== undefined || ['transparent', 'wireframe', 'hidden', 'cameraColors'].includes(flag ?? '')) {
+    if (layer !== undefined || ['transparent', 'wireframe', 'hidden', 'cameraColors', 'simplifiedMeshes'].includes(flag ?? '')) {
       for (const name of names) this.#models.rebuild(name);
     }
     if (flag && PER_MODEL.includes(flag)) for (const name of names) this.#rebuild(name);

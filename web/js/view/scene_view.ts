@@ -88,7 +88,8 @@ export class View {
     this.#stage = stage;
     const meshes = new Meshes((message) =>
       store.addIssue({severity: 'warning', code: 'resource', message}), resolveUrl);
-    meshes.simplified = stage.software;
+    // Before the models are built again.
+    store.listen('overlays', () => meshes.simplify(store.overlays.scene.simplifiedMeshes));
     meshes.onArrived = () => stage.invalidate();
     meshes.onCount = counted((done, of) => store.emit('loading', {
       type: 'loading', title: 'Loading meshes and textures', text: '', done, of}));
@@ -134,7 +135,8 @@ export class View {
     giveWayTo(element, stage, this.#hands.signal);
     actions.attachView(this);
     const kept = savedConfiguration();
-    if (kept) Object.assign(store.overlays.scene, kept.overlays);
+    Object.assign(store.overlays.scene, {simplifiedMeshes: stage.software}, kept?.overlays);
+    meshes.simplify(store.overlays.scene.simplifiedMeshes);
     this.#rig.apply();
     // The world may have come while the view's modules were on their way.
     if (store.document) store.emit('document');
