@@ -415,7 +415,8 @@ def stl_files() -> List[Row]:
         rows += [(f"{name}: page load to first picture", f"{first:.2f} s", "3 s", first <= 3),
                  (f"{name}: all drawn", f"{whole:.2f} s", "-", True),
                  (f"{name}: pictures while the camera turns",
-                  f"{rate:.1f} /s, {drawing * 1e3:.0f} ms of processor time", f"{bar:.0f} /s", rate >= bar)]
+                  f"{rate:.1f} /s, {drawing * 1e3:.0f} ms of processor time",
+                  f"{bar:.0f} /s", rate >= bar)]
     return rows
 
 

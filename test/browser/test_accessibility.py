@@ -5,7 +5,10 @@ import os
 
 import pytest
 from axe_playwright_python.sync_playwright import Axe
+from test_building import Sheet
+from test_model_editor import build_cart
 from test_panels import with_box
+from test_templates import form_of
 
 RULES = {"runOnly": ["wcag2a", "wcag2aa", "wcag21a", "wcag21aa", "best-practice"],
          "rules": {"region": {"enabled": False}}, "resultTypes": ["violations"]}
@@ -44,6 +47,41 @@ def test_the_tabs_of_the_left_panel(editor, tab):
 def test_dialogs_and_panels(editor, name):
     editor.row(with_box(editor)).click()
     editor.get(f"editor.store.emit('dialog', {{name: {name!r}}})")
+    check(editor)
+
+
+@pytest.mark.parametrize("title", ["Differential drive", "Arm with gripper"])
+def test_the_form_of_a_template(editor, title):
+    form = form_of(editor, title)
+    form.wait_for()
+    check(editor)
+    editor.page.keyboard.press("Escape")
+    form.wait_for(state="detached")
+    editor.until("document.activeElement !== document.body", "the focus of before")
+
+
+def test_a_joint_and_the_plugins_in_the_model_editor(editor):
+    build_cart(editor)
+    editor.page.get_by_role("treeitem").filter(has_text="joint").first.click()
+    check(editor)
+
+
+def test_the_inspector_of_a_wall_and_the_dialog_that_saves_a_building(editor):
+    sheet = Sheet(editor)
+    sheet.open()
+    editor.page.locator("[data-tool=wall]").click()
+    for point in ((0, 0), (2, 0)):
+        sheet.click(point)
+    editor.page.keyboard.press("Escape")
+    editor.page.keyboard.press("Escape")
+    x, y = sheet.pixel((1, 0))
+    editor.page.mouse.dblclick(x, y)
+    editor.page.get_by_role("dialog").wait_for()
+    check(editor)
+    editor.page.keyboard.press("Escape")
+    editor.page.get_by_role("dialog").wait_for(state="detached")
+    editor.page.keyboard.press("Control+s")
+    editor.page.get_by_role("dialog").wait_for()
     check(editor)
 
 

@@ -127,6 +127,13 @@ test('parameters that the XML of a plugin leaves out are fields with their defau
     [['a', 'number', undefined], ['on', 'flag', undefined], ['from', 'choice', ['world', 'encoder']]]);
   assert.deepEqual(Object.values(entity), [0.5, true, 'world']);
   assert.equal(fields[0].ops(2).ops[0].text, '<plugin name="p"><!-- <a>1</a> -->\n  <b/>\n  <a>2</a>\n</plugin>\n');
+  const {fields: [radius]} = defaultFields(box('m', undefined, {plugins: [{xml: '<plugin name="p"/>'}]}), 0,
+    [{name: 'wheel_radius', type: 'number', default: '0.1', choices: []}]);
+  assert.equal(radius.unit, 'm');
+  const [rate, mode] = pluginFields(box('m', undefined, {plugins: [{
+    xml: '<plugin name="p"><updateRate>50</updateRate><torque>all</torque></plugin>'}]}), 0).fields;
+  assert.equal(rate.unit, 'Hz');
+  assert.equal(mode.unit, undefined, 'a text has no unit');
   const [, , , text] = made('<plugin name="p"/>').fields;
   assert.equal(text.ops('$& <').ops[0].text, '<plugin name="p">\n  <b>$&amp; &lt;</b>\n</plugin>');
 });

@@ -2,6 +2,7 @@
  * The parameters of a model's plugin as fields: one for each element of its XML that holds only text.
  * Pure.
  */
+import {parameterUnit} from './parameter_units.js';
 import type {Field} from './property_fields.js';
 import type {Model, PluginParameter} from '../protocol.js';
 
@@ -32,7 +33,7 @@ export function pluginFields(model: Model, index: number): {entity: Record<strin
     const {type, value} = typed(text.trim());
     const end = found.index + whole.lastIndexOf('</');
     entity[path] = value;
-    fields.push({path, label: name, type, ops: (next) => replaced(model, index, name,
+    fields.push({path, label: name, type, ...unitOf(name, type), ops: (next) => replaced(model, index, name,
         xml.slice(0, end - text.length) + escaped(next) + xml.slice(end))});
   }
   return {entity, fields};
@@ -53,10 +54,16 @@ export function defaultFields(model: Model, index: number, parameters: PluginPar
     if (shown.includes(`<${name}>`) || shown.includes(`<${name} `) || shown.includes(`<${name}/`)) continue;
     const path = `default:${name.replaceAll('.', '_')}`;
     entity[path] = READ[type](text);
-    fields.push({path, label: name, type, ...(choices.length ? {choices} : {}), ops: (next) =>
+    fields.push({path, label: name, type, ...unitOf(name, type), ...(choices.length ? {choices} : {}), ops: (next) =>
       replaced(model, index, name, withElement(xml, `<${name}>${escaped(next)}</${name}>`))});
   }
   return {entity, fields};
+}
+
+/** The unit of a number, as a part of its field. */
+function unitOf(name: string, type: Field['type']): {unit?: string} {
+  const unit = type === 'number' ? parameterUnit(name) : undefined;
+  return unit ? {unit} : {};
 }
 
 const READ: Record<PluginParameter['type'], (text: string) => unknown> =

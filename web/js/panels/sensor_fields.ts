@@ -1,4 +1,5 @@
 /** The parameters of a sensor as fields, in a section for each of its elements. Pure. */
+import {parameterUnit} from './parameter_units.js';
 import type {Field, Section} from './property_fields.js';
 import type {Sensor} from '../protocol.js';
 
@@ -33,7 +34,7 @@ export function sensorSections(sensor: Sensor, target: string): Section[] {
     section.entity[field] = value;
     const choices = known(CHOICES, parts);
     section.fields.push({
-      path: field, label: words(parts.at(-1) ?? ''), type: choices ? 'choice' : kind, unit: known(UNITS, parts),
+      path: field, label: words(parts.at(-1) ?? ''), type: choices ? 'choice' : kind, unit: known(UNITS, parts) ?? (kind === 'number' ? parameterUnit(parts.at(-1) ?? '') : undefined),
       ...(choices ? {choices} : {}),
       ...(kind === 'vector' && Array.isArray(value) ? {parts: ['x', 'y', 'z'].slice(0, value.length)} : {}),
       ...(kind === 'pose' ? {unit: 'm, rad'} : {}),
