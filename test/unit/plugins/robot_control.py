@@ -2,7 +2,7 @@
 from __future__ import annotations
 
 from my_simulations.description.model import Joint, JointAxis, Link, Model
-from my_simulations.description.transmission import Transmission, TransmissionJoint
+from my_simulations.description.transmission import Actuator, Transmission, TransmissionJoint
 from my_simulations.geometry import Pose
 from my_simulations.messages import Duration
 from my_simulations.plugins.control.gazebo_ros_control import GazeboRosControl
@@ -18,19 +18,20 @@ class Span(Duration):
         super().__init__(*divmod(round(seconds * 1e9), 10 ** 9))
 
 
-def transmission(joint, *interfaces):
-    return Transmission(f"{joint}_trans", joints=[TransmissionJoint(joint, list(interfaces))])
+def transmission(joint, *interfaces, actuated=True):
+    return Transmission(f"{joint}_trans", joints=[TransmissionJoint(joint, list(interfaces))],
+                        actuators=[Actuator(f"{joint}_motor")] if actuated else [])
 
 
 class Arm:
     """A robot of joints `one` and `two`, or others, driven through an interface, and its
     controllers. `places` says where joints are, `kind` is the class of the plugin. An item of
-    `interfaces` can be several, in one string.
+    `interfaces` can be several, in one string. `actuated` says whether transmissions have motors.
     """
 
     def __init__(self, interface="hardware_interface/PositionJointInterface", inside="",
                  axis=None, parameters=None, interfaces=None, names=("one", "two"), places=None,
-                 kind=GazeboRosControl, **controllers):
+                 kind=GazeboRosControl, actuated=True, **controllers):
         self.context = FakeContext(f"<plugin>{inside}</plugin>", joints=names)
         axis = axis or JointAxis((0.0, 0.0, 1.0), lower=-3.0, upper=3.0, effort=100.0,
                                  velocity=50.0)
@@ -39,7 +40,8 @@ class Arm:
             NS, links=[Link("base"), *(Link(name, pose=Pose((places or {}).get(
                 name, (0.0, 0.0, 0.0)))) for name in names)],
             joints=[Joint(name, "revolute", "base", name, axis=axis) for name in names],
-            transmissions=[transmission(name, *one.split()) for name, one in zip(names, kinds)])
+            transmissions=[transmission(name, *one.split(), actuated=actuated)
+                           for name, one in zip(names, kinds)])
         for joint in self.context.description.joints:
             self.context.joints[joint.name].spec = joint
         self.context.ros_parameters = {NS: {**controllers, **(parameters or {})}}

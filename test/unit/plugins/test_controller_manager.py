@@ -272,6 +272,17 @@ def test_a_reset_starts_controllers_anew_where_joints_are():
     assert arm.states() == {"forward": "running"}
 
 
+def test_a_transmission_without_an_actuator_works_and_is_reported():
+    assert not any("<actuator>" in text for text in Arm().context.said)
+    arm = Arm(actuated=False, lift={"type": "position_controllers/JointPositionController",
+                                    "joint": "one"})
+    assert [text for text in arm.context.said if "<actuator>" in text] == [
+        f"transmission '{joint}_trans' of joint '{joint}' has no <actuator>; here controllers can"
+        " move the joint, but gazebo_ros_control ignores such a transmission"
+        for joint in ("one", "two")]
+    assert arm.load("lift") and arm.switch(["lift"])
+
+
 def test_a_robot_without_transmissions_is_told_so():
     arm = Arm(interfaces=(), joint_state_controller=STATE)
     assert "no <transmission>" in arm.context.log_messages[0]

@@ -151,6 +151,10 @@ class Hardware:
         except PluginError as fault:
             context.warn(f"transmission '{transmission.name}': {fault}")
             return
+        if not transmission.actuators:
+            context.warn(f"transmission '{transmission.name}' of joint '{joint.name}' has no"
+                         " <actuator>; here controllers can move the joint, but gazebo_ros_control"
+                         " ignores such a transmission")
         if joint.name not in self.names:
             self.names.append(joint.name)
         known = [name for name in map(_interface, named) if name in DRIVES]
