@@ -11,17 +11,7 @@ PRINTED = "my_simulations/test/data/tutorial/my_object_as_printed.urdf"
 ALL = ["MY_OBJECT", "table", "table_carton", "table_ball", "shelf", "crate_1", "crate_2", "barrel"]
 
 
-class ObjectFlow(flow.ToolCase, unittest.TestCase):
-    @classmethod
-    def setUpClass(cls):
-        cls.gazebo = support.Gazebo()
-        support.wait_for(lambda: "robo" in cls.gazebo.names(), "the robot")
-        flow.wait_for_list()
-
-    def setUp(self):
-        self.gazebo.clear(keep=("ground_plane", "robo"))
-        self.run_tool("upload_objects.py", "--world", "empty_world")
-
+class ObjectFlow(flow.RobotWorldCase, unittest.TestCase):
     def test_an_object_of_the_list_stands_at_its_place_and_is_removed_again(self):
         text = self.run_tool("spawn_object.py", "MY_OBJECT")
         self.assertIn("MY_OBJECT spawned at 1 0 0", text)

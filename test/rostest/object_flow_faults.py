@@ -3,24 +3,13 @@ import unittest
 
 import object_flow_support as flow
 import rospy
-import support
 from object_flow_support import entry
 
 FILES = "my_simulations/test/data/invalid/objects_files"
 NOBODY = "http://127.0.0.1:1"
 
 
-class Faults(flow.ToolCase, unittest.TestCase):
-    @classmethod
-    def setUpClass(cls):
-        cls.gazebo = support.Gazebo()
-        support.wait_for(lambda: "robo" in cls.gazebo.names(), "the robot")
-        flow.wait_for_list()
-
-    def setUp(self):
-        self.gazebo.clear(keep=("ground_plane", "robo"))
-        self.run_tool("upload_objects.py", "--world", "empty_world")
-
+class Faults(flow.RobotWorldCase, unittest.TestCase):
     def refused(self, objects, *parts, also=()):
         """Spawning `bad` fails with every text of `parts`; what else is asked for is spawned."""
         rospy.set_param("/objects", {**objects, "good": entry()})

@@ -45,3 +45,17 @@ class ToolCase:
         found = state.pose.position
         for one, other in zip((found.x, found.y, found.z), (x, y, z)):
             self.assertAlmostEqual(one, other, delta=delta, msg=f"{name} at {found}")
+
+
+class RobotWorldCase(ToolCase):
+    """Tools in a world with a robot; each test begins with the list of the empty world."""
+
+    @classmethod
+    def setUpClass(cls):
+        cls.gazebo = support.Gazebo()
+        support.wait_for(lambda: "robo" in cls.gazebo.names(), "the robot")
+        wait_for_list()
+
+    def setUp(self):
+        self.gazebo.clear(keep=("ground_plane", "robo"))
+        self.run_tool("upload_objects.py", "--world", "empty_world")
