@@ -7,6 +7,7 @@ import csv
 import json
 import os
 import signal
+import socket
 import subprocess
 import sys
 from pathlib import Path
@@ -92,7 +93,31 @@ HOSTILE = {
               "while True:\n    try: kept.append(bytearray(10000000))\n"
               "    except MemoryError: pass\n",
     "loop": "while True: pass\n",
+    "descriptors": "kept = []\ntry:\n    while True: kept.append(open('/dev/null'))\n"
+                   "except OSError as fault: print(len(kept), fault)\n",
+    "inotify": "import ctypes, time\nlibc = ctypes.CDLL(None)\n"
+               "while libc.inotify_init() >= 0: pass\nprint('no more', flush=True)\n"
+               "time.sleep(1000)\n",
+    "network": "import socket\nfor place in (('127.0.0.1', {port}), ('192.0.2.1', 80)):\n"
+               "    try:\n        socket.create_connection(place, 2)\n"
+               "        print('connected', place)\n    except OSError as fault: print(fault)\n",
+    "read": "import glob\n"
+            "for name in (*{others!r}, '/etc/shadow', *glob.glob('/proc/*/environ')):\n"
+            "    try:\n        text = open(name, 'rb').read()\n"
+            "        if b'SECRET' in text or name == '/etc/shadow': print('read', name)\n"
+            "    except OSError: pass\nprint('end')\n",
+    "links": "import os\nprint(os.path.lexists('secret.txt'))\n"
+             "for top in ('.', os.environ['HOME'], os.environ['TMPDIR']):\n"
+             "    for name in ('replay.html', 'output.txt', 'mark.json', 'go.py'):\n"
+             "        path = os.path.join(top, name)\n        if os.path.exists(path):"
+             " os.unlink(path)\n        os.symlink('/etc/passwd', path)\n",
 }
+SAID = {"memory": "more memory than 1000 MB", "loop": "computes without a pause",
+        "kill": "ended with status 137", "log": "its output has reached 25 MB",
+        "descriptors": "Too many open files", "inotify": "no more",
+        "network": "Connection refused", "read": "end", "links": "False"}
+"""What the page of the student, or the output to which it leads, says of an attack."""
+
 QUICK = f"""submission: {{run: go.py}}
 world: worlds/empty.world
 {MODELS}checks:
@@ -195,25 +220,45 @@ def test_the_replay_contains_topics_of_the_assignment(tmp_path):
     assert len(times) > 8 and times == sorted(times) and times[-1] > 1.5
 
 
-def test_hostile_programs_change_no_other_mark(tmp_path):
+def test_hostile_programs_change_no_other_mark(tmp_path, monkeypatch):
     assert isolation() == "", "a hostile program must not run without isolation"
-    names = [*HOSTILE, "good"]
-    programs = {name: text.format(folder=str(tmp_path), names=names) if name == "delete" else text
-                for name, text in HOSTILE.items()}
+    names = ["first", *HOSTILE, "good"]
+    (tmp_path / "links").mkdir()
+    (tmp_path / "secret.txt").write_text("SECRET")
+    (tmp_path / "links" / "secret.txt").symlink_to(tmp_path / "secret.txt")
+    monkeypatch.setenv("A_TOKEN", "SECRET")
     outside = subprocess.Popen([sys.executable, "-c", "import time; time.sleep(1000)"])
-    try:
-        rows, students = grade(tmp_path, LIMITS + QUICK, {**programs, "good": GO.format(goal=1.0)},
-                               "--jobs", "2")
-        assert outside.poll() is None
-    finally:
-        outside.kill()
-        outside.wait()
-    assert points(rows["good"], "moved", "talks") == [4, 2]
+    with socket.create_server(("127.0.0.1", 0)) as server:
+        server.setblocking(False)
+        values = {"folder": str(tmp_path), "names": names, "port": server.getsockname()[1],
+                  "others": [str(tmp_path / one) for one in (
+                      "secret.txt", "good/go.py", "first/go.py", "marks/marks.csv")]}
+        programs = {name: text.format(**values) if name in ("delete", "network", "read") else text
+                    for name, text in HOSTILE.items()}
+        right = GO.format(goal=1.0) + "# SECRET\n"
+        try:
+            rows, students = grade(tmp_path, LIMITS + QUICK,
+                                   {"first": right, **programs, "good": right}, "--jobs", "2")
+            assert outside.poll() is None
+        finally:
+            outside.kill()
+            outside.wait()
+        with pytest.raises(BlockingIOError):
+            server.accept()
+    for name in ("first", "good"):
+        assert points(rows[name], "moved", "talks") == [4, 2], name
+    for name, said in SAID.items():
+        folder = students / name
+        told = (folder / "index.html").read_text() + (folder / "output.txt").read_text("utf-8",
+                                                                                       "replace")
+        assert said in told, (name, told[-2000:])
+    for name in ("network", "read"):
+        assert "connected" not in (students / name / "output.txt").read_text()
+        assert "read /" not in (students / name / "output.txt").read_text()
     for name in HOSTILE:
         assert points(rows[name], "moved", "talks") == [0, 0], name
         assert rows[name]["status"] == "graded"
         assert (tmp_path / name / "go.py").read_text() == programs[name]
-    assert "more memory than 1000 MB" in (students / "memory" / "index.html").read_text()
     assert (students / "delete" / "output.txt").read_text() in ("", "[]\n")
     assert sum(path.stat().st_size for path in students.rglob("*")) < 30e6
 

@@ -31,6 +31,7 @@ _PR_SET_PDEATHSIG, _PR_SET_CHILD_SUBREAPER, _PR_SET_NO_NEW_PRIVS, _PR_CAPBSET_DR
 _LAST_CAPABILITY = 63
 _NEWNS, _NEWIPC, _NEWPID = 0x00020000, 0x08000000, 0x20000000
 _CAPABILITY_VERSION_3 = 0x20080522
+_MOST_OPEN_FILES = 4096
 
 
 def _box() -> Any:
@@ -73,6 +74,7 @@ def _inside(spec: Dict[str, Any], isolated: bool, box: Any) -> int:
     if isolated:
         hide_folders(spec["private"], spec["needed"], box)
     limit_resources(spec)
+    limit_open_files()
     with contextlib.suppress(OSError):
         os.setgroups([])
     with contextlib.suppress(OSError):
@@ -159,7 +161,16 @@ def limit_resources(spec: Dict[str, Any]) -> None:
                        (resource.RLIMIT_CPU, spec["processor_seconds"]),
                        (resource.RLIMIT_NPROC, spec["processes"])):
         if most is not None:
-            resource.setrlimit(kind, (most, most))
+            # The first processor limit sends SIGXCPU, which tells it from other reasons to end.
+            resource.setrlimit(kind, (most, most + 1) if kind == resource.RLIMIT_CPU
+                               else (most, most))
+
+
+def limit_open_files() -> None:
+    """Limit open files of each process: many processes could exhaust the memory of the kernel."""
+    hard = resource.getrlimit(resource.RLIMIT_NOFILE)[1]
+    if hard == resource.RLIM_INFINITY or hard > _MOST_OPEN_FILES:
+        resource.setrlimit(resource.RLIMIT_NOFILE, (_MOST_OPEN_FILES, _MOST_OPEN_FILES))
 
 
 def drop_capabilities(libc: Any) -> None:

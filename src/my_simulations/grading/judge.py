@@ -161,7 +161,7 @@ class Judge:
                 graph.run(program)
                 with self._recorded_topics(world, graph, record.record):
                     WorldRun(self._assignment, world, name, graph).run(record, self._writer.result)
-                for note in filter(None, (program.why_ended(), graph.refused)):
+                for note in filter(None, (program.why_ended(), graph.busy, graph.refused)):
                     self._writer.note(note)
                 self._writer.file(OUTPUT, program.output())
 

@@ -23,6 +23,8 @@ _STUCK_LOOKS = 400    # all wait, but bytes stay unread
 _LONGEST_S = 60.0     # wall time of one wait, whatever the program does
 _FIRST_S = 1.0        # wall time in which a program sees the first step
 _START_S = 5.0        # processor time to start, s
+_FEWEST_STEPS = 20    # until a program counts as one that never waits
+_BUSY_SHARE = 0.9     # of the steps
 
 
 class Lockstep:
@@ -39,6 +41,12 @@ class Lockstep:
         self._threads = ThreadStates(judge, lambda: {main, program.watcher})
         self._sim = 0.0
         self._began: Optional[float] = None
+        self._steps, self._busy_steps = 0, 0
+
+    @property
+    def never_waits(self) -> bool:
+        """Whether the program has hardly ever waited for the world."""
+        return self._steps >= _FEWEST_STEPS and self._busy_steps > _BUSY_SHARE * self._steps
 
     def start(self, step: Callable[[], object]) -> None:
         """Wait until the program has started and waits for the world.
@@ -55,12 +63,14 @@ class Lockstep:
         """Wait after steps of `seconds` of sim time; not faster than real time."""
         if not self._program.running:
             return
-        self._wait(seconds)
+        self._steps += 1
+        self._busy_steps += not self._wait(seconds)
         self._sim += seconds
         if self._began is not None:
             time.sleep(max(0.0, self._began + self._sim - time.monotonic()))
 
-    def _wait(self, processor_seconds: float) -> None:
+    def _wait(self, processor_seconds: float) -> bool:
+        """Whether the program waits now; False if its processor time is used up."""
         until = self._used() + processor_seconds
         deadline = time.monotonic() + _LONGEST_S
         waiting, is_quiet = 0, False
@@ -72,15 +82,16 @@ class Lockstep:
             if self._threads.any_runs():
                 waiting, is_quiet = 0, False
                 if self._used() >= until or began > deadline:
-                    return
+                    return False
                 took = time.monotonic() - began
                 pause = max(_BUSY_LOOK_S, min(took / _LOOK_SHARE, processor_seconds))
                 continue
             waiting, pause = waiting + 1, _LOOK_S
             if is_quiet or waiting >= _STUCK_LOOKS:
-                return
+                return True
             self._threads.refresh()    # what has started meanwhile is looked at the next time
             is_quiet = not _bytes_under_way()
+        return True
 
     def close(self) -> None:
         """Close the files of the thread states."""

@@ -26,6 +26,10 @@ _FIRST_TESTER = 62000
 TESTS = "tests"
 """Folder in the box that only the tests of the assignment see."""
 
+_KEPT_VARIABLES = ("PATH", "LD_LIBRARY_PATH", "LANG", "LC_", "TZ", "PYTHON", "PKG_CONFIG_PATH",
+                   "CMAKE_PREFIX_PATH", "CATKIN", "ROS", "GAZEBO_", "MY_SIMULATIONS_")
+"""Beginnings of the names of variables that a program gets: others may hold secrets."""
+
 _LOOK_S = 0.1
 _END_S = 10.0
 _KEPT_OUTPUT = 200_000
@@ -91,6 +95,7 @@ class Program:
                  account: Account, environment: Dict[str, str]) -> None:
         self._limits = limits
         self._output = account.output
+        self._most_bytes = int(limits.file_mb * 1e6 / 2)
         self.excess = ""
         self.watcher = 0
         for path in (*account.owned, *account.hidden, account.temporary):
@@ -99,7 +104,7 @@ class Program:
                 "environment": {**_environment(account), **environment},
                 "user": account.user, "private": list(account.hidden),
                 "needed": _needed(scratch),
-                "bytes": int(limits.file_mb * 1e6 / 2), "processes": limits.processes,
+                "bytes": self._most_bytes, "processes": limits.processes,
                 "memory_bytes": int(limits.memory_mb * 1e6),
                 "processor_seconds": int(limits.processor_seconds) + 1}
         _give(account)
@@ -152,7 +157,12 @@ class Program:
         status = self.status
         if self.excess or status is None:
             return self.excess
+        if status == 128 + signal.SIGXCPU:
+            most = self._limits.processor_seconds
+            return f"the program used more processor time than {most:g} s"
         error = python_error(self.output().decode("utf-8", "replace")) if status else ""
+        if status and os.path.getsize(self._output) >= self._most_bytes:
+            error = f"its output has reached {self._most_bytes * 1e-6:g} MB"
         return f"the program ended with status {status}" + (f": {error}" if error else "")
 
     def _watch(self) -> None:
@@ -177,7 +187,9 @@ def python_error(output: str) -> str:
 
 
 def _environment(account: Account) -> Dict[str, str]:
-    return {**os.environ, "BOX_ISOLATION": "", "HOME": account.home,
+    kept = {name: value for name, value in os.environ.items()
+            if name.startswith(_KEPT_VARIABLES) and "TOKEN" not in name}
+    return {**kept, "HOME": account.home,
             "ROS_HOME": os.path.join(account.home, ".ros"), "TMPDIR": account.temporary,
             "PYTHONUNBUFFERED": "1", "USER": "student"}
 

@@ -84,6 +84,14 @@ class RosGraph:
         names = ", ".join(f"/gazebo/{name}" for name in self._node.refused)
         return f"the program used {names}, which the assignment does not permit" if names else ""
 
+    @property
+    def busy(self) -> str:
+        """That the program is an endless loop; "" if it waits for the world."""
+        if self._lockstep is None or not self._lockstep.never_waits:
+            return ""
+        return ("the program computes without a pause, such as an endless loop without rospy.sleep"
+                " or rospy.Rate")
+
     def result(self, check: Timed) -> CheckResult:
         """Decide a check of a topic or service."""
         if isinstance(check, TopicRate):
