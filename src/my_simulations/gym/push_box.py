@@ -69,9 +69,9 @@ class PushBox:
     def act(self, world: OpenWorld, action: Any) -> None:
         """Set the rates of both wheels."""
         forward, turn = (float(value) for value in np.clip(action, -1.0, 1.0))
-        for joint, side in (("left_wheel_joint", -1.0), ("right_wheel_joint", 1.0)):
-            speed = forward * FASTEST + side * turn * TURNS * _SEPARATION / 2.0
-            world.drive_joint(f"robo::{joint}", speed / _RADIUS, _TORQUE)
+        ahead, aside = forward * FASTEST, turn * TURNS * _SEPARATION / 2.0
+        world.robot("robo").drive({"left_wheel_joint": (ahead - aside) / _RADIUS,
+                                   "right_wheel_joint": (ahead + aside) / _RADIUS}, effort=_TORQUE)
 
     def observe(self, world: OpenWorld) -> np.ndarray:
         """See the class."""

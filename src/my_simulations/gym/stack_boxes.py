@@ -101,10 +101,9 @@ class StackBoxes:
     def act(self, world: OpenWorld, action: Any) -> None:
         """Set the motors of axes and fingers."""
         *speeds, grip = (float(value) for value in np.clip(action, -1.0, 1.0))
-        for axis, speed in zip(AXES, speeds):
-            world.drive_joint(f"gripper::{axis}", speed * FASTEST, _DRIVE)
-        for finger in FINGERS:
-            world.drive_joint(f"gripper::{finger}", _OPENING if grip > 0.0 else -_OPENING, GRIP)
+        gripper, opening = world.robot("gripper"), _OPENING if grip > 0.0 else -_OPENING
+        gripper.drive({axis: speed * FASTEST for axis, speed in zip(AXES, speeds)}, effort=_DRIVE)
+        gripper.drive({finger: opening for finger in FINGERS}, effort=GRIP)
 
     def observe(self, world: OpenWorld) -> np.ndarray:
         """See the class."""

@@ -2,7 +2,7 @@
 from __future__ import annotations
 
 import math
-from typing import NamedTuple, Optional
+from typing import Mapping, NamedTuple, Optional
 
 from ..description.model import INFINITE
 from ..errors import CommandError
@@ -37,18 +37,38 @@ def limits_of(simulator: Simulator, joint: str) -> JointLimits:
                        _most(axis.velocity), _most(axis.effort))
 
 
-def move_within_limits(simulator: Simulator, joint: str, position: float,
+def move_within_limits(simulator: Simulator, positions: Mapping[str, float],
                        effort: Optional[float], rate: Optional[float]) -> None:
-    """Move an axis to a position with a limited effort and rate; None for the limit of its file.
+    """Move axes to positions with a limited effort and rate; None for the limits of their file.
 
     Raises CommandError: no such joint, or neither its file nor the call limits the effort.
     """
-    limits = limits_of(simulator, joint)
-    most = limits.effort if effort is None else float(effort)
-    if not 0.0 < most < math.inf and effort is None:
+    wanted = {}
+    for joint, position in positions.items():
+        limits = limits_of(simulator, joint)
+        wanted[joint] = (float(position), _effort(joint, limits, effort),
+                         limits.velocity if rate is None else float(rate))
+    simulator.drives.hold_axes(wanted)
+
+
+def drive_within_limits(simulator: Simulator, rates: Mapping[str, float],
+                        effort: Optional[float]) -> None:
+    """Drive axes at rates with a limited effort; None for the limits of their file.
+
+    Raises CommandError as `move_within_limits`.
+    """
+    simulator.drives.drive_axes({
+        joint: (float(rate), float(effort) if effort is not None
+                else _effort(joint, limits_of(simulator, joint), None))
+        for joint, rate in rates.items()})
+
+
+def _effort(joint: str, limits: JointLimits, effort: Optional[float]) -> float:
+    if effort is not None:
+        return float(effort)
+    if limits.effort == math.inf:
         raise CommandError(f"the file of joint '{joint}' has no limit of effort: give an effort")
-    fastest = limits.velocity if rate is None else float(rate)
-    simulator.drives.hold_axis(joint, float(position), most, fastest)
+    return limits.effort
 
 
 def _most(value: float) -> float:

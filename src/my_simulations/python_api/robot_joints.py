@@ -8,7 +8,7 @@ import numpy as np
 from ..errors import CommandError
 from ..geometry import IDENTITY, ZERO3, Pose, compose, inverse
 from ..simulator.simulator import Simulator
-from .joint_limits import JointLimits, limits_of, move_within_limits
+from .joint_limits import JointLimits, drive_within_limits, limits_of, move_within_limits
 from .kinematics import Chain, InverseKinematics, Target
 from .plain_values import nanoseconds_of, pose_of, vector_of
 from .readings import JointReadings, NamedRows, joint_readings, link_readings
@@ -69,8 +69,8 @@ class Robot:
         if unknown:
             raise CommandError(f"a rate needs a position of the same joint: {', '.join(unknown)}")
         self._running_simulator().joints.set_positions(
-            {self._scoped(name): float(value) for name, value in positions.items()},
-            {self._scoped(name): float(value) for name, value in rates.items()})
+            {name: float(value) for name, value in self._all_scoped(positions).items()},
+            {name: float(value) for name, value in self._all_scoped(rates).items()})
 
     def move(self, positions: Mapping[str, float], *, effort: Optional[float] = None,
              rate: Optional[float] = None) -> None:
@@ -81,9 +81,7 @@ class Robot:
             effort: most that each motor spends, N m or N; None for the limit of the robot's file.
             rate: fastest that each axis moves, rad/s or m/s; None for the limit of the file.
         """
-        for name, position in positions.items():
-            move_within_limits(self._running_simulator(), self._scoped(name), position, effort,
-                               rate)
+        move_within_limits(self._running_simulator(), self._all_scoped(positions), effort, rate)
 
     def drive(self, rates: Mapping[str, float], *, effort: Optional[float] = None) -> None:
         """Drive axes at rates, until another call.
@@ -92,12 +90,7 @@ class Robot:
             rates: rad/s or m/s.
             effort: most that each motor spends, N m or N; None for the limit of the robot's file.
         """
-        for name, rate in rates.items():
-            most = self.limits(name).effort if effort is None else float(effort)
-            if most == float("inf"):
-                raise CommandError(f"the file of joint '{name}' has no limit of effort: give an"
-                                   " effort")
-            self._running_simulator().drives.drive_axis(self._scoped(name), float(rate), most)
+        drive_within_limits(self._running_simulator(), self._all_scoped(rates), effort)
 
     def apply_efforts(self, efforts: Mapping[str, float], *, duration: Optional[float] = None
                       ) -> None:
@@ -181,6 +174,9 @@ class Robot:
         begin = f"{self.name}::"
         at = [n for n, name in enumerate(rows.names) if name.startswith(begin)]
         return NamedRows([rows.names[n][len(begin):] for n in at], rows.array[at])
+
+    def _all_scoped(self, values: Mapping[str, float]) -> Dict[str, float]:
+        return {self._scoped(name): value for name, value in values.items()}
 
     def _scoped(self, name: str) -> str:
         return f"{self.name}::{name}"

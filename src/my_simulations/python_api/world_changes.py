@@ -103,7 +103,7 @@ class WorldChanges:
             rate: rad/s or m/s.
             effort: most that the motor spends, N m or N.
         """
-        self._running_simulator().drives.drive_axis(joint, float(rate), float(effort))
+        self._running_simulator().drives.drive_axes({joint: (float(rate), float(effort))})
 
     def move_joint(self, joint: str, position: float, effort: Optional[float] = None,
                    rate: Optional[float] = None) -> None:
@@ -116,7 +116,7 @@ class WorldChanges:
             rate: fastest that it moves, rad/s or m/s; None for the limit of the file, if it has
                 one.
         """
-        move_within_limits(self._running_simulator(), joint, position, effort, rate)
+        move_within_limits(self._running_simulator(), {joint: position}, effort, rate)
 
     def release_joint(self, joint: str) -> None:
         """Switch off what `drive_joint` or `move_joint` has set."""

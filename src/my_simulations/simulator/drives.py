@@ -3,7 +3,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from typing import Any, Dict, List, Optional, Sequence, Tuple
+from typing import Any, Dict, List, Mapping, Optional, Sequence, Tuple
 
 from ..engine.commands import Batch, Command
 from ..engine.drive_commands import (
@@ -117,41 +117,50 @@ class Drives:
                 *(JointServo(row, "") for row, servo in self._servos.items()
                   if servo.holds and row in driven)]
 
-    def drive_axis(self, joint: str, rate: float, effort: float) -> None:
-        """Drive an axis, given by name, at a rate (rad/s or m/s) with a limited effort (N m or N).
+    def drive_axes(self, rates: Mapping[str, Tuple[float, float]]) -> None:
+        """Drive axes, given by name, in one command; with an error none of them.
+
+        Args:
+            rates: the rate (rad/s or m/s) of each axis, and the largest effort (N m or N).
 
         Raises CommandError: no such joint, or numbers that are not finite.
         """
         with self._session.structure_lock:
-            row = self._session.axis_row(joint)
-            self._end_servo(row)
-            self.set([JointMotor(row, *_finite(rate, effort))])
+            motors = [JointMotor(self._session.axis_row(joint), *_finite(*values))
+                      for joint, values in rates.items()]
+            ended = [JointServo(motor.row, "") for motor in motors if motor.row in self._servos]
+            if ended:
+                self.set(servos=ended)
+            self.set(motors)
 
-    def hold_axis(self, joint: str, position: float, effort: float, rate: float) -> None:
-        """Move an axis, given by name, to a position (rad or m) and hold it there.
+    def hold_axes(self, positions: Mapping[str, Tuple[float, float, float]]) -> None:
+        """Move axes, given by name, to positions in one command and hold them there.
 
-        `effort` (N m or N) and `rate` (rad/s or m/s, infinite for any) limit the motor. Raises
-        CommandError: no such joint, or a number that cannot be used.
+        Args:
+            positions: the position (rad or m) of each axis, the largest effort (N m or N), and the
+                largest rate (rad/s or m/s, infinite for any).
+
+        Raises CommandError: no such joint, or a number that cannot be used; no axis moves then.
         """
         with self._session.structure_lock:
-            row = self._session.axis_row(joint)
-            target, limit = _finite(position, effort)
-            if math.isnan(rate):
-                raise CommandError("a joint's rate must be a number, not NaN")
-            self.set(servos=[JointServo(row, "position", target, most_rate=rate,
-                                        most_effort=limit)])
+            servos = []
+            for joint, (position, effort, rate) in positions.items():
+                row = self._session.axis_row(joint)
+                target, limit = _finite(position, effort)
+                if math.isnan(rate):
+                    raise CommandError("a joint's rate must be a number, not NaN")
+                servos.append(JointServo(row, "position", target, most_rate=rate,
+                                         most_effort=limit))
+            self.set(servos=servos)
 
     def release_axis(self, joint: str) -> None:
         """Switch off motor and servo of an axis, given by name. Raises CommandError."""
         with self._session.structure_lock:
             row = self._session.axis_row(joint)
-            self._end_servo(row)
+            if row in self._servos:
+                self.set(servos=[JointServo(row, "")])
             if row in self._motors:
                 self.set([JointMotor(row, 0.0, 0.0)])
-
-    def _end_servo(self, row: int) -> None:
-        if row in self._servos:
-            self.set(servos=[JointServo(row, "")])
 
     def efforts(self, rows: Sequence[int]) -> List[float]:
         """What servos and motors spent on joint axes in the last step, N m or N.

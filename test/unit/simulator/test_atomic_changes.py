@@ -72,7 +72,7 @@ class Case:
         sim.models.pin(["shelf"])
         sim.models.hold("crate", True)
         sim.wrenches.apply_wrench("crate::link", (0, 0, 1.0), (0, 0, 0), duration_ns=-1)
-        sim.drives.drive_axis("arm::hinge", 0.5, 2.0)
+        sim.drives.drive_axes({"arm::hinge": (0.5, 2.0)})
         sim.clock.advance(5)
         self.history = History(sim)
 

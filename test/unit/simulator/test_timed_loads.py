@@ -189,6 +189,6 @@ def test_an_effort_that_is_not_finite_is_refused(case, effort):
 def test_a_drive_with_a_rate_of_nan_is_refused(case):
     made = case(arm("a"))
     with pytest.raises(CommandError, match="NaN"):
-        made.sim.drives.hold_axis("a::hinge", 1.0, 5.0, math.nan)
+        made.sim.drives.hold_axes({"a::hinge": (1.0, 5.0, math.nan)})
     assert made.backends[-1].servos == {}
-    made.sim.drives.hold_axis("a::hinge", 1.0, 5.0, math.inf)
+    made.sim.drives.hold_axes({"a::hinge": (1.0, 5.0, math.inf)})
