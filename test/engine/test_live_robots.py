@@ -12,6 +12,7 @@ import pytest
 
 import my_simulations
 from my_simulations.errors import CommandError, EngineLostError
+from my_simulations.geometry import Pose
 from my_simulations.messages import geometry_msgs, pixels
 from my_simulations.python_api import WorldChoice
 
@@ -179,6 +180,19 @@ def test_a_model_that_is_spawned_brings_its_plugins_and_takes_them_away():
         world.remove("robo")
         world.step(100)
         assert odometry.count == 5 and "odom" not in world.topics
+
+
+def test_plugins_without_a_namespace_get_that_of_the_spawn():
+    text = (ROOT / "urdf" / "robo.urdf").read_text().replace(
+        "<robotNamespace>/</robotNamespace>", "")
+    with my_simulations.open_world() as world:
+        world.spawn(text, "one")
+        world.spawn(text, "two", namespace="/lab")
+        assert {"/one/cmd_vel", "/one/odom", "/lab/cmd_vel", "/lab/odom", "/lab/scan"} <= set(
+            world.topics)
+        assert not any(name.startswith("/two/") for name in world.topics)
+        world.open(WorldChoice(models=(("robot", text, Pose()),), namespace="/"))
+        assert {"/cmd_vel", "/odom", "/scan"} <= set(world.topics)
 
 
 def test_services_are_calls(world):

@@ -4,6 +4,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Optional, Sequence
 
+from ..description.plugin_namespace import with_namespace
 from ..errors import InputError, Issue, errors_of
 from ..formats.reading import LoadedWorld, Text
 from ..geometry import Pose, compose
@@ -43,15 +44,17 @@ class Furnisher:
             simulator.models.spawn(model, model.pose, meshes=found.meshes)
         self._judge(issues)
         for name, file, pose in choice.models:
-            self.spawn(simulator, file, name, pose, choice.alter_model)
+            self.spawn(simulator, file, name, pose, choice.alter_model, choice.namespace)
 
     def spawn(self, simulator: Simulator, document: Text, name: Optional[str], pose: Pose,
-              alter: WorldEdit) -> str:
+              alter: WorldEdit, namespace: str) -> str:
         """Spawn the model of a document; returns its name. Raises as `furnish`."""
         found, meshes, issues = self._files.model(document)
         model = alter(replace(found, name=found.name if name is None else name,
                               pose=compose(pose, found.pose)))
         self._judge(issues)
+        if namespace:
+            model = with_namespace(model, namespace)
         simulator.models.spawn(model, model.pose, meshes=meshes)
         return model.name
 

@@ -29,20 +29,23 @@ class WorldChanges:
         raise NotImplementedError
 
     def spawn(self, document: Union[Text, FilePath], name: Optional[str] = None,
-              pose: Sequence[float] = ZERO3) -> str:
+              pose: Sequence[float] = ZERO3, *, namespace: str = "") -> str:
         """Put a model into the world, and load its plugins; returns its name.
 
         Args:
             document: path of a URDF or SDF file, or its text.
             name: in the world; None for the document's own.
             pose: of the model; a pose of the document's own comes on top, as in Gazebo.
+            namespace: `<robotNamespace>` of the plugins that set none, as `-robot_namespace` of
+                `spawn_model`, which gives "/" unless told otherwise; "" leaves the plugins as they
+                are, most of them below the model's name.
 
         Raises:
             InputError: the document has no usable model.
         """
         text = os.fspath(document)  # which leaves texts as they are
         name = self._furnisher.spawn(self._running_simulator(), text, name, pose_of(pose),
-                                     lambda model: model)
+                                     lambda model: model, namespace)
         self._robots.wait_until_loaded()
         return name
 

@@ -19,6 +19,7 @@ class WorldChoice:
         alter: changes the description of the world before it is loaded; it must leave its argument
             as it is.
         alter_model: the same for each object and model; `Model.pose` is its place.
+        namespace: of the plugins of `models`, see `OpenWorld.spawn`.
     """
 
     world: str = "worlds/empty.world"
@@ -29,3 +30,4 @@ class WorldChoice:
     models: Tuple[Tuple[str, str, Pose], ...] = ()
     alter: Callable[[World], World] = lambda world: world
     alter_model: WorldEdit = lambda model: model
+    namespace: str = ""

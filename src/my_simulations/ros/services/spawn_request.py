@@ -6,17 +6,16 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass, replace
-from typing import List, Mapping
+from typing import Mapping
 
-from ...description.model import Link, Model, PluginSpec
+from ...description.model import Model
+from ...description.plugin_namespace import with_namespace
 from ...errors import CommandError
 
 REPLACE_ATTRIBUTE = "my_simulations_replace"
 FILE_ATTRIBUTE = "my_simulations_file"
 LAUNCH_ATTRIBUTE = "my_simulations_launch"
 """Deprecated attributes of the root element that say what `SpawnObject.srv` has fields for."""
-
-NAMESPACE_ELEMENT = "robotNamespace"
 
 
 @dataclass(frozen=True)
@@ -60,48 +59,3 @@ def named(model: Model, name: str, namespace: str) -> Model:
     """The model with the requested name; plugins without a namespace get that of the request."""
     renamed = replace(model, name=name)
     return with_namespace(renamed, namespace) if namespace else renamed
-
-
-def with_namespace(model: Model, namespace: str) -> Model:
-    """The model with `<robotNamespace>` in every plugin that has none (Gazebo behaviour)."""
-    return replace(
-        model,
-        plugins=[_plugin(plugin, namespace) for plugin in model.plugins],
-        extra=_extra(model.extra, namespace),
-        links=[_link(link, namespace) for link in model.links],
-        models=[with_namespace(inner, namespace) for inner in model.models])
-
-
-def _plugin(plugin: PluginSpec, namespace: str) -> PluginSpec:
-    return replace(plugin, xml=_injected(plugin.xml, namespace)) if plugin.xml else plugin
-
-
-def _link(link: Link, namespace: str) -> Link:
-    if not any("<plugin" in text for text in link.extra):
-        return link
-    sensors = [replace(sensor, plugins=[_plugin(plugin, namespace) for plugin in sensor.plugins])
-               for sensor in link.sensors]
-    return replace(link, extra=_extra(link.extra, namespace), sensors=sensors)
-
-
-def _extra(texts: List[str], namespace: str) -> List[str]:
-    return [_injected(text, namespace) if "<plugin" in text else text for text in texts]
-
-
-def _injected(xml: str, namespace: str) -> str:
-    """The element `xml` with the namespace added to every `<plugin>` without one.
-
-    XML that cannot be parsed by itself (an undeclared prefix) is unchanged.
-    """
-    import xml.etree.ElementTree as ElementTree
-
-    try:
-        root = ElementTree.fromstring(xml)
-    except ElementTree.ParseError:
-        return xml
-    changed = False
-    for plugin in root.iter("plugin"):
-        if plugin.find(NAMESPACE_ELEMENT) is None:
-            ElementTree.SubElement(plugin, NAMESPACE_ELEMENT).text = namespace
-            changed = True
-    return ElementTree.tostring(root, encoding="unicode") if changed else xml
