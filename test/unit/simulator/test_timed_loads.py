@@ -7,7 +7,8 @@ import pytest
 
 from my_simulations.description.model import Inertial, Joint, JointAxis, Link, Model
 from my_simulations.description.world import World
-from my_simulations.engine.commands import FOREVER
+from my_simulations.engine.commands import FOREVER, Batch
+from my_simulations.engine.drive_commands import SetMotors, SetServos
 from my_simulations.engine.inline_engine import InlineEngine
 from my_simulations.engine.kinematic_backend import KinematicBackend
 from my_simulations.engine.ring import Clock
@@ -192,3 +193,24 @@ def test_a_drive_with_a_rate_of_nan_is_refused(case):
         made.sim.drives.hold_axes({"a::hinge": (1.0, 5.0, math.nan)})
     assert made.backends[-1].servos == {}
     made.sim.drives.hold_axes({"a::hinge": (1.0, 5.0, math.inf)})
+
+
+def test_several_axes_are_driven_or_held_by_one_command(case):
+    made = case(arm("a"), arm("b"))
+    sent = []
+    call = made.sim._session.call
+    made.sim._session.call = lambda command: sent.append(command) or call(command)
+    made.sim.drives.drive_axes({"a::hinge": (1.0, 5.0), "b::hinge": (2.0, 5.0)})
+    assert [type(command) for command in sent] == [SetMotors]
+    made.sim.drives.hold_axes({"a::hinge": (1.0, 5.0, 2.0), "b::hinge": (2.0, 5.0, 2.0)})
+    assert sum(isinstance(command, (SetServos, Batch)) for command in sent) == 1
+
+
+def test_no_axis_is_driven_or_held_if_one_cannot_be(case):
+    made = case(arm("a"))
+    for refused in ("a::nobody", "b::hinge"):
+        with pytest.raises(CommandError):
+            made.sim.drives.drive_axes({"a::hinge": (1.0, 5.0), refused: (1.0, 5.0)})
+        with pytest.raises(CommandError):
+            made.sim.drives.hold_axes({"a::hinge": (1.0, 5.0, 2.0), refused: (1.0, 5.0, 2.0)})
+    assert made.backends[-1].motors == {} and made.backends[-1].servos == {}
