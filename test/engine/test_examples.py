@@ -57,6 +57,7 @@ def test_a_robot_stops_before_a_wall():
 
 def test_the_notebook_drives_a_robot_and_plots_what_it_sees(monkeypatch):
     monkeypatch.setenv("MPLBACKEND", "Agg")
+    monkeypatch.chdir(EXAMPLES)   # where Jupyter runs it
     names = {}
     for cell in json.loads((EXAMPLES / "robot_in_a_house.ipynb").read_text())["cells"]:
         if cell["cell_type"] == "code":
