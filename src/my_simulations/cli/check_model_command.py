@@ -20,8 +20,9 @@ from ..objects.object_documents import run_xacro
 from ..program_end import program
 from ..resources.database.download_notes import DownloadNotes
 from ..resources.model_config import description_in
-from ..resources.resolver import Resolver
+from ..resources.resolver import Resolver, ResourceNotFoundError
 from ..resources.ros_packages import is_in_workspace
+from ..resources.world_lookup import ENDINGS, advice_on, find_world
 from ..ros.arguments import Parser
 
 NAME = "check_model"
@@ -38,7 +39,8 @@ def parser() -> argparse.ArgumentParser:
         epilog="Exit code: 0 without errors (warnings are allowed), 1 with errors, 2 for an"
         " invalid command line.")
     made.add_argument("files", nargs="*", metavar="FILE",
-                      help=".world, .sdf, .urdf or .xacro file, or a model folder")
+                      help=".world, .sdf, .urdf or .xacro file, the name of a world, or a model"
+                      " folder")
     made.add_argument("--strict", action="store_true", help="report as errors what Gazebo accepts"
                       " although the format forbids it")
     made.add_argument("--run-xacro", action="store_true", help="run also xacro files outside of the"
@@ -98,7 +100,7 @@ def check(file: str, resolver: Resolver,
     `any_xacro`: whether to run xacro files that lie in no package of the workspace.
     """
     try:
-        path, text = _document(file, any_xacro)
+        path, text = _document(_place_of(file, resolver), any_xacro)
         loaded, issues = read_any(text, resolver, path)
     except InputError as fault:
         return None, fault.issues
@@ -130,6 +132,17 @@ def unknown_plugins(loaded: Loaded) -> List[Issue]:
                 f" plugin for {library or 'a library without a name'}", spec.file, spec.line,
                 hint="a package can bring one: see doc/plugins.md")
     return list(unknown.values())
+
+
+def _place_of(file: str, resolver: Resolver) -> str:
+    """A file that exists, or the world that a launch file would find by this name."""
+    if os.path.exists(file) or not file.endswith(ENDINGS):
+        return file
+    try:
+        return find_world(file, resolver)
+    except ResourceNotFoundError as missing:
+        raise InputError([error("file-unreadable", "cannot be read: there is no such file",
+                                file=file, hint=advice_on(missing.uri))]) from None
 
 
 def _document(file: str, any_xacro: bool) -> Tuple[str, Union[str, bytes]]:

@@ -297,3 +297,12 @@ def test_wind_is_not_reported_as_kept(tmp_path):
     path.write_text(sdf("<world name='w'><wind><linear_velocity>3 0 0</linear_velocity></wind>"
                         "<plugin name='p' filename='libWindPlugin.so'/></world>", "1.7"))
     assert check(str(path), Resolver())[1] == []
+
+
+def test_a_world_is_found_by_its_name_and_a_similar_one_is_named(capsys, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    assert main(["check_model", "lab_room.world"]) == 0
+    assert "0 errors" in capsys.readouterr().out
+    assert main(["check_model", "lab_rom.world"]) == 1
+    out = capsys.readouterr().out
+    assert "lab_rom.world: error: cannot be read" in out and "did you mean lab_room.world" in out
