@@ -273,10 +273,10 @@ def test_a_reset_starts_controllers_anew_where_joints_are():
 
 
 def test_a_transmission_without_an_actuator_works_and_is_reported():
-    assert not any("<actuator>" in text for text in Arm().context.said)
+    assert not any("<actuator>" in text for text in Arm().context.log_messages)
     arm = Arm(actuated=False, lift={"type": "position_controllers/JointPositionController",
                                     "joint": "one"})
-    assert [text for text in arm.context.said if "<actuator>" in text] == [
+    assert [text for text in arm.context.log_messages if "<actuator>" in text] == [
         f"transmission '{joint}_trans' of joint '{joint}' has no <actuator>; here controllers can"
         " move the joint, but gazebo_ros_control ignores such a transmission"
         for joint in ("one", "two")]
