@@ -415,7 +415,8 @@ def test_a_falling_box_is_plotted_and_exported(editor, tmp_path):
     falling = [(time, rate) for time, rate in pairs if 0.05 < time < 1.5]
     assert len(falling) > 3
     for time, rate in falling:
-        assert rate == approx(-9.8 * time, rel=0.02)
+        # The clock may be some steps ahead of the state that was read.
+        assert rate == approx(-9.8 * time, rel=0.02, abs=0.05)
     with editor.page.expect_download() as png:
         editor.button("PNG").click()
     png.value.save_as(tmp_path / "plot.png")
