@@ -128,4 +128,5 @@ class Plugins:
         plugin.reset()
         context.advance(0.002)
         plugin.close()
-        return [(made.__name__, shape(said)) for said in context.log_messages[:5]] or [made.__name__]
+        return [(made.__name__, shape(text)) for text in context.log_messages[:5]] or [
+            made.__name__]

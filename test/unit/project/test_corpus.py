@@ -78,5 +78,5 @@ def test_a_file_that_stops_the_reader_is_a_hang(worker, tmp_path):
 @pytest.mark.parametrize("worker", [60.0], indirect=True)
 def test_a_file_that_ends_the_reader_is_a_crash_and_the_next_is_read(worker, tmp_path):
     (tmp_path / "good.sdf").write_text(sdf(BOX, "1.7"))
-    assert worker.read("\0.sdf") == {"end": "crash"}
+    assert worker.read("\0.urdf") == {"end": "crash"}
     assert worker.read(str(tmp_path / "good.sdf"))["issues"] == []
