@@ -39,6 +39,12 @@ AT_REST: AxisState = (0.0, 0.0)
 _SLOWEST = 0.01  # m/s
 
 
+def clamped_vector(vector: Vec3, most: float) -> Vec3:
+    """A vector whose components are within +-`most`."""
+    x, y, z = (max(-most, min(most, value)) for value in vector)
+    return x, y, z
+
+
 class WrenchLaw(Protocol):
     """Computes the wrench that acts in a step. It has no memory, and can be pickled."""
 
@@ -139,13 +145,10 @@ class BodyDrag:
     def in_body_axes(self, pose: Pose, twist: Twist) -> Wrench:
         """Force at the origin of the link and torque, N and N m, in its axes."""
         back = conjugate(pose.orientation)
-        return (self._against(rotate(back, self._clamped(subtract(twist.linear, self.wind))),
-                              self.linear),
-                self._against(rotate(back, self._clamped(twist.angular)), self.angular))
-
-    def _clamped(self, vector: Vec3) -> Vec3:
-        x, y, z = (max(-self.most, min(self.most, value)) for value in vector)
-        return x, y, z
+        velocity = clamped_vector(subtract(twist.linear, self.wind), self.most)
+        spin = clamped_vector(twist.angular, self.most)
+        return (self._against(rotate(back, velocity), self.linear),
+                self._against(rotate(back, spin), self.angular))
 
     @staticmethod
     def _against(motion: Vec3, gains: Vec3) -> Vec3:

@@ -288,8 +288,11 @@ class SimulatedContext(GraphUser):
 
     def scoped(self, link: str) -> str:
         """Return the name of a link of the model in the world."""
-        row = self._rows.link(link)
-        return f"{self.model}::{self.entity.link_names[row - self.entity.first_link_row]}"
+        return f"{self.model}::{self._link_name(link)}"
+
+    def _link_name(self, link: str) -> str:
+        """The name of a link in the description of the model."""
+        return self.entity.link_names[self._rows.link(link) - self.entity.first_link_row]
 
     def joint_spec(self, name: str) -> JointSpec:
         """The description of a joint."""
@@ -350,10 +353,8 @@ class SimulatedContext(GraphUser):
 
     def set_material(self, link: str, visual: str, material: Material) -> None:
         """Show a visual in another material."""
-        row = self._rows.link(link)
-        name = self.entity.link_names[row - self.entity.first_link_row]
         try:
-            self.simulator.models.set_material(self.model, name, visual, material)
+            self.simulator.models.set_material(self.model, self._link_name(link), visual, material)
         except CommandError as fault:
             raise PluginError(str(fault)) from fault
 

@@ -71,7 +71,7 @@ class FakeContext(FakeGraph):
         others: descriptions of the models in the world.
         attached: (parent, child) by the name of the joint.
         world_lights: the lights of the world by name, which a test puts there.
-        materials: what was given to `set_material`, by link and visual.
+        materials: the materials of `set_material`, by link and visual.
         description: description of the model.
         log_messages: the texts of `info` and `warn`, and faults of parameters.
     """

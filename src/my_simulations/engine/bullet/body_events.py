@@ -43,7 +43,7 @@ class BodyObserver:
 
     Attributes:
         events: the events for which `handle_event` is called.
-        body_tables: what is stored by PyBullet's numbers of bodies, or of bodies and links.
+        body_tables: tables of the data, by PyBullet's numbers of bodies, or of bodies and links.
     """
 
     events: ClassVar[FrozenSet[BodyEvent]] = frozenset()

@@ -12,9 +12,10 @@ import math
 from typing import Any, Callable, Dict, NamedTuple, Optional, Sequence
 
 from ...description.transmission import Transmission
+from ...engine.wrench_laws import Wrench
 from ...geometry import Vec3, conjugate, norm, rotate, rpy_from_quat, scale
 from ..context import Context, Ending, PluginError
-from ..flight.body_wrench import NO_WRENCH, Wrench, fill_wrench, hold_wrench
+from ..flight.body_wrench import NO_WRENCH, fill_wrench, hold_wrench
 from ..frames import prefixed, stamped
 from .hardware import Hardware
 from .settings import Settings

@@ -3,22 +3,17 @@ from __future__ import annotations
 
 from typing import Any, Tuple
 
-from ...engine.wrench_laws import BodyWrench
-from ...geometry import Vec3, conjugate, cross, rotate, subtract
+from ...engine.wrench_laws import BodyWrench, Wrench
+from ...geometry import Vec3, conjugate, rotate
 from ..context import Context, Link
-
-Wrench = Tuple[Vec3, Vec3]
-"""Force in N and torque in N m."""
 
 NO_WRENCH: Wrench = ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
 
 
 def push_at_origin(context: Context, link: Link, wrench: Wrench) -> None:
     """Apply a wrench at the origin of a link, given in its present axes, which then stand still."""
-    force, torque = wrench
-    torque = subtract(torque, cross(link.inertial.pose.position, force))
-    turn = link.pose.orientation
-    context.set_wrench(link.name, rotate(turn, force), rotate(turn, torque))
+    com = link.inertial.pose.position
+    context.set_wrench(link.name, *BodyWrench(*wrench).wrench(link.pose, link.twist, com))
 
 
 def hold_wrench(context: Context, link: Link, wrench: Wrench) -> None:
@@ -33,12 +28,6 @@ def body_twist(link: Link) -> Tuple[Vec3, Vec3]:
     """Linear and angular velocity of a link at its origin, in its axes, m/s and rad/s."""
     back, twist = conjugate(link.pose.orientation), link.twist
     return rotate(back, twist.linear), rotate(back, twist.angular)
-
-
-def clamped_vector(vector: Vec3, most: float) -> Vec3:
-    """A vector whose components are within +-`most`."""
-    x, y, z = (max(-most, min(most, value)) for value in vector)
-    return x, y, z
 
 
 def fill_wrench(message: Any, wrench: Wrench) -> None:

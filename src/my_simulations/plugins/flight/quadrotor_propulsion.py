@@ -12,13 +12,14 @@ import math
 from collections import deque
 from typing import Any, Deque, List, NamedTuple, Optional, Sequence, Tuple
 
+from ...engine.wrench_laws import Wrench, clamped_vector
 from ...geometry import Vec3
 from ..base import Plugin
 from ..context import Ending
 from ..finite_messages import finite_only
 from ..frames import stamped
 from ..parameters import namespace_or
-from .body_wrench import Wrench, body_twist, clamped_vector, fill_wrench, push_at_origin
+from .body_wrench import body_twist, fill_wrench, push_at_origin
 from .quadrotor_aerodynamics import MOST_VELOCITY, model_parameters
 
 _PWM_STEPS = 255

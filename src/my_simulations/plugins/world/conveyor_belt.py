@@ -1,4 +1,4 @@
-"""libROSConveyorBeltPlugin.so: a belt that carries what lies on it.
+"""libROSConveyorBeltPlugin.so: a belt that carries bodies.
 
 Parameters, defaults, service and topic are those of the plugin of the ARIAC competition and its
 copies. The belt is a link on a prismatic joint; the joint moves, and jumps back before its upper
