@@ -226,7 +226,8 @@ def test_hostile_programs_change_no_other_mark(tmp_path, monkeypatch):
     (tmp_path / "links").mkdir()
     (tmp_path / "secret.txt").write_text("SECRET")
     (tmp_path / "links" / "secret.txt").symlink_to(tmp_path / "secret.txt")
-    monkeypatch.setenv("A_TOKEN", "SECRET")
+    for name in ("A_TOKEN", "ROS_REGISTRY_LOGIN", "MY_SIMULATIONS_EDITOR_TOKEN"):
+        monkeypatch.setenv(name, "SECRET")
     outside = subprocess.Popen([sys.executable, "-c", "import time; time.sleep(1000)"])
     with socket.create_server(("127.0.0.1", 0)) as server:
         server.setblocking(False)

@@ -14,6 +14,7 @@ from typing import Any, Dict, List
 from ..child_process import child_environment, wait_or_kill
 from ..editor.transport.access_guard import COOKIE
 from ..grading.box import descendants
+from ..grading.permitted_variables import permitted_variables
 from ..grading.program import workspace_paths
 from ..simulator.watchdog import process_time
 from . import relay, student_box
@@ -23,10 +24,7 @@ from .world_states import ENDED, STARTING, STOPPED
 _RELAY_USER = 62999
 _END_S = 30.0
 _MEASURE_S = 3.0
-_DROPPED = ("DISPLAY", "WAYLAND_DISPLAY", "BROWSER", "MY_SIMULATIONS_PARENT",
-            "MY_SIMULATIONS_RECORD", "MAIL", "SSH_AUTH_SOCK", "DBUS_SESSION_BUS_ADDRESS")
-_KEPT_PREFIXES = ("ROS_", "PYTHON", "CMAKE_", "LD_LIBRARY", "PKG_CONFIG", "GAZEBO_", "LANG", "LC_",
-                  "PATH", "MY_SIMULATIONS_", "OMP_", "OPENBLAS_")
+_DROPPED = ("MY_SIMULATIONS_PARENT", "MY_SIMULATIONS_RECORD")
 
 
 class LocalWorld:
@@ -99,8 +97,8 @@ class LocalWorld:
             "relay_user": _RELAY_USER, "descriptors": passed}
 
     def _environment(self, home: str) -> Dict[str, str]:
-        kept = {name: value for name, value in child_environment().items()
-                if name.startswith(_KEPT_PREFIXES) and name not in _DROPPED}
+        kept = {name: value for name, value in permitted_variables(child_environment()).items()
+                if name not in _DROPPED}
         return {**kept, "HOME": home, "USER": self.student.name, "LOGNAME": self.student.name,
                 "ROS_HOME": os.path.join(home, ".ros"), "ROS_MASTER_URI": "http://127.0.0.1:11311",
                 "ROS_IP": "127.0.0.1", "ROS_HOSTNAME": "127.0.0.1", "PYTHONUNBUFFERED": "1",

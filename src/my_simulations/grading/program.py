@@ -15,6 +15,7 @@ from typing import Dict, List, Optional, Sequence, Tuple
 from ..resources.package_files import own_directory
 from . import box, cell
 from .assignment import GradeLimits
+from .permitted_variables import permitted_variables
 
 OUTPUT = "output.txt"
 _FIRST_USER = 61000
@@ -25,10 +26,6 @@ _FIRST_TESTER = 62000
 
 TESTS = "tests"
 """Folder in the box that only the tests of the assignment see."""
-
-_KEPT_VARIABLES = ("PATH", "LD_LIBRARY_PATH", "LANG", "LC_", "TZ", "PYTHON", "PKG_CONFIG_PATH",
-                   "CMAKE_PREFIX_PATH", "CATKIN", "ROS", "GAZEBO_", "MY_SIMULATIONS_")
-"""Beginnings of the names of variables that a program gets: others may hold secrets."""
 
 _LOOK_S = 0.1
 _END_S = 10.0
@@ -187,9 +184,7 @@ def python_error(output: str) -> str:
 
 
 def _environment(account: Account) -> Dict[str, str]:
-    kept = {name: value for name, value in os.environ.items()
-            if name.startswith(_KEPT_VARIABLES) and "TOKEN" not in name}
-    return {**kept, "HOME": account.home,
+    return {**permitted_variables(os.environ), "HOME": account.home,
             "ROS_HOME": os.path.join(account.home, ".ros"), "TMPDIR": account.temporary,
             "PYTHONUNBUFFERED": "1", "USER": "student"}
 
