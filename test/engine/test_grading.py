@@ -134,6 +134,17 @@ def test_a_submission_that_is_too_large_is_told_so(folder):
         folder / "marks" / "students" / "large" / "index.html").read_text()
 
 
+def test_a_replay_that_is_too_large_is_left_out_with_a_note(folder):
+    (folder / "lab.yaml").write_text(LAB.replace("lab: fall", "lab: fall\nlimits: {replay_mb: 0.1}"))
+    submit(folder, "anna", ("ball", 0, 3))
+    _, rows = grade(folder, "anna")
+    assert points(rows["anna"]) == [1, 4, 4, 1, 0]
+    student = folder / "marks" / "students" / "anna"
+    assert not (student / "replay.html").exists()
+    page = (student / "index.html").read_text()
+    assert "there is no replay" in page and "the limit is 0.1 MB" in page
+
+
 def test_names_and_sizes_of_files_harm_no_other_mark(folder):
     submit(folder, "good", ("ball", 0, 3))
     for name in ("a\n,\"<b>", os.fsdecode(b"\xff")):

@@ -174,6 +174,7 @@ class GradeLimits:
         memory_mb: of each process of the submission.
         processes: processes and threads of the submission at a time.
         file_mb: of each file, and of all files together.
+        replay_mb: of the replay; a larger one is left out, with a note.
     """
 
     seconds: float = 600.0
@@ -181,6 +182,7 @@ class GradeLimits:
     memory_mb: float = 2000.0
     processes: int = 256
     file_mb: float = 200.0
+    replay_mb: float = 50.0
 
 
 @dataclass(frozen=True)

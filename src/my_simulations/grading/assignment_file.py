@@ -23,7 +23,8 @@ _KEYS = ("lab", "submission", "world", "models", "services", "record", "sample",
          "checks")
 _RECORDED = re.compile(r"/?[A-Za-z]\w*(/\w+)*(\.\w+(\[\d+\])?)*\Z")
 _READ, _ALL = "read", "all"
-_LIMITS = ("seconds", "processor_seconds", "memory_mb", "processes", "file_mb")
+_LIMITS = ("seconds", "processor_seconds", "memory_mb", "processes", "file_mb",
+           "replay_mb")
 _LONGEST_S = 3600.0
 
 

@@ -42,8 +42,6 @@ REPLAY = "replay.html"
 _MOST_TOPIC_BYTES = 20e6
 """Of all recorded messages."""
 
-_MOST_REPLAY_BYTES = 50e6
-
 
 def main(words: List[str]) -> int:
     """Grade; returns 0 if every check was decided."""
@@ -201,8 +199,10 @@ class Judge:
             self._writer.note(f"there is no replay: {fault}")
             return
         size = os.path.getsize(page)
-        if size > _MOST_REPLAY_BYTES:
-            self._writer.note(f"there is no replay: it has {size * 1e-6:.0f} MB")
+        limit = self._assignment.limits.replay_mb
+        if size > limit * 1e6:
+            self._writer.note(f"there is no replay: it has {size * 1e-6:.1f} MB, the limit is"
+                              f" {limit:g} MB")
             return
         with open(page, "rb") as stream:
             self._writer.file(REPLAY, stream.read())
