@@ -198,6 +198,7 @@ ATTACKS: Dict[str, Callable[[str], str]] = {
     "includes of 14 folders": repeated_includes,
     "OBJ of 3 GB": lambda folder: large_text(folder, "obj"),
     "STL text of 3 GB": lambda folder: large_text(folder, "stl"),
+    "world of 16 000 links": world_of_links,
     "DAE of 3 GB": lambda folder: large_text(folder, "dae"),
 }
 """Writes the files of an attack into a folder and returns the text of its model."""
