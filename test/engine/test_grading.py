@@ -135,7 +135,8 @@ def test_a_submission_that_is_too_large_is_told_so(folder):
 
 
 def test_a_replay_that_is_too_large_is_left_out_with_a_note(folder):
-    (folder / "lab.yaml").write_text(LAB.replace("lab: fall", "lab: fall\nlimits: {replay_mb: 0.1}"))
+    text = LAB.replace("lab: fall", "lab: fall\nlimits: {replay_mb: 0.1}")
+    (folder / "lab.yaml").write_text(text)
     submit(folder, "anna", ("ball", 0, 3))
     _, rows = grade(folder, "anna")
     assert points(rows["anna"]) == [1, 4, 4, 1, 0]
