@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from my_simulations.description.sensor import Noise as NoiseSpec
-from my_simulations.sensing.noise import Noise, noisy_picture
+from my_simulations.sensing.noise import Noise, SampleGenerator, generator, noisy_picture
 
 MANY = 200_000
 
@@ -37,6 +37,19 @@ def test_a_sample_depends_on_seed_sensor_quantity_and_number_and_on_nothing_else
     assert sample() == sample(before=range(7)) == first
     others = [sample(seed=2), sample(sensor="other"), sample(quantity="x"), sample(number=8)]
     assert all(other != first for other in others)
+
+
+def test_a_moved_generator_draws_what_a_new_one_draws():
+    moved = SampleGenerator(1, "s", "q")
+    for sample in (3, 0, (1 << 63) + 5, -2, 3):
+        assert moved.at(sample).normal(size=5).tolist() == generator(1, "s", "q", sample).normal(
+            size=5).tolist()
+        moved.at(sample, 2).integers(10, dtype=np.uint32)   # leaves half a number in its buffer
+    # NumPy's own generator at that counter.
+    key = moved._state["state"]["key"]
+    counter = np.array([0, 0, 7, 2], dtype=np.uint64)
+    plain = np.random.Generator(np.random.Philox(key=key, counter=counter))
+    assert moved.at(7, 2).random(9).tolist() == plain.random(9).tolist()
 
 
 def test_single_values_are_floats_and_what_is_not_finite_stays():

@@ -27,7 +27,7 @@ from ...geometry import (
     rotate,
     subtract,
 )
-from ...sensing.noise import generator
+from ...sensing.noise import SampleGenerator
 from ..base import Plugin
 from ..context import Link, Publication
 from ..drive.odometry import diagonal, fill_pose
@@ -55,6 +55,8 @@ class RotorsOdometry(Plugin):
         self._normal = [p.vector(f"noiseNormal{name}") for name in _QUANTITIES]
         self._uniform = [p.vector(f"noiseUniform{name}") for name in _QUANTITIES]
         self._noisy = any(any(vector) for vector in (*self._normal, *self._uniform))
+        self._draws = SampleGenerator(context.seed, f"{context.model}::{self._link.name}",
+                                      self._frames[1])
         self._covariances = [diagonal(tuple(value ** 2 for vector in pair for value in vector))
                              for pair in (self._normal[:2], self._normal[2:])]
         self._delay = max(0, p.integer("measurementDelay", 0))
@@ -109,8 +111,7 @@ class RotorsOdometry(Plugin):
         if not self._noisy:
             return motion
         pose, twist = motion
-        draws = generator(self.context.seed, f"{self.context.model}::{self._link.name}",
-                          self._frames[1], ns)
+        draws = self._draws.at(ns)
         normal, uniform = draws.standard_normal(12), draws.uniform(-1.0, 1.0, 12)
         errors: List[Vec3] = []
         for number, (stddev, width) in enumerate(zip(self._normal, self._uniform)):

@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 from typing import List, Optional, Sequence
 
-from ...sensing.noise import generator
+from ...sensing.noise import SampleGenerator
 from ..context import Context
 from ..parameters import Parameters
 
@@ -37,8 +37,9 @@ class SensorErrors:
         self.offset, self.drift = read("Offset", 0.0), read("Drift", 0.0)
         self._frequency = read("DriftFrequency", 1.0 / _HOUR_S)
         self.noise, self._scale = read("GaussianNoise", 0.0), read("ScaleError", 1.0)
-        self._name = (context.seed, f"{context.model}::{context.parameters.text('bodyName')}",
-                      f"{prefix or 'value'} {context.parameters.text('topicName')}")
+        self._draws = SampleGenerator(
+            context.seed, f"{context.model}::{context.parameters.text('bodyName')}",
+            f"{prefix or 'value'} {context.parameters.text('topicName')}")
         self._width = width
         self._stride_ns = max(_LEAST_STRIDE_NS, round(1e9 / (
             _STRIDES * max(*self._frequency, 1e-9))))
@@ -78,8 +79,7 @@ class SensorErrors:
         return [a + part * (b - a) for a, b in zip(begin, end)]
 
     def _draw(self, ns: int, purpose: int) -> List[float]:
-        drawn: List[float] = generator(*self._name, ns, purpose).standard_normal(
-            self._width).tolist()
+        drawn: List[float] = self._draws.at(ns, purpose).standard_normal(self._width).tolist()
         return drawn
 
     @property
