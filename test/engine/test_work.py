@@ -6,9 +6,10 @@ import pytest
 from conftest import Lab, ball, box, ground
 from work_count import lines_run
 
-from my_simulations.description.model import Link, Model
+from my_simulations.description.model import Inertial, Link, Model
 from my_simulations.description.shapes import Box, Collision
 from my_simulations.engine.commands import LoadModel, RemoveModel
+from my_simulations.engine.timed_forces import FOREVER, AddTimedForces, TimedWrench
 from my_simulations.geometry import Pose
 
 FEW, MANY = 20, 220
@@ -75,6 +76,28 @@ def test_links_without_collisions_meet_nothing(lab, monkeypatch):
                         lambda uid, index, group, mask: filters.append((group, mask)))
     lab.load(Model("m", links=[Link(f"l{n}") for n in range(4)]))
     assert filters == [(0, 0)] * 4
+
+
+def test_links_without_collisions_at_one_place_are_apart_in_bullets_tree(lab):
+    # The tree sorts bounding boxes by their centers; equal centers make it a list.
+    lab.load(Model("m", links=[Link(f"l{n}") for n in range(500)]))
+    lab.steps(3)
+    bounds = [pybullet.getAABB(pybullet.getBodyUniqueId(n), -1)
+              for n in range(pybullet.getNumBodies())]
+    centers = {tuple(round(a + b, 3) for a, b in zip(low, high)) for low, high in bounds}
+    assert len(centers) == len(bounds) == 500
+    assert all(low[i] > high[i] + 1000.0 for low, high in bounds for i in range(3))
+    assert not pybullet.getOverlappingObjects((-200.0,) * 3, (200.0,) * 3)
+
+
+def test_a_link_without_collisions_falls_and_turns_by_its_own_inertia(lab):
+    model = lab.load(Model("m", links=[Link("link", inertial=Inertial(2.0, ixx=0.1, iyy=0.2,
+                                                                      izz=0.3))]), (0, 0, 9))
+    lab.apply(AddTimedForces((TimedWrench(1, lab.rows[model, "link"], lab.step, FOREVER,
+                                          force=(1.0, 0, 0), torque=(0, 0, 0.06)),)))
+    lab.steps(1000)
+    assert lab.pose(model).position == pytest.approx((0.25, 0.0, 9.0 - 4.9), abs=0.01)
+    assert lab.twist(model).angular == pytest.approx((0.0, 0.0, 0.2), abs=1e-3)
 
 
 def _lines_of_a_fall(step_size: float) -> int:

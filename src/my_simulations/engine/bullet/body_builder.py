@@ -155,7 +155,8 @@ class Builder:
         link, masses = self._model.links[rigid.number], rigid.masses
         at = compose(pose, rigid.model_from_com)
         taken = tuple((piece, self._shapes.take(piece)) for piece in rigid.pieces)
-        places = [(shape, piece_pose(at, piece)) for piece, shape in taken] or [(-1, at)]
+        places = [(shape, piece_pose(at, piece)) for piece, shape in taken]
+        places = places or [(self._shapes.empty.take(), at)]
         uids = [self._create(masses, shape, stand) for shape, stand in places]
         if not rigid.pieces:
             collision_groups.NOTHING.set(uids[0], BASE)  # else Bullet keeps a pair for any two

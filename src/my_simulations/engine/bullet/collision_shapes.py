@@ -36,6 +36,7 @@ from ...geometry import IDENTITY, Pose, compose, multiply, rotate, transform
 from ..convex.hull_points import hull_points, naming_triangles, shrunk
 from ..scratch_folder import Scratch
 from ..surface_pieces import by_surface
+from .empty_shapes import EmptyShapes
 from .face_boxes import FaceBoxes
 
 MAX_SHAPES = 16
@@ -108,6 +109,7 @@ class ShapeFactory:
     """Makes shapes. It passes meshes to PyBullet in scratch files, which `close` removes.
 
     Attributes:
+        empty: shapes of bodies without collisions.
         moments: principal moments of a new rigid body, kg m^2, by its shape number and mass.
     """
 
@@ -117,6 +119,7 @@ class ShapeFactory:
         self._hull_files: "weakref.WeakValueDictionary[str, HullFile]" = (
             weakref.WeakValueDictionary())
         self._faces = FaceBoxes()
+        self.empty = EmptyShapes()
         self._count = 0
         self._unseen = -1
         self._unused: Dict[str, List[int]] = {}
@@ -156,6 +159,7 @@ class ShapeFactory:
         """Discard the shapes after a reset of the simulation; mesh files stay."""
         self._unseen = -1
         self._unused.clear()
+        self.empty.forget()
         self.moments.clear()
 
     def recipes(self, collisions: Sequence[Collision], meshes: MeshTable, frame: Pose,
