@@ -125,7 +125,7 @@ class ClassManager:
             world = monitored.world
             world.poll()
             if world.state == STARTING and monitored.monitor.is_connected:
-                world.state = RUNNING
+                world.state, world.active = RUNNING, time.monotonic()
             if monitored.monitor.people:
                 world.active = time.monotonic()
             if world.is_alive and idle_s and time.monotonic() > world.active + idle_s:
