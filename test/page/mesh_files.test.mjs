@@ -87,4 +87,5 @@ test('a large mesh keeps its form with fewer triangles, a small one is left as i
   const index = Uint32Array.from({length: corners.length / 3}, (_, at) => at);
   assert.deepEqual(coarse(corners, corners, index, 2000).position, position);
   assert.ok(limitFor(1) > limitFor(200) && limitFor(1e6) >= 500);
+  for (const files of [1, 10, 200, 1e6]) assert.ok(limitFor(files, {moving: true}) <= limitFor(files) / 4);
 });

@@ -67,3 +67,58 @@ test('meshes with textures, colors or many corners are drawn alone', () => {
   batches.prepare();
   assert.equal(scene.children.length, 9);
 });
+
+/** How many triangles the meshes of a scene draw. */
+const amount = ({children}) => children.reduce((sum, {geometry: {index, drawRange}}) =>
+  sum + Math.min(index.count, drawRange.count) / 3, 0);
+
+test('meshes have their plainer forms while things move, alone and in one', () => {
+  const material = new MeshBasicMaterial();
+  const withForm = (large) => {
+    const geometry = bare(large ? new SphereGeometry(1, 80, 80) : new SphereGeometry(1, 12, 8));
+    geometry.userData.moving = bare(new BoxGeometry(2, 2, 2));
+    return geometry;
+  };
+  for (const large of [false, true]) {
+    const scene = new Scene();
+    const batches = new Batches(scene, {merging: true});
+    const places = large ? [0, 10] : [0, 1, 2, 3, 4, 10];
+    const items = places.map((x) => batches.add({geometry: withForm(large), material, owner: {},
+      matrix: new Matrix4().makeTranslation(x, 0, 0)}));
+    assert.equal(batches.prepare(), false);
+    const full = amount(scene);
+    assert.equal(full, items.length * items[0].geometry.index.count / 3);
+    assert.equal(batches.prepare(true), true);
+    assert.equal(amount(scene), 12 * items.length);
+    assert.equal(batches.prepare(true), false, 'the same forms as before');
+    items.at(-1).matrix.makeTranslation(20, 0, 0);
+    batches.moved(items.at(-1));
+    batches.prepare(true);
+    if (!large) assert.deepEqual(span(drawn(scene)), [-1, 21]);
+    assert.equal(batches.prepare(false), true);
+    assert.equal(amount(scene), full);
+    if (!large) assert.deepEqual(span(drawn(scene)), [-1, 21], 'moved in both forms');
+  }
+});
+
+test('many copies of a mesh have its plainer form while things move', () => {
+  const material = new MeshBasicMaterial();
+  const geometry = new SphereGeometry(1, 80, 80);
+  geometry.userData.moving = bare(new BoxGeometry(1, 1, 1));
+  const scene = new Scene();
+  const batches = new Batches(scene, {merging: true});
+  const add = () => batches.add({geometry, material, owner: {}, matrix: new Matrix4()});
+  for (let n = 0; n < 10; n += 1) add();
+  assert.equal(batches.prepare(true), true);
+  assert.equal(scene.children[0].geometry, geometry.userData.moving);
+  for (let n = 0; n < 10; n += 1) add();
+  assert.equal(scene.children[0].geometry, geometry.userData.moving);
+  assert.equal(batches.prepare(false), true);
+  assert.equal(scene.children[0].geometry, geometry);
+});
+
+test('a world without plainer forms draws the same while things move', () => {
+  const batches = new Batches(new Scene(), {merging: true});
+  batches.add({geometry: bare(new BoxGeometry(1, 1, 1)), material: new MeshBasicMaterial(), owner: {}, matrix: new Matrix4()});
+  assert.equal(batches.prepare(true), false);
+});

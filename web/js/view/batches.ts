@@ -5,7 +5,7 @@
  */
 import {InstancedMesh, Mesh, DynamicDrawUsage} from 'three';
 import {CASTERS} from './contact_shadows.js';
-import {MergedMesh, mergeable} from './merged_mesh.js';
+import {MergedMesh, mergeable, movingForm} from './merged_mesh.js';
 import {MixedMesh, mixable} from './mixed_mesh.js';
 import type {BufferGeometry, Material, Matrix4, Object3D} from 'three';
 import type {Owner} from './model_views.js';
@@ -42,6 +42,7 @@ class Batch {
   /** All of them in one. */
   #crowd: InstancedMesh|MergedMesh|MixedMesh|null = null;
   #capacity = 0;
+  #moving = false;
 
   constructor(scene: Object3D, sample: Item, {merging, mixed}: {merging: boolean, mixed: boolean}) {
     this.scene = scene;
@@ -78,20 +79,33 @@ class Batch {
     if (!this.items.length) this.#drop();
   }
 
-  /** Before a picture. */
-  prepare() {
-    if (this.#crowd instanceof MixedMesh) this.#crowd.prepare();
+  /**
+   * Before a picture.
+   * @param moving  draw the plainer forms, where there are any
+   * @returns whether that changes what is drawn
+   */
+  prepare(moving: boolean) {
+    const changes = moving !== this.#moving && this.items.some(({geometry}) => movingForm(geometry) !== geometry);
+    this.#moving = moving;
+    if (this.#crowd instanceof MixedMesh) this.#crowd.prepare(moving);
+    else if (changes && this.#crowd) this.#crowd.geometry = this.#form(this.sample.geometry);
+    else if (changes) this.#meshes.forEach((mesh, slot) => { mesh.geometry = this.#form(this.items[slot].geometry); });
+    return changes;
+  }
+
+  #form(geometry: BufferGeometry) {
+    return this.#moving ? movingForm(geometry) : geometry;
   }
 
   move(item: Item) {
     const {slot, matrix, geometry} = item;
-    if (this.#crowd instanceof MixedMesh) this.#crowd.move(slot, item);
+    if (this.#crowd instanceof MixedMesh) this.#crowd.move(slot);
     else if (this.#crowd) {
       this.#crowd.setMatrixAt(slot, matrix);
       if (this.#crowd instanceof InstancedMesh) this.#crowd.instanceMatrix.needsUpdate = true;
     } else {
       const mesh = this.#meshes[slot];
-      mesh.geometry = geometry;
+      mesh.geometry = this.#form(geometry);
       mesh.matrix.copy(matrix);
       mesh.matrixWorldNeedsUpdate = true;
     }
@@ -122,7 +136,7 @@ class Batch {
     if (this.merging && mergeable(geometry, material)) {
       return new MergedMesh(geometry, [material].flat()[0], this.#capacity);
     }
-    const mesh = new InstancedMesh(geometry, material, this.#capacity);
+    const mesh = new InstancedMesh(this.#form(geometry), material, this.#capacity);
     mesh.instanceMatrix.setUsage(DynamicDrawUsage);
     return mesh;
   }
@@ -188,9 +202,15 @@ export class Batches {
     this.#batches.get(item.key)?.move(item);
   }
 
-  /** Write what has changed, before a picture. */
-  prepare() {
-    for (const batch of this.#batches.values()) batch.prepare();
+  /**
+   * Write what has changed, before a picture.
+   * @param moving  draw the plainer forms of meshes, where they have any
+   * @returns whether what is drawn has other forms than before
+   */
+  prepare(moving = false) {
+    let changed = false;
+    for (const batch of this.#batches.values()) changed = batch.prepare(moving) || changed;
+    return changed;
   }
 
   /** Everything that is drawn. */

@@ -2,19 +2,22 @@
  * Meshes with fewer triangles, for browsers that draw without a graphics card. Corners in one cell of
  * a grid become one corner (vertex clustering: Rossignac and Borrel, 1993). Pure.
  */
-/** Triangles of all meshes of a world together. */
-const BUDGET = 120000;
-/** A mesh keeps at least, and at most, so many triangles. */
-const LEAST = 600;
-const MOST = 80000;
+/**
+ * Triangles of all meshes of a world together, and how many a mesh keeps at least and at most: in
+ * pictures at rest, and in those of what moves, in which a processor draws a thousand in a millisecond or two.
+ */
+const REST = {budget: 120000, least: 600, most: 80000};
+const MOVING = {budget: 24000, least: 120, most: 20000};
 /** Cells along the longest side at most: the grid takes 4 bytes for each cell. */
 const MOST_CELLS = 128;
 /** Cosine of the angle up to which a corner has the normal of its cell, so that curves look round. */
 const ROUND = 0.6;
 
 /** The most triangles of a mesh in a world of so many files. */
-export const limitFor = (files: number) => Math.min(MOST, Math.max(LEAST,
-    Math.round(BUDGET / Math.max(files, 1))));
+export const limitFor = (files: number, {moving = false}: {moving?: boolean} = {}) => {
+  const {budget, least, most} = moving ? MOVING : REST;
+  return Math.min(most, Math.max(least, Math.round(budget / Math.max(files, 1))));
+};
 
 /** Three numbers for each corner; three corners for each triangle. */
 export type Shape = {position: Float32Array, normal: Float32Array, index: Uint32Array};

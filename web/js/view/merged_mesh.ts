@@ -11,6 +11,9 @@ const MOST_CORNERS = 256;
 /** Attributes that follow the copy; the others are the same in each. */
 const PLACED = ['position', 'normal'];
 
+/** What is drawn of a geometry while things move. */
+export const movingForm = (geometry: BufferGeometry): BufferGeometry => geometry.userData.moving ?? geometry;
+
 /** Whether copies of a geometry can be merged. */
 export function mergeable(geometry: BufferGeometry, material: Material|Material[]) {
   const {attributes, morphAttributes} = geometry;

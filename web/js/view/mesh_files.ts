@@ -1,6 +1,7 @@
 /** Mesh files, each read once. Coordinates stay as the file has them, in metres; z is up. */
 import {faultText} from '../ui/dialog.js';
 import {frontsFirst} from './fronts_first.js';
+import {movingForm} from './merged_mesh.js';
 import {
   BufferAttribute, BufferGeometry, Camera, DoubleSide, Light, LoadingManager, Mesh, MeshPhongMaterial,
   MeshStandardMaterial, SkinnedMesh,
@@ -236,20 +237,32 @@ function figureOf(root: Object3D) {
 }
 
 /**
- * A part with fewer triangles; the same one where it is small, or has textures, colours, several
+ * A geometry with fewer triangles; null where it has no more, or has textures, colours, several
  * materials or bones.
  */
-function coarser(part: MeshPart, limit: number): MeshPart {
-  const {attributes, groups, index} = part.geometry;
+function coarser({attributes, groups, index}: BufferGeometry, limit: number): BufferGeometry|null {
   const plain = !groups.length && Object.keys(attributes).every((name) => name === 'position' || name === 'normal');
   const {position, normal} = attributes;
-  if (!plain || !(position instanceof BufferAttribute) || !(normal instanceof BufferAttribute)) return part;
+  if (!plain || !(position instanceof BufferAttribute) || !(normal instanceof BufferAttribute)) return null;
   const found = coarse(position.array, normal.array, index?.array ?? null, limit);
-  if (!found) return part;
-  part.geometry.dispose();
-  return {...part, geometry: new BufferGeometry().setAttribute('position', new BufferAttribute(found.position, 3))
+  return found && new BufferGeometry().setAttribute('position', new BufferAttribute(found.position, 3))
     .setAttribute('normal', new BufferAttribute(found.normal, 3))
-    .setIndex(new BufferAttribute(found.index, 1))};
+    .setIndex(new BufferAttribute(found.index, 1));
+}
+
+/** A part with a simplified geometry, and a plainer one for pictures of what moves. */
+function simplified(part: MeshPart, files: number): MeshPart {
+  const simple = coarser(part.geometry, limitFor(files));
+  if (simple) part.geometry.dispose();
+  const geometry = simple ?? part.geometry;
+  const moving = coarser(geometry, limitFor(files, {moving: true}));
+  if (moving) geometry.userData.moving = moving;
+  return {...part, geometry};
+}
+
+function disposeOf({geometry}: MeshPart) {
+  movingForm(geometry).dispose();
+  geometry.dispose();
 }
 
 export class Meshes {
@@ -311,7 +324,7 @@ export class Meshes {
   simplify(simplified: boolean) {
     if (simplified === this.#simplified) return;
     this.#simplified = simplified;
-    for (const {geometry} of [...this.#ready.values()].flat()) geometry.dispose();
+    for (const part of [...this.#ready.values()].flat()) disposeOf(part);
     this.#ready.clear();
     this.#files.clear();
   }
@@ -343,9 +356,8 @@ export class Meshes {
       .then(({found, whole}) => {
         this.#meshes[0] += 1;
         this.#count();
-        const limit = limitFor(this.#meshes[1]);
         const ready = (found ?? []).map((part) => (whole ? {...part, whole} : part))
-          .map((part) => (this.#simplified ? coarser(part, limit) : part));
+          .map((part) => (this.#simplified ? simplified(part, this.#meshes[1]) : part));
         this.#ready.set(url, ready);
         return ready;
       });

@@ -3,7 +3,7 @@
  * about as much as thousands of corners.
  */
 import {BufferAttribute, BufferGeometry, DynamicDrawUsage, Mesh} from 'three';
-import {placeCorners} from './merged_mesh.js';
+import {movingForm, placeCorners} from './merged_mesh.js';
 import type {Material, Matrix4} from 'three';
 
 /** Meshes of more corners are drawn alone, and left out when they are not in sight. */
@@ -26,48 +26,43 @@ export function mixable({attributes, morphAttributes, groups, drawRange}: Buffer
 
 const indicesOf = ({index, attributes}: BufferGeometry) => index?.count ?? attributes.position.count;
 
-export class MixedMesh extends Mesh<BufferGeometry, Material> {
-  override matrixAutoUpdate;
+/** The buffers of some meshes in one. */
+class Buffers {
+  geometry = new BufferGeometry();
+  /** Whether they have to be written again. */
+  stale = true;
+  #form;
   /** Place of the first corner of each mesh. */
   #starts: number[] = [];
-  /** Meshes that are not in the buffers yet; null: all are. */
-  #awaited: Placed[]|null = null;
 
-  constructor(material: Material) {
-    super(new BufferGeometry(), material);
-    this.matrixAutoUpdate = false;
-    this.frustumCulled = false;
-  }
-
-  /** Draws these meshes from the next picture on. */
-  show(meshes: Placed[]) {
-    this.#awaited = meshes;
+  /** @param form  what is drawn of a mesh */
+  constructor(form: (geometry: BufferGeometry) => BufferGeometry) {
+    this.#form = form;
   }
 
   /** Puts a mesh where its matrix says. */
   move(slot: number, {geometry, matrix}: Placed) {
-    if (this.#awaited) return;
     const {position, normal} = this.geometry.attributes as Record<string, BufferAttribute>;
     const start = 3 * this.#starts[slot];
-    placeCorners(geometry, matrix, position.array, normal.array, start);
+    const form = this.#form(geometry);
+    placeCorners(form, matrix, position.array, normal.array, start);
     for (const attribute of [position, normal]) {
-      attribute.addUpdateRange(start, 3 * geometry.attributes.position.count);
+      attribute.addUpdateRange(start, 3 * form.attributes.position.count);
       attribute.needsUpdate = true;
     }
   }
 
-  /** Writes the buffers, before a picture. */
-  prepare() {
-    const meshes = this.#awaited;
-    if (!meshes) return;
-    this.#awaited = null;
-    const corners = meshes.reduce((sum, {geometry}) => sum + geometry.attributes.position.count, 0);
-    const indices = meshes.reduce((sum, {geometry}) => sum + indicesOf(geometry), 0);
+  write(meshes: Placed[]) {
+    if (!this.stale) return;
+    this.stale = false;
+    const placed = meshes.map(({geometry, matrix}) => ({geometry: this.#form(geometry), matrix}));
+    const corners = placed.reduce((sum, {geometry}) => sum + geometry.attributes.position.count, 0);
+    const indices = placed.reduce((sum, {geometry}) => sum + indicesOf(geometry), 0);
     this.#makeRoom(corners, indices);
     const {attributes: {position, normal}, index} = this.geometry as BufferGeometry & {index: BufferAttribute};
     this.#starts = [];
     let [corner, at] = [0, 0];
-    for (const {geometry, matrix} of meshes) {
+    for (const {geometry, matrix} of placed) {
       this.#starts.push(corner);
       placeCorners(geometry, matrix, position.array, normal.array, 3 * corner);
       const count = indicesOf(geometry);
@@ -93,8 +88,43 @@ export class MixedMesh extends Mesh<BufferGeometry, Material> {
     }
     this.geometry.setIndex(new BufferAttribute(new Uint32Array(Math.ceil(SPARE * indices)), 1));
   }
+}
+
+export class MixedMesh extends Mesh<BufferGeometry, Material> {
+  override matrixAutoUpdate;
+  #full = new Buffers((geometry) => geometry);
+  #moving = new Buffers(movingForm);
+  #shown = this.#full;
+  #meshes: Placed[] = [];
+
+  constructor(material: Material) {
+    super(new BufferGeometry(), material);
+    this.matrixAutoUpdate = false;
+    this.frustumCulled = false;
+  }
+
+  /** Draws these meshes from the next picture on; the list is kept. */
+  show(meshes: Placed[]) {
+    this.#meshes = meshes;
+    this.#full.stale = this.#moving.stale = true;
+  }
+
+  /** Puts a mesh where its matrix says. */
+  move(slot: number) {
+    const [shown, other] = this.#shown === this.#full ? [this.#full, this.#moving] : [this.#moving, this.#full];
+    other.stale = true;
+    if (!shown.stale) shown.move(slot, this.#meshes[slot]);
+  }
+
+  /** Writes the buffers, before a picture. @param moving  draw the plainer forms */
+  prepare(moving: boolean) {
+    this.#shown = moving ? this.#moving : this.#full;
+    this.#shown.write(this.#meshes);
+    this.geometry = this.#shown.geometry;
+  }
 
   override dispose() {
-    this.geometry.dispose();
+    this.#full.geometry.dispose();
+    this.#moving.geometry.dispose();
   }
 }

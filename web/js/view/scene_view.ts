@@ -163,6 +163,9 @@ export class View {
   /** Pictures drawn since the page began, for the benchmark. */
   get pictures() { return this.#stage.pictures; }
 
+  /** Triangles of the last picture, with those of its new shadows, for the benchmark. */
+  get drawnTriangles() { return this.#stage.renderer.info.render.triangles; }
+
   /** Pictures drawn in the last second. */
   get fps() { return this.#stage.fps; }
 
@@ -193,10 +196,10 @@ export class View {
     };
     this.#stage.onResize = () => this.#rig.apply();
     this.#stage.onQuality = (full) => this.#lights.soften(full);
-    this.#stage.onBeforeDraw = (now) => {
+    this.#stage.onBeforeDraw = (now, full) => {
       this.#markFirstPicture();
       this.#models.catchUp();
-      batches.prepare();
+      if (batches.prepare(!full)) this.#stage.owe();
       const moving = this.#rig.advance(now);
       this.#forces.update();
       this.#coverWithShadow();

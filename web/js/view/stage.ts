@@ -55,8 +55,11 @@ export class Stage {
   fps = 0;
   /** Pictures since the page began. */
   pictures = 0;
-  /** Called before each picture with its time, ms; true: another one is wanted after it. */
-  onBeforeDraw: (time: number) => boolean = () => false;
+  /**
+   * Called before each picture with its time, ms, and whether it is drawn as well as can be; true: another one is
+   * wanted after it.
+   */
+  onBeforeDraw: (time: number, full: boolean) => boolean = () => false;
   /** Called before shadows are drawn. */
   onShadows: (renderer: WebGLRenderer, scene: Scene) => void = () => {};
   /** Called before a picture with whether it may take its time. */
@@ -285,7 +288,7 @@ export class Stage {
   /** @returns whether another picture is wanted */
   #draw(time: number): boolean {
     const {renderer} = this;
-    const more = this.onBeforeDraw(time);
+    const more = this.onBeforeDraw(time, this.#quality >= this.#best);
     this.onQuality(this.#quality >= 1);
     const shadows = this.#shadowsWanted &&
       (this.#quality >= 1 || time - this.#shadowed > SLOW_SHADOWS);
