@@ -2,7 +2,7 @@
 import {openingTrouble} from './plan_check.js';
 import {distance, fromLocal, minus, tidy, tidyPoint, toLocal} from './plane_geometry.js';
 import {hitOf, itemsWithin, wallNear} from './hit_test.js';
-import {attached, detached, itemOf, placeOf, update, wallYaw} from './plan.js';
+import {attached, detached, isEmpty, itemOf, placeOf, update, wallYaw} from './plan.js';
 import {moveEnd, moveItems} from './plan_moves.js';
 import {NAMES} from './drawing_session.js';
 import {SNAP_ANGLE, snapPolar} from './wall_snap.js';
@@ -20,7 +20,8 @@ const QUARTER = Math.PI / 2;
 
 export class SelectTool extends Tool {
   override name = 'select';
-  override hint = 'Click to select, drag to move, double-click to open the inspector.';
+  override hint = isEmpty(this.session.plan) ? 'Choose Wall on the left, then click from corner to corner.' :
+    'Click to select, drag to move, double-click to open the inspector.';
   #drag: Drag|null = null;
   /** Where a box that selects begins. */
   #box: Point|null = null;
