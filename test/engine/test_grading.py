@@ -1,9 +1,12 @@
 """Grading of world files, from the command line to the pages."""
 from __future__ import annotations
 
+import contextlib
 import csv
+import io
 import json
 import os
+import zipfile
 
 import pytest
 
@@ -144,6 +147,31 @@ def test_a_replay_that_is_too_large_is_left_out_with_a_note(folder):
     assert not (student / "replay.html").exists()
     page = (student / "index.html").read_text()
     assert "there is no replay" in page and "the limit is 0.1 MB" in page
+
+
+def test_archives_are_graded_as_the_folders_that_they_contain(folder):
+    submit(folder, "anna", ("ball", 0, 3))
+    with zipfile.ZipFile(folder / "ben.zip", "w") as packed:
+        packed.write(folder / "anna" / "a.world", "Lab 1/a.world")
+        packed.writestr("Lab 1/old/b.world", "<sdf/>")
+    with zipfile.ZipFile(folder / "bomb.zip", "w", zipfile.ZIP_DEFLATED) as packed:
+        packed.writestr("a.world", bytes(300_000_000))
+    _, rows = grade(folder, "anna", "ben.zip", "bomb.zip")
+    assert points(rows["anna"]) == points(rows["ben"]) == [1, 4, 4, 1, 0]
+    assert points(rows["bomb"]) == [0, 0, 0, 0, 0] and rows["bomb"]["status"] == "graded"
+    students = folder / "marks" / "students"
+    page = (students / "ben" / "index.html").read_text()
+    assert "Lab 1/a.world was graded" in page and "*.world: Lab 1/old/b.world" in page
+    assert "cannot be unpacked: the archive contains more than" in (
+        students / "bomb" / "index.html").read_text()
+    assert "ben: 10 of 11, unchanged" in graded_again(folder, "ben.zip")
+
+
+def graded_again(folder, *words):
+    """What a second grading reports."""
+    with contextlib.redirect_stderr(io.StringIO()) as said:
+        grade(folder, *words)
+    return said.getvalue()
 
 
 def test_names_and_sizes_of_files_harm_no_other_mark(folder):

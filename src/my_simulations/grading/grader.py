@@ -11,11 +11,13 @@ from typing import Callable, Dict, List, Optional, Sequence
 
 from .. import __version__
 from ..errors import CommandError
+from ..resources.database.archive import ArchiveError
 from ..simulator.safe_file import write_atomically
 from .assignment import Assignment, Rostest
 from .box_process import GradingStoppedError, grade_in_box
 from .mark import FAILED, GRADED, Mark, all_failed, mark_of
 from .submission import Submission, content_key, size_of
+from .unpacking import unpacked
 
 STUDENTS = "students"
 """Folder of the students' folders."""
@@ -100,8 +102,12 @@ class Grader:
                                   f"the submission has {size / 1e6:.0f} MB, the limit is"
                                   f" {limit / 1e6:.0f} MB")
             else:
-                mark = grade_in_box(self._assignment, submission, slot, hidden, folder,
-                                    self._namespaces, self._stop)
+                with unpacked(submission, folder, limit) as content:
+                    mark = grade_in_box(self._assignment, content, slot, hidden, folder,
+                                        self._namespaces, self._stop)
+        except ArchiveError as fault:
+            mark = all_failed(self._assignment, submission.student, GRADED,
+                              f"the submission cannot be unpacked: {fault}")
         except (OSError, ValueError) as fault:   # such as a full disk: one submission, not all
             mark = all_failed(self._assignment, submission.student, FAILED,
                               f"the grading program failed: {fault}")

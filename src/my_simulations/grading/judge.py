@@ -22,7 +22,6 @@ from ..resources.resolver import Resolver
 from .assignment import Assignment, Launch, Rostest, Timed
 from .assignment_file import read_assignment
 from .file_checks import (
-    MISSING,
     NO_WORLD,
     WorldFile,
     check_files,
@@ -34,7 +33,7 @@ from .mark import CheckResult, GradingError, result
 from .program import OUTPUT, Program, submission_account
 from .program_graph import RosGraph, graph_environment
 from .result_stream import ResultWriter
-from .submission import all_matching, matching
+from .submission import all_matching, ambiguity, matching, reason_for_no_match
 from .world_run import WorldRun, world_choice_of
 
 _EVERY_S = 1.0 / 30.0   # between two states of the replay, s of sim time
@@ -96,6 +95,7 @@ class Judge:
         name = matching(self._folder, form.world) if form.world else ""
         if name:
             file = read_world_file(self._folder, name, self._resolver)
+            self._note(ambiguity(self._folder, form.world))
         for found in check_files(self._assignment, file):
             self._writer.result(found)
         if self._assignment.of(Timed):
@@ -122,8 +122,14 @@ class Judge:
 
     def _run_world(self, path: str, name: str) -> None:
         if not path:
-            self._refuse_timed(MISSING)
+            self._refuse_timed(reason_for_no_match(self._folder, self._assignment.form.world))
             return
+        patterns = self._assignment.form.run
+        program = matching(self._folder, patterns)
+        if patterns and not program:
+            self._refuse_timed(reason_for_no_match(self._folder, patterns))
+            return
+        self._note(ambiguity(self._folder, patterns))
         log = os.path.join(self._own, "state.log")
         try:
             # With a program, the node of the graph runs the plugins of robots.
@@ -131,7 +137,7 @@ class Judge:
             with OpenWorld(world_choice_of(self._assignment, path), resolver=self._resolver,
                            robots=robots) as world:
                 with contextlib.closing(LogRecord(log)) as record:
-                    self._decide(world, name, ThinnedRecorder(record))
+                    self._decide(world, name, program, ThinnedRecorder(record))
         except GradingError:
             raise
         except InputError as fault:
@@ -144,14 +150,9 @@ class Judge:
             return
         self._send_replay(log)
 
-    def _decide(self, world: OpenWorld, name: str, record: ThinnedRecorder) -> None:
-        """Run the world, with the program if the submission has one."""
-        patterns = self._assignment.form.run
-        file = matching(self._folder, patterns) if patterns else ""
-        if patterns and not file:
-            self._refuse_timed(f"the submission contains no {' or '.join(patterns)}")
-            return
-        if not patterns:
+    def _decide(self, world: OpenWorld, name: str, file: str, record: ThinnedRecorder) -> None:
+        """Run the world, with the program `file` if the assignment asks for one."""
+        if not file:
             WorldRun(self._assignment, world, name).run(record, self._writer.result)
             return
         with contextlib.closing(RosGraph(self._assignment, world, self._resolver)) as graph:
@@ -159,8 +160,8 @@ class Judge:
                 graph.run(program)
                 with self._recorded_topics(world, graph, record.record):
                     WorldRun(self._assignment, world, name, graph).run(record, self._writer.result)
-                for note in filter(None, (program.why_ended(), graph.busy, graph.refused)):
-                    self._writer.note(note)
+                for note in (program.why_ended(), graph.busy, graph.refused):
+                    self._note(note)
                 self._writer.file(OUTPUT, program.output())
 
     @contextlib.contextmanager
@@ -177,12 +178,16 @@ class Judge:
 
     def _program(self, file: str, uri: str) -> Program:
         path = os.path.join(self._folder, file)
-        command = [sys.executable, path] if file.endswith(".py") else [path]
+        command = [sys.executable, path] if file.lower().endswith(".py") else [path]
         packages = os.pathsep.join([*package_folders(self._folder),
                                     os.environ.get("ROS_PACKAGE_PATH", "")])
         return Program(command, os.path.dirname(path), self._scratch, self._assignment.limits,
                        submission_account(self._scratch, self._slot),
                        {**graph_environment(uri), "ROS_PACKAGE_PATH": packages})
+
+    def _note(self, text: str) -> None:
+        if text:
+            self._writer.note(text)
 
     def _refuse_timed(self, reason: str, file: str = "", line: int = 0) -> None:
         found: List[CheckResult] = [result(check, 0.0, f"the world does not run: {reason}", file,

@@ -18,7 +18,7 @@ from .mark import CheckResult, GradingError, result
 from .program import TESTS, Program, submission_account, tester_account
 from .program_graph import free_port, graph_environment, start_master
 from .rostest_parts import STARTED, split_rostest
-from .submission import matching
+from .submission import matching, reason_for_no_match
 
 _POLL_S = 0.1
 _START_S = 120.0      # until all nodes are there
@@ -49,7 +49,7 @@ class LaunchChecks:
         """Start a launch file; it passes if its nodes run for the time of the check."""
         name = matching(self._folder, check.file)
         if not name:
-            return result(check, 0.0, f"the submission contains no {' or '.join(check.file)}")
+            return result(check, 0.0, reason_for_no_match(self._folder, check.file))
         port = free_port()
         uri = f"http://127.0.0.1:{port}/"
         words = ["roslaunch", "-p", str(port), os.path.join(self._folder, name),

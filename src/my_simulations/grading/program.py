@@ -31,7 +31,7 @@ _LOOK_S = 0.1
 _END_S = 10.0
 _KEPT_OUTPUT = 200_000
 _LONGEST_ERROR = 300
-_PLACE = re.compile(r'File "([^"\n]+)", line (\d+)')
+_PLACE = re.compile(r'(?:File "|in file )([^"\n]+?)"?(?:,| on) line (\d+)')
 _ERROR = re.compile(r"[\w.]+(Error|Exception)\b")
 
 

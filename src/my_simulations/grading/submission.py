@@ -11,6 +11,12 @@ from typing import Dict, Iterator, List, Sequence, Tuple
 from ..errors import CommandError
 
 _CHUNK = 1 << 20
+_SHOWN_FILES = 5
+
+ARCHIVES = {".zip": "zip", ".tar.gz": "tar", ".tgz": "tar"}
+"""Endings of archives that are unpacked, and their kinds."""
+
+_MAC_FOLDER = "__MACOSX"   # what macOS adds to zip files: it is not of the student
 
 
 @dataclass(frozen=True)
@@ -19,7 +25,7 @@ class Submission:
 
     Attributes:
         student: name, unique in a run: that of the folder, or of the file without its ending.
-        path: absolute path of the folder or file.
+        path: absolute path of the folder, file or archive.
     """
 
     student: str
@@ -38,7 +44,7 @@ def submissions_of(paths: Sequence[str]) -> List[Submission]:
         if not os.path.exists(full):
             raise CommandError(f"there is no submission {path}")
         name = os.path.basename(full)
-        student = name if os.path.isdir(full) else os.path.splitext(name)[0]
+        student = name if os.path.isdir(full) else _without_ending(name)
         if not student:
             raise CommandError(f"{path} has no name that could be a student's")
         if student in found:
@@ -46,6 +52,13 @@ def submissions_of(paths: Sequence[str]) -> List[Submission]:
                                f" {full}")
         found[student] = Submission(student, full)
     return list(found.values())
+
+
+def _without_ending(name: str) -> str:
+    for ending in ARCHIVES:
+        if name.lower().endswith(ending):
+            return name[:-len(ending)]
+    return os.path.splitext(name)[0]
 
 
 def regular_files(path: str) -> Iterator[Tuple[str, str]]:
@@ -58,6 +71,7 @@ def regular_files(path: str) -> Iterator[Tuple[str, str]]:
         return
     for folder, folders, names in os.walk(path):
         folders[:] = sorted(name for name in folders if not name.startswith(".")
+                            and name != _MAC_FOLDER
                             and not os.path.islink(os.path.join(folder, name)))
         for name in sorted(names):
             full = os.path.join(folder, name)
@@ -86,17 +100,50 @@ def matching(folder: str, patterns: Sequence[str]) -> str:
     """The first file of a submission that fits one of the patterns; "" for none.
 
     A pattern is a path in the submission, or a name alone, which is looked for in all folders;
-    earlier patterns and shorter paths come first.
+    earlier patterns, names in the same case, and shorter paths come first. Hidden files are left
+    out.
     """
     return next(iter(all_matching(folder, patterns)), "")
 
 
 def all_matching(folder: str, patterns: Sequence[str]) -> List[str]:
     """All files of a submission that fit one of the patterns, in the order of `matching`."""
-    names = sorted((relative for relative, _ in regular_files(folder)),
+    return list(dict.fromkeys(name for found in _by_pattern(folder, patterns) for name in found))
+
+
+def ambiguity(folder: str, patterns: Sequence[str]) -> str:
+    """Which file `matching` has chosen, if others fit the same pattern; "" if none does."""
+    for pattern, found in zip(patterns, _by_pattern(folder, patterns)):
+        if len(found) > 1:
+            return (f"{found[0]} was graded; the submission contains more files that fit {pattern}:"
+                    f" {_listed(found[1:])}")
+        if found:
+            return ""
+    return ""
+
+
+def reason_for_no_match(folder: str, patterns: Sequence[str]) -> str:
+    """Why `matching` has found nothing."""
+    names = [relative for relative, _ in regular_files(folder)]
+    content = f"it contains {_listed(names)}" if names else "it is empty"
+    return f"the submission contains no {' or '.join(patterns)}; {content}"
+
+
+def _listed(names: Sequence[str]) -> str:
+    more = len(names) - _SHOWN_FILES
+    return ", ".join(names[:_SHOWN_FILES]) + (f" and {more} more" if more > 0 else "")
+
+
+def _by_pattern(folder: str, patterns: Sequence[str]) -> List[List[str]]:
+    names = sorted((relative for relative, _ in regular_files(folder)
+                    if not os.path.basename(relative).startswith(".")),
                    key=lambda name: (name.count(os.sep), name))
-    found = [name for pattern in patterns for name in names if _fits(name, pattern)]
-    return list(dict.fromkeys(found))
+    found = []
+    for pattern in patterns:
+        same_case = [name for name in names if _fits(name, pattern)]
+        found.append(same_case or [name for name in names
+                                   if _fits(name.lower(), pattern.lower())])
+    return found
 
 
 def _fits(name: str, pattern: str) -> bool:

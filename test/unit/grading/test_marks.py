@@ -17,8 +17,10 @@ from my_simulations.grading.program import python_error
 from my_simulations.grading.result_stream import ResultReader, ResultWriter
 from my_simulations.grading.submission import (
     all_matching,
+    ambiguity,
     content_key,
     matching,
+    reason_for_no_match,
     regular_files,
     submissions_of,
 )
@@ -125,6 +127,23 @@ def test_submissions_are_named_and_their_content_decides(tmp_path):
         submissions_of([str(tmp_path / "nobody")])
 
 
+def test_names_in_another_case_and_hidden_files(tmp_path):
+    for name in ("._a.py", "Go.PY", "b.py", "__MACOSX/lab/c.py", ".git/d.py", "e/go.py"):
+        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / name).write_text("")
+    folder = str(tmp_path)
+    assert matching(folder, ("go.py",)) == "e/go.py"
+    assert matching(folder, ("GO.py", "*.py")) == "Go.PY"
+    assert all_matching(folder, ("*.py",)) == ["b.py", "e/go.py"]
+    assert ambiguity(folder, ("b.py", "*.py")) == ""
+    assert ambiguity(folder, ("x.py", "*.py")) == (
+        "b.py was graded; the submission contains more files that fit *.py: e/go.py")
+    assert reason_for_no_match(folder, ("x.py", "y.py")).endswith(
+        "no x.py or y.py; it contains ._a.py, Go.PY, b.py, e/go.py")
+    (tmp_path / "empty").mkdir()
+    assert reason_for_no_match(str(tmp_path / "empty"), ("x.py",)).endswith("it is empty")
+
+
 def test_links_and_pipes_are_no_files_of_a_submission(tmp_path):
     (tmp_path / "a.txt").write_text("a")
     (tmp_path / "secret").symlink_to("/etc/passwd")
@@ -140,5 +159,7 @@ def test_the_error_of_a_program_has_its_file_and_line():
 SyntaxError: '(' was never closed
 """
     assert python_error(output) == "go.py:7: SyntaxError: '(' was never closed"
+    encoding = "SyntaxError: Non-UTF-8 code starting with '\\xf6' in file /tmp/go.py on line 3"
+    assert python_error(encoding) == f"go.py:3: {encoding}"
     assert python_error("done\n") == python_error("") == python_error("ValueError: x") == ""
     assert len(python_error(output.replace("closed", 1000 * "x"))) == 300

@@ -42,10 +42,35 @@ def unpack(kind: str, archive: str, folder: str, name: str, limits: Limits, unti
     Raises:
         ArchiveError: the archive is rejected.
     """
+    extract(kind, archive, folder, limits, until, name=name)
+    unpacked = os.path.join(folder, name)
+    if not any(os.path.isfile(os.path.join(unpacked, config)) for config in _CONFIGS):
+        raise ArchiveError(f"the archive does not contain {os.path.join(name, _CONFIGS[0])}")
+    return unpacked
+
+
+def extract(kind: str, archive: str, folder: str, limits: Limits, until: float, *, name: str = "",
+            skips_links: bool = False) -> None:
+    """Unpack an archive of any content, with the limits of `unpack`.
+
+    Args:
+        kind: `tar` (gzipped) or `zip`.
+        archive: path of the file.
+        folder: destination, which is created.
+        limits: limits of files and bytes.
+        until: `time.monotonic()` at which to give up.
+        name: the only top-level folder that the archive may contain; "" for any.
+        skips_links: leave out links and special files instead of rejecting the archive, accept
+            backslashes between folders, and keep permissions to execute.
+
+    Raises:
+        ArchiveError: the archive is rejected.
+    """
     os.makedirs(folder)
     left = max(0.01, until - time.monotonic())
     task = {"kind": kind, "archive": archive, "folder": folder, "name": name,
-            "files": limits.files, "size": limits.unpacked_bytes, "seconds": int(left) + 1}
+            "files": limits.files, "size": limits.unpacked_bytes, "seconds": int(left) + 1,
+            "skips_links": skips_links}
     try:
         done = subprocess.run([sys.executable, "-I", "-S", _WORKER, json.dumps(task)],
                               stdin=subprocess.DEVNULL, capture_output=True, timeout=left,
@@ -56,10 +81,6 @@ def unpack(kind: str, archive: str, folder: str, name: str, limits: Limits, unti
         said = done.stdout.decode("utf-8", "replace").strip()
         raise ArchiveError(said or "unpacking the archive exceeded 256 MB of memory or the time"
                            f" limit (status {done.returncode})")
-    unpacked = os.path.join(folder, name)
-    if not any(os.path.isfile(os.path.join(unpacked, config)) for config in _CONFIGS):
-        raise ArchiveError(f"the archive does not contain {os.path.join(name, _CONFIGS[0])}")
-    return unpacked
 
 
 def install(place: str, make: Callable[[str], str]) -> None:

@@ -22,8 +22,9 @@ except ImportError:   # a Python without liblzma, whose zipfile refuses such ent
 MEMORY = 256 << 20
 _CHUNK = 1 << 16
 
-Entry = Tuple[str, str, int, Any]
-"""Name, kind (`file`, `folder`, `other`), size in the header, and a function that opens it."""
+Entry = Tuple[str, str, int, Any, bool]
+"""Name, kind (`file`, `folder`, `encrypted`, `other`), size in the header, a function that opens
+it, and whether it can be executed."""
 
 
 class ArchiveRefusedError(Exception):
@@ -51,7 +52,8 @@ class _Count:
                           f" {self._most_bytes} bytes")
 
 
-def unpack(kind: str, archive: str, folder: str, name: str, files: int, size: int) -> None:
+def unpack(kind: str, archive: str, folder: str, name: str, files: int, size: int,
+           skips_links: bool = False) -> None:
     """Create the folders and regular files of an archive below `folder`.
 
     Args:
@@ -61,6 +63,7 @@ def unpack(kind: str, archive: str, folder: str, name: str, files: int, size: in
         name: the only top-level folder that the archive may contain; "" for any.
         files: largest number of entries.
         size: largest number of bytes in total.
+        skips_links: as of `extract` in archive.py.
 
     Raises:
         ArchiveRefusedError: the archive is rejected.
@@ -69,18 +72,19 @@ def unpack(kind: str, archive: str, folder: str, name: str, files: int, size: in
     if kind == "zip":
         with zipfile.ZipFile(archive) as packed:
             for entry in _of_zip(packed):
-                _one(entry, folder, name, count)
+                _one(entry, folder, name, count, skips_links)
         return
     with tarfile.open(archive, "r:gz") as tar:
         for entry in _of_tar(tar):
-            _one(entry, folder, name, count)
+            _one(entry, folder, name, count, skips_links)
     _read_to_end(archive, size + (files + 2) * 1024 + (1 << 20))
 
 
 def _of_tar(packed: tarfile.TarFile) -> Iterator[Entry]:
     for member in packed:
         kind = "folder" if member.isdir() else "file" if member.isreg() else "other"
-        yield member.name, kind, member.size, lambda m=member: packed.extractfile(m)
+        yield (member.name, kind, member.size, lambda m=member: packed.extractfile(m),
+               bool(member.mode & 0o111))
         # tarfile keeps every member in memory, with its headers.
         packed.members = []  # type: ignore[attr-defined]
 
@@ -89,16 +93,22 @@ def _of_zip(packed: zipfile.ZipFile) -> Iterator[Entry]:
     for member in packed.infolist():
         form = stat.S_IFMT(member.external_attr >> 16)
         kind = ("folder" if member.is_dir() else
-                "file" if form in (0, stat.S_IFREG) and not member.flag_bits & 1 else "other")
-        yield member.orig_filename, kind, member.file_size, lambda m=member: packed.open(m)
+                "encrypted" if member.flag_bits & 1 else
+                "file" if form in (0, stat.S_IFREG) else "other")
+        yield (member.orig_filename, kind, member.file_size, lambda m=member: packed.open(m),
+               bool(member.external_attr >> 16 & 0o111))
 
 
-def _one(entry: Entry, folder: str, name: str, count: _Count) -> None:
-    path, kind, size, opened = entry
+def _one(entry: Entry, folder: str, name: str, count: _Count, skips_links: bool) -> None:
+    path, kind, size, opened, runs = entry
     count.entry(size)
-    target = _safe_path(path, kind, folder, name)
+    if skips_links and kind == "other":
+        return
+    target = _safe_path(path.replace("\\", "/") if skips_links else path, kind, folder, name)
     if target is not None:
         _write(opened(), path, target, count)
+        if skips_links and runs:
+            os.chmod(target, 0o755)
 
 
 def _safe_path(path: str, kind: str, folder: str, name: str) -> Optional[str]:
@@ -112,6 +122,8 @@ def _safe_path(path: str, kind: str, folder: str, name: str) -> Optional[str]:
     if kind == "folder":
         os.makedirs(target, exist_ok=True)
         return None
+    if kind == "encrypted":
+        raise ArchiveRefusedError(f"{path!r} is encrypted")
     if kind != "file" or len(parts) < (2 if name else 1):
         raise ArchiveRefusedError(f"{path!r} is neither a file nor a folder")
     return target

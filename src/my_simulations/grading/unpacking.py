@@ -1,0 +1,50 @@
+"""Unpacks submissions that are archives, as learning platforms hand them out."""
+from __future__ import annotations
+
+import contextlib
+import os
+import tempfile
+import time
+from typing import Iterator
+
+from ..resources.database.archive import extract
+from ..resources.database.http_download import Limits
+from .submission import ARCHIVES, Submission, regular_files
+
+_MOST_FILES = 20000
+_SECONDS = 120.0
+
+
+@contextlib.contextmanager
+def unpacked(submission: Submission, folder: str, most_bytes: int) -> Iterator[Submission]:
+    """Provide the content of a submission, which is unpacked if it is an archive.
+
+    An archive is a submission if it is handed in itself, or as the only file of a folder.
+
+    Args:
+        submission: the submission as it was handed in.
+        folder: existing folder; contains the unpacked files until the `with` block ends. No other
+            submission may see it.
+        most_bytes: limit of all unpacked files.
+
+    Raises:
+        ArchiveError: the archive is damaged, too large, encrypted, or writes outside of its folder.
+    """
+    archive = archive_of(submission)
+    if not archive:
+        yield submission
+        return
+    kind = next(kind for ending, kind in ARCHIVES.items() if archive.lower().endswith(ending))
+    with tempfile.TemporaryDirectory(prefix=".unpacked_", dir=folder) as above:
+        path = os.path.join(above, "files")
+        extract(kind, archive, path, Limits(files=_MOST_FILES, unpacked_bytes=most_bytes),
+                time.monotonic() + _SECONDS, skips_links=True)
+        yield Submission(submission.student, path)
+
+
+def archive_of(submission: Submission) -> str:
+    """Path of the archive that a submission consists of; "" for none."""
+    files = [full for relative, full in regular_files(submission.path)
+             if not os.path.basename(relative).startswith(".")]
+    is_archive = len(files) == 1 and files[0].lower().endswith(tuple(ARCHIVES))
+    return files[0] if is_archive else ""
