@@ -118,6 +118,20 @@ SAID = {"memory": "more memory than 1000 MB", "loop": "computes without a pause"
         "network": "Connection refused", "read": "end", "links": "False"}
 """What the page of the student, or the output to which it leads, says of an attack."""
 
+FEEDBACK = """import rospy
+from geometry_msgs.msg import Twist
+from nav_msgs.msg import Odometry
+
+rospy.init_node("feedback")
+command = rospy.Publisher("/cmd_vel", Twist, queue_size=1)
+def follow(odometry):
+    twist = Twist()
+    twist.linear.x = 0.5 - 0.5 * odometry.pose.pose.position.x
+    twist.angular.z = 0.2
+    command.publish(twist)
+rospy.Subscriber("/odom", Odometry, follow)
+rospy.spin()
+"""
 QUICK = f"""submission: {{run: go.py}}
 world: worlds/empty.world
 {MODELS}checks:
@@ -207,6 +221,19 @@ def test_a_robot_is_driven_by_its_topic_and_its_plugins_run_once(tmp_path):
     # One command more or less, each 0.1 s, changes the way by 3 %.
     assert points(rows["other"], "way")[0] == pytest.approx(points(rows["driver"], "way")[0],
                                                             rel=0.1)
+
+
+def test_programs_that_answer_messages_get_equal_marks_beside_busy_processes(tmp_path):
+    names = ("one", "two", "three", "four")
+    busy = [subprocess.Popen([sys.executable, "-c", "while True: pass"]) for _ in range(4)]
+    try:
+        rows, _ = grade(tmp_path, ROBOT, {name: FEEDBACK for name in names}, "--jobs", "2")
+    finally:
+        for process in busy:
+            process.kill()
+            process.wait()
+    assert [rows[name] for name in names] == [{**rows["one"], "student": name} for name in names]
+    assert points(rows["one"], "moves", "odometry") == [2, 1]
 
 
 def test_the_replay_contains_topics_of_the_assignment(tmp_path):

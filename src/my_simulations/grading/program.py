@@ -10,7 +10,7 @@ import subprocess
 import sys
 import threading
 from dataclasses import dataclass
-from typing import Dict, List, Optional, Sequence, Tuple
+from typing import Dict, Iterable, Iterator, List, Optional, Sequence, Set, Tuple
 
 from ..resources.package_files import own_directory
 from . import box, cell
@@ -127,16 +127,32 @@ class Program:
 
     def interrupt(self) -> None:
         """Ask the program to end, as Ctrl-C does."""
-        for pid in box.descendants(self.pid):
+        self._signal(box.descendants(self.pid), signal.SIGINT)
+
+    @contextlib.contextmanager
+    def suspended(self) -> Iterator[None]:
+        """Stop all its processes meanwhile; what is sent to them waits in their sockets."""
+        stopped: Set[int] = set()
+        found = set(box.descendants(self.pid))
+        while found - stopped and len(stopped) <= self._limits.processes:
+            self._signal(found - stopped, signal.SIGSTOP)
+            stopped |= found
+            found = set(box.descendants(self.pid))   # a process may have started another one
+        try:
+            yield
+        finally:
+            self._signal(stopped, signal.SIGCONT)
+
+    @staticmethod
+    def _signal(pids: Iterable[int], number: int) -> None:
+        for pid in pids:
             with contextlib.suppress(ProcessLookupError, PermissionError):
-                os.kill(pid, signal.SIGINT)
+                os.kill(pid, number)
 
     def close(self) -> None:
         """Kill the program with all its processes."""
         self._ended.set()
-        for pid in box.descendants(self.pid):
-            with contextlib.suppress(ProcessLookupError, PermissionError):
-                os.kill(pid, signal.SIGKILL)
+        self._signal(box.descendants(self.pid), signal.SIGKILL)
         with contextlib.suppress(subprocess.TimeoutExpired):
             self._process.wait(_END_S)
         self._process.kill()

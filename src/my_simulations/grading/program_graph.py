@@ -59,15 +59,22 @@ class RosGraph:
         self._lockstep.start(lambda: self._world.step(1))
 
     def step(self, steps: int) -> None:
-        """Make steps, then wait until the program has done what follows from them."""
+        """Make steps, then wait until the program has done what follows from them.
+
+        It is stopped during the steps: else the step at which a command takes effect would depend
+        on how soon the program has got the messages of the steps before it.
+        """
         size = self._world.step_size
         at_once = max(1, round(_STEP_S / size))
         while steps > 0:
             count = min(steps, at_once)
-            self._world.step(count)
             steps -= count
-            if self._lockstep is not None:
-                self._lockstep.wait(count * size)
+            if self._program is None or self._lockstep is None:
+                self._world.step(count)
+                continue
+            with self._program.suspended():
+                self._world.step(count)
+            self._lockstep.wait(count * size)
         if time.monotonic() > self._upkeep + _UPKEEP_S:
             self._upkeep = time.monotonic()
             self._node.keep_up()
