@@ -81,8 +81,7 @@ class BulletBackend:
             SetMotors: lambda command: self._helpers.motors.set(command.motors),
             SetPlanarVelocities: lambda command: self._helpers.planar.set(command.velocities),
             ReadContacts: lambda command: read_contacts(
-                self._bodies, command.limit, self._helpers.sliding.load,
-                self._helpers.sliding.friction, self._helpers.forces.slip.friction),
+                self._bodies, command.limit, self._helpers.wheel_friction),
             SetWheelSlips: self._set_wheel_slips,
             ReadJointWrenches: lambda command: self._helpers.wrenches.read(command),
             SetServos: lambda command: self._helpers.forces.servos.set(
@@ -339,8 +338,7 @@ class BulletBackend:
         for wheel in command.wheels:
             if wheel.row not in self._rows or wheel.joint_row not in self._axes:
                 raise CommandRefusedError("the link or joint of the wheel does not exist")
-            self._helpers.sliding.leave(*self._rows[wheel.row])
-        self._helpers.forces.slip.set_wheels(command.wheels)
+        self._helpers.wheel_friction.set_slips(command.wheels)
 
     def _hold(self, command: PinModels) -> None:
         self._helpers.holds.set(body for number in command.model_ids

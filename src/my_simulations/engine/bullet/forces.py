@@ -27,7 +27,6 @@ from ..timed_forces import TimedEffort, TimedForce, TimedWrench
 from ..wrench_laws import AT_REST, WrenchLaw
 from .bodies import Axis, Body, Part, set_sleep
 from .body_events import BodyEvent
-from .force_dependent_slip import ForceDependentSlip
 from .implicit_axes import ImplicitAxes, Motor
 from .joint_pid import MOST_EFFORT, PidController
 from .joint_servos import JointServos
@@ -76,11 +75,9 @@ class Forces(StepHelper):
         self._resting: Dict[int, ImplicitAxes] = {}   # dampers of bodies that are fixed at rest
         self._limits: Dict[int, Tuple[float, float]] = {}
         self.servos = JointServos(self._axes, wake, release)
-        self.slip = ForceDependentSlip()
 
     def add(self, body: Body) -> None:
         """Register the rows of a new body."""
-        self.slip.add(body)
         for part in body.parts:
             self._parts[part.row] = (body, part)
             if not part.gravity and body.moves:
@@ -124,7 +121,6 @@ class Forces(StepHelper):
 
     def forget(self, body: Body) -> None:
         """Drop a body and every timed force on it."""
-        self.slip.forget(body)
         self.set_implicit(body, None)
         self.servos.forget(body)
         rows = {part.row for part in body.parts}
@@ -211,7 +207,7 @@ class Forces(StepHelper):
     def due(self, step: int) -> int:
         """Each step while any force acts, otherwise `FAR`."""
         return step if (self._timed or self._weightless or self._implicit
-                        or not self.slip.idle or not self.servos.idle) else FAR
+                        or not self.servos.idle) else FAR
 
     def before(self, step: int, dt: float, gravity: Vec3) -> None:
         """Apply all forces of the step that begins at count `step`."""
@@ -235,8 +231,6 @@ class Forces(StepHelper):
             at = place(body.uid, part.index)[0]
             pybullet.applyExternalForce(body.uid, part.index, scale(gravity, -part.mass), at,
                                         pybullet.WORLD_FRAME)
-        if not self.slip.idle:
-            self.slip.apply(dt)
 
     def _give(self, efforts: Dict[int, float]) -> None:
         """Apply efforts by row, one call per body; a call per axis takes four times as long."""

@@ -31,7 +31,6 @@ from .restored_sleep import RestoredSleep
 from .rolling_contacts import RollingContacts
 from .row_reader import RowReader
 from .seam_contacts import SeamContacts
-from .sliding import Sliding
 from .state_readout import StateReadout
 from .state_restore import Entry
 from .state_setter import StateSetter
@@ -39,6 +38,7 @@ from .step_helper import StepLoop
 from .surface_stop import SurfaceStop
 from .velocity_decay import VelocityDecay
 from .wake_up import WakeUp
+from .wheel_friction import WheelFriction
 from .world_parameters import WorldParameters
 
 
@@ -54,7 +54,7 @@ class HelperSet:
         waker: wakes the bodies that a command affects.
         mover: sets poses and velocities of models, links and joints.
         book: the constraints of joints.
-        forces, motors, planar, holds, sliding, ties, wrenches: targets of commands.
+        forces, motors, planar, holds, wheel_friction, ties, wrenches: targets of commands.
         settling, divergence, restored_sleep: store parts of the run state (`RunStates`).
 
     Args:
@@ -88,7 +88,7 @@ class HelperSet:
                                         self._parameters.find_pairs)
         self._seams = SeamContacts(self._rolling, self._parameters)
         self._level = LevelSeams(lambda: self._residual.fast, self._parameters)
-        self.sliding = Sliding()
+        self.wheel_friction = WheelFriction(lambda row: self.motors.effort_of(row))
         self.forces = Forces(self._waker_for(BodyEvent.FORCE_APPLIED),
                              lambda rows: self.motors.yield_to(rows),
                              lambda body, axis: self.motors.restore(body, axis),
@@ -112,11 +112,11 @@ class HelperSet:
         self.motors = JointMotors(self._axes, self._waker_for(BodyEvent.MOTOR_TARGET_CHANGED))
         self.planar = PlanarMotion(self._models, self.mover.present_model_pose,
                                    self._waker_for(BodyEvent.PLANAR_VELOCITY_CHANGED))
-        self.wrenches = JointWrenches(self._models, self.forces, self.sliding,
+        self.wrenches = JointWrenches(self._models, self.forces, self.wheel_friction,
                                       self._measured_joints)
         # The step helpers, in the order in which they act.
         helpers = (self._friction, self._bounces, self.settling, self._decay, self.forces,
-                   self.planar, self._rolling, self._spin, self._residual, self.sliding,
+                   self.planar, self._rolling, self._spin, self._residual, self.wheel_friction,
                    self.holds, self._stop, self._landing, self._level, self._seams,
                    self.divergence, self.restored_sleep)
         self.loop = StepLoop(helpers, pybullet.stepSimulation, self._parameters.apply)
@@ -135,14 +135,14 @@ class HelperSet:
         self._parameters.configure(settings)
         self.settling.configure(settings.step_size)
         self._decay.configure(settings.step_size)
-        self.sliding.configure(settings.cone)
+        self.wheel_friction.configure(settings.cone)
         self.divergence.configure(settings.step_size)
 
     def add(self, body: Body, model: Model) -> None:
         """Register a new body of a model."""
+        extra_surfaces.store(body, self.settings.step_size)
         for observer in self._observers:
             observer.add(body)
-        extra_surfaces.store(body, self.settings.step_size)
         self.set_up_axes(body, model)
 
     def set_up_axes(self, body: Body, model: Model) -> None:

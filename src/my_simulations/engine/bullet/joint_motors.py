@@ -23,6 +23,7 @@ class JointMotors(BodyObserver):
         self._motors: Dict[int, JointMotor] = {}
         self._specs: Dict[int, JointAxis] = {}
         self._driven: Dict[int, Tuple[float, float]] = {}  # rates other than 0 now, and efforts
+        self._efforts: Dict[int, float] = {}
         self._yielding: Set[int] = set()
 
     def yield_to(self, rows: Set[int]) -> None:
@@ -35,6 +36,10 @@ class JointMotors(BodyObserver):
     def rate_of(self, row: int) -> float:
         """The rate to which an axis is driven, rad/s or m/s; 0 also for one that is not."""
         return self._driven.get(row, (0.0, 0.0))[0]
+
+    def effort_of(self, row: int) -> float:
+        """The most effort of the motor, or of the friction, of an axis, N m or N."""
+        return self._efforts.get(row, 0.0)
 
     def driven(self, row: int) -> Optional[Tuple[float, float]]:
         """The rate to which an axis is driven, rad/s or m/s, and the most effort, N m or N.
@@ -76,6 +81,7 @@ class JointMotors(BodyObserver):
             self._motors.pop(axis.row, None)
             self._specs.pop(axis.row, None)
             self._driven.pop(axis.row, None)
+            self._efforts.pop(axis.row, None)
 
     def restore(self, body: Body, axis: Axis) -> None:
         """Enable the motor of an axis, or its friction if it has no motor."""
@@ -90,6 +96,7 @@ class JointMotors(BodyObserver):
         self._note(axis.row, rate, effort)
 
     def _note(self, row: int, rate: float, effort: float) -> None:
+        self._efforts[row] = effort
         self._driven.pop(row, None)
         if rate and effort > 0.0:
             self._driven[row] = rate, effort

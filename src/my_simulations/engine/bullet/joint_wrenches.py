@@ -14,8 +14,6 @@ import math
 from dataclasses import dataclass
 from typing import Dict, List, Mapping, Optional, Sequence, Tuple
 
-import pybullet
-
 from ...description.model import Joint
 from ...geometry import (
     IDENTITY,
@@ -39,12 +37,11 @@ from ..commands import JointWrench, ReadJointWrenches
 from .acting_forces import Acting, constraint_forces, note, note_constraints, note_contacts
 from .bodies import Body, Part
 from .body_events import BodyObserver
-from .contact_points import LINK, PLACE
 from .forces import Forces
 from .link_motion import Acceleration, Chain, accelerations, inertial_wrench
 from .link_states import Motion, link_motions
-from .sliding import Sliding
 from .state_restore import Entry
+from .wheel_friction import WheelFriction
 
 FORGOTTEN = 100_000
 """Steps without a reading after which a joint is no longer measured."""
@@ -83,11 +80,11 @@ class _Seen:
         outside: forces on it, besides gravity, that Bullet does not report.
     """
 
-    def __init__(self, body: Body, chain: Chain, outside: Acting) -> None:
+    def __init__(self, body: Body, chain: Chain) -> None:
         self.body = body
         self.before = link_motions(body)
         self.after = self.before
-        self.outside = outside
+        self.outside: Acting = {}
         self._chain = chain
         self._answer: Optional[_WorkedOut] = None
 
@@ -107,12 +104,12 @@ _WorkedOut = Tuple[Dict[int, Motion], Dict[int, Acceleration], Acting]
 class JointWrenches(BodyObserver):
     """Measures the joints whose wrenches are read."""
 
-    def __init__(self, models: Mapping[int, Entry], forces: Forces, sliding: Sliding,
+    def __init__(self, models: Mapping[int, Entry], forces: Forces, friction: WheelFriction,
                  wanted: Dict[JointKey, int]) -> None:
         """`wanted`: the measured joints, and for how many more steps; kept by a reset."""
         self._models = models
         self._forces = forces
-        self._sliding = sliding
+        self._friction = friction
         self._cuts: Dict[JointKey, _Cut] = {}
         self._wanted = wanted
         self._seen: Dict[int, _Seen] = {}
@@ -160,29 +157,20 @@ class JointWrenches(BodyObserver):
         for cut in self._cuts.values():
             body = cut.body
             if body.uid not in self._seen:
-                self._seen[body.uid] = _Seen(body, cut.chain, self._sliding_friction(body))
+                seen = self._seen[body.uid] = _Seen(body, cut.chain)
+                owners = body.owners
+                for index, force, at in self._friction.forces_on(body.uid):
+                    note(seen.outside, owners.get(index, index), force, at)
 
     def after(self, dt: float, gravity: Vec3) -> None:
         """Record the states after that step, after all helpers have acted."""
         self._dt, self._gravity = dt, gravity
         for seen in self._seen.values():
             seen.after = link_motions(seen.body)
-            owners = seen.body.owners
-            for index, force, at in self._forces.slip.forces_on(seen.body.uid):
-                note(seen.outside, owners.get(index, index), force, at)
             for part in seen.body.parts if self._forces.wrenched_links else ():
                 force, torque = self._forces.acting_on(part.row)
                 at = seen.before[part.index].position
                 note(seen.outside, part.index, force, at, torque)
-
-    def _sliding_friction(self, body: Body) -> Acting:
-        """Return the friction on a body in the next step besides Bullet's."""
-        found: Acting = {}
-        if self._sliding.busy:
-            for contact in pybullet.getContactPoints(bodyA=body.uid):
-                force = self._sliding.friction(body.uid, contact[LINK], contact[PLACE])
-                note(found, contact[LINK], force, contact[PLACE])
-        return found
 
     def _wrench(self, cut: _Cut, seen: _Seen) -> Optional[JointWrench]:
         """Return the wrench of a joint; None if a state is not finite."""

@@ -1,0 +1,415 @@
+"""Friction of sliding wheels and of surfaces with slip: Coulomb's law for any heading.
+
+Bullet's solver for articulated bodies computes friction along the world axes. With its pyramid, the
+friction on a body that slides diagonally is up to 1.41 mu N. With its cone, the mobility of the
+link weights the two directions, so that a driven wheel has hardly any friction along its axle. And
+it has no slip that depends on the force (slip1, slip2; ODE's manual, "Contact"), of which Gazebo
+Classic 11 applies the sum of both surfaces to a pair.
+
+So Bullet's friction is reduced to a share of 0.001 for links with slip, and for links on joints
+while they slide on static bodies. A force at each contact replaces it. It is computed after a step,
+and acts in the next one. At the slip velocity v it is
+
+    F = -v / (s + h) + B,  at most mu N,
+
+with the slip s, and h such that the force ends the velocity within a few steps. B takes up what the
+other forces on the body are: it grows by a share of the force -(v + s F) / (s + h) until v = -s F.
+Without slip that holds a wheel on a slope. If mu applies along a direction and mu2 across it, M is
+the tensor of both, and the limit is |M^-1 F| = N. A fast wheel then meets -N M (M v) / |M v|: of
+all forces within this ellipse, the one that dissipates the most power.
+
+Once all links of a body that have no slip have stopped sliding, they get Bullet's friction back.
+"""
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Callable, Dict, Iterable, Iterator, List, Optional, Set, Tuple
+
+import pybullet
+
+from ...description.link_surface import counting_collision
+from ...description.shapes import Surface
+from ...geometry import ZERO3, Vec3, add, cross, dot, norm, rotate, scale, subtract
+from ..drive_commands import WheelSlip
+from .bodies import Axis, Body, Part
+from .body_events import BodyEvent
+from .contact_points import (
+    DISTANCE,
+    LINK,
+    LOAD,
+    NORMAL,
+    OTHER_BODY,
+    OTHER_LINK,
+    PLACE,
+    ContactPoint,
+    LinkKey,
+)
+from .contact_slip import direction_across, limited, mean_slip, slips_at
+from .edge_loads import Loads, axle_of, carrying, shared
+from .extra_surfaces import anisotropy, first_direction
+from .link_states import AT_REST, Motion, motion, place
+from .step_helper import FAR, StepHelper, next_multiple
+from .surface_coefficients import directed
+
+EVERY = 16
+"""Steps between two checks for sliding links."""
+
+_SELDOM = 4          # checks until a body with a fixed base is checked again
+_SLIDES = 2e-3       # m/s of slip: links at rest stay below it
+_HELD = 5e-4         # m/s of slip: a link below it is at rest
+_QUIET = 32          # steps at rest until Bullet's friction holds a body again
+_SOFT = 1.5          # steps of braking: a slip that would end sooner is reduced in proportion
+_GROWS = 1.0 / 16.0  # share of the missing force by which B grows in a step
+_LEFT = (1e-3, 1e-3) # shares of Bullet's friction that stay
+_LEAST_MU = 1e-6
+_LEAST_MOMENT = 1e-9 # kg m^2
+
+Contacts = List[ContactPoint]
+
+
+@dataclass
+class _Link:
+    """A link that can touch something.
+
+    Attributes:
+        total: mass of its body, kg.
+        first: direction of the first coefficients, in PyBullet's frame, of length 1; or None.
+        axle: of a wheel (`edge_loads`), or None.
+        mus, slips: along and across `first`; slips in m/(N s).
+        joint: row of its joint; -1 for none.
+    """
+
+    body: Body
+    part: Part
+    total: float
+    first: Optional[Vec3]
+    axle: Optional[Vec3]
+    mus: Tuple[float, float]
+    slips: Tuple[float, float]
+    joint: int
+
+
+@dataclass
+class _Slide:
+    """A link with friction of this module.
+
+    Attributes:
+        biases: B by the other link, N, world axes.
+        forces: friction on it in the next step, N, by contact point, world axes.
+        loads: normal forces, N, by contact point.
+        others: the other links of the contact points.
+        quiet: steps for which it has not slid.
+    """
+
+    biases: Dict[LinkKey, Vec3] = field(default_factory=dict)
+    forces: Dict[Vec3, Vec3] = field(default_factory=dict)
+    loads: Dict[Vec3, float] = field(default_factory=dict)
+    others: Dict[Vec3, LinkKey] = field(default_factory=dict)
+    quiet: int = 0
+
+
+class WheelFriction(StepHelper):
+    """Applies Coulomb friction to links that slide on joints, and to links with slip.
+
+    Args:
+        holding: returns the effort, N m, with which the motor or brake of a joint row acts.
+    """
+
+    # A new force or motor target does not end the sliding of a wheel.
+    events = frozenset({BodyEvent.ACTIVATED})
+
+    def __init__(self, holding: Callable[[int], float] = lambda row: 0.0) -> None:
+        self._holding = holding
+        self._links: Dict[LinkKey, _Link] = {}
+        self._wheels: Dict[int, Dict[int, _Link]] = {}   # links that can slide, by body
+        self._floors: Set[int] = set()                   # static bodies with one coefficient
+        self._slides: Dict[LinkKey, _Slide] = {}
+        self._slipping: Set[LinkKey] = set()
+        self._fixed: Set[int] = set()                    # bodies with a fixed base
+        self._rows: Dict[int, List[LinkKey]] = {}
+        self._axes: Dict[int, Tuple[Body, Axis]] = {}
+        self._slip_commands: Dict[int, WheelSlip] = {}
+        self.body_tables = (self._links, self._wheels, self._floors, self._slides, self._slipping,
+                            self._fixed)
+        self._cone = True
+
+    # -- bodies ------------------------------------------------------------------------------------
+
+    def configure(self, cone: bool) -> None:
+        """Take sliding links (friction cone), or leave them to Bullet (friction pyramid)."""
+        self._cone = cone
+        if not cone:
+            for key in self._slides.keys() - self._slipping:
+                self._give_back(key)
+
+    def add(self, body: Body) -> None:
+        """Register a new body."""
+        self._axes.update((axis.row, (body, axis)) for axis in body.axes)
+        total = sum(part.mass for part in body.parts)
+        joints = {axis.index: axis.row for axis in body.axes}
+        if body.base is None:
+            self._fixed.add(body.uid)
+        for uid, part in body.surfaces:
+            collision = counting_collision(part.link)
+            surface = Surface() if collision is None else collision.surface
+            first, slips = None, (surface.slip1, surface.slip1)
+            if collision is not None and any(surface.fdir1):
+                first = first_direction(collision, part)
+                slips = surface.slip1, surface.slip2
+            key, joint = (uid, part.index), joints.get(part.index, -1)
+            link = self._links[key] = _Link(
+                body, part, total, first, axle_of(part, part.link) if joint >= 0 else None,
+                (surface.mu, surface.mu2 if directed(surface) else surface.mu), slips, joint)
+            self._rows.setdefault(part.row, []).append(key)
+            if any(slips):
+                self._slip(key)
+            elif collision is not None and not body.moves and not directed(surface):
+                self._floors.add(uid)
+            elif collision is not None and body.moves and joint >= 0 and part.mu > 0.0:
+                self._wheels.setdefault(body.uid, {})[part.index] = link
+
+    def forget(self, body: Body) -> None:
+        """Discard the data of a removed body."""
+        super().forget(body)
+        for axis in body.axes:
+            self._axes.pop(axis.row, None)
+        for part in body.colliders:
+            self._rows.pop(part.row, None)
+            self._slip_commands.pop(part.row, None)
+
+    def set_slips(self, wheels: Iterable[WheelSlip]) -> None:
+        """Set slips of wheels that depend on their speed; wheels of removed links are ignored."""
+        for wheel in wheels:
+            if wheel.row in self._rows and wheel.joint_row in self._axes:
+                self._slip_commands[wheel.row] = wheel
+                for key in self._rows[wheel.row]:
+                    self._slip(key)
+                    self._wheels.get(key[0], {}).pop(key[1], None)
+
+    def _slip(self, key: LinkKey) -> None:
+        self._slipping.add(key)
+        self._take(key)
+
+    def handle_event(self, event: BodyEvent, body: Body) -> None:
+        """Restore Bullet's friction for the links of a body, except those with slip."""
+        for key in [key for key in self._slides if key[0] == body.uid]:
+            if key in self._slipping:
+                self._slides[key] = _Slide()
+            else:
+                self._give_back(key)
+
+    # -- readings ----------------------------------------------------------------------------------
+
+    def friction(self, uid: int, index: int, at: Vec3) -> Vec3:
+        """Return the friction on a link at a contact besides Bullet's, N, world axes."""
+        slide = self._slides.get((uid, index))
+        return ZERO3 if slide is None else slide.forces.get(at, ZERO3)
+
+    def load(self, uid: int, index: int, at: Vec3) -> Optional[float]:
+        """Return the normal force on a sliding link at a contact, N; None for other contacts."""
+        slide = self._slides.get((uid, index))
+        return None if slide is None else slide.loads.get(at)
+
+    def forces_on(self, uid: int) -> Iterator[Tuple[int, Vec3, Vec3]]:
+        """Yield the friction on a body in the next step: link index, force, point; world axes."""
+        for key, slide in self._slides.items():
+            for at, force in slide.forces.items():
+                if key[0] == uid:
+                    yield key[1], force, at
+                if slide.others[at][0] == uid:
+                    yield slide.others[at][1], scale(force, -1.0), at
+
+    # -- steps -------------------------------------------------------------------------------------
+
+    def due(self, step: int) -> int:
+        """Each step while a link slides or has slip, otherwise the step of the next check."""
+        if self._slides:
+            return step
+        return next_multiple(step, EVERY) if self._cone and self._wheels else FAR
+
+    def before(self, step: int, dt: float, gravity: Vec3) -> None:
+        """Apply the friction of the next step."""
+        for key, slide in self._slides.items():
+            for at, force in slide.forces.items():
+                pybullet.applyExternalForce(*key, force, at, pybullet.WORLD_FRAME)
+                other = slide.others[at]
+                if other in self._links and self._links[other].body.moves:
+                    pybullet.applyExternalForce(*other, scale(force, -1.0), at,
+                                                pybullet.WORLD_FRAME)
+
+    def after(self, step: int, dt: float, gravity: Vec3) -> None:
+        """Compute friction after the step that began at count `step`; periodically find slides."""
+        if step % EVERY == 0 and self._cone:
+            seldom = step % (_SELDOM * EVERY) == 0
+            for uid, wheels in self._wheels.items():
+                if seldom or uid not in self._fixed:
+                    self._find_slides(uid, wheels)
+        if not self._slides:
+            return
+        for wheel in self._slip_commands.values():
+            self._set_slip(wheel)
+        weight = norm(gravity)
+        for key, (moves, loads) in self._loads().items():
+            self._go_on(key, moves, *loads, dt, weight)
+        self._give_back_quiet()
+
+    def _find_slides(self, uid: int, wheels: Dict[int, _Link]) -> None:
+        """Take the links of a body that slide on static bodies."""
+        found: Dict[int, Contacts] = {}
+        for contact in pybullet.getContactPoints(bodyA=uid):
+            if contact[LINK] in wheels and contact[LOAD] > 0.0 and contact[DISTANCE] <= 0.0:
+                found.setdefault(contact[LINK], []).append(contact)
+        for index, contacts in found.items():
+            if (uid, index) not in self._slides and not self._touches_others(contacts):
+                slips = slips_at(contacts, motion(uid, index), AT_REST)
+                if norm(mean_slip(slips, carrying(contacts)[1])) > _SLIDES:
+                    self._take((uid, index))
+
+    def _touches_others(self, contacts: Contacts) -> bool:
+        return any(contact[OTHER_BODY] not in self._floors for contact in contacts)
+
+    def _loads(self) -> Dict[LinkKey, Tuple[Motion, Loads]]:
+        """Return motion and loads of each sliding link; wheels of a body share their load."""
+        found: Dict[LinkKey, Tuple[Motion, Loads]] = {}
+        wheels: Dict[int, List[Tuple[LinkKey, Motion, Vec3, Contacts]]] = {}
+        for key in self._slides:
+            moves, axle = motion(*key), self._links[key].axle
+            contacts = pybullet.getContactPoints(bodyA=key[0], linkIndexA=key[1])
+            if axle is None or key in self._slipping:
+                found[key] = moves, carrying(contacts)
+            else:
+                wheels.setdefault(key[0], []).append((key, moves, axle, contacts))
+        for rows in wheels.values():
+            told = shared([row[1:] for row in rows]) if len(rows) > 1 else [carrying(rows[0][3])]
+            found.update((key, (moves, loads)) for (key, moves, _, _), loads in zip(rows, told))
+        return found
+
+    def _go_on(self, key: LinkKey, moves: Motion, contacts: Contacts, loads: List[float],
+               dt: float, weight: float) -> None:
+        """Compute the friction on a link in the next step."""
+        slide, slips = self._slides[key], key in self._slipping
+        if not slips and self._touches_others(contacts):
+            self._give_back(key)
+            return
+        slide.loads = {contact[PLACE]: load for contact, load in zip(contacts, loads)}
+        slide.forces, slide.others = {}, {}
+        slide.quiet += 1
+        groups: Dict[LinkKey, Tuple[Contacts, List[float]]] = {}
+        for contact, load in zip(contacts, loads):
+            other = (contact[OTHER_BODY], contact[OTHER_LINK])
+            if other in self._links and not (slips and other in self._slipping and other < key):
+                points, carried = groups.setdefault(other, ([], []))
+                points.append(contact)
+                carried.append(load)
+        slide.biases = {other: slide.biases.get(other, ZERO3) for other in groups}
+        for other, (points, carried) in groups.items():
+            forces = self._forces(key, other, moves, points, carried, dt, weight)
+            for contact, force in zip(points, forces):
+                slide.forces[contact[PLACE]], slide.others[contact[PLACE]] = force, other
+
+    def _forces(self, key: LinkKey, other: LinkKey, mine: Motion, contacts: Contacts,
+                loads: List[float], dt: float, weight: float) -> List[Vec3]:
+        """Return the friction on the first of two links at each contact; update its B."""
+        one, two, slide = self._links[key], self._links[other], self._slides[key]
+        theirs = motion(*other) if two.body.moves else AT_REST
+        velocities = slips_at(contacts, mine, theirs)
+        slip, carried = mean_slip(velocities, loads), sum(loads)
+        if norm(slip) > _HELD:
+            slide.quiet = 0
+        normal = contacts[0][NORMAL]
+        along = _direction(one, key, normal) or _direction(two, other, normal) or (
+            direction_across(normal))
+        axes = along, cross(normal, along)
+        mus = (max(_LEAST_MU, min(one.mus[0], two.mus[0])),
+               max(_LEAST_MU, min(one.mus[1], two.mus[1])))
+        slow = one.slips[0] + two.slips[0], one.slips[1] + two.slips[1]
+        ends = self._ends(one, two, mine, contacts, carried, dt, weight)
+        if not any(slow):   # so that friction is along M (M v), also where it is least
+            most = max(mus)
+            ends = ends[0] * (most / mus[0]) ** 2, ends[1] * (most / mus[1]) ** 2
+        soft = slow[0] + ends[0], slow[1] + ends[1]
+        bias = slide.biases[other]
+        holds = dot(bias, axes[0]), dot(bias, axes[1])
+        forces, total, within = [], ZERO3, False
+        for velocity, load in zip(velocities, loads):
+            share = load / carried
+            wanted = (share * (holds[0] - dot(velocity, axes[0]) / soft[0]),
+                      share * (holds[1] - dot(velocity, axes[1]) / soft[1]))
+            parts = limited(wanted, mus, soft, load)
+            within = within or parts is wanted
+            force = add(scale(axes[0], parts[0]), scale(axes[1], parts[1]))
+            forces.append(force)
+            total = add(total, force)
+        if within:
+            missing = [(dot(slip, axis) + s * dot(total, axis)) / end
+                       for axis, s, end in zip(axes, slow, soft)]
+            holds = limited((holds[0] - _GROWS * missing[0], holds[1] - _GROWS * missing[1]),
+                            mus, soft, carried)
+        slide.biases[other] = add(scale(axes[0], holds[0]), scale(axes[1], holds[1])) \
+            if within else ZERO3
+        return forces
+
+    def _ends(self, one: _Link, two: _Link, mine: Motion, contacts: Contacts, carried: float,
+              dt: float, weight: float) -> Tuple[float, float]:
+        """Return the slip velocity per force, m/(N s), that friction ends: along and across.
+
+        A body on wheels moves as the load of the wheel does; the mobility of the wheel alone is
+        much larger. Across the axle of a wheel that no motor or brake holds, it matters too.
+        """
+        arm = max(norm(subtract(contact[PLACE], mine.position)) for contact in contacts)
+        alone = dt * (_mobility(one, arm) + _mobility(two, arm))
+        if one.body.rigid or two.body.moves:
+            return alone, alone
+        end = _SOFT * dt * max(weight, carried / one.total) / carried
+        free = one.axle is not None and one.first is None and (
+            self._holding(one.joint) < min(one.mus[0], two.mus[0]) * carried * arm)
+        return end, max(end, alone) if free else end
+
+    # -- Bullet's friction -------------------------------------------------------------------------
+
+    def _take(self, key: LinkKey) -> None:
+        """Replace Bullet's friction on a link from the next step on."""
+        link = self._links[key]
+        self._slides.setdefault(key, _Slide())
+        pybullet.changeDynamics(*key, anisotropicFriction=anisotropy(
+            link.mus, link.first or ZERO3, _LEFT))
+
+    def _give_back(self, key: LinkKey) -> None:
+        link = self._links[key]
+        del self._slides[key]
+        pybullet.changeDynamics(*key, anisotropicFriction=anisotropy(link.mus, link.first or ZERO3))
+
+    def _give_back_quiet(self) -> None:
+        """Restore Bullet's friction for the links of a body together, once all are at rest.
+
+        Bullet stops a slip sooner: a base with different friction on its wheels would turn.
+        """
+        slides = {uid for (uid, _), slide in self._slides.items() if slide.quiet < _QUIET}
+        for key in [key for key in self._slides if key[0] not in slides]:
+            if key not in self._slipping:
+                self._give_back(key)
+
+    def _set_slip(self, wheel: WheelSlip) -> None:
+        """Set the slips of a wheel from its rate."""
+        body, axis = self._axes[wheel.joint_row]
+        rate = pybullet.getJointState(body.uid, axis.index)[1]
+        share = wheel.radius * abs(rate) / wheel.normal_force
+        for key in self._rows[wheel.row]:
+            self._links[key].slips = (share * wheel.lateral, share * wheel.longitudinal)
+
+
+def _direction(link: _Link, key: LinkKey, normal: Vec3) -> Optional[Vec3]:
+    """Return the direction of the first coefficients, or of an axle, in the contact plane."""
+    own = link.first or link.axle
+    if own is None:
+        return None
+    turned = rotate(place(*key)[1], own)
+    flat = subtract(turned, scale(normal, dot(turned, normal)))
+    return scale(flat, 1.0 / norm(flat)) if norm(flat) > 1e-6 else None
+
+
+def _mobility(link: _Link, arm: float) -> float:
+    """Return an upper bound of the acceleration of a link per force at a contact, 1/kg."""
+    if not link.body.moves or link.part.mass <= 0.0:
+        return 0.0
+    return 1.0 / link.part.mass + arm * arm / max(_LEAST_MOMENT, min(link.part.moments))
