@@ -130,6 +130,28 @@ def test_a_base_on_two_wheels_keeps_its_heading_as_it_starts_and_stops(
                      abs(heading - before), 0.03)
 
 
+@pytest.mark.parametrize("floor", ["plane", "box"])
+@pytest.mark.parametrize("roll", [-math.pi / 2, -1.57])
+@pytest.mark.parametrize("heading", [0.0, 0.5, 1.1])
+def test_a_base_on_two_wheels_keeps_its_heading_as_its_command_steps(
+        lab: Lab, laws: Laws, floor: str, roll: float, heading: float):
+    """The wheels slip in the step of the command. With -1.57, the caster stands on one edge."""
+    lab.load(ground() if floor == "plane" else slab("floor", (60, 60, 1)),
+             (0, 0, 0 if floor == "plane" else -0.5))
+    base = lab.load(_two_wheeled(roll, 1.0), (0, 0, 0), quat_from_rpy(0, 0, heading))
+    lab.seconds(1)
+    before = _yaw(lab, base)
+    for goal in (0.22, 0.0, -0.22, 0.0):
+        lab.apply(SetMotors(tuple(JointMotor(lab.joint_rows[base, f"j{n}"], goal / 0.033, 10.0)
+                                  for n in range(2))))
+        lab.seconds(1)
+        after = _yaw(lab, base)
+        crooked = ", crooked axles" * (roll == -1.57)
+        laws.at_most(f"a base on two wheels, commands in steps{crooked}: yaw, degrees",
+                     abs(after - before), 0.1 if crooked else 0.05)
+        before = after
+
+
 def test_a_wheel_of_many_shapes_stays_one_body(lab: Lab):
     lab.load(ground(1.0))
     car = _car(0.1, 0.05)

@@ -9,12 +9,12 @@ this load, and Coulomb's law at each edge, the Husky turns at 1.36 rad/s.
 """
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import List, Optional, Sequence, Tuple
+from dataclasses import dataclass, field
+from typing import Dict, List, Optional, Sequence, Tuple
 
 from ...description.model import Link
 from ...description.shapes import Cylinder
-from ...geometry import Vec3, conjugate, cross, dot, norm, rotate, scale
+from ...geometry import Vec3, conjugate, cross, dot, norm, rotate, scale, subtract
 from .bodies import Part
 from .contact_points import DISTANCE, LOAD, NORMAL, PLACE, ContactPoint
 from .link_states import Motion
@@ -33,9 +33,15 @@ class _Edge:
     """Contacts of one edge of a wheel, and their mean position in the floor plane, m."""
 
     wheel: int
-    contacts: List[ContactPoint]
-    x: float
-    y: float
+    contacts: List[ContactPoint] = field(default_factory=list)
+    x: float = 0.0
+    y: float = 0.0
+
+    def add(self, contact: ContactPoint, x: float, y: float) -> None:
+        """Add a contact at a position in the floor plane, m."""
+        self.contacts.append(contact)
+        self.x += (x - self.x) / len(self.contacts)
+        self.y += (y - self.y) / len(self.contacts)
 
 
 def axle_of(part: Part, link: Link) -> Optional[Vec3]:
@@ -52,11 +58,12 @@ def carrying(contacts: Sequence[ContactPoint]) -> Loads:
     return kept, [contact[LOAD] for contact in kept]
 
 
-def shared(wheels: Sequence[Tuple[Motion, Vec3, Sequence[ContactPoint]]]) -> List[Loads]:
+def shared(wheels: Sequence[Tuple[Motion, Optional[Vec3], Sequence[ContactPoint]]]) -> List[Loads]:
     """Return the loaded contacts of each wheel of a body, with loads for equally stiff edges.
 
     Args:
-        wheels: the motion, the axle in PyBullet's frame, and all contacts of each wheel.
+        wheels: the motion, the axle in PyBullet's frame, and all contacts of each wheel; other
+            links, as casters, have no axle.
 
     If the wheels do not stand on one plane, or a load would be negative, Bullet's loads stay.
     """
@@ -71,10 +78,10 @@ def shared(wheels: Sequence[Tuple[Motion, Vec3, Sequence[ContactPoint]]]) -> Lis
     edges: List[_Edge] = []
     moments = [0.0, 0.0, 0.0]
     for n, (motion, axle, contacts) in enumerate(wheels):
-        axis = rotate(motion[1], axle)
-        if abs(dot(axis, normal)) > _LYING:
+        axis = None if axle is None else rotate(motion.orientation, axle)
+        if axis is not None and abs(dot(axis, normal)) > _LYING:
             return found
-        own = _edges(n, motion[0], axis, contacts, plane, moments)
+        own = _edges(n, motion.position, axis, contacts, plane, moments)
         if own is None:
             return found
         edges += own
@@ -89,30 +96,27 @@ def shared(wheels: Sequence[Tuple[Motion, Vec3, Sequence[ContactPoint]]]) -> Lis
     return made
 
 
-def _edges(wheel: int, centre: Vec3, axis: Vec3, contacts: Sequence[ContactPoint], plane: _Plane,
-           moments: List[float]) -> Optional[List[_Edge]]:
-    """Return the edges of a wheel, or None off the plane; add its loads to `moments`."""
-    (tx, ty, tz), (sx, sy, sz), (nx, ny, nz), height = plane
-    u, v, w = centre
-    a, b, c = axis
-    sides: Tuple[List[ContactPoint], List[ContactPoint]] = ([], [])
-    places = [[0.0, 0.0], [0.0, 0.0]]
-    for contact in contacts:
+def _edges(wheel: int, centre: Vec3, axis: Optional[Vec3], contacts: Sequence[ContactPoint],
+           plane: _Plane, moments: List[float]) -> Optional[List[_Edge]]:
+    """Return the edges of a wheel, or None off the plane; add its loads to `moments`.
+
+    Without an axis, each contact is an edge.
+    """
+    ahead, aside, normal, height = plane
+    found: Dict[int, _Edge] = {}
+    for n, contact in enumerate(contacts):
+        at, load = contact[PLACE], contact[LOAD]
         if contact[DISTANCE] >= _NEAR:
             continue
-        (x, y, z), (p, q, r) = contact[PLACE], contact[NORMAL]
-        if abs(x * nx + y * ny + z * nz - height) > _LEVEL or p * nx + q * ny + r * nz < _ALIKE:
+        if abs(dot(at, normal) - height) > _LEVEL or dot(contact[NORMAL], normal) < _ALIKE:
             return None
-        side = (x - u) * a + (y - v) * b + (z - w) * c > 0.0
-        sides[side].append(contact)
-        along, aside, load = x * tx + y * ty + z * tz, x * sx + y * sy + z * sz, contact[LOAD]
-        places[side][0] += along
-        places[side][1] += aside
+        side = n if axis is None else int(dot(subtract(at, centre), axis) > 0.0)
+        edge = found.setdefault(side, _Edge(wheel))
+        edge.add(contact, dot(at, ahead), dot(at, aside))
         moments[0] += load
-        moments[1] += load * along
-        moments[2] += load * aside
-    return [_Edge(wheel, side, x / len(side), y / len(side))
-            for side, (x, y) in zip(sides, places) if side]
+        moments[1] += load * dot(at, ahead)
+        moments[2] += load * dot(at, aside)
+    return list(found.values())
 
 
 def _spread(edges: List[_Edge], total: float, x_load: float, y_load: float,

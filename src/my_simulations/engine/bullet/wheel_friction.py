@@ -28,7 +28,7 @@ from typing import Callable, Dict, Iterable, Iterator, List, Optional, Set, Tupl
 import pybullet
 
 from ...description.link_surface import counting_collision
-from ...description.shapes import Surface
+from ...description.shapes import Cylinder, Surface
 from ...geometry import ZERO3, Vec3, add, cross, dot, norm, rotate, scale, subtract
 from ..drive_commands import WheelSlip
 from .bodies import Axis, Body, Part
@@ -88,6 +88,12 @@ class _Link:
     slips: Tuple[float, float]
     joint: int
 
+    @property
+    def radius(self) -> float:
+        """Of a wheel, m."""
+        shape = self.part.link.collisions[0].geometry
+        return shape.radius if isinstance(shape, Cylinder) else 0.0
+
 
 @dataclass
 class _Slide:
@@ -113,15 +119,18 @@ class WheelFriction(StepHelper):
 
     Args:
         holding: returns the effort, N m, with which the motor or brake of a joint row acts.
+        rate: returns the rate, rad/s, to which it drives the joint.
     """
 
     # A new force or motor target does not end the sliding of a wheel.
-    events = frozenset({BodyEvent.ACTIVATED})
+    events = frozenset({BodyEvent.ACTIVATED, BodyEvent.MOTOR_TARGET_CHANGED})
 
-    def __init__(self, holding: Callable[[int], float] = lambda row: 0.0) -> None:
-        self._holding = holding
+    def __init__(self, holding: Callable[[int], float], rate: Callable[[int], float]) -> None:
+        self._holding, self._rate = holding, rate
+        self._commanded: Set[int] = set()
         self._links: Dict[LinkKey, _Link] = {}
         self._wheels: Dict[int, Dict[int, _Link]] = {}   # links that can slide, by body
+        self._rigs: Dict[int, Dict[int, _Link]] = {}     # links on no joint, by body
         self._floors: Set[int] = set()                   # static bodies with one coefficient
         self._slides: Dict[LinkKey, _Slide] = {}
         self._slipping: Set[LinkKey] = set()
@@ -129,8 +138,8 @@ class WheelFriction(StepHelper):
         self._rows: Dict[int, List[LinkKey]] = {}
         self._axes: Dict[int, Tuple[Body, Axis]] = {}
         self._slip_commands: Dict[int, WheelSlip] = {}
-        self.body_tables = (self._links, self._wheels, self._floors, self._slides, self._slipping,
-                            self._fixed)
+        self.body_tables = (self._links, self._wheels, self._rigs, self._floors, self._slides,
+                            self._slipping, self._fixed, self._commanded)
         self._cone = True
 
     # -- bodies ------------------------------------------------------------------------------------
@@ -165,8 +174,9 @@ class WheelFriction(StepHelper):
                 self._slip(key)
             elif collision is not None and not body.moves and not directed(surface):
                 self._floors.add(uid)
-            elif collision is not None and body.moves and joint >= 0 and part.mu > 0.0:
-                self._wheels.setdefault(body.uid, {})[part.index] = link
+            elif collision is not None and body.moves and not body.rigid and part.mu > 0.0:
+                table = self._wheels if joint >= 0 else self._rigs
+                table.setdefault(body.uid, {})[part.index] = link
 
     def forget(self, body: Body) -> None:
         """Discard the data of a removed body."""
@@ -192,6 +202,10 @@ class WheelFriction(StepHelper):
 
     def handle_event(self, event: BodyEvent, body: Body) -> None:
         """Restore Bullet's friction for the links of a body, except those with slip."""
+        if event is BodyEvent.MOTOR_TARGET_CHANGED:
+            if self._cone and body.uid in self._wheels:
+                self._commanded.add(body.uid)
+            return
         for key in [key for key in self._slides if key[0] == body.uid]:
             if key in self._slipping:
                 self._slides[key] = _Slide()
@@ -223,12 +237,15 @@ class WheelFriction(StepHelper):
 
     def due(self, step: int) -> int:
         """Each step while a link slides or has slip, otherwise the step of the next check."""
-        if self._slides:
+        if self._slides or self._commanded:
             return step
         return next_multiple(step, EVERY) if self._cone and self._wheels else FAR
 
     def before(self, step: int, dt: float, gravity: Vec3) -> None:
         """Apply the friction of the next step."""
+        for uid in sorted(self._commanded):
+            self._begin(uid, norm(gravity) * dt)
+        self._commanded.clear()
         for key, slide in self._slides.items():
             for at, force in slide.forces.items():
                 pybullet.applyExternalForce(*key, force, at, pybullet.WORLD_FRAME)
@@ -265,17 +282,30 @@ class WheelFriction(StepHelper):
                 if norm(mean_slip(slips, carrying(contacts)[1])) > _SLIDES:
                     self._take((uid, index))
 
+    def _begin(self, uid: int, gain: float) -> None:
+        """Take the wheels of a body if one cannot follow its motor in a step without sliding.
+
+        `gain`: speed that gravity gives in a step, m/s.
+        """
+        wheels = self._wheels[uid]
+        if any(link.axle is not None and abs(
+                self._rate(link.joint) - pybullet.getJointState(uid, index)[1]) * link.radius
+                > min(1.0, link.mus[0]) * gain for index, link in wheels.items()):
+            for index in (*wheels, *self._rigs.get(uid, ())):
+                if (uid, index) not in self._slides:
+                    self._take((uid, index))
+
     def _touches_others(self, contacts: Contacts) -> bool:
         return any(contact[OTHER_BODY] not in self._floors for contact in contacts)
 
     def _loads(self) -> Dict[LinkKey, Tuple[Motion, Loads]]:
         """Return motion and loads of each sliding link; wheels of a body share their load."""
         found: Dict[LinkKey, Tuple[Motion, Loads]] = {}
-        wheels: Dict[int, List[Tuple[LinkKey, Motion, Vec3, Contacts]]] = {}
+        wheels: Dict[int, List[Tuple[LinkKey, Motion, Optional[Vec3], Contacts]]] = {}
         for key in self._slides:
             moves, axle = motion(*key), self._links[key].axle
             contacts = pybullet.getContactPoints(bodyA=key[0], linkIndexA=key[1])
-            if axle is None or key in self._slipping:
+            if key in self._slipping:
                 found[key] = moves, carrying(contacts)
             else:
                 wheels.setdefault(key[0], []).append((key, moves, axle, contacts))
@@ -314,7 +344,7 @@ class WheelFriction(StepHelper):
         theirs = motion(*other) if two.body.moves else AT_REST
         velocities = slips_at(contacts, mine, theirs)
         slip, carried = mean_slip(velocities, loads), sum(loads)
-        if norm(slip) > _HELD:
+        if norm(slip) > _HELD and one.joint >= 0:
             slide.quiet = 0
         normal = contacts[0][NORMAL]
         along = _direction(one, key, normal) or _direction(two, other, normal) or (
@@ -323,7 +353,7 @@ class WheelFriction(StepHelper):
         mus = (max(_LEAST_MU, min(one.mus[0], two.mus[0])),
                max(_LEAST_MU, min(one.mus[1], two.mus[1])))
         slow = one.slips[0] + two.slips[0], one.slips[1] + two.slips[1]
-        ends = self._ends(one, two, mine, contacts, carried, dt, weight)
+        ends = self._ends(one, two, mine, theirs, contacts, carried, dt, weight)
         if not any(slow):   # so that friction is along M (M v), also where it is least
             most = max(mus)
             ends = ends[0] * (most / mus[0]) ** 2, ends[1] * (most / mus[1]) ** 2
@@ -349,20 +379,19 @@ class WheelFriction(StepHelper):
             if within else ZERO3
         return forces
 
-    def _ends(self, one: _Link, two: _Link, mine: Motion, contacts: Contacts, carried: float,
-              dt: float, weight: float) -> Tuple[float, float]:
+    def _ends(self, one: _Link, two: _Link, mine: Motion, theirs: Motion, contacts: Contacts,
+              carried: float, dt: float, weight: float) -> Tuple[float, float]:
         """Return the slip velocity per force, m/(N s), that friction ends: along and across.
 
         A body on wheels moves as the load of the wheel does; the mobility of the wheel alone is
         much larger. Across the axle of a wheel that no motor or brake holds, it matters too.
         """
-        arm = max(norm(subtract(contact[PLACE], mine.position)) for contact in contacts)
-        alone = dt * (_mobility(one, arm) + _mobility(two, arm))
+        alone = dt * (_mobility(one, mine, contacts) + _mobility(two, theirs, contacts))
         if one.body.rigid or two.body.moves:
             return alone, alone
         end = _SOFT * dt * max(weight, carried / one.total) / carried
         free = one.axle is not None and one.first is None and (
-            self._holding(one.joint) < min(one.mus[0], two.mus[0]) * carried * arm)
+            self._holding(one.joint) < min(one.mus[0], two.mus[0]) * carried * one.radius)
         return end, max(end, alone) if free else end
 
     # -- Bullet's friction -------------------------------------------------------------------------
@@ -408,8 +437,9 @@ def _direction(link: _Link, key: LinkKey, normal: Vec3) -> Optional[Vec3]:
     return scale(flat, 1.0 / norm(flat)) if norm(flat) > 1e-6 else None
 
 
-def _mobility(link: _Link, arm: float) -> float:
+def _mobility(link: _Link, moves: Motion, contacts: Contacts) -> float:
     """Return an upper bound of the acceleration of a link per force at a contact, 1/kg."""
     if not link.body.moves or link.part.mass <= 0.0:
         return 0.0
+    arm = max(norm(subtract(contact[PLACE], moves.position)) for contact in contacts)
     return 1.0 / link.part.mass + arm * arm / max(_LEAST_MOMENT, min(link.part.moments))
