@@ -5,7 +5,7 @@ from typing import Dict, List, Tuple
 
 import pybullet
 
-from ...geometry import add, subtract
+from ...geometry import add, scale
 from ..body_plan import BASE
 from ..commands import Contact
 from .bodies import Body
@@ -44,14 +44,13 @@ def read_contacts(bodies: Dict[int, Body], limit: int,
         if len(rows) == 2:
             # Bullet does not solve points of separated surfaces: their forces are of an older step.
             force = contact[LOAD] if contact[DISTANCE] <= 0.0 else 0.0
-            for place in places:
-                told = wheel_friction.load(*place)
-                force = force if told is None else told
+            acting = [wheel_friction.acting_at(*place) for place in places]
+            force = next((each.load for each in acting if each is not None), force)
             if force <= 0.0 and contact[DISTANCE] > 0.0:
                 continue
             friction = friction_force(contact)
-            friction = add(friction, wheel_friction.friction(*places[0]))
-            friction = subtract(friction, wheel_friction.friction(*places[1]))
+            for each, sign in zip(acting, (1.0, -1.0)):
+                friction = friction if each is None else add(friction, scale(each.force, sign))
             found.append(Contact(rows[0], rows[1], contact[OTHER_PLACE], contact[NORMAL],
                                  -contact[DISTANCE], force, friction))
         if len(found) >= limit:

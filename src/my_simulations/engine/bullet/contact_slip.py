@@ -4,39 +4,45 @@ from __future__ import annotations
 from math import hypot
 from typing import List, Sequence, Tuple
 
-from ...geometry import Vec3, dot, norm, scale, subtract
-from .contact_points import NORMAL, PLACE, ContactPoint
+from ...geometry import Vec3, subtract
+from .contact_points import PLACE, ContactPoint
 from .link_states import AT_REST, Motion
 
 _MOST_ROUNDS = 20
 _EXACT = 1e-6
 
 
-def slips_at(contacts: Sequence[ContactPoint], mine: Motion, theirs: Motion) -> List[Vec3]:
-    """Return the velocity of a link along the surface of another one at each contact, m/s."""
+def slips_along(contacts: Sequence[ContactPoint], axes: Tuple[Vec3, Vec3], mine: Motion,
+                theirs: Motion) -> List[Tuple[float, float]]:
+    """Return the velocity of a link against another one at each contact, m/s, along two axes."""
+    centre, _, (u, v, w), (p, q, r) = mine
+    (a, b, c), (d, e, f) = axes
     found = []
     for contact in contacts:
-        at, normal = contact[PLACE], contact[NORMAL]
-        velocity = mine.velocity_at(at)
+        x, y, z = contact[PLACE]
         if theirs is not AT_REST:
-            velocity = subtract(velocity, theirs.velocity_at(at))
-        found.append(subtract(velocity, scale(normal, dot(velocity, normal))))
+            i, j, k = subtract((0.0, 0.0, 0.0), theirs.velocity_at((x, y, z)))
+        else:
+            i = j = k = 0.0
+        x, y, z = x - centre[0], y - centre[1], z - centre[2]
+        i, j, k = i + u + q * z - r * y, j + v + r * x - p * z, k + w + p * y - q * x
+        found.append((i * a + j * b + k * c, i * d + j * e + k * f))
     return found
 
 
-def mean_slip(slips: Sequence[Vec3], loads: Sequence[float]) -> Vec3:
+def mean_slip(slips: Sequence[Tuple[float, float]], loads: Sequence[float]) -> Tuple[float, float]:
     """Return the mean weighted by load: in a curve a wheel rolls on its loaded edge."""
-    x = y = z = total = 0.0
-    for (u, v, w), load in zip(slips, loads):
-        x, y, z, total = x + load * u, y + load * v, z + load * w, total + load
-    return x / total, y / total, z / total
+    x = y = total = 0.0
+    for (u, v), load in zip(slips, loads):
+        x, y, total = x + load * u, y + load * v, total + load
+    return x / total, y / total
 
 
 def direction_across(normal: Vec3) -> Vec3:
     """Return some direction perpendicular to a normal, of length 1."""
     x, y, z = normal
-    found = (0.0, -z, y) if abs(z) > 0.7 else (-y, x, 0.0)
-    return scale(found, 1.0 / norm(found))
+    size = hypot(y, z) if abs(z) > 0.7 else hypot(x, y)
+    return (0.0, -z / size, y / size) if abs(z) > 0.7 else (-y / size, x / size, 0.0)
 
 
 def limited(wanted: Tuple[float, float], mus: Tuple[float, float], soft: Tuple[float, float],

@@ -14,7 +14,7 @@ from typing import Dict, List, Optional, Sequence, Tuple
 
 from ...description.model import Link
 from ...description.shapes import Cylinder
-from ...geometry import Vec3, conjugate, cross, dot, norm, rotate, scale, subtract
+from ...geometry import Vec3, conjugate, cross, dot, norm, rotate, scale
 from .bodies import Part
 from .contact_points import DISTANCE, LOAD, NORMAL, PLACE, ContactPoint
 from .link_states import Motion
@@ -36,12 +36,6 @@ class _Edge:
     contacts: List[ContactPoint] = field(default_factory=list)
     x: float = 0.0
     y: float = 0.0
-
-    def add(self, contact: ContactPoint, x: float, y: float) -> None:
-        """Add a contact at a position in the floor plane, m."""
-        self.contacts.append(contact)
-        self.x += (x - self.x) / len(self.contacts)
-        self.y += (y - self.y) / len(self.contacts)
 
 
 def axle_of(part: Part, link: Link) -> Optional[Vec3]:
@@ -102,20 +96,25 @@ def _edges(wheel: int, centre: Vec3, axis: Optional[Vec3], contacts: Sequence[Co
 
     Without an axis, each contact is an edge.
     """
-    ahead, aside, normal, height = plane
+    (tx, ty, tz), (sx, sy, sz), (nx, ny, nz), height = plane
+    (u, v, w), (a, b, c) = centre, axis or centre
     found: Dict[int, _Edge] = {}
     for n, contact in enumerate(contacts):
-        at, load = contact[PLACE], contact[LOAD]
+        (x, y, z), (p, q, r), load = contact[PLACE], contact[NORMAL], contact[LOAD]
         if contact[DISTANCE] >= _NEAR:
             continue
-        if abs(dot(at, normal) - height) > _LEVEL or dot(contact[NORMAL], normal) < _ALIKE:
+        if abs(x * nx + y * ny + z * nz - height) > _LEVEL or p * nx + q * ny + r * nz < _ALIKE:
             return None
-        side = n if axis is None else int(dot(subtract(at, centre), axis) > 0.0)
-        edge = found.setdefault(side, _Edge(wheel))
-        edge.add(contact, dot(at, ahead), dot(at, aside))
+        side = n if axis is None else int((x - u) * a + (y - v) * b + (z - w) * c > 0.0)
+        if side not in found:
+            found[side] = _Edge(wheel)
+        edge, along, aside = found[side], x * tx + y * ty + z * tz, x * sx + y * sy + z * sz
+        edge.contacts.append(contact)
+        edge.x += (along - edge.x) / len(edge.contacts)
+        edge.y += (aside - edge.y) / len(edge.contacts)
         moments[0] += load
-        moments[1] += load * dot(at, ahead)
-        moments[2] += load * dot(at, aside)
+        moments[1] += load * along
+        moments[2] += load * aside
     return list(found.values())
 
 

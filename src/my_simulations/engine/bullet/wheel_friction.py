@@ -23,15 +23,15 @@ Once all links of a body that have no slip have stopped sliding, they get Bullet
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Callable, Dict, Iterable, Iterator, List, Optional, Set, Tuple
+from math import hypot
+from typing import Callable, Dict, Iterable, Iterator, List, NamedTuple, Optional, Set, Tuple
 
 import pybullet
 
-from ...description.link_surface import counting_collision
-from ...description.shapes import Cylinder, Surface
-from ...geometry import ZERO3, Vec3, add, cross, dot, norm, rotate, scale, subtract
+from ...geometry import ZERO3, Vec3, cross, dot, norm, scale
+from ..body_plan import BASE
 from ..drive_commands import WheelSlip
-from .bodies import Axis, Body, Part
+from .bodies import Axis, Body
 from .body_events import BodyEvent
 from .contact_points import (
     DISTANCE,
@@ -44,12 +44,12 @@ from .contact_points import (
     ContactPoint,
     LinkKey,
 )
-from .contact_slip import direction_across, limited, mean_slip, slips_at
-from .edge_loads import Loads, axle_of, carrying, shared
-from .extra_surfaces import anisotropy, first_direction
-from .link_states import AT_REST, Motion, motion, place
+from .contact_slip import direction_across, limited, mean_slip, slips_along
+from .edge_loads import Loads, carrying, shared
+from .extra_surfaces import anisotropy
+from .link_states import AT_REST, Motion, motion, motions
 from .step_helper import FAR, StepHelper, next_multiple
-from .surface_coefficients import directed
+from .surface_links import SurfaceLink, surface_links
 
 EVERY = 16
 """Steps between two checks for sliding links."""
@@ -61,38 +61,17 @@ _QUIET = 32          # steps at rest until Bullet's friction holds a body again
 _SOFT = 1.5          # steps of braking: a slip that would end sooner is reduced in proportion
 _GROWS = 1.0 / 16.0  # share of the missing force by which B grows in a step
 _LEFT = (1e-3, 1e-3) # shares of Bullet's friction that stay
-_LEAST_MU = 1e-6
-_LEAST_MOMENT = 1e-9 # kg m^2
 
 Contacts = List[ContactPoint]
 
 
-@dataclass
-class _Link:
-    """A link that can touch something.
+class ActingFriction(NamedTuple):
+    """Friction on a link in the next step, N, at a contact, in world axes; and the normal force."""
 
-    Attributes:
-        total: mass of its body, kg.
-        first: direction of the first coefficients, in PyBullet's frame, of length 1; or None.
-        axle: of a wheel (`edge_loads`), or None.
-        mus, slips: along and across `first`; slips in m/(N s).
-        joint: row of its joint; -1 for none.
-    """
-
-    body: Body
-    part: Part
-    total: float
-    first: Optional[Vec3]
-    axle: Optional[Vec3]
-    mus: Tuple[float, float]
-    slips: Tuple[float, float]
-    joint: int
-
-    @property
-    def radius(self) -> float:
-        """Of a wheel, m."""
-        shape = self.part.link.collisions[0].geometry
-        return shape.radius if isinstance(shape, Cylinder) else 0.0
+    at: Vec3
+    force: Vec3
+    load: float
+    other: LinkKey
 
 
 @dataclass
@@ -101,16 +80,12 @@ class _Slide:
 
     Attributes:
         biases: B by the other link, N, world axes.
-        forces: friction on it in the next step, N, by contact point, world axes.
-        loads: normal forces, N, by contact point.
-        others: the other links of the contact points.
+        acting: friction by contact.
         quiet: steps for which it has not slid.
     """
 
     biases: Dict[LinkKey, Vec3] = field(default_factory=dict)
-    forces: Dict[Vec3, Vec3] = field(default_factory=dict)
-    loads: Dict[Vec3, float] = field(default_factory=dict)
-    others: Dict[Vec3, LinkKey] = field(default_factory=dict)
+    acting: List[ActingFriction] = field(default_factory=list)
     quiet: int = 0
 
 
@@ -128,9 +103,9 @@ class WheelFriction(StepHelper):
     def __init__(self, holding: Callable[[int], float], rate: Callable[[int], float]) -> None:
         self._holding, self._rate = holding, rate
         self._commanded: Set[int] = set()
-        self._links: Dict[LinkKey, _Link] = {}
-        self._wheels: Dict[int, Dict[int, _Link]] = {}   # links that can slide, by body
-        self._rigs: Dict[int, Dict[int, _Link]] = {}     # links on no joint, by body
+        self._links: Dict[LinkKey, SurfaceLink] = {}
+        self._wheels: Dict[int, Dict[int, SurfaceLink]] = {}   # links that can slide, by body
+        self._rigs: Dict[int, Dict[int, SurfaceLink]] = {}     # links on no joint, by body
         self._floors: Set[int] = set()                   # static bodies with one coefficient
         self._slides: Dict[LinkKey, _Slide] = {}
         self._slipping: Set[LinkKey] = set()
@@ -154,29 +129,18 @@ class WheelFriction(StepHelper):
     def add(self, body: Body) -> None:
         """Register a new body."""
         self._axes.update((axis.row, (body, axis)) for axis in body.axes)
-        total = sum(part.mass for part in body.parts)
-        joints = {axis.index: axis.row for axis in body.axes}
         if body.base is None:
             self._fixed.add(body.uid)
-        for uid, part in body.surfaces:
-            collision = counting_collision(part.link)
-            surface = Surface() if collision is None else collision.surface
-            first, slips = None, (surface.slip1, surface.slip1)
-            if collision is not None and any(surface.fdir1):
-                first = first_direction(collision, part)
-                slips = surface.slip1, surface.slip2
-            key, joint = (uid, part.index), joints.get(part.index, -1)
-            link = self._links[key] = _Link(
-                body, part, total, first, axle_of(part, part.link) if joint >= 0 else None,
-                (surface.mu, surface.mu2 if directed(surface) else surface.mu), slips, joint)
-            self._rows.setdefault(part.row, []).append(key)
-            if any(slips):
+        for key, link in surface_links(body).items():
+            self._links[key] = link
+            self._rows.setdefault(link.part.row, []).append(key)
+            if any(link.slips):
                 self._slip(key)
-            elif collision is not None and not body.moves and not directed(surface):
-                self._floors.add(uid)
-            elif collision is not None and body.moves and not body.rigid and part.mu > 0.0:
-                table = self._wheels if joint >= 0 else self._rigs
-                table.setdefault(body.uid, {})[part.index] = link
+            elif link.is_floor:
+                self._floors.add(key[0])
+            elif body.moves and not body.rigid and link.part.mu > 0.0:
+                table = self._wheels if link.joint >= 0 else self._rigs
+                table.setdefault(body.uid, {})[key[1]] = link
 
     def forget(self, body: Body) -> None:
         """Discard the data of a removed body."""
@@ -214,24 +178,19 @@ class WheelFriction(StepHelper):
 
     # -- readings ----------------------------------------------------------------------------------
 
-    def friction(self, uid: int, index: int, at: Vec3) -> Vec3:
-        """Return the friction on a link at a contact besides Bullet's, N, world axes."""
-        slide = self._slides.get((uid, index))
-        return ZERO3 if slide is None else slide.forces.get(at, ZERO3)
-
-    def load(self, uid: int, index: int, at: Vec3) -> Optional[float]:
-        """Return the normal force on a sliding link at a contact, N; None for other contacts."""
-        slide = self._slides.get((uid, index))
-        return None if slide is None else slide.loads.get(at)
+    def acting_at(self, uid: int, index: int, at: Vec3) -> Optional[ActingFriction]:
+        """Return the friction on a link at a contact besides Bullet's; None for other contacts."""
+        slide = self._slides.get((uid, index), _Slide())
+        return next((each for each in slide.acting if each.at == at), None)
 
     def forces_on(self, uid: int) -> Iterator[Tuple[int, Vec3, Vec3]]:
         """Yield the friction on a body in the next step: link index, force, point; world axes."""
         for key, slide in self._slides.items():
-            for at, force in slide.forces.items():
+            for at, force, _, other in slide.acting:
                 if key[0] == uid:
                     yield key[1], force, at
-                if slide.others[at][0] == uid:
-                    yield slide.others[at][1], scale(force, -1.0), at
+                if other[0] == uid:
+                    yield other[1], scale(force, -1.0), at
 
     # -- steps -------------------------------------------------------------------------------------
 
@@ -247,10 +206,10 @@ class WheelFriction(StepHelper):
             self._begin(uid, norm(gravity) * dt)
         self._commanded.clear()
         for key, slide in self._slides.items():
-            for at, force in slide.forces.items():
+            slips = key in self._slipping
+            for at, force, _, other in slide.acting:
                 pybullet.applyExternalForce(*key, force, at, pybullet.WORLD_FRAME)
-                other = slide.others[at]
-                if other in self._links and self._links[other].body.moves:
+                if slips and other in self._links and self._links[other].body.moves:
                     pybullet.applyExternalForce(*other, scale(force, -1.0), at,
                                                 pybullet.WORLD_FRAME)
 
@@ -270,7 +229,7 @@ class WheelFriction(StepHelper):
             self._go_on(key, moves, *loads, dt, weight)
         self._give_back_quiet()
 
-    def _find_slides(self, uid: int, wheels: Dict[int, _Link]) -> None:
+    def _find_slides(self, uid: int, wheels: Dict[int, SurfaceLink]) -> None:
         """Take the links of a body that slide on static bodies."""
         found: Dict[int, Contacts] = {}
         for contact in pybullet.getContactPoints(bodyA=uid):
@@ -278,8 +237,11 @@ class WheelFriction(StepHelper):
                 found.setdefault(contact[LINK], []).append(contact)
         for index, contacts in found.items():
             if (uid, index) not in self._slides and not self._touches_others(contacts):
-                slips = slips_at(contacts, motion(uid, index), AT_REST)
-                if norm(mean_slip(slips, carrying(contacts)[1])) > _SLIDES:
+                normal = contacts[0][NORMAL]
+                along = direction_across(normal)
+                slips = slips_along(contacts, (along, cross(normal, along)), motion(uid, index),
+                                    AT_REST)
+                if hypot(*mean_slip(slips, carrying(contacts)[1])) > _SLIDES:
                     self._take((uid, index))
 
     def _begin(self, uid: int, gain: float) -> None:
@@ -300,18 +262,27 @@ class WheelFriction(StepHelper):
 
     def _loads(self) -> Dict[LinkKey, Tuple[Motion, Loads]]:
         """Return motion and loads of each sliding link; wheels of a body share their load."""
+        bodies: Dict[int, List[int]] = {}
+        for uid, index in self._slides:
+            bodies.setdefault(uid, []).append(index)
         found: Dict[LinkKey, Tuple[Motion, Loads]] = {}
-        wheels: Dict[int, List[Tuple[LinkKey, Motion, Optional[Vec3], Contacts]]] = {}
-        for key in self._slides:
-            moves, axle = motion(*key), self._links[key].axle
-            contacts = pybullet.getContactPoints(bodyA=key[0], linkIndexA=key[1])
-            if key in self._slipping:
-                found[key] = moves, carrying(contacts)
-            else:
-                wheels.setdefault(key[0], []).append((key, moves, axle, contacts))
-        for rows in wheels.values():
-            told = shared([row[1:] for row in rows]) if len(rows) > 1 else [carrying(rows[0][3])]
-            found.update((key, (moves, loads)) for (key, moves, _, _), loads in zip(rows, told))
+        for uid, indices in bodies.items():
+            rows: List[Tuple[Motion, Optional[Vec3], Contacts]] = []
+            keys: List[LinkKey] = []
+            hung = [index for index in indices if index != BASE]
+            read = dict(zip(hung, motions(uid, hung)))
+            for index in indices:
+                moves = read[index] if index in read else motion(uid, index)
+                key = (uid, index)
+                contacts = pybullet.getContactPoints(bodyA=uid, linkIndexA=index)
+                if key in self._slipping:
+                    found[key] = moves, carrying(contacts)
+                else:
+                    keys.append(key)
+                    rows.append((moves, self._links[key].axle, contacts))
+            told = shared(rows) if len(rows) > 1 else [carrying(row[2]) for row in rows]
+            for key, row, loads in zip(keys, rows, told):
+                found[key] = row[0], loads
         return found
 
     def _go_on(self, key: LinkKey, moves: Motion, contacts: Contacts, loads: List[float],
@@ -321,78 +292,76 @@ class WheelFriction(StepHelper):
         if not slips and self._touches_others(contacts):
             self._give_back(key)
             return
-        slide.loads = {contact[PLACE]: load for contact, load in zip(contacts, loads)}
-        slide.forces, slide.others = {}, {}
+        slide.acting = []
         slide.quiet += 1
         groups: Dict[LinkKey, Tuple[Contacts, List[float]]] = {}
         for contact, load in zip(contacts, loads):
             other = (contact[OTHER_BODY], contact[OTHER_LINK])
-            if other in self._links and not (slips and other in self._slipping and other < key):
-                points, carried = groups.setdefault(other, ([], []))
-                points.append(contact)
-                carried.append(load)
+            if other not in groups:
+                if other not in self._links or slips and other in self._slipping and other < key:
+                    continue
+                groups[other] = [], []
+            groups[other][0].append(contact)
+            groups[other][1].append(load)
         slide.biases = {other: slide.biases.get(other, ZERO3) for other in groups}
         for other, (points, carried) in groups.items():
             forces = self._forces(key, other, moves, points, carried, dt, weight)
-            for contact, force in zip(points, forces):
-                slide.forces[contact[PLACE]], slide.others[contact[PLACE]] = force, other
+            slide.acting += [ActingFriction(contact[PLACE], force, load, other)
+                             for contact, force, load in zip(points, forces, carried)]
 
     def _forces(self, key: LinkKey, other: LinkKey, mine: Motion, contacts: Contacts,
                 loads: List[float], dt: float, weight: float) -> List[Vec3]:
         """Return the friction on the first of two links at each contact; update its B."""
         one, two, slide = self._links[key], self._links[other], self._slides[key]
         theirs = motion(*other) if two.body.moves else AT_REST
-        velocities = slips_at(contacts, mine, theirs)
-        slip, carried = mean_slip(velocities, loads), sum(loads)
-        if norm(slip) > _HELD and one.joint >= 0:
-            slide.quiet = 0
-        normal = contacts[0][NORMAL]
-        along = _direction(one, key, normal) or _direction(two, other, normal) or (
-            direction_across(normal))
-        axes = along, cross(normal, along)
-        mus = (max(_LEAST_MU, min(one.mus[0], two.mus[0])),
-               max(_LEAST_MU, min(one.mus[1], two.mus[1])))
+        carried = sum(loads)
+        mus = min(one.mus[0], two.mus[0]), min(one.mus[1], two.mus[1])
         slow = one.slips[0] + two.slips[0], one.slips[1] + two.slips[1]
         ends = self._ends(one, two, mine, theirs, contacts, carried, dt, weight)
-        if not any(slow):   # so that friction is along M (M v), also where it is least
+        if mus[0] != mus[1] and not any(slow):   # friction is along M (M v), also where it is least
             most = max(mus)
             ends = ends[0] * (most / mus[0]) ** 2, ends[1] * (most / mus[1]) ** 2
         soft = slow[0] + ends[0], slow[1] + ends[1]
+        normal, along = contacts[0][NORMAL], None
+        if soft[0] != soft[1] or mus[0] != mus[1]:
+            along = one.direction(mine, normal) or two.direction(theirs, normal)
+        along = along or direction_across(normal)
+        axes = along, cross(normal, along)
         bias = slide.biases[other]
         holds = dot(bias, axes[0]), dot(bias, axes[1])
-        forces, total, within = [], ZERO3, False
-        for velocity, load in zip(velocities, loads):
+        slips = slips_along(contacts, axes, mine, theirs)
+        slip = mean_slip(slips, loads)
+        if one.joint >= 0 and hypot(*slip) > _HELD:
+            slide.quiet = 0
+        forces, total, within = [], (0.0, 0.0), False
+        for velocity, load in zip(slips, loads):
             share = load / carried
-            wanted = (share * (holds[0] - dot(velocity, axes[0]) / soft[0]),
-                      share * (holds[1] - dot(velocity, axes[1]) / soft[1]))
+            wanted = (share * (holds[0] - velocity[0] / soft[0]),
+                      share * (holds[1] - velocity[1] / soft[1]))
             parts = limited(wanted, mus, soft, load)
             within = within or parts is wanted
-            force = add(scale(axes[0], parts[0]), scale(axes[1], parts[1]))
-            forces.append(force)
-            total = add(total, force)
-        if within:
-            missing = [(dot(slip, axis) + s * dot(total, axis)) / end
-                       for axis, s, end in zip(axes, slow, soft)]
-            holds = limited((holds[0] - _GROWS * missing[0], holds[1] - _GROWS * missing[1]),
-                            mus, soft, carried)
-        slide.biases[other] = add(scale(axes[0], holds[0]), scale(axes[1], holds[1])) \
-            if within else ZERO3
+            forces.append(_combined(axes, parts))
+            total = total[0] + parts[0], total[1] + parts[1]
+        slide.biases[other] = ZERO3 if not within else _combined(axes, limited(
+            (holds[0] - _GROWS * (slip[0] + slow[0] * total[0]) / soft[0],
+             holds[1] - _GROWS * (slip[1] + slow[1] * total[1]) / soft[1]), mus, soft, carried))
         return forces
 
-    def _ends(self, one: _Link, two: _Link, mine: Motion, theirs: Motion, contacts: Contacts,
-              carried: float, dt: float, weight: float) -> Tuple[float, float]:
+    def _ends(self, one: SurfaceLink, two: SurfaceLink, mine: Motion, theirs: Motion,
+              contacts: Contacts, carried: float, dt: float, weight: float) -> Tuple[float, float]:
         """Return the slip velocity per force, m/(N s), that friction ends: along and across.
 
         A body on wheels moves as the load of the wheel does; the mobility of the wheel alone is
         much larger. Across the axle of a wheel that no motor or brake holds, it matters too.
         """
-        alone = dt * (_mobility(one, mine, contacts) + _mobility(two, theirs, contacts))
-        if one.body.rigid or two.body.moves:
-            return alone, alone
-        end = _SOFT * dt * max(weight, carried / one.total) / carried
-        free = one.axle is not None and one.first is None and (
-            self._holding(one.joint) < min(one.mus[0], two.mus[0]) * carried * one.radius)
-        return end, max(end, alone) if free else end
+        if not one.body.rigid and not two.body.moves:
+            end = _SOFT * dt * max(weight, carried / one.total) / carried
+            if one.axle is None or one.first is not None or self._holding(
+                    one.joint) >= min(one.mus[0], two.mus[0]) * carried * one.radius:
+                return end, end
+            return end, max(end, dt * one.mobility(mine, contacts))
+        alone = dt * (one.mobility(mine, contacts) + two.mobility(theirs, contacts))
+        return alone, alone
 
     # -- Bullet's friction -------------------------------------------------------------------------
 
@@ -427,19 +396,7 @@ class WheelFriction(StepHelper):
             self._links[key].slips = (share * wheel.lateral, share * wheel.longitudinal)
 
 
-def _direction(link: _Link, key: LinkKey, normal: Vec3) -> Optional[Vec3]:
-    """Return the direction of the first coefficients, or of an axle, in the contact plane."""
-    own = link.first or link.axle
-    if own is None:
-        return None
-    turned = rotate(place(*key)[1], own)
-    flat = subtract(turned, scale(normal, dot(turned, normal)))
-    return scale(flat, 1.0 / norm(flat)) if norm(flat) > 1e-6 else None
-
-
-def _mobility(link: _Link, moves: Motion, contacts: Contacts) -> float:
-    """Return an upper bound of the acceleration of a link per force at a contact, 1/kg."""
-    if not link.body.moves or link.part.mass <= 0.0:
-        return 0.0
-    arm = max(norm(subtract(contact[PLACE], moves.position)) for contact in contacts)
-    return 1.0 / link.part.mass + arm * arm / max(_LEAST_MOMENT, min(link.part.moments))
+def _combined(axes: Tuple[Vec3, Vec3], parts: Tuple[float, float]) -> Vec3:
+    (a, b, c), (u, v, w) = axes
+    x, y = parts
+    return x * a + y * u, x * b + y * v, x * c + y * w
