@@ -1,11 +1,11 @@
 """Compute the slip at contact points, and the friction that Coulomb's law allows."""
 from __future__ import annotations
 
-from math import hypot
+from math import hypot, sqrt
 from typing import List, Sequence, Tuple
 
 from ...geometry import Vec3, subtract
-from .contact_points import PLACE, ContactPoint
+from .contact_points import NORMAL, PLACE, ContactPoint
 from .link_states import AT_REST, Motion
 
 _MOST_ROUNDS = 20
@@ -66,3 +66,39 @@ def limited(wanted: Tuple[float, float], mus: Tuple[float, float], soft: Tuple[f
             break
     left = load / size
     return left * a / (u + x) * mus[0], left * b / (v + x) * mus[1]
+
+
+def isotropic(contacts: Sequence[ContactPoint], loads: Sequence[float], mine: Motion, bias: Vec3,
+              mu: float, soft: float, grows: float) -> Tuple[List[Vec3], float, Vec3]:
+    """Return friction by contact with something at rest, N, the mean slip, m/s, and the new bias.
+
+    The law of `wheel_friction` for one coefficient and no slip, in a third of the time.
+    """
+    (cx, cy, cz), _, (u, v, w), (p, q, r) = mine
+    bx, by, bz = bias
+    total, within = sum(loads), False
+    mx = my = mz = 0.0
+    forces: List[Vec3] = []
+    for contact, load in zip(contacts, loads):
+        (x, y, z), (a, b, c) = contact[PLACE], contact[NORMAL]
+        x, y, z = x - cx, y - cy, z - cz
+        i, j, k = u + q * z - r * y, v + r * x - p * z, w + p * y - q * x
+        away = i * a + j * b + k * c
+        i, j, k = i - away * a, j - away * b, k - away * c
+        mx, my, mz = mx + load * i, my + load * j, mz + load * k
+        share = load / total
+        i, j, k = share * (bx - i / soft), share * (by - j / soft), share * (bz - k / soft)
+        size, most = sqrt(i * i + j * j + k * k), mu * load
+        if size > most:
+            i, j, k = i * most / size, j * most / size, k * most / size
+        else:
+            within = True
+        forces.append((i, j, k))
+    mx, my, mz = mx / total, my / total, mz / total
+    slip = sqrt(mx * mx + my * my + mz * mz)
+    if not within:
+        return forces, slip, (0.0, 0.0, 0.0)
+    grown = grows / soft
+    bx, by, bz = bx - grown * mx, by - grown * my, bz - grown * mz
+    left = min(1.0, mu * total / max(sqrt(bx * bx + by * by + bz * bz), 1e-300))
+    return forces, slip, (left * bx, left * by, left * bz)

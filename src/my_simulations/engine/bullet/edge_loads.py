@@ -9,8 +9,8 @@ this load, and Coulomb's law at each edge, the Husky turns at 1.36 rad/s.
 """
 from __future__ import annotations
 
-from dataclasses import dataclass, field
-from typing import Dict, List, Optional, Sequence, Tuple
+from dataclasses import dataclass
+from typing import List, Optional, Sequence, Tuple
 
 from ...description.model import Link
 from ...description.shapes import Cylinder
@@ -33,9 +33,9 @@ class _Edge:
     """Contacts of one edge of a wheel, and their mean position in the floor plane, m."""
 
     wheel: int
-    contacts: List[ContactPoint] = field(default_factory=list)
-    x: float = 0.0
-    y: float = 0.0
+    contacts: List[ContactPoint]
+    x: float
+    y: float
 
 
 def axle_of(part: Part, link: Link) -> Optional[Vec3]:
@@ -98,24 +98,25 @@ def _edges(wheel: int, centre: Vec3, axis: Optional[Vec3], contacts: Sequence[Co
     """
     (tx, ty, tz), (sx, sy, sz), (nx, ny, nz), height = plane
     (u, v, w), (a, b, c) = centre, axis or centre
-    found: Dict[int, _Edge] = {}
+    count = 2 if axis is not None else len(contacts)
+    sides: List[List[ContactPoint]] = [[] for _ in range(count)]
+    xs, ys = [0.0] * count, [0.0] * count
     for n, contact in enumerate(contacts):
-        (x, y, z), (p, q, r), load = contact[PLACE], contact[NORMAL], contact[LOAD]
         if contact[DISTANCE] >= _NEAR:
             continue
+        (x, y, z), (p, q, r), load = contact[PLACE], contact[NORMAL], contact[LOAD]
         if abs(x * nx + y * ny + z * nz - height) > _LEVEL or p * nx + q * ny + r * nz < _ALIKE:
             return None
         side = n if axis is None else int((x - u) * a + (y - v) * b + (z - w) * c > 0.0)
-        if side not in found:
-            found[side] = _Edge(wheel)
-        edge, along, aside = found[side], x * tx + y * ty + z * tz, x * sx + y * sy + z * sz
-        edge.contacts.append(contact)
-        edge.x += (along - edge.x) / len(edge.contacts)
-        edge.y += (aside - edge.y) / len(edge.contacts)
+        sides[side].append(contact)
+        along, aside = x * tx + y * ty + z * tz, x * sx + y * sy + z * sz
+        xs[side] += along
+        ys[side] += aside
         moments[0] += load
         moments[1] += load * along
         moments[2] += load * aside
-    return list(found.values())
+    return [_Edge(wheel, side, x / len(side), y / len(side))
+            for side, x, y in zip(sides, xs, ys) if side]
 
 
 def _spread(edges: List[_Edge], total: float, x_load: float, y_load: float,

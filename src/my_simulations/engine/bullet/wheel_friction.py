@@ -44,7 +44,7 @@ from .contact_points import (
     ContactPoint,
     LinkKey,
 )
-from .contact_slip import direction_across, limited, mean_slip, slips_along
+from .contact_slip import direction_across, isotropic, limited, mean_slip, slips_along
 from .edge_loads import Loads, carrying, shared
 from .extra_surfaces import anisotropy
 from .link_states import AT_REST, Motion, motion, motions
@@ -80,12 +80,12 @@ class _Slide:
 
     Attributes:
         biases: B by the other link, N, world axes.
-        acting: friction by contact.
+        acting: fields of `ActingFriction`, by contact.
         quiet: steps for which it has not slid.
     """
 
     biases: Dict[LinkKey, Vec3] = field(default_factory=dict)
-    acting: List[ActingFriction] = field(default_factory=list)
+    acting: List[Tuple[Vec3, Vec3, float, LinkKey]] = field(default_factory=list)
     quiet: int = 0
 
 
@@ -181,7 +181,7 @@ class WheelFriction(StepHelper):
     def acting_at(self, uid: int, index: int, at: Vec3) -> Optional[ActingFriction]:
         """Return the friction on a link at a contact besides Bullet's; None for other contacts."""
         slide = self._slides.get((uid, index), _Slide())
-        return next((each for each in slide.acting if each.at == at), None)
+        return next((ActingFriction(*each) for each in slide.acting if each[0] == at), None)
 
     def forces_on(self, uid: int) -> Iterator[Tuple[int, Vec3, Vec3]]:
         """Yield the friction on a body in the next step: link index, force, point; world axes."""
@@ -295,18 +295,17 @@ class WheelFriction(StepHelper):
         slide.acting = []
         slide.quiet += 1
         groups: Dict[LinkKey, Tuple[Contacts, List[float]]] = {}
-        for contact, load in zip(contacts, loads):
-            other = (contact[OTHER_BODY], contact[OTHER_LINK])
-            if other not in groups:
-                if other not in self._links or slips and other in self._slipping and other < key:
-                    continue
-                groups[other] = [], []
-            groups[other][0].append(contact)
-            groups[other][1].append(load)
-        slide.biases = {other: slide.biases.get(other, ZERO3) for other in groups}
+        others = [(contact[OTHER_BODY], contact[OTHER_LINK]) for contact in contacts]
+        for other in dict.fromkeys(others):
+            if other in self._links and not (slips and other in self._slipping and other < key):
+                groups[other] = (contacts, loads) if others.count(other) == len(others) else (
+                    [each for each, one in zip(contacts, others) if one == other],
+                    [each for each, one in zip(loads, others) if one == other])
+        biases, slide.biases = slide.biases, {}
         for other, (points, carried) in groups.items():
+            slide.biases[other] = biases.get(other, ZERO3)
             forces = self._forces(key, other, moves, points, carried, dt, weight)
-            slide.acting += [ActingFriction(contact[PLACE], force, load, other)
+            slide.acting += [(contact[PLACE], force, load, other)
                              for contact, force, load in zip(points, forces, carried)]
 
     def _forces(self, key: LinkKey, other: LinkKey, mine: Motion, contacts: Contacts,
@@ -322,12 +321,17 @@ class WheelFriction(StepHelper):
             most = max(mus)
             ends = ends[0] * (most / mus[0]) ** 2, ends[1] * (most / mus[1]) ** 2
         soft = slow[0] + ends[0], slow[1] + ends[1]
-        normal, along = contacts[0][NORMAL], None
-        if soft[0] != soft[1] or mus[0] != mus[1]:
-            along = one.direction(mine, normal) or two.direction(theirs, normal)
-        along = along or direction_across(normal)
-        axes = along, cross(normal, along)
         bias = slide.biases[other]
+        if soft[0] == soft[1] and mus[0] == mus[1] and not any(slow) and theirs is AT_REST:
+            forces, size, slide.biases[other] = isotropic(
+                contacts, loads, mine, bias, mus[0], soft[0], _GROWS)
+            if one.joint >= 0 and size > _HELD:
+                slide.quiet = 0
+            return forces
+        normal = contacts[0][NORMAL]
+        along = one.direction(mine, normal) or two.direction(theirs, normal) or (
+            direction_across(normal))
+        axes = along, cross(normal, along)
         holds = dot(bias, axes[0]), dot(bias, axes[1])
         slips = slips_along(contacts, axes, mine, theirs)
         slip = mean_slip(slips, loads)
