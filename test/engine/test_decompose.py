@@ -22,11 +22,11 @@ from my_simulations.engine.convex.cache import (
 )
 from my_simulations.engine.convex.decomposition import notices
 from my_simulations.engine.convex.hulls import (
-    drawn_in,
     full_hull,
     hull_of,
     is_convex,
     is_flat,
+    moved_onto_hull,
     stretched,
     thickened,
 )
@@ -72,7 +72,7 @@ def holds(part, point):
 
 def divided(mesh, folder):
     told = []
-    (made,) = batch.divide_all([("m::l", mesh)], told.append, cache_dir=str(folder))
+    (made,) = batch.decompose_all([("m::l", mesh)], told.append, cache_dir=str(folder))
     return made.parts, [issue.code for issue in notices(made)], told
 
 
@@ -381,9 +381,9 @@ def arrays(made):
 
 def test_a_worker_divides_one_mesh_after_the_other_and_none_depends_on_those_before(tmp_path):
     wide = MeshData(angle().vertices * (1.0, 1.0, 2.0), angle().triangles)
-    with decomposition.Divider(cache_dir=str(tmp_path / "one")) as divider:
+    with decomposition.MeshDecomposer(cache_dir=str(tmp_path / "one")) as divider:
         for mesh in (wide, angle()):
-            last = divider.divide(mesh)
+            last = divider.decompose(mesh)
     alone = decomposition.divided(angle(), cache_dir=str(tmp_path / "other"))
     assert len(last.parts) > 1 and arrays(last) == arrays(alone)
 
@@ -395,8 +395,8 @@ def test_a_mesh_that_ends_a_worker_leaves_the_next_one_as_it_would_be_alone(tmp_
                f"open({marks!r}, 'a').write('.'); os.path.getsize({marks!r}) < 2 and os.abort(); "
                "open(a[1], 'w').write(''.join(f'o {n}\\nv {n} 0 0\\nv {n} 1 0\\nv {n} 0 1\\n"
                "v {n + 1} 0 0\\n' for n in range(2)))")
-    with decomposition.Divider(cache_dir=str(tmp_path / "cache")) as divider:
-        first, second = divider.divide(angle()), divider.divide(angle())
+    with decomposition.MeshDecomposer(cache_dir=str(tmp_path / "cache")) as divider:
+        first, second = divider.decompose(angle()), divider.decompose(angle())
     assert [one.code for one in notices(first)] == ["mesh-not-decomposed"]
     assert len(second.parts) == 2 and notices(second) == []
 
@@ -443,7 +443,7 @@ def test_several_meshes_are_divided_two_at_a_time_with_a_word_for_each(tmp_path,
             (marks / "progress").touch()
 
     meshes = [("a::l", angle()), ("b::l", mesh_of(box())), ("c::l", second), ("d::l", angle())]
-    made = batch.divide_all(meshes, hear, cache_dir=str(tmp_path / "cache"))
+    made = batch.decompose_all(meshes, hear, cache_dir=str(tmp_path / "cache"))
     assert [volume(one.parts) for one in made] == pytest.approx([5.0, 1.0, 40.0, 5.0])
     assert "2 meshes are divided" in told[0] and str(tmp_path / "cache") in told[0]
     assert any(words.startswith("dividing mesh 1 of 2 (a::l), 20 triangles") for words in told)
@@ -480,7 +480,7 @@ def test_thickening_leaves_what_is_thick_enough():
 
 def test_points_are_drawn_in_to_a_hull_and_those_inside_stay():
     points = np.array([(0.2, 0.1, 0.0), (0.6, 0.0, 0.0), (0.9, 0.9, -0.8)])
-    moved = drawn_in(points, hull_of(box().vertices))
+    moved = moved_onto_hull(points, hull_of(box().vertices))
     assert moved == pytest.approx(np.array([(0.2, 0.1, 0.0), (0.5, 0.0, 0.0), (0.5, 0.5, -0.5)]))
 
 

@@ -12,17 +12,19 @@ from ..child_process import die_with_parent, keep_freed_memory
 from .api import Event, Reply
 from .commands import Command, Post, SetModelState
 from .message_pipe import Wire
-from .ring import RingWriter
 from .runner import Runner
-from .wake_pipe import ring
+from .ring import RingWriter
+from .wake_pipe import wake
 
 
 class _Pipes:
-    """The channel of a child: a socket for commands, pipes for the bell and for the host."""
+    """The channel of a child: a socket for commands, a wake pipe, and a pipe for notices to the
+    host.
+    """
 
-    def __init__(self, wire: Wire, bell: int, notices: int) -> None:
+    def __init__(self, wire: Wire, wake_pipe: int, notices: int) -> None:
         self._wire = wire
-        self._bell, self._notices = bell, notices
+        self._wake_pipe, self._notices = wake_pipe, notices
 
     def receive(self, timeout: float) -> List[Tuple[int, Command]]:
         return [(number, Post(SetModelState.of_plain(message)) if isinstance(message, tuple)
@@ -35,10 +37,10 @@ class _Pipes:
         self._send((-1, event))
 
     def wake_host_thread(self) -> None:
-        ring(self._bell)
+        wake(self._wake_pipe)
 
     def notify(self) -> None:
-        ring(self._notices)
+        wake(self._notices)
 
     def _send(self, message: object) -> None:
         try:
@@ -67,7 +69,7 @@ def main(argv: List[str]) -> int:
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     signal.signal(signal.SIGTERM, signal.SIG_IGN)
     die_with_parent()
-    commands, states, bell, notices = (int(word) for word in argv[1:5])
+    commands, states, wake_pipe, notices = (int(word) for word in argv[1:5])
     with _silent_stderr():
         from .bullet.backend import BulletBackend
         from .spare_memory import made_without_zero_pages
@@ -76,7 +78,7 @@ def main(argv: List[str]) -> int:
     keep_freed_memory()
     wire = Wire(socket.socket(fileno=commands))
     try:
-        Runner(backend, RingWriter(states), _Pipes(wire, bell, notices)).run()
+        Runner(backend, RingWriter(states), _Pipes(wire, wake_pipe, notices)).run()
     finally:
         backend.close()
     return 0

@@ -40,8 +40,8 @@ class HostSync:
         """Counts the settings of the world: clock, step size, models."""
         return self._settings
 
-    def take(self, command: Command, step: int, clock: Clock) -> bool:
-        """Whether a command is for this object alone; it is carried out then."""
+    def apply_own_command(self, command: Command, step: int, clock: Clock) -> bool:
+        """Apply a command that only concerns this object; False for other commands."""
         if isinstance(command, SetRecordRules):
             self.records.set_rules(command.rules, step, clock)
         elif isinstance(command, Synchronize):
@@ -50,18 +50,18 @@ class HostSync:
             return False
         return True
 
-    def note(self, command: Command, step: int) -> None:
-        """The backend has carried out a command."""
+    def note_applied(self, command: Command, step: int) -> None:
+        """Update the records and settings after the backend has applied a command."""
         self.records.count_joint_sets(command)
         if isinstance(command, _CHANGE_SETTINGS):
             self.change_settings(step)
 
-    def limit(self) -> int:
+    def step_limit(self) -> int:
         """The step at which the engine stops."""
         return self._writer.step_limit(self._settings, self._since)
 
     def change_settings(self, step: int) -> None:
-        """The clock, the step size or the models are others: wait for a new budget at `step`."""
+        """Wait for a new budget at `step` after a change of clock, step size or models."""
         self._settings, self._since = self._settings + 1, step
 
     def wait_at(self, step: int) -> None:
@@ -71,8 +71,8 @@ class HostSync:
         fence()   # the budget is read only then: see `SyncPoints.allow`
         self._notify_now()
 
-    def go_on(self) -> None:
-        """The engine makes steps again."""
+    def end_wait(self) -> None:
+        """Show the host that the engine does not wait for it any more."""
         self._words[WAITS_AT] = 0
 
     def record(self, step: int, clock_sets: int, clock: Clock) -> bool:

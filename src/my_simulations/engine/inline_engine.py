@@ -144,7 +144,7 @@ class InlineEngine:
         self._on_event(event)
 
     def wait_for_wake(self, timeout: float) -> bool:
-        """Wait for the bell and take it."""
+        """Wait for a wake-up and clear it."""
         rung = self.rung.wait(timeout)
         self.rung.clear()
         return rung

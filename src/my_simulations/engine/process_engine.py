@@ -41,7 +41,7 @@ class ProcessEngine:
     def __init__(self) -> None:
         self._ring_fd = ring_module.create()
         self._ring = RingReader(self._ring_fd)
-        self._bell, self._notices = WakePipe(), WakePipe()
+        self._wake_pipe, self._notices = WakePipe(), WakePipe()
         # A sender may block until the child reads, which may wait for the reader thread to take its
         # replies: what that thread needs is never held over a send.
         self._lock = threading.Lock()
@@ -105,7 +105,7 @@ class ProcessEngine:
         The kernel kills the child when the thread that started it ends (PR_SET_PDEATHSIG).
         """
         ours, theirs = socket.socketpair()
-        descriptors = (theirs.fileno(), self._ring_fd, self._bell.input, self._notices.input)
+        descriptors = (theirs.fileno(), self._ring_fd, self._wake_pipe.input, self._notices.input)
         with self._lock, shielded():
             self._child = subprocess.Popen(
                 child_command("engine", *map(str, descriptors)),
@@ -176,15 +176,15 @@ class ProcessEngine:
 
     def notify_host(self) -> None:
         """End a `wait_for_notice`."""
-        self._notices.ring()
+        self._notices.wake()
 
     def wait_for_notice(self, timeout: float) -> bool:
         """Wait for the child or `notify_host`; False after `timeout` s."""
         return self._notices.wait(timeout)
 
     def wait_for_wake(self, timeout: float) -> bool:
-        """Wait for the bell and empty it; False after `timeout` s."""
-        return self._bell.wait(timeout)
+        """Wait for a wake-up and clear it; False after `timeout` s."""
+        return self._wake_pipe.wait(timeout)
 
     def kill(self, reason: str = "") -> None:
         """Kill the child; `reason` is reported instead of the signal."""
@@ -209,7 +209,7 @@ class ProcessEngine:
         self._close_descriptors()
 
     def _close_descriptors(self) -> None:
-        self._bell.close()
+        self._wake_pipe.close()
         self._notices.close()
         if self._ring_fd >= 0:
             os.close(self._ring_fd)

@@ -57,7 +57,7 @@ class ReadoutSchedule:
         self._allowance = max(self._allowance - seconds, -max(seconds, _MOST_OWED_S))
 
     def is_wake_due(self, now: float) -> bool:
-        """Whether the bell is to be rung after a step."""
+        """Whether the waiting thread must be woken after a step."""
         if not self._words[WAKE_REQUESTED] or now - self._woken_at < _WAKE_PERIOD_S:
             return False
         self._woken_at = now

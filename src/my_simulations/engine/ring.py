@@ -220,8 +220,8 @@ class RingWriter:
         self.words[POSES_ARE_NEWER] = 1
         self.words[STEP] = step
 
-    def hold(self, step: int) -> None:
-        """Nothing has moved from what was written last until this step."""
+    def mark_unchanged(self, step: int) -> None:
+        """Declare the latest snapshot valid up to a step: nothing has moved since."""
         keep_order()
         self.words[HELD_STEP] = step
 

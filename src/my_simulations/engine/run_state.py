@@ -57,7 +57,7 @@ class DamperMemory:
 
 
 @dataclass(frozen=True)
-class RestPlace:
+class RestPose:
     """Where a body rests.
 
     Attributes:
@@ -86,7 +86,7 @@ class RunState:
         stopped: first link rows of bodies that were stopped because they went too far.
     """
 
-    resting: Tuple[Tuple[int, RestPlace], ...] = ()
+    resting: Tuple[Tuple[int, RestPose], ...] = ()
     servos: Tuple[Tuple[int, ServoMemory], ...] = ()
     loops: Tuple[Tuple[int, LoopMemory], ...] = ()
     dampers: Tuple[Tuple[int, DamperMemory], ...] = ()

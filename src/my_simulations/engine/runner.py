@@ -112,7 +112,7 @@ class Runner:
                     self._serve(_SYNC_S)   # for the host to make room
                     continue
                 self._sync.report_records(at_once=False)
-                self._limit = self._sync.limit()
+                self._limit = self._sync.step_limit()
                 if self._step >= self._limit and self._synchronize():
                     continue
                 if self._advance is not None:
@@ -195,7 +195,7 @@ class Runner:
             if answer.error:
                 break
             self._applied = answer.number
-        self._limit = self._sync.limit()   # some commands change it
+        self._limit = self._sync.step_limit()   # some commands change it
         sequence = self._write(force=True)
         answers[:0] = [_Answer(number, self._step) for number in self._ended]
         self._ended.clear()
@@ -247,7 +247,7 @@ class Runner:
         if isinstance(command, (EndAdvance, Clear)):
             self._end_advance()
         if (isinstance(command, (EndAdvance, Ping))
-                or self._sync.take(command, self._step, self._clock)):
+                or self._sync.apply_own_command(command, self._step, self._clock)):
             return None
         if isinstance(command, SetPhysics):
             self._configure(command.settings)
@@ -258,7 +258,7 @@ class Runner:
         if isinstance(command, AddTimedForces) and command.whole:
             command = AddTimedForces(tuple(force.begun(self._step) for force in command.forces))
         value = self._backend.apply(command)
-        self._sync.note(command, self._step)
+        self._sync.note_applied(command, self._step)
         return value
 
     def _apply_batch(self, number: int, batch: Batch) -> List[object]:
@@ -338,7 +338,7 @@ class Runner:
 
     def _make_steps(self, count: int) -> int:
         """Make steps and write the records that are due; returns how many there was room for."""
-        self._sync.go_on()
+        self._sync.end_wait()
         self._words[STATUS] = STATUS_RUNNING
         left, records = count, self._sync.records
         while left > 0 and self._step < records.next_step:
@@ -396,7 +396,7 @@ class Runner:
             if self._backend.read_poses():
                 self._writer.write_poses(self._step, self._clock, self._backend.tables()[0])
             else:
-                self._writer.hold(self._step)
+                self._writer.mark_unchanged(self._step)
         if wanted != NOTHING:
             self._report_events()
         if self._readouts.is_wake_due(now):
@@ -408,7 +408,7 @@ class Runner:
         self._words[STATUS] = STATUS_RUNNING if moving else STATUS_PAUSED
         changed = self._backend.read()
         if not (changed or force):
-            self._writer.hold(self._step)
+            self._writer.mark_unchanged(self._step)
             return self._words[LATEST]
         links, joints = self._backend.tables()
         sequence = self._writer.write(self._step, self._clock, links, joints, self._applied)

@@ -10,7 +10,7 @@ from typing import Callable, Optional, Tuple
 
 from .drive_commands import JointServo, PidGains
 from .run_state import LoopMemory, ServoMemory
-from .spline import follower
+from .spline import step_sampler
 
 _TWO_PI = 2.0 * math.pi
 FOLLOW = 0.2
@@ -51,7 +51,7 @@ class Pid:
         """Continue from a state."""
         self.integral, self.error = memory.integral, memory.error
 
-    def disturbed(self) -> None:
+    def reset_after_jump(self) -> None:
         """Discard the last error after a jump of the measured value."""
         self.error = None
 
@@ -138,12 +138,12 @@ class ServoLaw:
                 pid.resume(state)
         self.before, self.last = memory.before, memory.last
 
-    def disturbed(self) -> None:
+    def reset_after_jump(self) -> None:
         """Reset the loops after the position of the joint was set."""
         self.before = None
         for loop in (self.loop, self._inner):
             if loop is not None:
-                loop.disturbed()
+                loop.reset_after_jump()
 
     def _advance(self, position: float, rate: float, step: int) -> float:
         """`advance` for all kinds of servos."""
@@ -224,7 +224,7 @@ class ServoLaw:
 def _target_of(servo: JointServo, dt: float) -> _Target:
     """The target and its rate at a step count."""
     if servo.spline is not None:
-        return follower(servo.spline, dt)
+        return step_sampler(servo.spline, dt)
     wanted = servo.target, servo.target_rate
     return lambda step: wanted
 

@@ -63,10 +63,10 @@ def sample(segment: Segment, time: float) -> Tuple[float, float, float]:
             ((20.0 * c5 * t + 12.0 * c4) * t + 6.0 * c3) * t + 2.0 * c2)
 
 
-def follower(spline: Spline, step_size: float) -> Callable[[int], Tuple[float, float]]:
+def step_sampler(spline: Spline, step_size: float) -> Callable[[int], Tuple[float, float]]:
     """A function that gives position and rate at a step count, fast for one step after the other.
 
-    It looks for the segment when another one begins, and keeps the answer for the last step.
+    It searches the segment at the end of the previous one, and caches the result of the last step.
     """
     begin, end = math.inf, -math.inf   # when the coefficients count, s
     c0 = c1 = c2 = c3 = c4 = c5 = d2 = d3 = d4 = d5 = 0.0   # of the position, and of the rate
@@ -133,6 +133,6 @@ def segment_between(start: float, before: State, end: float, after: State) -> Se
         (12.0 * way - 6.0 * (b0 + b1) - a0 + a1) / (2.0 * span ** 5)))
 
 
-def standing(position: float) -> Segment:
-    """Nothing but a position."""
+def constant_segment(position: float) -> Segment:
+    """Return a segment that stays at a position."""
     return Segment(0.0, 0.0, (position, 0.0, 0.0, 0.0, 0.0, 0.0))

@@ -7,7 +7,7 @@ import threading
 
 
 class WakePipe:
-    """Several wakes before a wait are one."""
+    """Several wake-ups before a wait count as one."""
 
     def __init__(self) -> None:
         self.output, self.input = os.pipe()
@@ -15,12 +15,12 @@ class WakePipe:
         os.set_blocking(self.input, False)
         self._lock = threading.Lock()
 
-    def ring(self) -> None:
+    def wake(self) -> None:
         """Wake the thread that waits, or the next one that will."""
-        ring(self.input)
+        wake(self.input)
 
     def wait(self, timeout: float) -> bool:
-        """Wait until it is rung; False after `timeout` s, or once it is closed."""
+        """Wait for a wake-up; False after `timeout` s, or once it is closed."""
         with self._lock:   # close() must not take the descriptor away meanwhile
             if self.output < 0 or not select.select([self.output], [], [], timeout)[0]:
                 return False
@@ -34,14 +34,14 @@ class WakePipe:
         """Wake the thread that waits, and close both ends."""
         if self.output < 0:
             return
-        self.ring()
+        self.wake()
         with self._lock:
             os.close(self.output)
             os.close(self.input)
             self.output = self.input = -1
 
 
-def ring(descriptor: int) -> None:
+def wake(descriptor: int) -> None:
     """Wake the thread that waits at the other end."""
     if descriptor < 0:
         return

@@ -43,11 +43,11 @@ class ConvexParts:
                     wanted.setdefault(id(mesh.vertices), (whose, mesh))
         if not wanted:
             return
-        from ..engine.convex.batch import divide_all
+        from ..engine.convex.batch import decompose_all
         from ..engine.convex.decomposition import notices
 
         named = list(wanted.values())
-        made = divide_all(named, self._progress, gently=gently)
+        made = decompose_all(named, self._progress, gently=gently)
         if len(self._divided) > _MOST_KEPT:
             self._divided.clear()
         for (whose, mesh), parts in zip(named, made):

@@ -64,8 +64,9 @@ def test_replies_are_taken_while_a_large_command_is_being_sent(engine):
     assert sending.is_alive()
 
 
-def test_a_closed_engine_leaves_no_descriptors_and_wakes_who_waits_for_the_bell(engine):
-    descriptors = (engine._ring_fd, engine._bell.input, engine._bell.output, engine._notices.input)
+def test_a_closed_engine_leaves_no_descriptors_and_wakes_the_waiting_thread(engine):
+    descriptors = (engine._ring_fd, engine._wake_pipe.input, engine._wake_pipe.output,
+                   engine._notices.input)
     waiting = threading.Thread(target=engine.wait_for_wake, args=(WAIT,))
     waiting.start()
     engine.close()

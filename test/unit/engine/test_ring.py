@@ -113,7 +113,7 @@ def test_poses_come_with_the_step_and_the_clock_at_which_they_were_so():
     writer.write(10, CLOCK, _links([1.0] * 13), b"")
     writer.set_step(50)
     assert reader.raw_poses()[:2] == (10, CLOCK)
-    writer.hold(50)
+    writer.mark_unchanged(50)
     assert reader.raw_poses()[0] == 50
     writer.write_poses(60, CLOCK, _links([2.0] * 13))
     writer.set_step(70)

@@ -233,7 +233,7 @@ def test_states_are_published_while_bodies_move(engine):
     until(lambda: engine.ring.link(0)[0].position[0] > 0.05)
 
 
-def test_the_bell_rings_for_steps_only_when_asked_to(engine):
+def test_steps_wake_the_waiting_thread_only_on_request(engine):
     from my_simulations.engine.ring import WAKE_REQUESTED
     ask(engine, Run(FOREVER))
     assert not engine.wait_for_wake(0.05)

@@ -9,7 +9,7 @@ import pytest
 from my_simulations.description.model import SoftLimits
 from my_simulations.engine.drive_commands import JointServo, PidGains
 from my_simulations.engine.servo_law import Pid, ServoLaw
-from my_simulations.engine.spline import Spline, sample, segment_between, standing
+from my_simulations.engine.spline import Spline, constant_segment, sample, segment_between
 
 DT = 0.001
 
@@ -34,7 +34,7 @@ def test_outside_of_a_spline_it_stands():
 
 
 def test_a_later_segment_takes_over_where_it_starts():
-    spline = Spline((standing(7.0), segment_between(0.0, (0.0,), 4.0, (4.0,)),
+    spline = Spline((constant_segment(7.0), segment_between(0.0, (0.0,), 4.0, (4.0,)),
                      segment_between(1.0, (1.0,), 2.0, (0.0,))), origin=100)
     assert spline.at_step(600, DT)[0] == pytest.approx(0.5)
     assert spline.at_step(1600, DT)[0] == pytest.approx(0.5)
@@ -62,7 +62,7 @@ def test_the_first_difference_of_a_loop_is_no_rate():
     loop = Pid(PidGains(0.0, 0.0, 1.0))
     assert loop.command(5.0, DT) == 0.0
     assert loop.command(5.001, DT) == pytest.approx(1.0)
-    loop.disturbed()
+    loop.reset_after_jump()
     assert loop.command(9.0, DT) == 0.0
 
 

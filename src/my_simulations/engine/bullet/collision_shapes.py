@@ -33,7 +33,7 @@ from ...description.shapes import (
 )
 from ...errors import SimulationError
 from ...geometry import IDENTITY, Pose, compose, multiply, rotate, transform
-from ..convex.hull_points import hull_points, naming_triangles, shrunk
+from ..convex.hull_points import hull_points, shrunk, triangles_of_all_points
 from ..scratch_folder import Scratch
 from ..surface_pieces import by_surface
 from .empty_shapes import EmptyShapes
@@ -321,7 +321,8 @@ class ShapeFactory:
     def _hull(self, geometry: Geometry) -> str:
         """Write a curved shape that Bullet does not have as a hull of points; return the path."""
         points = hull_points(geometry)
-        return self._file(repr(geometry), MeshData(points, naming_triangles(len(points))), True)
+        return self._file(repr(geometry), MeshData(points, triangles_of_all_points(len(points))),
+                          True)
 
     def _file(self, key: str, mesh: MeshData, static: bool, margin: float = 0.0) -> str:
         """Write a mesh to a file; PyBullet accepts meshes in compounds by file name only.
@@ -383,7 +384,7 @@ def _pieces(collision: Collision, meshes: MeshTable) -> List[Tuple[np.ndarray, n
         return [(np.asarray(piece.vertices), np.asarray(piece.triangles))
                 for piece in mesh.parts or [mesh]]
     points = hull_points(geometry)
-    return [(points, naming_triangles(len(points)))]
+    return [(points, triangles_of_all_points(len(points)))]
 
 
 def _is_hull(collision: Collision, meshes: MeshTable, static: bool) -> bool:

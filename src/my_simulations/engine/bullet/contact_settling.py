@@ -32,7 +32,7 @@ from typing import Any, Callable, Dict, List, Optional, Sequence, Set
 import pybullet
 
 from ...geometry import Vec3
-from ..run_state import PARTING_NOT_BEGUN, RestPlace
+from ..run_state import PARTING_NOT_BEGUN, RestPose
 from .bodies import Body
 from .body_events import COMMANDED, BodyEvent
 from .contact_points import DISTANCE, FRICTION, FRICTION_2, LOAD, OTHER_BODY
@@ -79,7 +79,7 @@ class _Tree:
     indices: List[int]
     looks: int = 0
     clear: int = 0
-    held: Optional[RestPlace] = None
+    held: Optional[RestPose] = None
 
 
 class ContactSettling(StepHelper):
@@ -158,12 +158,12 @@ class ContactSettling(StepHelper):
         self._parameters.split_impulses(end is not None)
 
     @property
-    def held(self) -> Dict[int, RestPlace]:
+    def held(self) -> Dict[int, RestPose]:
         """The poses of held bodies, by their first link rows."""
         return {tree.body.lead_row: tree.held for tree in self._trees.values()
                 if tree.held is not None}
 
-    def hold(self, body: Body, place: RestPlace) -> None:
+    def hold(self, body: Body, place: RestPose) -> None:
         """Hold an articulated body at a pose, as if it had stood still long enough."""
         tree = self._trees[body.uid]
         tree.looks = _STANDS + 1

@@ -13,7 +13,7 @@ from typing import Callable, Dict, Iterable, List, NamedTuple, Optional, Set
 import pybullet
 
 from ...geometry import Pose, Vec3, norm, scale, subtract
-from ..run_state import RestPlace
+from ..run_state import RestPose
 from .bodies import Axis, Body
 from .body_events import BodyEvent
 from .link_states import motion
@@ -58,7 +58,7 @@ class DivergenceStop(StepHelper):
         self._bodies: Dict[int, Body] = {}
         self._starts: Dict[int, Optional[_Start]] = {}
         self._new: Dict[int, Body] = {}
-        self._stops: Dict[int, RestPlace] = {}
+        self._stops: Dict[int, RestPose] = {}
         self._period = 1
         self.body_tables = (self._bodies, self._starts, self._new, self._stops)
 

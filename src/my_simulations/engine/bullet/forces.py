@@ -108,15 +108,15 @@ class Forces(StepHelper):
             self._exchange_dampers(body, self._resting, self._implicit)
         else:
             if body.uid in self._implicit:
-                self._implicit[body.uid].disturbed()
-            self.servos.disturbed(body)
+                self._implicit[body.uid].reset_after_jump()
+            self.servos.reset_after_jump(body)
 
     @staticmethod
     def _exchange_dampers(body: Body, now: Dict[int, ImplicitAxes],
                           then: Dict[int, ImplicitAxes]) -> None:
         axes = now.get(body.uid)
         if axes is not None and not axes.has_springs:
-            axes.disturbed()
+            axes.reset_after_jump()
             then[body.uid] = now.pop(body.uid)
 
     def forget(self, body: Body) -> None:

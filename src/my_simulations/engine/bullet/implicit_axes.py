@@ -63,9 +63,9 @@ class ImplicitAxes:
         self._constant = False                    # no joint of the body does
         self._prepared_at: Optional[List[float]] = None
         self._age = 0
-        self.disturbed()
+        self.reset_after_jump()
 
-    def disturbed(self) -> None:
+    def reset_after_jump(self) -> None:
         """Discard the estimates after the joints were set."""
         self._other = [0.0] * len(self._rows)
         self._rates: Optional[List[float]] = None
@@ -110,7 +110,7 @@ class ImplicitAxes:
         answer = (self._answer @ np.array(rates + positions + self._other + known)
                   + self._at_rest).tolist()
         if not math.isfinite(sum(answer)):
-            self.disturbed()
+            self.reset_after_jump()
             return
         self._rates, self._given = rates, answer[len(rates):]
         spent = self._spent or [state[3] for state in states]

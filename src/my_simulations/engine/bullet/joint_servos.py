@@ -76,7 +76,7 @@ class JointServos:
         changed, self._yielding = rows ^ self._yielding, set(rows)
         for row in changed & self._laws.keys():
             body, axis = self._axes[row]
-            self._laws[row].disturbed()
+            self._laws[row].reset_after_jump()
             self._release(body, axis)
             self._drive(body, axis)
         self._sort()
@@ -155,12 +155,12 @@ class JointServos:
         self._dt = dt
         self._sort()
 
-    def disturbed(self, body: Body) -> None:
+    def reset_after_jump(self, body: Body) -> None:
         """Reset the servos of a body whose joints were set."""
         for axis in body.axes:
             law = self._laws.get(axis.row)
             if law is not None:
-                law.disturbed()
+                law.reset_after_jump()
                 if law.servo.holds:
                     law.change(_begun(law.servo, body, axis))
                     self._drive(body, axis)

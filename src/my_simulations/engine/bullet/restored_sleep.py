@@ -14,7 +14,7 @@ import pybullet
 
 from ...geometry import Vec3, norm, subtract
 from ..body_plan import BASE
-from ..run_state import RestPlace
+from ..run_state import RestPose
 from .bodies import Body
 from .body_events import COMMANDED, BodyEvent
 from .rest_place import put_at_rest, read_place
@@ -27,7 +27,7 @@ _AT_REST = (0.0, 0.0, 0.0)
 
 class _Rest(NamedTuple):
     body: Body
-    place: RestPlace
+    place: RestPose
 
 
 class RestoredSleep(StepHelper):
@@ -39,18 +39,18 @@ class RestoredSleep(StepHelper):
 
     events = COMMANDED
 
-    def __init__(self, hold: Callable[[Body, RestPlace], None]) -> None:
+    def __init__(self, hold: Callable[[Body, RestPose], None]) -> None:
         self._hold = hold
         self._commanded: Set[int] = set()      # reached by a command since the last step
         self._rests: Dict[int, _Rest] = {}     # by PyBullet's number
         self._sleep_step: Optional[int] = None
 
-    def put(self, rests: Iterable[Tuple[Body, RestPlace]]) -> None:
+    def put(self, rests: Iterable[Tuple[Body, RestPose]]) -> None:
         """Put these bodies to rest at these places some steps from now on."""
         self._rests = {body.uid: _Rest(body, place) for body, place in rests}
         self._sleep_step = None
 
-    def place_of(self, body: Body) -> Optional[RestPlace]:
+    def place_of(self, body: Body) -> Optional[RestPose]:
         """Where a body sleeps, or is to be put to rest soon; None for others.
 
         PyBullet does not report sleep. A body that flies or was just put somewhere is awake. One
@@ -102,7 +102,7 @@ class RestoredSleep(StepHelper):
                     self._hold(body, place)
 
 
-def _is_near(one: RestPlace, other: RestPlace) -> bool:
+def _is_near(one: RestPose, other: RestPose) -> bool:
     moved = (norm(subtract(one.base.position, other.base.position))
              if one.base is not None and other.base is not None else 0.0)
     turned = max([abs(a - b) for a, b in zip(one.positions, other.positions)], default=0.0)

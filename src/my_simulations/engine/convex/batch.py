@@ -10,7 +10,7 @@ from typing import Callable, Dict, List, Optional, Sequence, Tuple
 
 from ...description.shapes import MeshData
 from .cache import Decomposition, content_key
-from .decomposition import Divider, kept_in, ready_parts, undivided
+from .decomposition import MeshDecomposer, cache_folder_of, hull_only, ready_parts
 
 _MOST_WORKERS = 4  # each takes about 80 MB
 WORD_EVERY_S = 2.0
@@ -20,7 +20,7 @@ Progress = Callable[[str], None]
 Named = Tuple[str, MeshData]
 
 
-def divide_all(meshes: Sequence[Named], progress: Progress, *,
+def decompose_all(meshes: Sequence[Named], progress: Progress, *,
                cache_dir: Optional[str] = None, gently: bool = False) -> List[Decomposition]:
     """The convex parts of each mesh, in order.
 
@@ -71,7 +71,7 @@ class _Work:
         count = len(self._meshes)
         several = f"{count} meshes are" if count > 1 else "a mesh is"
         self._progress(f"{several} divided into convex parts before the world goes on; the parts "
-                       f"are kept in {kept_in(self._cache_dir)}")
+                       f"are kept in {cache_folder_of(self._cache_dir)}")
         for n in sorted(range(count), key=lambda n: -len(self._meshes[n][1].triangles)):
             self._waiting.put(n)  # the longest work first, so that all workers end together
         threads = [threading.Thread(target=self._divide, name="convex parts", daemon=True)
@@ -86,16 +86,16 @@ class _Work:
         return [self._made[n] for n in range(count)]
 
     def _divide(self) -> None:
-        with Divider(cache_dir=self._cache_dir, gently=self._gently) as divider:
+        with MeshDecomposer(cache_dir=self._cache_dir, gently=self._gently) as decomposer:
             while True:
                 try:
                     n = self._waiting.get_nowait()
                 except queue.Empty:
                     return
                 self._told.put((n, None))
-                made = undivided(self._meshes[n][1])
+                made = hull_only(self._meshes[n][1])
                 try:
-                    made = divider.divide(self._meshes[n][1],
+                    made = decomposer.decompose(self._meshes[n][1],
                                           functools.partial(self._percent.__setitem__, n))
                 finally:  # any exception must reach the waiting thread
                     self._told.put((n, made))

@@ -58,7 +58,7 @@ def ready_parts(mesh: MeshData, *, cache_dir: Optional[str] = None) -> Optional[
     return frame_of(mesh.vertices).parts_at_once(mesh.triangles)
 
 
-class Divider:
+class MeshDecomposer:
     """Decomposes one mesh after the other by V-HACD, in a worker process.
 
     The worker starts with the first mesh, and again with the mesh after one that ended it. The
@@ -79,14 +79,14 @@ class Divider:
         self._scratch = Scratch()
         self._worker: "Optional[subprocess.Popen[bytes]]" = None
 
-    def __enter__(self) -> "Divider":
+    def __enter__(self) -> "MeshDecomposer":
         return self
 
     def __exit__(self, *_: object) -> None:
         self._end_worker()
         self._scratch.close()
 
-    def divide(self, mesh: MeshData, progress: Progress = _silent) -> Decomposition:
+    def decompose(self, mesh: MeshData, progress: Progress = _silent) -> Decomposition:
         """The convex parts of a mesh, which are cached; blocks.
 
         Together they approximate the mesh; each has about 64 corners at most. A mesh that cannot be
@@ -100,7 +100,7 @@ class Divider:
             made, whole = self._by_worker(mesh, progress)
         except OSError as fault:  # a full disk, or too many processes
             _log.warning("dividing a mesh was not possible: %s", fault)
-            return undivided(mesh)
+            return hull_only(mesh)
         if whole:  # otherwise it may succeed another time
             self._cache.put(content_key(mesh, PARAMETERS), made)
         return made
@@ -120,7 +120,7 @@ class Divider:
                 return load(os.path.join(folder, name)), in_time
             except (OSError, ValueError) as fault:
                 _log.debug("no decomposition in %s: %s", name, fault)
-        return undivided(mesh), False
+        return hull_only(mesh), False
 
     def _run(self, folder: str, progress: Progress) -> bool:
         """Let the worker decompose the mesh in the folder; False at the deadline."""
@@ -158,13 +158,14 @@ class Divider:
 
 def divided(mesh: MeshData, *, cache_dir: Optional[str] = None, deadline: float = _DEADLINE_S,
             cpu_seconds: int = _CPU_S) -> Decomposition:
-    """The convex parts of one mesh by a worker of its own; see `Divider`."""
-    with Divider(cache_dir=cache_dir, deadline=deadline, cpu_seconds=cpu_seconds) as divider:
-        return divider.divide(mesh)
+    """The convex parts of one mesh by a worker of its own; see `MeshDecomposer`."""
+    with MeshDecomposer(cache_dir=cache_dir, deadline=deadline,
+                        cpu_seconds=cpu_seconds) as decomposer:
+        return decomposer.decompose(mesh)
 
 
-def undivided(mesh: MeshData) -> Decomposition:
-    """A mesh that is represented by its hull."""
+def hull_only(mesh: MeshData) -> Decomposition:
+    """Return a decomposition whose only part is the hull of the mesh."""
     return Decomposition([mesh], NOT_DIVIDED)
 
 
@@ -176,13 +177,13 @@ def notices(made: Decomposition) -> List[Issue]:
     return [warning(made.notice, message, hint=hint)]
 
 
-def kept_in(cache_dir: Optional[str] = None) -> str:
+def cache_folder_of(cache_dir: Optional[str] = None) -> str:
     """The folder of the cache."""
     return default_folder() if cache_dir is None else cache_dir
 
 
 def _cache(cache_dir: Optional[str]) -> PartsCache:
-    return PartsCache(kept_in(cache_dir))
+    return PartsCache(cache_folder_of(cache_dir))
 
 
 def _follow(output: int, progress: Progress, end: float) -> bool:

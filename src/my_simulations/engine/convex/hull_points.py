@@ -43,7 +43,7 @@ def hull_points(geometry: Geometry) -> np.ndarray[Any, Any]:
     raise ValueError(f"a {type(geometry).__name__.lower()} has no hull")
 
 
-def naming_triangles(count: int) -> np.ndarray[Any, Any]:
+def triangles_of_all_points(count: int) -> np.ndarray[Any, Any]:
     """Triangles (count, 3) that use every point, because mesh readers skip unused points."""
     ring = np.arange(count)
     return np.stack([ring, (ring + 1) % count, (ring + 2) % count], axis=1)

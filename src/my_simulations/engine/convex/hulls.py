@@ -204,7 +204,7 @@ def _not_inside(hulls: List[Hull]) -> List[Hull]:
     return [hulls[n] for n in sorted(kept)]
 
 
-def drawn_in(points: Any, hull: Hull) -> Any:
+def moved_onto_hull(points: Any, hull: Hull) -> Any:
     """Move points outside of a hull onto it: V-HACD's parts protrude by half a voxel."""
     import numpy as np
 

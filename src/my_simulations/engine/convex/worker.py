@@ -106,7 +106,7 @@ def _divided(points: Any, triangles: Any, folder: str) -> List[Any]:
         stream.writelines(f"f {a} {b} {c}\n" for a, b, c in (corners.reshape(-1, 3) + 1).tolist())
     pybullet.vhacd(source, target, os.path.join(folder, "log"), **_VHACD)
     hull = hulls.full_hull(vertices)
-    pieces = [hulls.drawn_in(piece, hull) for piece in _objects(target)]
+    pieces = [hulls.moved_onto_hull(piece, hull) for piece in _objects(target)]
     pieces = [hulls.hull_of(piece, hulls.PART_VERTICES).vertices for piece in pieces
               if not hulls.is_flat(piece)]
     return [hulls.full_hull(piece) for piece in hulls.stretched(pieces, vertices)] \

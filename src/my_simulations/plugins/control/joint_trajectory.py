@@ -10,7 +10,7 @@ from typing import Any, List, NamedTuple, Optional, Sequence, Set, Tuple
 
 from ...engine.drive_commands import PidGains
 from ...engine.servo_law import shortest
-from ...engine.spline import Spline, segment_between, standing
+from ...engine.spline import Spline, constant_segment, segment_between
 from ..actions import ActionServer, Goal
 from ..context import Ending, RequestError
 from .controller import RUNNING, Controller
@@ -74,7 +74,7 @@ class JointTrajectory(Controller):
 
     def start(self) -> None:
         """Hold the joints at their present positions."""
-        self._splines = [Spline((standing(joint.position),), self.context.step)
+        self._splines = [Spline((constant_segment(joint.position),), self.context.step)
                          for joint in self._joints]
         self._send()
         if self._state_hz > 0.0:
@@ -157,7 +157,7 @@ class JointTrajectory(Controller):
         """Stay where the joints are, or come to a stop within `stop_trajectory_duration`."""
         now = self._now
         if self._stop_time <= 0.0:
-            self._splines = [Spline((standing(joint.position),), self.context.step)
+            self._splines = [Spline((constant_segment(joint.position),), self.context.step)
                              for joint in self._joints]
         else:
             self._splines = [_stopping(spline, now, self._stop_time) for spline in self._splines]
