@@ -58,7 +58,8 @@ def main(words: List[str], program: str) -> int:
         say(fault)
         engines.close()
         return FAILED
-    log.add_receiver(lambda issue: page.say(issue.message) if issue.code == "meshes" else None)
+    log.add_receiver(lambda issue: page.show_line(issue.message) if issue.code == "meshes"
+                     else None)
     # A world that cannot be read is no reason to open a browser; one that takes long is.
     opening = Opening(page.url, program)
     try:

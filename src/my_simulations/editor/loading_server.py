@@ -55,7 +55,7 @@ class LoadingServer:
         self._state = {**self._state, "title": title, "text": text, "done": done, "of": of}
         self._soon(self._push_state)
 
-    def say(self, text: str) -> None:
+    def show_line(self, text: str) -> None:
         """A line about what is under way. From any thread."""
         self._state = {**self._state, "text": text}
         self._soon(self._push_state)

@@ -77,7 +77,7 @@ class RosGraph:
             self._lockstep.wait(count * size)
         if time.monotonic() > self._upkeep + _UPKEEP_S:
             self._upkeep = time.monotonic()
-            self._node.keep_up()
+            self._node.refresh()
 
     @property
     def topics(self) -> TopicSource:
@@ -108,7 +108,7 @@ class RosGraph:
         raise TypeError(type(check).__name__)
 
     def _rate(self, check: TopicRate) -> CheckResult:
-        count, kind = self._node.messages(check.topic)
+        count, kind = self._node.message_count(check.topic)
         rate = count / check.within if check.within > 0.0 else float(count)
         if not count:
             return result(check, 0.0, self._with_end(f"{check.topic} has no messages"))
@@ -121,7 +121,7 @@ class RosGraph:
         return result(check, 1.0)
 
     def _answer(self, check: ServiceAnswer) -> CheckResult:
-        answer = self._node.answer(check.service)
+        answer = self._node.call_result(check.service)
         if answer is None:
             return result(check, 0.0, self._with_end(
                 f"the service {check.service} did not answer within {check.within:g} s"))

@@ -57,9 +57,9 @@ class AttachedNode:
         """Names of the services and topics of /gazebo that were used but are not permitted."""
         return self._refused.used
 
-    def keep_up(self) -> None:
+    def refresh(self) -> None:
         """Keep the registration up to date; call it about once a second."""
-        self._node.keep_up()
+        self._node.refresh()
 
     def watch(self, topic: str) -> None:
         """Count the messages of a topic from now on."""
@@ -71,7 +71,7 @@ class AttachedNode:
         if topic not in self._subscribers:
             self._subscribers[topic] = rospy.Subscriber(topic, rospy.AnyMsg, count)
 
-    def messages(self, topic: str) -> Tuple[int, str]:
+    def message_count(self, topic: str) -> Tuple[int, str]:
         """How many messages of a watched topic have come, and their type."""
         with self._lock:
             return self._messages.get(topic, 0), self._types.get(topic, "")
@@ -82,8 +82,8 @@ class AttachedNode:
                                   name=f"call {service}")
         thread.start()
 
-    def answer(self, service: str) -> "str | None":
-        """Why a called service has failed, "" if it has answered; None before that."""
+    def call_result(self, service: str) -> "str | None":
+        """Return why the `call` of a service failed; "" if it succeeded, None while it is open."""
         with self._lock:
             return self._answers.get(service)
 

@@ -59,12 +59,12 @@ class DirectConnection:
             self._waiting.append(data)
         return True
 
-    def go_on(self) -> None:
+    def send_pending(self) -> None:
         """Send pending messages, as far as there is room. Raises TransportTerminated."""
         with self._lock:
             while self._send():
                 if not self._waiting:
-                    _WRITER.forget(self.fileno())
+                    _WRITER.unwatch(self.fileno())
                     return
                 self._rest = memoryview(self._waiting.popleft())
 
@@ -99,7 +99,7 @@ class _Writer:
         self._running = False
 
     def watch(self, connection: DirectConnection) -> None:
-        """Go on with a connection whenever it has room, until `forget`."""
+        """Go on with a connection whenever it has room, until `unwatch`."""
         number = connection.fileno()
         with self._lock:
             self._connections[number] = connection
@@ -108,7 +108,7 @@ class _Writer:
                 self._running = True
                 threading.Thread(target=self._run, name="slow subscribers", daemon=True).start()
 
-    def forget(self, number: int) -> None:
+    def unwatch(self, number: int) -> None:
         """Nothing waits any more for the connection with this descriptor, or it was closed."""
         with self._lock:
             self._connections.pop(number, None)
@@ -125,12 +125,12 @@ class _Writer:
             ready = dict(self._poll.poll(_LOOK_S))
             for number, connection in watched.items():
                 if connection.done:
-                    self.forget(number)
+                    self.unwatch(number)
                 elif number in ready:
                     try:
-                        connection.go_on()
+                        connection.send_pending()
                     except TransportTerminated:
-                        self.forget(number)
+                        self.unwatch(number)
                         connection.close()
 
 
@@ -143,12 +143,12 @@ class _Ended:
     done = True
 
 
-def direct(publisher: rospy.Publisher) -> Callable[[Any], None]:
-    """Have a publisher that has published nothing yet write at once.
+def direct_publish(publisher: rospy.Publisher) -> Callable[[Any], None]:
+    """Let a publisher write in the thread that publishes; call it before its first message.
 
     Returns:
-        What publishes a message of its type; raises rospy.ROSException once the publisher is
-        closed.
+        A function that publishes a message of its type; raises rospy.ROSException once the
+        publisher is closed.
     """
     implementation = publisher.impl
     most = implementation.queue_size or 0

@@ -33,7 +33,7 @@ def pose_from_message(message: Any, field: str = "pose") -> Pose:
     """
     p, q = message.position, message.orientation
     position, orientation = (p.x, p.y, p.z), (q.x, q.y, q.z, q.w)
-    within(position, LENGTH, "m", f"{field}.position")
+    checked_vector(position, LENGTH, "m", f"{field}.position")
     if not is_finite(*orientation):
         raise CommandError(f"{field}.orientation contains NaN or infinity: {orientation}")
     largest = max(map(abs, orientation))
@@ -48,8 +48,8 @@ def twist_from_message(message: Any, field: str = "twist") -> Twist:
     Raises:
         CommandError: a number is NaN, infinite or beyond the limits above.
     """
-    linear = within(vector(message.linear), SPEED, "m/s", f"{field}.linear")
-    angular = within(vector(message.angular), SPIN, "rad/s", f"{field}.angular")
+    linear = checked_vector(vector(message.linear), SPEED, "m/s", f"{field}.linear")
+    angular = checked_vector(vector(message.angular), SPIN, "rad/s", f"{field}.angular")
     return Twist(linear, angular)
 
 
@@ -58,8 +58,8 @@ def vector(message: Any) -> Vec3:
     return (message.x, message.y, message.z)
 
 
-def within(values: Vec3, limit: float, unit: str, field: str) -> Vec3:
-    """The vector.
+def checked_vector(values: Vec3, limit: float, unit: str, field: str) -> Vec3:
+    """Return the vector if it is within the limit.
 
     Raises:
         CommandError: a number is NaN, infinite or beyond the limit.
@@ -72,20 +72,20 @@ def within(values: Vec3, limit: float, unit: str, field: str) -> Vec3:
     raise CommandError(f"{field} contains a value beyond {limit:g} {unit}: {values}")
 
 
-def between(value: float, low: float, high: float, field: str, unit: str = "") -> float:
-    """The value.
+def checked_number(value: float, low: float, high: float, field: str, unit: str = "") -> float:
+    """Return the value if it is in the range.
 
     Raises:
         CommandError: it is NaN, infinite or not between `low` and `high`.
     """
-    finite(value, field)
+    checked_finite(value, field)
     if not low <= value <= high:
         unit = f" {unit}" if unit else ""
         raise CommandError(f"{field} must be between {low:g} and {high:g}{unit}, is {value:g}")
     return value
 
 
-def finite(value: float, field: str) -> float:
+def checked_finite(value: float, field: str) -> float:
     """The value.
 
     Raises:

@@ -184,7 +184,7 @@ class Node:
             "stepping": StepService(simulator), "world": WorldServices(simulator),
         }
 
-    def seconds_alone(self) -> float:
+    def master_timeout(self) -> float:
         """Parameter `~master_timeout`: wall seconds without master or roslaunch; 0 for never."""
         found = _number(self._parameters, "master_timeout", abandoned.SECONDS)
         if found < 0.0:
@@ -193,7 +193,7 @@ class Node:
             return abandoned.SECONDS
         return found
 
-    def keep_up(self) -> None:
+    def refresh(self) -> None:
         """Keep the registration and the parameters up to date; call it about once a second.
 
         While the master is unreachable, the next call tries again.
@@ -201,13 +201,13 @@ class Node:
         if self._network:
             self._plugins.start_if_needed()
         try:
-            if self._membership is not None and not self._membership.keep_up():
+            if self._membership is not None and not self._membership.refresh():
                 return
             self._keep_engine_pid()
             if not (self._network and self._extensions):
                 self._open_requested_editor()
             if self._reconfigure is not None:
-                self._reconfigure.keep_up()
+                self._reconfigure.refresh()
         except OSError as fault:
             rospy.logdebug("the ROS master does not respond: %s", fault)
 

@@ -43,7 +43,7 @@ def test_the_page_tells_what_is_under_way_and_goes_on_with_the_editor(case, opti
             loading.show("Reading a.world", "meshes of husky", 2, 12)
             assert await told(socket) == {"type": "loading", "title": "Reading a.world",
                                           "text": "meshes of husky", "done": 2, "of": 12}
-            loading.say("dividing mesh 3 of 12")
+            loading.show_line("dividing mesh 3 of 12")
             assert (await told(socket))["text"] == "dividing mesh 3 of 12"
             loop = asyncio.get_running_loop()
             editor = await loop.run_in_executor(

@@ -42,7 +42,7 @@ class Clock:
 class Started:
     """A launch that can be made to die."""
 
-    pid, alive = 7, True
+    pid, is_alive = 7, True
 
 
 def watch(uri, limit, launch=None):
@@ -78,6 +78,6 @@ def test_a_roslaunch_that_was_killed_is_a_reason_though_its_master_lives(master)
     launch = Started()
     watched, clock = watch(master, 10.0, launch)
     assert reason_at(watched, clock, 30.0) == ""
-    launch.alive = False
+    launch.is_alive = False
     assert reason_at(watched, clock, 39.0) == ""
     assert "roslaunch that started this node (process 7)" in reason_at(watched, clock, 41.0)

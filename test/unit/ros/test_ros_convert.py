@@ -3,7 +3,11 @@ from types import SimpleNamespace as Fields
 import pytest
 
 from my_simulations.errors import CommandError
-from my_simulations.ros.message_conversion import finite, pose_from_message, twist_from_message
+from my_simulations.ros.message_conversion import (
+    checked_finite,
+    pose_from_message,
+    twist_from_message,
+)
 
 
 def pose_message(position=(1.0, 2.0, 3.0), orientation=(0.0, 0.0, 0.0, 1.0)):
@@ -30,4 +34,4 @@ def test_numbers_that_are_not_finite_are_refused_by_name(bad):
     with pytest.raises(CommandError, match="twist.angular"):
         twist_from_message(twist)
     with pytest.raises(CommandError, match="time_step"):
-        finite(bad, "time_step")
+        checked_finite(bad, "time_step")

@@ -7,8 +7,8 @@ from my_simulations.resources.resolver import Resolver
 from my_simulations.ros.services.spawn_request import (
     SpawnOptions,
     checked_name,
-    named,
     options_of_attributes,
+    with_name,
 )
 
 
@@ -65,7 +65,7 @@ def plugin_model():
 
 
 def test_the_namespace_goes_into_every_plugin_that_lacks_one():
-    model = named(plugin_model(), "given", "/ns")
+    model = with_name(plugin_model(), "given", "/ns")
     assert model.name == "given"
     assert "<robotNamespace>/ns</robotNamespace>" in model.plugins[0].xml
     assert "mine" in model.plugins[1].xml and "/ns" not in model.plugins[1].xml
@@ -75,10 +75,10 @@ def test_the_namespace_goes_into_every_plugin_that_lacks_one():
 
 def test_an_empty_namespace_leaves_the_plugins_alone():
     before = plugin_model()
-    assert named(plugin_model(), "given", "").plugins == before.plugins
+    assert with_name(plugin_model(), "given", "").plugins == before.plugins
 
 
 def test_a_plugin_with_an_undeclared_prefix_is_left_as_it_is():
     odd = "<plugin name='p'><controller:x/></plugin>"
-    model = named(Model("own", plugins=[PluginSpec("p", "p.so", odd)]), "given", "/ns")
+    model = with_name(Model("own", plugins=[PluginSpec("p", "p.so", odd)]), "given", "/ns")
     assert model.plugins[0].xml == odd

@@ -18,7 +18,7 @@ from my_simulations.geometry import STILL, Pose
 from my_simulations.resources.resolver import Resolver
 from my_simulations.ros.services.joint_services import JointServices
 from my_simulations.ros.services.model_services import ModelServices
-from my_simulations.ros.services.physics_parameters import change, present
+from my_simulations.ros.services.physics_parameters import change_parameters, current_parameters
 from my_simulations.ros.services.wrench_services import WrenchServices
 from my_simulations.simulator.registry import UnknownEntityError
 from my_simulations.simulator.simulator import Simulator
@@ -179,8 +179,8 @@ def test_the_second_of_two_spawns_of_a_name_is_refused_in_gazebos_words(sim, mon
 
 
 def test_an_update_rate_below_zero_is_as_fast_as_possible(sim):
-    change(sim, {"max_update_rate": -1.0})
-    assert present(sim)["max_update_rate"] == 0.0
+    change_parameters(sim, {"max_update_rate": -1.0})
+    assert current_parameters(sim)["max_update_rate"] == 0.0
 
 
 @pytest.mark.parametrize("start_s, steps", [(0.0, (0, 500)), (1.0, (500, 1000))])
@@ -188,7 +188,7 @@ def test_timed_wrenches_keep_their_sim_times_when_the_step_size_changes(sim, sta
     sim.wrenches.apply_wrench("a::base", (1.0, 0.0, 0.0), (0.0, 0.0, 0.0),
                               start_ns=round(start_s * 1e9), duration_ns=10 ** 9)
     sim.wrenches.apply_wrench("other::base", (1.0, 0.0, 0.0), (0.0, 0.0, 0.0))
-    change(sim, {"time_step": 0.002})
+    change_parameters(sim, {"time_step": 0.002})
     engine = sim._session.supervisor.engine
     for forces in (sim.wrenches.pending(0), engine.backend.timed_forces.values()):
         first, second = forces

@@ -108,23 +108,23 @@ def test_states_are_limited_in_sim_time():
 def test_a_new_listener_gets_one_message_of_a_paused_world():
     gate = StateSchedule(0.0)
     assert gate.due(7, one_ms(7), True, lambda: (1, 1))
-    gate.sent((1, 1))
+    gate.note_published((1, 1))
     assert not gate.due(7, one_ms(7), False, lambda: (1, 1))
 
 
 def test_each_change_of_a_paused_world_is_shown_once_whatever_the_rate():
     gate = StateSchedule(1.0)
     assert gate.due(7, one_ms(7), True, lambda: (1, 1))
-    gate.sent((1, 1))
+    gate.note_published((1, 1))
     assert gate.due(7, one_ms(7), False, lambda: (1, 2))
-    gate.sent((1, 2))
+    gate.note_published((1, 2))
     assert not gate.due(7, one_ms(7), False, lambda: (1, 2))
 
 
 def test_where_a_limited_world_came_to_stand_is_shown():
     gate = StateSchedule(50.0)
     assert gate.due(1, one_ms(1), False, running)
-    gate.sent((1, 1))
+    gate.note_published((1, 1))
     assert not gate.due(9, one_ms(9), False, running)
     assert gate.due(9, one_ms(9), False, lambda: (1, 9))
 

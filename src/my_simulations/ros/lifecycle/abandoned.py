@@ -37,7 +37,7 @@ class Abandonment:
         if self._limit <= 0.0:
             return ""
         now = self._clock()
-        if self._launch.alive:
+        if self._launch.is_alive:
             self._seen["launch"] = now
         if now - self._asked >= min(ASK_SECONDS, self._limit / 2.0):
             self._asked = now

@@ -39,7 +39,7 @@ class LoadingPage(Protocol):
     def show(self, title: str, text: str = "", done: int = 0, of: int = 0) -> None:
         """Show what is under way."""
 
-    def say(self, text: str) -> None:
+    def show_line(self, text: str) -> None:
         """Show a line about it."""
 
     def stop(self) -> None:
@@ -98,14 +98,14 @@ class EditorLauncher:
             except OSError as fault:
                 rospy.logwarn("the ROS master does not respond: %s", fault)
             if self._loading is not None:
-                self._listen(self._tell_progress)
+                self._listen(self._show_progress)
             return self._loading
 
-    def _tell_progress(self, issue: Issue) -> None:
+    def _show_progress(self, issue: Issue) -> None:
         if self._loading is not None and issue.code in _PROGRESS:
-            self._loading.say(issue.message)
+            self._loading.show_line(issue.message)
 
-    def open_soon(self) -> None:
+    def open_in_background(self) -> None:
         """Start it in the background; errors are logged."""
         threading.Thread(target=self._try, name="editor start", daemon=True).start()
 

@@ -42,7 +42,7 @@ class Launch:
         return any(os.path.basename(word) == "rostest" for word in command_line(self.pid)[:2])
 
     @property
-    def alive(self) -> bool:
+    def is_alive(self) -> bool:
         """False once the roslaunch that started this node is gone."""
         return self.pid == 0 or os.getppid() == self.parent
 

@@ -33,7 +33,7 @@ class Membership:
         self._away = False
         self._owed = False
 
-    def keep_up(self) -> bool:
+    def refresh(self) -> bool:
         """Whether the node is registered; an unreachable master is logged once.
 
         Raises:

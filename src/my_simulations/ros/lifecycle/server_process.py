@@ -109,8 +109,8 @@ class WorldLoader:
         self._under_way = (title, text, done, of)
         self._tell(title, text, done, of)
 
-    def tell(self, listener: Callable[[str, str, int, int], None]) -> None:
-        """Have a listener hear what is under way: a title, a text, done of how much."""
+    def set_progress_listener(self, listener: Callable[[str, str, int, int], None]) -> None:
+        """Set the listener of progress: a title, a text, the work done, and all work."""
         self._tell = listener
         listener(*self._under_way)
 
@@ -193,9 +193,9 @@ class Server:
                 return self._refuse(loader.fault)
             node = self._start_node(loader, launcher)
             abandonment = Abandonment(self._master, self._name, self._launch,
-                                      node.seconds_alone())
+                                      node.master_timeout())
             while not self._ended.wait(UPKEEP_SECONDS):
-                node.keep_up()
+                node.refresh()
                 reason = abandonment.reason()
                 if reason:
                     self._say(f"{reason}; shutting down (parameter ~master_timeout, 0 to disable)")
@@ -290,7 +290,7 @@ class Server:
         if self._gui or launcher.wanted():
             page = launcher.open_early(self._await_world)
             if page is not None:
-                loader.tell(page.show)
+                loader.set_progress_listener(page.show)
 
     def _start_node(self, loader: WorldLoader, launcher: "Optional[EditorLauncher]") -> Any:
         import rospy
@@ -316,7 +316,7 @@ class Server:
         # Objects of the start live as long as the node; full collections need not visit them.
         gc.freeze()
         if launcher is not None and (self._gui or launcher.wanted()):
-            launcher.open_soon()
+            launcher.open_in_background()
         self._profile.mark("all offered")
         for line in self._profile.lines():
             self._say(line)

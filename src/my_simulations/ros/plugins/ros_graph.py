@@ -10,7 +10,7 @@ import rospy
 
 from ...errors import SimulationError
 from ...plugins.graph import Closing, MissingTypeError, ServiceTakenError, Topic, TransformOf
-from ..direct_connection import direct
+from ..direct_connection import direct_publish
 from ..topics.subscriber_events import SubscriberEvents
 from .packed_transforms import PackedTransforms
 
@@ -25,7 +25,7 @@ class RosTopic:
     """A publisher."""
 
     def __init__(self, publisher: rospy.Publisher) -> None:
-        self._publisher, self._publish = publisher, direct(publisher)
+        self._publisher, self._publish = publisher, direct_publish(publisher)
 
     @property
     def wanted(self) -> bool:

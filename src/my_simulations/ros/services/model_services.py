@@ -15,7 +15,7 @@ from ...geometry import IDENTITY, Pose, compose
 from ...resources.resolver import Resolver
 from ...simulator.simulator import Simulator
 from ...simulator.spawn_advice import arrival_advice
-from ..message_conversion import LENGTH, pose_from_message, within
+from ..message_conversion import LENGTH, checked_vector, pose_from_message
 from .entity_errors import gazebo_prefix, name_taken_message
 from .spawn_request import (
     FILE_ATTRIBUTE,
@@ -23,8 +23,8 @@ from .spawn_request import (
     REPLACE_ATTRIBUTE,
     SpawnOptions,
     checked_name,
-    named,
     options_of_attributes,
+    with_name,
 )
 
 SAME = 1e-9
@@ -143,7 +143,7 @@ class ModelServices:
         if not isinstance(entity, Model):
             self._report(issues)
             return self._spawn_light(entity, name, initial, frame)
-        model = named(entity, name if name is not None else entity.name, namespace)
+        model = with_name(entity, name if name is not None else entity.name, namespace)
         meshes, mesh_issues = collision_meshes(model, document.written(entity.name))
         issues = [*issues, *mesh_issues]
         self._report(issues)
@@ -152,7 +152,7 @@ class ModelServices:
         if launched and not replace and self._is_the_worlds(model.name):
             return self._adopt(model)
         where = compose(initial, model.pose)
-        within(where.position, LENGTH, "m", "position of the model")
+        checked_vector(where.position, LENGTH, "m", "position of the model")
         with gazebo_prefix("", NO_FRAME), name_taken_message(f"model {model.name!r}"):
             self._simulator.models.spawn(model, where, frame, meshes, replace, launched=launched)
         faults = self._changed(model.name)   # the plugin host has logged them

@@ -8,7 +8,7 @@ from ...errors import CommandError
 from ...geometry import Vec3, is_finite
 from ...plugins.reconfigure_options import Option, Value
 from ...simulator.simulator import Simulator
-from ..message_conversion import between
+from ..message_conversion import checked_number
 
 SHORTEST_STEP = 1e-6
 """s; smallest accepted step size."""
@@ -36,7 +36,7 @@ class Parameter(Option):
         """The value. Raises CommandError if it is out of range."""
         if isinstance(value, bool):
             return value
-        between(value, self.low, self.high, self.name)
+        checked_number(value, self.low, self.high, self.name)
         return value
 
 
@@ -63,7 +63,7 @@ PARAMETERS: Tuple[Parameter, ...] = (
 ODE = tuple(parameter for parameter in PARAMETERS if parameter.ode)
 
 
-def present(simulator: Simulator) -> Dict[str, Value]:
+def current_parameters(simulator: Simulator) -> Dict[str, Value]:
     """Current values of all 15 parameters, each in its parameter's type."""
     physics, gravity = simulator.physics.settings, simulator.physics.gravity
     found: Dict[str, Value] = {
@@ -74,7 +74,7 @@ def present(simulator: Simulator) -> Dict[str, Value]:
             for parameter in PARAMETERS}
 
 
-def change(simulator: Simulator, values: Mapping[str, Value]) -> None:
+def change_parameters(simulator: Simulator, values: Mapping[str, Value]) -> None:
     """Set some of the 15 parameters; the others keep their values.
 
     Raises:
@@ -85,13 +85,13 @@ def change(simulator: Simulator, values: Mapping[str, Value]) -> None:
 
 
 def _change(simulator: Simulator, values: Mapping[str, Value]) -> None:
-    wanted = {**present(simulator), **values}
+    wanted = {**current_parameters(simulator), **values}
     step = wanted["time_step"]
     if not is_finite(step) or not SHORTEST_STEP <= step <= 10.0:
         raise CommandError(f"time_step must be between {SHORTEST_STEP:g} and 10 s, is {step:g}")
-    rate = between(wanted["max_update_rate"], -FASTEST, FASTEST, "max_update_rate", "Hz")
+    rate = checked_number(wanted["max_update_rate"], -FASTEST, FASTEST, "max_update_rate", "Hz")
     gravity: Vec3 = tuple(  # type: ignore[assignment]
-        between(wanted[f"gravity_{axis}"], -STRONGEST_GRAVITY, STRONGEST_GRAVITY,
+        checked_number(wanted[f"gravity_{axis}"], -STRONGEST_GRAVITY, STRONGEST_GRAVITY,
                 f"gravity.{axis}", "m/s^2") for axis in "xyz")
     # Unchanged values are not checked: a world file may have values out of range.
     ode: Dict[str, Any] = {parameter.ode: parameter.checked(values[parameter.name])

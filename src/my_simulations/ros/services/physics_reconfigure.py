@@ -15,7 +15,7 @@ from ...errors import CommandError
 from ...plugins.reconfigure_options import OptionError, OptionMessages, Value
 from ...simulator.simulator import Simulator
 from ..registration import publisher
-from .physics_parameters import PARAMETERS, change, present
+from .physics_parameters import PARAMETERS, change_parameters, current_parameters
 
 
 class ReconfigureServer:
@@ -42,12 +42,12 @@ class ReconfigureServer:
             wanted = self._messages.read(request.config)
         except OptionError as fault:
             raise CommandError(str(fault)) from fault
-        change(self._simulator, wanted)
+        change_parameters(self._simulator, wanted)
         self._tell()
-        response.config = self._messages.config(present(self._simulator))
+        response.config = self._messages.config(current_parameters(self._simulator))
         return ""
 
-    def keep_up(self) -> None:
+    def refresh(self) -> None:
         """Publish changes made by other means, and update the parameter server.
 
         Raises:
@@ -62,13 +62,13 @@ class ReconfigureServer:
             self._stored = values
 
     def forget_stored(self) -> None:
-        """Have `keep_up` store all values again, on a new parameter server."""
+        """Make the next `refresh` store all values again, on a new parameter server."""
         with self._lock:
             self._stored = None
 
     def _tell(self) -> None:
         with self._lock:
-            values = present(self._simulator)
+            values = current_parameters(self._simulator)
             if values != self._told:
                 self._told = values
                 self._updates.publish(self._messages.config(values))

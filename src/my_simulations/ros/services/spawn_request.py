@@ -55,7 +55,7 @@ def checked_name(name: str) -> str:
     return name
 
 
-def named(model: Model, name: str, namespace: str) -> Model:
+def with_name(model: Model, name: str, namespace: str) -> Model:
     """The model with the requested name; plugins without a namespace get that of the request."""
     renamed = replace(model, name=name)
     return with_namespace(renamed, namespace) if namespace else renamed

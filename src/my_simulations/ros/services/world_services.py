@@ -6,7 +6,7 @@ from typing import Any
 from ...description.scoped_names import SCOPE
 from ...simulator.simulator import Simulator
 from .entity_errors import gazebo_prefix
-from .physics_parameters import ODE, change, present
+from .physics_parameters import ODE, change_parameters, current_parameters
 
 
 class WorldServices:
@@ -38,7 +38,7 @@ class WorldServices:
 
     def get_physics(self, _request: Any, response: Any) -> str:
         """Step size (s), update rate (Hz, 0: unthrottled), gravity (m/s^2), ODE parameters."""
-        values = present(self._simulator)
+        values = current_parameters(self._simulator)
         response.time_step = values["time_step"]
         response.pause = self._simulator.clock.paused
         response.max_update_rate = values["max_update_rate"]
@@ -51,7 +51,7 @@ class WorldServices:
     def set_physics(self, request: Any, _response: Any) -> str:
         """Set all physics properties; nothing changes if one is rejected."""
         gravity = request.gravity
-        change(self._simulator, {
+        change_parameters(self._simulator, {
             "time_step": request.time_step, "max_update_rate": request.max_update_rate,
             "gravity_x": gravity.x, "gravity_y": gravity.y, "gravity_z": gravity.z,
             **{parameter.name: getattr(request.ode_config, parameter.name)

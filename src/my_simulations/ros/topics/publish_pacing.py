@@ -139,6 +139,6 @@ class StateSchedule:
             self._published_ns = sim_ns - (waited % self._period_ns if regular else 0)
         return found
 
-    def sent(self, shown: Tuple[int, int]) -> None:
+    def note_published(self, shown: Tuple[int, int]) -> None:
         """Note that a message was published; `shown` is the key of its state."""
         self._shown = shown

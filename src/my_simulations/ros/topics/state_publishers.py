@@ -15,7 +15,7 @@ from rosgraph_msgs.msg import Clock
 
 from ...simulator.row_layout import FrameLocation, RowLayout
 from ...simulator.simulator import Simulator
-from ..direct_connection import direct
+from ..direct_connection import direct_publish
 from ..registration import publisher
 from .publish_pacing import StateSchedule, StepSelector, TokenBucket
 from .state_buffers import StatesBuffer, packed_time
@@ -81,7 +81,7 @@ class StateTopic:
         self._wake = wake
         self.publisher = publisher(topic, queue_size=STATES_QUEUE, tcp_nodelay=True,
                                    subscriber_listener=SubscriberEvents(self._on_subscriber))
-        self._publish = direct(self.publisher)
+        self._publish = direct_publish(self.publisher)
 
     def _on_subscriber(self) -> None:
         self._owed.set()
@@ -104,7 +104,7 @@ class StateTopic:
         names, places = self._entities(layout)
         self._message.packed = self._buffer.pack(layout.revision, sequence, names, places, links)
         self._publish(self._message)
-        self._schedule.sent((layout.revision, sequence))
+        self._schedule.note_published((layout.revision, sequence))
 
 
 class Publishers(WorkerThread):
@@ -129,7 +129,7 @@ class Publishers(WorkerThread):
         self._spare = TokenBucket(STATES_PER_SECOND, STATES_QUEUE, time.monotonic())
         self._sent = (-1, 0, 0)  # revision, sequence and step of the newest published states
         self._clock_message = _PackedClock()
-        self._clock, self._publish_clock = clock, direct(clock)
+        self._clock, self._publish_clock = clock, direct_publish(clock)
         self._clock.impl.add_subscriber_listener(SubscriberEvents(self._wake.set))
         self._state_topics: List[StateTopic] = []
         if states:
