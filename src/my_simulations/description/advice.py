@@ -11,7 +11,7 @@ from typing import Dict, Iterator, List, Optional, Sequence, Set, Tuple
 
 from ..errors import Severity
 from ..geometry import IDENTITY, Pose, Vec3, compose, conjugate, dot, norm, rotate, scale
-from .link_surface import coefficient, counting_collision
+from .link_surface import dominant_collision, friction_coefficient
 from .model import WORLD, Inertial, Link, Model
 from .shapes import Box, Capsule, Collision, Cylinder, Ellipsoid, Geometry, Plane, Sphere
 from .validate import Fault
@@ -67,7 +67,7 @@ def links_of(model: Model, above: Pose = IDENTITY, scope: str = "",
 
 def _count_pieces(model: Model) -> int:
     """Return the number of links, counting each once for each friction of its collisions."""
-    return (sum(max(1, len({coefficient(one.surface) for one in link.collisions}))
+    return (sum(max(1, len({friction_coefficient(one.surface) for one in link.collisions}))
                 for link in model.links) + sum(map(_count_pieces, model.models)))
 
 
@@ -132,13 +132,14 @@ def thin_mesh(collision: Collision, link: str, extents: Sequence[float]) -> Iter
 
 def _shared_friction(link: Link, name: str) -> Iterator[Fault]:
     """Collisions with unlike friction, of which one holds for all."""
-    counting = counting_collision(link)
-    found = sorted({coefficient(one.surface) for one in link.collisions})
+    counting = dominant_collision(link)
+    found = sorted({friction_coefficient(one.surface) for one in link.collisions})
     if counting is None or len(found) < 2:
         return
     listed = ", ".join(f"{mu:g}" for mu in found)
     yield Fault("friction-shared", f"the collisions of {name!r} have unlike friction (mu {listed});"
-                f" mu {coefficient(counting.surface):g} of {counting.name!r}, which reaches lowest,"
+                f" mu {friction_coefficient(counting.surface):g} of {counting.name!r},"
+                " which reaches lowest,"
                 " holds for all of them", counting, Severity.WARNING,
                 "give those with another friction a link of their own, joined to this one")
 

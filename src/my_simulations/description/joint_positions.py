@@ -56,7 +56,7 @@ def has_position(joint: Joint) -> bool:
     return joint.axis is not None and joint.type in (*_HINGES, "prismatic")
 
 
-def moved(joint: Joint, by: float, child: Pose) -> Pose:
+def moved_child_pose(joint: Joint, by: float, child: Pose) -> Pose:
     """The pose of a joint's child link after the joint has moved by rad or m, its parent at rest.
 
     Args:
@@ -93,7 +93,7 @@ def anchored_pose(joints: Sequence[Joint], links: Sequence[Link], poses: Mapping
     for joint in sorted(anchors, key=lambda one: one.type != "fixed"):
         child = poses[joint.child]
         if joint.type != "fixed":
-            child = moved(joint, -positions[joint.name], child)
+            child = moved_child_pose(joint, -positions[joint.name], child)
         return compose(child, inverse(at_zero[joint.child]))
     return None
 

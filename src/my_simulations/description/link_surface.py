@@ -12,8 +12,9 @@ from .model import Link
 from .shapes import Box, Collision, Cylinder, Sphere, Surface
 
 
-def counting_collision(link: Link) -> Optional[Collision]:
-    """The collision whose friction and restitution hold for the whole link; None without any.
+def dominant_collision(link: Link) -> Optional[Collision]:
+    """Return the collision whose friction and restitution apply to the whole link; None without
+    any.
 
     The first one; where others have another friction, the one that reaches lowest: a robot's base
     stands on its caster, whatever else was lumped into it.
@@ -21,18 +22,19 @@ def counting_collision(link: Link) -> Optional[Collision]:
     if not link.collisions:
         return None
     first = link.collisions[0]
-    if all(coefficient(one.surface) == coefficient(first.surface) for one in link.collisions):
+    if all(friction_coefficient(one.surface) == friction_coefficient(first.surface)
+           for one in link.collisions):
         return first
     return min(link.collisions, key=_lowest)
 
 
-def coefficient(surface: Surface) -> float:
-    """The coefficient that counts in pairs: the larger one where both have a direction."""
-    return max(surface.mu, surface.mu2) if directed(surface) else surface.mu
+def friction_coefficient(surface: Surface) -> float:
+    """Return the coefficient for contact pairs: the larger one of direction-dependent friction."""
+    return max(surface.mu, surface.mu2) if is_direction_dependent(surface) else surface.mu
 
 
-def directed(surface: Surface) -> bool:
-    """Whether mu and mu2 differ by direction; without fdir1 mu holds in all of them."""
+def is_direction_dependent(surface: Surface) -> bool:
+    """Return whether mu and mu2 differ; without fdir1, mu applies in all directions."""
     return surface.mu != surface.mu2 and any(surface.fdir1)
 
 

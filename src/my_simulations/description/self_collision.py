@@ -23,7 +23,7 @@ class SelfCollision:
         self._joined = {frozenset((numbers.get(joint.parent), numbers.get(joint.child)))
                         for joint in model.joints}
 
-    def between(self, one: int, other: int) -> bool:
-        """Whether two links collide; a link does not with itself."""
+    def collides(self, one: int, other: int) -> bool:
+        """Return whether two different links collide; False for a link with itself."""
         return (one != other and (self._asking[one] or self._asking[other])
                 and frozenset((one, other)) not in self._joined)

@@ -71,7 +71,7 @@ def faults(model: Model, static: bool = False) -> Iterator[Fault]:
 def own_faults(model: Model, static: bool = False) -> Iterator[Fault]:
     """Faults of the model without those of its nested models."""
     static = static or model.static
-    yield from place_faults(model)
+    yield from name_and_pose_faults(model)
     yield from _repeated("link", model.links)
     yield from _repeated("joint", model.joints)
     yield from _repeated("model", model.models)
@@ -85,7 +85,7 @@ def own_faults(model: Model, static: bool = False) -> Iterator[Fault]:
                     " a link of the model", model, Severity.WARNING)
 
 
-def place_faults(model: Model) -> Iterator[Fault]:
+def name_and_pose_faults(model: Model) -> Iterator[Fault]:
     """Faults of name and pose, which depend on the outer model."""
     if not model.name:
         yield Fault("name-empty", "the model has no name", model)

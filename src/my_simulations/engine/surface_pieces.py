@@ -10,7 +10,7 @@ from __future__ import annotations
 from dataclasses import astuple, replace
 from typing import Dict, Hashable, Iterable, List, Tuple
 
-from ..description.link_surface import coefficient
+from ..description.link_surface import friction_coefficient
 from ..description.model import Link, Model
 from ..description.shapes import Collision
 from .body_plan import MAX_TREE_LINKS, NO_LINK, BodyPlan, TreeLink, depth_first
@@ -37,7 +37,7 @@ def in_pieces(plan: BodyPlan, model: Model) -> BodyPlan:
 
 def by_friction(link: Link) -> List[Carried]:
     """Return the positions of the collisions of a link, those with the same friction together."""
-    return _alike(coefficient(collision.surface) for collision in link.collisions)
+    return _alike(friction_coefficient(collision.surface) for collision in link.collisions)
 
 
 def by_surface(link: Link) -> List[Link]:

@@ -213,7 +213,7 @@ class Builder:
     def _part(self, number: int, index: int, masses: _Masses, link: Link) -> Part:
         surface = surface_coefficients.of_link(link)
         return Part(self._first_row + number, index, masses.com, masses.mass, masses.moments,
-                    surface_coefficients.coefficient(surface),
+                    surface_coefficients.friction_coefficient(surface),
                     surface_coefficients.friction(surface, masses.mass == 0.0), link.gravity,
                     link)
 
@@ -251,7 +251,7 @@ class Builder:
     def _collide(self, plan: BodyPlan) -> bool:
         """Whether any two links of a tree collide with each other."""
         numbers = [node.index for node in plan.links if node.index != NO_LINK]
-        return any(self._meets.between(one, other)
+        return any(self._meets.collides(one, other)
                    for one, other in itertools.combinations(numbers, 2))
 
     def _masses(self, plan: BodyPlan, n: int) -> _Masses:
@@ -364,7 +364,7 @@ class Builder:
 
     def _ignore_pairs(self, pairs: Iterable[Tuple[_Collider, _Collider]], ignored: bool) -> None:
         for (one, index, row), (other, other_index, other_row) in pairs:
-            if not self._meets.between(row - self._first_row, other_row - self._first_row):
+            if not self._meets.collides(row - self._first_row, other_row - self._first_row):
                 collision_groups.ignore(one, other, index, other_index, ignored)
 
 

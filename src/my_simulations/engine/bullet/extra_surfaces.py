@@ -6,13 +6,13 @@ from typing import Any, Dict, Tuple
 
 import pybullet
 
-from ...description.link_surface import counting_collision
+from ...description.link_surface import dominant_collision
 from ...description.model import Link
 from ...description.shapes import Collision, Surface
 from ...geometry import Vec3, conjugate, norm, rotate, scale
 from ..surface_pieces import by_friction
 from .bodies import Body, Part
-from .surface_coefficients import directed
+from .surface_coefficients import is_direction_dependent
 
 SOFT = 1e6
 """N/m; a stiffer contact is a hard one: 1 kg goes less than 0.01 mm deep."""
@@ -33,7 +33,7 @@ def store(body: Body, dt: float) -> None:
     collision whose coefficient holds (SDF 1.7, collision/surface; Gazebo has one each).
     """
     for uid, part in body.surfaces:
-        collision = counting_collision(part.link)
+        collision = dominant_collision(part.link)
         if collision is not None:
             _store(body, uid, part, collision, dt)
 
@@ -41,7 +41,7 @@ def store(body: Body, dt: float) -> None:
 def _store(body: Body, uid: int, part: Part, collision: Collision, dt: float) -> None:
     surface = collision.surface
     settings: Dict[str, Any] = {}
-    if directed(surface):
+    if is_direction_dependent(surface):
         settings["anisotropicFriction"] = anisotropy(
             (surface.mu, surface.mu2), first_direction(collision, part))
     if surface.kp < SOFT and body.moves and not body.rigid:

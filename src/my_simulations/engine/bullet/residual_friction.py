@@ -43,7 +43,7 @@ from .contact_points import (
 )
 from .link_states import Motion, motion
 from .step_helper import StepHelper, next_multiple
-from .surface_coefficients import directed, of_link
+from .surface_coefficients import is_direction_dependent, of_link
 
 _EVERY = 8         # checks are at multiples of this number of steps
 _FAST_EVERY = 16   # steps between two checks of a body that slides fast
@@ -89,7 +89,7 @@ class ResidualFriction(StepHelper):
     def add(self, body: Body) -> None:
         """Register a new body; only rigid ones that move and can have several contacts matter."""
         self._mu.update({(uid, part.index): part.mu for uid, part in body.surfaces
-                         if not directed(of_link(part.link))})
+                         if not is_direction_dependent(of_link(part.link))})
         if not body.moves:
             self._planes |= body.with_role("plane")  # infinite; a box below has the same contacts
             return

@@ -6,9 +6,9 @@ corrects the others.
 """
 from __future__ import annotations
 
-from ...description.link_surface import coefficient as coefficient
-from ...description.link_surface import counting_collision
-from ...description.link_surface import directed as directed
+from ...description.link_surface import dominant_collision
+from ...description.link_surface import friction_coefficient as friction_coefficient
+from ...description.link_surface import is_direction_dependent as is_direction_dependent
 from ...description.model import Link
 from ...description.shapes import Surface
 
@@ -17,14 +17,14 @@ NEVER_BOUNCES = 1e4
 
 
 def of_link(link: Link) -> Surface:
-    """Return the surface of a link; PyBullet has one per link (see `counting_collision`)."""
-    found = counting_collision(link)
+    """Return the surface of a link; PyBullet has one per link (see `dominant_collision`)."""
+    found = dominant_collision(link)
     return Surface() if found is None else found.surface
 
 
 def friction(surface: Surface, static: bool) -> float:
     """Return the lateral friction to store."""
-    return min(coefficient(surface), 1.0) if static else coefficient(surface)
+    return min(friction_coefficient(surface), 1.0) if static else friction_coefficient(surface)
 
 
 def restitution(surface: Surface) -> float:

@@ -4,7 +4,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Dict, Optional, Sequence, Tuple
 
-from ...description.link_surface import counting_collision
+from ...description.link_surface import dominant_collision
 from ...description.shapes import Cylinder, Surface
 from ...geometry import Vec3, dot, norm, rotate, scale, subtract
 from .bodies import Body, Part
@@ -12,7 +12,7 @@ from .contact_points import PLACE, ContactPoint, LinkKey
 from .edge_loads import axle_of
 from .extra_surfaces import first_direction
 from .link_states import AT_REST, Motion, place
-from .surface_coefficients import directed
+from .surface_coefficients import is_direction_dependent
 
 _LEAST_MU = 1e-6
 _LEAST_MOMENT = 1e-9  # kg m^2
@@ -78,13 +78,13 @@ def surface_links(body: Body) -> Dict[LinkKey, SurfaceLink]:
     total = sum(part.mass for part in body.parts)
     joints = {axis.index: axis.row for axis in body.axes}
     for uid, part in body.surfaces:
-        collision = counting_collision(part.link)
+        collision = dominant_collision(part.link)
         surface = Surface() if collision is None else collision.surface
         first, slips = None, (surface.slip1, surface.slip1)
         if collision is not None and any(surface.fdir1):
             first, slips = first_direction(collision, part), (surface.slip1, surface.slip2)
         joint = joints.get(part.index, -1)
-        mu, mu2 = surface.mu, surface.mu2 if directed(surface) else surface.mu
+        mu, mu2 = surface.mu, surface.mu2 if is_direction_dependent(surface) else surface.mu
         found[uid, part.index] = SurfaceLink(
             body, uid, part, total, first, axle_of(part, part.link) if joint >= 0 else None,
             (max(_LEAST_MU, mu), max(_LEAST_MU, mu2)), slips, joint)

@@ -10,7 +10,7 @@ from typing import Any, Dict, List, Optional, Set, Tuple
 
 from ...description.compare import differences
 from ...description.flatten import flattened
-from ...description.joint_positions import joint_position, moved
+from ...description.joint_positions import joint_position, moved_child_pose
 from ...description.light import Light
 from ...description.model import WORLD, Joint, Link, Model
 from ...description.saved_state import InitialState, ModelState, SavedState
@@ -111,7 +111,7 @@ def _held(flat: Model, poses: Dict[str, Pose]) -> Optional[Dict[str, float]]:
     found: Dict[str, float] = {}
     for joint in anchors:
         position = joint_position(joint, at_zero, {WORLD: Pose(), **poses}) or 0.0
-        there = moved(joint, position, at_zero[joint.child])
+        there = moved_child_pose(joint, position, at_zero[joint.child])
         if differences(there, poses[joint.child], _NEAR):
             return None
         if position:
