@@ -126,7 +126,7 @@ def unknown_plugins(loaded: Loaded) -> List[Issue]:
     unknown: Dict[str, Issue] = {}
     for spec in specs:
         library = library_name(spec.filename)
-        if library not in unknown and not registry.knows(spec.filename):
+        if library not in unknown and not registry.is_supported(spec.filename):
             unknown[library] = no_effect_note(spec) or Issue(
                 Severity.NOTE, "not-simulated", f"<plugin {spec.name}> has no effect: there is no"
                 f" plugin for {library or 'a library without a name'}", spec.file, spec.line,

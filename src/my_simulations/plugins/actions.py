@@ -3,7 +3,7 @@ from __future__ import annotations
 
 from typing import Any, Callable, List, Optional, Tuple
 
-from .context import Context, Ending, Handle
+from .context import CallHandle, Context, Handle
 from .frames import stamped
 
 PENDING, ACTIVE, PREEMPTED, SUCCEEDED, ABORTED, REJECTED, PREEMPTING, RECALLING, RECALLED = range(9)
@@ -87,7 +87,7 @@ class ActionServer:
             context.subscribe(f"{name}/goal", f"{kind}ActionGoal", self._receive_goal, _QUEUE),
             context.subscribe(f"{name}/cancel", "actionlib_msgs/GoalID", self._receive_cancel,
                               _QUEUE)]
-        self._timer: Ending = context.every(_STATUS_HZ, self._publish_status)
+        self._timer: CallHandle = context.every(_STATUS_HZ, self._publish_status)
         self._publish_status()
 
     def result(self) -> Any:

@@ -88,7 +88,7 @@ class Joint(Protocol):
         """Drive the axis by a servo of the engine from the next step on; `row` is filled in."""
 
 
-class Ending(Protocol):
+class CallHandle(Protocol):
     """A repeated call that continues until it is ended."""
 
     def end(self) -> None:
@@ -158,7 +158,7 @@ class Context(Protocol):
     def step(self) -> int:
         """The number of steps before this one."""
 
-    def every(self, hertz: float, call: Callable[[], None]) -> "Ending":
+    def every(self, hertz: float, call: Callable[[], None]) -> "CallHandle":
         """Be called at a rate in Hz of sim time, the first time one period from now.
 
         A rate of 0 or less means every step. The calls are exact to the step, without drift. `end`
@@ -170,7 +170,7 @@ class Context(Protocol):
                 resume: Optional[Callable[[], None]] = None, transforms: bool = False,
                 remembers: bool = False,
                 contacts: bool = False, efforts: Sequence[str] = (),
-                wrenches: Sequence[str] = (), world: bool = False) -> "Ending":
+                wrenches: Sequence[str] = (), world: bool = False) -> "CallHandle":
         """Follow the world at a rate in Hz of sim time, without stopping it.
 
         As `every`, but `call` comes some milliseconds after the step, while the world continues.
@@ -193,7 +193,7 @@ class Context(Protocol):
             world: it scans or photographs the world.
         """
 
-    def once(self, ns: int, call: Callable[[], None]) -> "Ending":
+    def once(self, ns: int, call: Callable[[], None]) -> "CallHandle":
         """Be called in the first step that does not begin before a sim time (ns); not in this one.
 
         When time is set, nothing is left of it.
@@ -226,7 +226,7 @@ class Context(Protocol):
         """Present wind of the world, m/s, world axes."""
 
     @property
-    def place_on_earth(self) -> Optional[SphericalCoordinates]:
+    def spherical_coordinates(self) -> Optional[SphericalCoordinates]:
         """Spherical coordinates of the world's origin; None if the world has none."""
 
     def link(self, name: str) -> Link:
@@ -238,8 +238,10 @@ class Context(Protocol):
     def joint(self, name: str) -> Joint:
         """A joint of the model that moves. Raises PluginError with the names that there are."""
 
-    def drive_level(self, x: float, y: float, yaw_rate: float) -> None:
-        """Have the model move level from now on: m/s along its own x and y axis, and rad/s."""
+    def set_planar_velocity(self, x: float, y: float, yaw_rate: float) -> None:
+        """Move the model in its horizontal plane from now on: m/s along its own x and y axis, and
+        rad/s.
+        """
 
     @property
     def description(self) -> Model:
@@ -280,7 +282,8 @@ class Context(Protocol):
     def joint_spec(self, name: str) -> JointSpec:
         """Return the description of a joint, which can be fixed. Raises PluginError."""
 
-    def slip(self, link: str, joint: str, radius: float, normal_force: float, lateral: float,
+    def set_wheel_slip(self, link: str, joint: str, radius: float, normal_force: float,
+                       lateral: float,
              longitudinal: float) -> None:
         """Let a wheel slip in proportion to its speed, until a reset (`engine.WheelSlip`).
 

@@ -56,7 +56,7 @@ class Topic(Protocol):
         """Remove the topic from the ROS graph."""
 
 
-class Closing(Protocol):
+class GraphHandle(Protocol):
     """A subscription or service that can be removed from the graph."""
 
     def close(self) -> None:
@@ -79,10 +79,11 @@ class Graph(Protocol):
         Raises MissingTypeError.
         """
 
-    def subscribe(self, name: str, kind: str, call: Callable[[Any], None], queue: int) -> Closing:
+    def subscribe(self, name: str, kind: str, call: Callable[[Any], None],
+                  queue: int) -> GraphHandle:
         """Subscribe to a topic; `call` runs in another thread. Raises MissingTypeError."""
 
-    def serve(self, name: str, kind: str, call: Callable[[Any, Any], None]) -> Closing:
+    def serve(self, name: str, kind: str, call: Callable[[Any, Any], None]) -> GraphHandle:
         """Advertise a service; `call` (request, response) runs in another thread.
 
         Raises MissingTypeError, and ServiceTakenError.

@@ -368,7 +368,7 @@ class PluginHost:
             self._schedule.reschedule(change.is_set_back)
             self._observations.begin_all(time_step)
             for running in self._at_work():
-                running.context.sensing.forget()
+                running.context.sensing.discard_pending()
         for notice in change.notices:
             for running in self._at_work():
                 if running.plugin is not None:

@@ -69,7 +69,7 @@ class HostStarter:
             self._host.begin()
         return self._host
 
-    def expect(self) -> None:
+    def start_early(self) -> None:
         """Start the host, before the first model with plugins comes (`SyncPoints.on_plugins`)."""
         with self._lock:
             if not self._ended:

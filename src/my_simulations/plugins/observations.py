@@ -105,13 +105,13 @@ class Observation:
         """Whether it takes as many steps as it can: rays at every step hold no world."""
         return self.reads.world and self._rate.hertz <= 0.0 and not self.owner.is_stepped_manually
 
-    def ask_again(self) -> None:
+    def request_step(self) -> None:
         """Record another step, for one that takes as many as it can."""
         if self.is_single:
             self._asked += 1
             self.owner.observations.changed = True
 
-    def become(self, wanted: bool) -> None:
+    def set_wanted(self, wanted: bool) -> None:
         """Set whether it has subscribers, and make its record rule again."""
         if not wanted and not self._remembers:
             self._was_idle = True
@@ -181,11 +181,11 @@ class Observations:
             if one.owner is owner:
                 one.end()
 
-    def ask_again(self, owner: Any) -> None:
+    def request_step(self, owner: Any) -> None:
         """Record another step for a plugin whose requests are answered."""
         for one in self._all.values():
             if one.owner is owner:
-                one.ask_again()
+                one.request_step()
 
     def find(self, number: int) -> Optional[Observation]:
         """The observation of a part of a record; None once it has ended."""
@@ -196,7 +196,7 @@ class Observations:
         self.changed = False
         self._all = {number: one for number, one in self._all.items() if not one.ended}
         for one in self._all.values():
-            one.become(one.is_wanted(transforms_wanted))
+            one.set_wanted(one.is_wanted(transforms_wanted))
         before, self._rules = self._rules, tuple(
             one.rule for one in self._all.values() if one.rule is not None)
         return self._rules if before != self._rules or again and self._rules else None

@@ -58,4 +58,4 @@ class RecordHandover:
                 self._view.show(record, part, observation)
                 call(observation)
                 if not observation.owner.sensing.is_busy:
-                    observation.ask_again()
+                    observation.request_step()

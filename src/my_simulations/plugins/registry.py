@@ -158,7 +158,7 @@ class PluginRegistry:
         """Whether the simulator itself has the functions of the library."""
         return library_name(filename) in PROVIDED
 
-    def knows(self, filename: str) -> bool:
+    def is_supported(self, filename: str) -> bool:
         """Whether the simulator or a plugin replaces the library; nothing is imported."""
         name = library_name(filename)
         return (name in PROVIDED or name in self._extra or name in BUILT_IN

@@ -62,7 +62,7 @@ class SensingRequests:
         self._left_out = 0
         self._told = -_AGAIN_S
 
-    def forget(self) -> None:
+    def discard_pending(self) -> None:
         """Discard pending scans and pictures after sim time was set."""
         self._scan = None
         self._shots.clear()

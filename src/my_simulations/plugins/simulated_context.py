@@ -87,7 +87,7 @@ class SimulatedContext(GraphUser):
         self._attached: List[str] = []
         self._held = False
         self.sensing = SensingRequests(shared.scene, self.inbox, wake, self.warn,
-                                       lambda: self.observations.ask_again(self))
+                                       lambda: self.observations.request_step(self))
         self.graph = PluginGraph(shared.graph, self.inbox, wake, lambda: self.sensing.unsent,
                                  shared.subscribers_changed)
 
@@ -107,7 +107,7 @@ class SimulatedContext(GraphUser):
         for joint in self._joints.values():
             joint.moved_to(self._rows.axis(joint.spec_name))
         if self._level is not None:
-            self.drive_level(self._level.x, self._level.y, self._level.yaw_rate)
+            self.set_planar_velocity(self._level.x, self._level.y, self._level.yaw_rate)
         self.observations.changed = True
 
     def close(self) -> None:
@@ -227,7 +227,7 @@ class SimulatedContext(GraphUser):
         return self.simulator.world.wind.linear_velocity
 
     @property
-    def place_on_earth(self) -> Optional[SphericalCoordinates]:
+    def spherical_coordinates(self) -> Optional[SphericalCoordinates]:
         """Spherical coordinates of the world's origin."""
         return self.simulator.world.spherical_coordinates
 
@@ -258,7 +258,7 @@ class SimulatedContext(GraphUser):
         """Return the wrench that a joint transmitted in the last step."""
         return self._readings.wrench(self.entity, self._rows.joint(name).name)
 
-    def drive_level(self, x: float, y: float, yaw_rate: float) -> None:
+    def set_planar_velocity(self, x: float, y: float, yaw_rate: float) -> None:
         """Move the model in its horizontal plane from now on."""
         self.commands.planar = self._level = PlanarVelocity(
             self.entity.model_id, finite(x, "x"), finite(y, "y"), finite(yaw_rate, "yaw_rate"))
@@ -307,7 +307,8 @@ class SimulatedContext(GraphUser):
         self._held = held
         self.simulator.models.hold(self.model, held)
 
-    def slip(self, link: str, joint: str, radius: float, normal_force: float, lateral: float,
+    def set_wheel_slip(self, link: str, joint: str, radius: float, normal_force: float,
+                       lateral: float,
              longitudinal: float) -> None:
         """Let a wheel slip."""
         self.simulator.drives.set_wheel_slips([WheelSlip(

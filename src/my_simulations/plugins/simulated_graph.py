@@ -8,7 +8,7 @@ from typing import Any, Callable, Deque, Dict, List, Optional, Tuple
 from ..geometry import Pose
 from .checked_arguments import pose_of
 from .context import PluginError, RequestError
-from .graph import Closing, Graph, MissingTypeError, ServiceTakenError, Topic, TransformOf
+from .graph import Graph, GraphHandle, MissingTypeError, ServiceTakenError, Topic, TransformOf
 from .message_maker import PendingMessage
 
 _LOOK_S = 0.2   # interval of checks whether the plugin of a service call still exists
@@ -54,10 +54,10 @@ class _UnnamedTopic:
         """Do nothing."""
 
 
-class OpenEnd:
+class PluginGraphHandle:
     """A subscription or service of a plugin."""
 
-    def __init__(self, owner: "PluginGraph", end: Closing) -> None:
+    def __init__(self, owner: "PluginGraph", end: GraphHandle) -> None:
         self._owner, self._end = owner, end
 
     def close(self) -> None:
@@ -85,7 +85,7 @@ class PluginGraph:
         self.inbox, self.unsent = inbox, unsent
         self.outbox: List[Tuple[Topic, Any]] = []
         self.transforms: List[Tuple[int, TransformOf]] = []
-        self._opened: List[Closing] = []
+        self._opened: List[GraphHandle] = []
         self._uses: Dict[int, Tuple[str, str, bool]] = {}
         self._namespace = ""
         self._closed = threading.Event()
@@ -98,7 +98,7 @@ class PluginGraph:
         self._uses.clear()
         self._closed.set()
 
-    def close_one(self, end: Closing) -> None:
+    def close_one(self, end: GraphHandle) -> None:
         """Remove one topic, subscription or service from the ROS graph."""
         if end in self._opened:
             self._opened.remove(end)
@@ -151,7 +151,8 @@ class PluginGraph:
             lambda full: self._graph.publish(full, kind, queue, latch, self._changed), name, kind,
             False))
 
-    def subscribe(self, name: str, kind: str, call: Callable[[Any], None], queue: int) -> OpenEnd:
+    def subscribe(self, name: str, kind: str, call: Callable[[Any], None],
+                  queue: int) -> PluginGraphHandle:
         """Subscribe to a topic."""
         waiting: Deque[Any] = deque(maxlen=max(1, queue))
 
@@ -164,11 +165,11 @@ class PluginGraph:
             self.inbox.append(deliver)
             self._wake()
 
-        return OpenEnd(self, self._open(
+        return PluginGraphHandle(self, self._open(
             lambda full: self._graph.subscribe(full, kind, arrived, queue), name, kind, True))
 
     def serve(self, name: str, kind: str, call: Callable[[Any, Any], None],
-              warn: Callable[[str], None]) -> OpenEnd:
+              warn: Callable[[str], None]) -> PluginGraphHandle:
         """Offer a service; one that another plugin offers stays with that one, with a warning."""
         def asked(request: Any, response: Any) -> None:
             done = threading.Event()
@@ -200,7 +201,7 @@ class PluginGraph:
         except ServiceTakenError as taken:  # roscpp reports it, and Gazebo's plugins continue
             warn(str(taken))
             end = _UnnamedTopic()
-        return OpenEnd(self, end)
+        return PluginGraphHandle(self, end)
 
     def parameter(self, name: str, default: Any) -> Any:
         """Return a parameter of the namespace."""
@@ -254,11 +255,11 @@ class GraphUser:
         return self.graph.publish(name, kind, queue, latch)
 
     def subscribe(self, name: str, kind: str, call: Callable[[Any], None],
-                  queue: int = 1) -> OpenEnd:
+                  queue: int = 1) -> PluginGraphHandle:
         """Subscribe to a topic."""
         return self.graph.subscribe(name, kind, call, queue)
 
-    def serve(self, name: str, kind: str, call: Callable[[Any, Any], None]) -> OpenEnd:
+    def serve(self, name: str, kind: str, call: Callable[[Any, Any], None]) -> PluginGraphHandle:
         """Advertise a service."""
         return self.graph.serve(name, kind, call, self.warn)
 

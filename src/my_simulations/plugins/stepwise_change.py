@@ -4,7 +4,7 @@ from __future__ import annotations
 from fractions import Fraction
 from typing import Callable, Optional
 
-from .context import Context, Ending
+from .context import CallHandle, Context
 
 _NS = 10 ** 9
 
@@ -24,7 +24,7 @@ class StepwiseChange:
     def __init__(self, context: Context, hertz: float, update: Callable[[float], bool]) -> None:
         self._context, self._hertz, self._update = context, hertz, update
         self._period = Fraction(hertz).limit_denominator(10 ** 6) if hertz > 1e-6 else None
-        self._timer: Optional[Ending] = None
+        self._timer: Optional[CallHandle] = None
         self._last_ns: Optional[int] = None
 
     @property
@@ -38,7 +38,7 @@ class StepwiseChange:
             self._last_ns = None
             self._timer = self._context.every(self._hertz, self._call)
 
-    def begin_after(self, ns: int) -> Ending:
+    def begin_after(self, ns: int) -> CallHandle:
         """Begin at the first step of the rate that is later than a sim time (ns)."""
         due = ns + 2   # steps may begin a nanosecond early
         if self._period is not None:

@@ -94,7 +94,7 @@ class FakeContext(FakeGraph):
         self.gravity: Vec3 = (0.0, 0.0, -9.8)
         self.magnetic_field: Vec3 = (0.0, 0.0, 0.0)
         self.wind: Vec3 = (0.0, 0.0, 0.0)
-        self.place_on_earth: Optional[SphericalCoordinates] = None
+        self.spherical_coordinates: Optional[SphericalCoordinates] = None
         self.seed = 0
         self.step_size, self.step = step_size, 0
         self.wrenches: Dict[str, Tuple[Vec3, Vec3]] = {}
@@ -189,7 +189,7 @@ class FakeContext(FakeGraph):
         """Return the transmissions of the description."""
         return self.description.transmissions
 
-    def drive_level(self, x: float, y: float, yaw_rate: float) -> None:
+    def set_planar_velocity(self, x: float, y: float, yaw_rate: float) -> None:
         """Record the call."""
         self.level = (x, y, yaw_rate)
 
@@ -230,7 +230,7 @@ class FakeContext(FakeGraph):
                 return joint
         raise PluginError(f"model '{self.model}' has no joint '{name}'")
 
-    def slip(self, link: str, joint: str, *values: float) -> None:
+    def set_wheel_slip(self, link: str, joint: str, *values: float) -> None:
         """Record the call."""
         self.slips[link] = (joint, *values)
 
@@ -281,7 +281,7 @@ class FakeContext(FakeGraph):
 
     def scan(self, fan: Any, visuals: bool, call: Callable[[Any, int], None],
              place: Optional[Tuple[str, Pose]] = None) -> None:
-        """Pass the test's `returns` to `call`."""
+        """Store the fan in `fans`, and pass `returns`, which the test sets, to `call` at once."""
         self.fans.append((fan, visuals))
         call(self.returns, self.now_ns)
 

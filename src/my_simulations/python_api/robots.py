@@ -93,7 +93,7 @@ class Robots:
             self._close_scene()
             self._simulator, self._scene = simulator, SceneSensing(simulator, self._log)
         starter = self._starter = HostStarter(simulator, self._new_host)
-        simulator.sync_points.on_plugins(starter.expect)
+        simulator.sync_points.on_plugins(starter.start_early)
         with contextlib.nullcontext() if self._graph is None else self._graph.suspended():
             self.wait_until_loaded()
 

@@ -63,7 +63,7 @@ class Node:
         self._plugins = PluginStarter(simulator, simulator.report,
                                       _plugin_classes(self._parameters))
         if self._network:
-            simulator.sync_points.on_plugins(self._plugins.expect)
+            simulator.sync_points.on_plugins(self._plugins.start_early)
         self._engine_pid = 0
         self._announce_editor = announce_editor
         self._membership = Membership(master_uri, rospy.get_name(),

@@ -64,7 +64,7 @@ def test_a_fix_lies_where_an_independent_ellipsoid_says():
 def test_the_world_tells_where_it_is():
     context = FakeContext("<plugin><useWorldSphericalCoordinates>true"
                           "</useWorldSphericalCoordinates></plugin>")
-    context.place_on_earth = SphericalCoordinates(latitude_deg=-33.0, longitude_deg=151.0,
+    context.spherical_coordinates = SphericalCoordinates(latitude_deg=-33.0, longitude_deg=151.0,
                                                   elevation=20.0)
     hector.Gps(context).load()
     context.advance(0.25)
@@ -185,7 +185,8 @@ def test_a_gps_sensor_measures_by_gazebos_model():
     place = SphericalCoordinates(latitude_deg=48.0, longitude_deg=11.0, elevation=500.0,
                                  heading_deg=180.0)
     context = of_sensor(environment.GpsSensor, "gps",
-                        Gps(position_vertical=Noise("gaussian", stddev=2.0)), place_on_earth=place)
+                        Gps(position_vertical=Noise("gaussian", stddev=2.0)),
+                        spherical_coordinates=place)
     context.link("base").pose = Pose((10.0, 20.0, 0.0))
     context.link("base").twist = Twist((1.0, 0.0, 0.0))
     context.advance(40.0)

@@ -122,7 +122,7 @@ def test_an_exception_in_a_notification_ends_one_plugin_only(case, call):
     "self.context.joint('hinge').set_servo(None)",
     "self.context.joint('hinge').drive(float('nan'), 1.0)",
     "self.context.set_wrench('base', 'up', None)",
-    "self.context.drive_level('x', None, {})",
+    "self.context.set_planar_velocity('x', None, {})",
     "self.context.move(None)",
     "self.context.publish('t', 'std_msgs/Empty').publish_later(None)",
 ])

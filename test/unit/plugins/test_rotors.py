@@ -240,7 +240,7 @@ def test_a_gps_says_where_the_world_is_and_how_fast_the_link_moves():
     sensor = Sensor("gps", "gps", update_rate=5.0, gps=Gps())
     context, _ = loaded(RotorsGps, "<horVelStdDev>0</horVelStdDev><verVelStdDev>0</verVelStdDev>",
                         sensor=sensor, sensor_link="gps_link")
-    context.place_on_earth = SphericalCoordinates(latitude_deg=47.0, longitude_deg=8.0,
+    context.spherical_coordinates = SphericalCoordinates(latitude_deg=47.0, longitude_deg=8.0,
                                                   elevation=500.0)
     context.link("gps_link").twist = Twist((1.0, 2.0, 3.0))
     context.advance(0.2)

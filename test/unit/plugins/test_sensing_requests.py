@@ -160,7 +160,7 @@ def test_a_lost_picture_is_told_and_the_next_is_taken():
 def test_a_picture_of_a_time_that_was_set_back_is_forgotten():
     case = Case()
     case.shoot(5)
-    case.requests.forget()
+    case.requests.discard_pending()
     case.sensing.asked[0][0].set_result("picture")
     case.deliver()
     assert not case.seen and case.shoot(1)

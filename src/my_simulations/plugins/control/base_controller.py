@@ -13,7 +13,7 @@ from typing import Any, Deque, List, Optional, Tuple
 from ...description.model import Joint as JointSpec
 from ...description.shapes import Cylinder, Sphere
 from ...geometry import Vec3, transform
-from ..context import Ending, PluginError, Publication
+from ..context import CallHandle, PluginError, Publication
 from ..drive.odometry import diagonal, fill_pose, planar
 from ..frames import stamped
 from ..stepwise_change import StepwiseChange
@@ -100,7 +100,7 @@ class BaseController(Controller):
         self.limits = tuple(speed_limits(s, path) for path in ("linear/x", "linear/y", "angular/z"))
         self.hertz = 1.0 / self.period if self.period else max(_UPDATE_HZ, self.publish_hz)
         self._change = StepwiseChange(self.context, self.hertz, self._update)
-        self._end: Optional[Ending] = None   # of the last command
+        self._end: Optional[CallHandle] = None   # of the last command
         self._count_hz = self.hertz if self.period else self.publish_hz or _UPDATE_HZ
         window = s.number("velocity_rolling_window_size", 10.0) * self._count_hz / _ORIGINAL_HZ
         self.window = max(1, round(window))

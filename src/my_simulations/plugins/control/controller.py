@@ -4,7 +4,7 @@ from __future__ import annotations
 from typing import Any, Callable, Dict, List, Sequence
 
 from ...engine.drive_commands import PidGains
-from ..context import Context, Ending, Handle, Publication
+from ..context import CallHandle, Context, Handle, Publication
 from ..finite_messages import finite_only
 from .hardware import Hardware, HardwareJoint
 from .settings import Settings
@@ -35,7 +35,7 @@ class Controller:
         self.state = INITIALIZED
         self.claimed: Dict[str, List[str]] = {}
         self._handles: List[Handle] = []
-        self._timers: List[Ending] = []
+        self._timers: List[CallHandle] = []
         self._told = ""
 
     # -- for subclasses ----------------------------------------------------------------------------

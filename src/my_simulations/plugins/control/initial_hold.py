@@ -3,7 +3,7 @@ from __future__ import annotations
 
 from typing import Callable, List, Optional
 
-from ..context import Context, Ending
+from ..context import CallHandle, Context
 from .hardware import Hardware
 
 PATIENCE_S = 10.0
@@ -30,7 +30,7 @@ class InitialHold:
     def __init__(self, context: Context, hardware: Hardware,
                  claimed: Callable[[], List[str]]) -> None:
         self._context, self._hardware, self._claimed = context, hardware, claimed
-        self._timer: Optional[Ending] = None
+        self._timer: Optional[CallHandle] = None
         self._limited = False
 
     def begin(self) -> None:

@@ -12,7 +12,7 @@ from ...engine.drive_commands import PidGains
 from ...engine.servo_law import shortest
 from ...engine.spline import Spline, constant_segment, segment_between
 from ..actions import ActionServer, Goal
-from ..context import Ending, RequestError
+from ..context import CallHandle, RequestError
 from .controller import RUNNING, Controller
 from .hardware import EFFORT, POSITION, VELOCITY, HardwareJoint
 from .trajectory import (
@@ -60,7 +60,7 @@ class JointTrajectory(Controller):
         self._late = s.number("constraints/goal_time", 0.0)
         self._splines: List[Spline] = []
         self._goal: Optional[_Following] = None
-        self._watch: Optional[Ending] = None
+        self._watch: Optional[CallHandle] = None
         self._begun = 0.0
         self._seen: List[_Tracked] = []
         self._seen_at, self._seen_of = -1, self._splines

@@ -14,7 +14,7 @@ from typing import Any, Callable, Dict, NamedTuple, Optional, Sequence
 from ...description.transmission import Transmission
 from ...engine.wrench_laws import Wrench
 from ...geometry import Vec3, conjugate, norm, rotate, rpy_from_quat, scale
-from ..context import Context, Ending, PluginError
+from ..context import CallHandle, Context, PluginError
 from ..flight.body_wrench import NO_WRENCH, fill_wrench, hold_wrench
 from ..frames import prefixed, stamped
 from .hardware import Hardware
@@ -98,7 +98,7 @@ class QuadrotorHardware(Hardware):
         self.preempted = self.running = False
         self._updates: Dict[int, Callable[[float], None]] = {}
         self._begins: Dict[int, Callable[[], None]] = {}
-        self._timer: Optional[Ending] = None
+        self._timer: Optional[CallHandle] = None
         self._wrench = NO_WRENCH
         self._period = 0.0
         limits = Settings(context, "wrench_limits")

@@ -82,7 +82,7 @@ class ForceBasedMove(Plugin):
         self._start = (pose.position[0], pose.position[1], rpy_from_quat(pose.orientation)[2])
 
     def _follow(self, dt: float) -> bool:
-        self._command.look()
+        self._command.discard_if_expired()
         self._push()
         return True
 

@@ -82,7 +82,7 @@ class Kobuki(Plugin):
         self._command.stop()
         self._change.end()
         self._begin_count()
-        self._turns.forget()
+        self._turns.restart()
         self._heading = self._yaw()
         self.clock_set()
         self._drive()
@@ -115,13 +115,13 @@ class Kobuki(Plugin):
         self._publish_imu(dt)
 
     def _follow(self, dt: float) -> bool:
-        self._command.look()
+        self._command.discard_if_expired()
         self._drive()
         return True
 
     def _publish_odometry(self, dt: float) -> None:
         """Publish odometry; the heading is that of the gyroscope, as on the real base."""
-        way = sum(self._turns.since(dt)) * self._radius / 2.0
+        way = sum(self._turns.rotations_since_last(dt)) * self._radius / 2.0
         last, self._heading = self._heading, self._yaw()
         turn = math.remainder(self._heading - last, 2.0 * math.pi)
         x, y, yaw = self._place

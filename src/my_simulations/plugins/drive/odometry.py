@@ -33,7 +33,7 @@ def diagonal(values: Tuple[float, ...]) -> List[float]:
 
 
 class WheelRotations:
-    """How far wheels turn between two looks, rad, without what they are put to.
+    """How far wheels turn between two calls, rad, without what they are put to.
 
     Gazebo's drives integrate the rates of the wheels: /gazebo/set_model_configuration moves them,
     and not the robot. Positions are without drift, so that rates count only over such a jump.
@@ -41,14 +41,14 @@ class WheelRotations:
 
     def __init__(self, joints: Sequence[Joint]) -> None:
         self._joints = joints
-        self.forget()
+        self.restart()
 
-    def forget(self) -> None:
+    def restart(self) -> None:
         """Restart the count at the present wheel positions."""
         self._last = [(joint.position, joint.set_count) for joint in self._joints]
 
-    def since(self, dt: float) -> List[float]:
-        """What each wheel has turned since the last look, `dt` s ago."""
+    def rotations_since_last(self, dt: float) -> List[float]:
+        """Return the rotation of each wheel since the last call, `dt` s ago."""
         before, self._last = self._last, []
         turns = []
         for joint, (position, puts) in zip(self._joints, before):
@@ -78,7 +78,7 @@ class WheelCounter:
 
     def discard_rotation(self) -> None:
         """Discard the rotation of the wheels since the last count."""
-        self._wheels.forget()
+        self._wheels.restart()
 
     @property
     def pose(self) -> Pose:
@@ -87,7 +87,7 @@ class WheelCounter:
 
     def count(self, dt: float) -> Tuple[float, float, float]:
         """Add up what has been turned; returns the velocity (forward, 0, yaw) over the last dt."""
-        left, right = (turn * self._radius for turn in self._wheels.since(dt))
+        left, right = (turn * self._radius for turn in self._wheels.rotations_since_last(dt))
         way, turn = (left + right) / 2.0, (right - left) / self._separation
         self._x += way * math.cos(self._yaw + turn / 2.0)
         self._y += way * math.sin(self._yaw + turn / 2.0)

@@ -55,8 +55,8 @@ class PlanarMove(Plugin):
 
     def move(self) -> None:
         """Pass the command to the engine, which applies it in every step."""
-        self._command.look()
-        self.context.drive_level(self._command.x, self._command.y, self._command.yaw)
+        self._command.discard_if_expired()
+        self.context.set_planar_velocity(self._command.x, self._command.y, self._command.yaw)
 
     def publish(self) -> None:
         """Publish odometry: where the model is, and how fast it went since the last time."""

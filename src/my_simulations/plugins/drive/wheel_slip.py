@@ -57,7 +57,7 @@ class WheelSlip(Plugin):
         for wheel in self._wheels:
             lateral, longitudinal = (shared if shared >= 0.0 else own for shared, own in zip(
                 (self.lateral, self.longitudinal), wheel.compliances))
-            self.context.slip(wheel.link, wheel.joint, wheel.radius, wheel.force, lateral,
+            self.context.set_wheel_slip(wheel.link, wheel.joint, wheel.radius, wheel.force, lateral,
                               longitudinal)
 
     def reset(self) -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 from typing import Any, List, Optional, Sequence
 
 from ...geometry import compose, inverse
-from ..context import Context, Ending, Joint, Publication
+from ..context import CallHandle, Context, Joint, Publication
 from ..finite_messages import finite_only
 from ..frames import prefixed, stamped
 from ..stepwise_change import StepwiseChange
@@ -27,7 +27,7 @@ class VelocityCommand:
         """
         self._context, self._change = context, change
         self._time_out = TimeOut(context, timeout) if timeout is not None else None
-        self._expiry: Optional[Ending] = None
+        self._expiry: Optional[CallHandle] = None
         self.stop()
         context.subscribe(topic, "geometry_msgs/Twist", finite_only(context, topic, self._receive))
 
@@ -49,7 +49,7 @@ class VelocityCommand:
             self._begin_expiry()
             self._change.begin()
 
-    def look(self) -> None:
+    def discard_if_expired(self) -> None:
         """Discard a command that has expired."""
         if self._time_out is not None and self._time_out.is_over:
             self.stop()

@@ -21,7 +21,7 @@ from ...geometry import IDENTITY, Pose, Vec3, compose, conjugate, inverse, quat_
 from ...sensing.models.imu import measure
 from ...sensing.models.motion import acceleration_between, velocity_at
 from ..base import Plugin
-from ..context import Ending, Joint, PluginError
+from ..context import CallHandle, Joint, PluginError
 from ..parameters import Parameters
 
 _LOOK_HZ = 50.0
@@ -72,7 +72,7 @@ class ArduPilot(Plugin):
         self._most_misses = p.integer("connectionTimeoutMaxCount", 10)
         self._answer = (p.text("fdm_addr", "127.0.0.1"), p.integer("fdm_port_out", 9003))
         self._listen(p.text("listen_addr", "127.0.0.1"), p.integer("fdm_port_in", 9002))
-        self._timer: Optional[Ending] = None
+        self._timer: Optional[CallHandle] = None
         self._wait_for_first()
 
     def _channel(self, p: Parameters, number: int) -> Channel:

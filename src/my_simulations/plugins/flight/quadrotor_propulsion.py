@@ -15,7 +15,7 @@ from typing import Any, Deque, List, NamedTuple, Optional, Sequence, Tuple
 from ...engine.wrench_laws import Wrench, clamped_vector
 from ...geometry import Vec3
 from ..base import Plugin
-from ..context import Ending
+from ..context import CallHandle
 from ..finite_messages import finite_only
 from ..frames import stamped
 from ..parameters import namespace_or
@@ -132,7 +132,7 @@ class QuadrotorPropulsion(Plugin):
         if p.text("supplyTopic", "supply"):
             self._publish_supply()
             context.observe(_SUPPLY_HZ, self._publish_supply, [self._supply])
-        self._timer: Optional[Ending] = None
+        self._timer: Optional[CallHandle] = None
         self.reset()
 
     def reset(self) -> None:

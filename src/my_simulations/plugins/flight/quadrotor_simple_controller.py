@@ -23,7 +23,7 @@ from ...geometry import (
     subtract,
 )
 from ..base import Plugin
-from ..context import Ending
+from ..context import CallHandle
 from ..finite_messages import finite_only
 from ..parameters import namespace_or
 from ..sensors.hector_errors import rate_of
@@ -60,7 +60,7 @@ class QuadrotorSimpleController(Plugin):
             "wrenchTopic", "wrench_out")), "geometry_msgs/Wrench", 10)
         context.serve("engage", "std_srvs/Empty", lambda request, response: self._engage())
         context.serve("shutdown", "std_srvs/Empty", lambda request, response: self._shut_down())
-        self._timer: Optional[Ending] = None
+        self._timer: Optional[CallHandle] = None
         self._begin()
 
     def _topic(self, parameter: str, default: str) -> str:

@@ -118,7 +118,7 @@ class RotorsOdometry(Plugin):
             x, y, z = (float(stddev[axis] * normal[3 * number + axis]
                              + width[axis] * uniform[3 * number + axis]) for axis in range(3))
             errors.append((x, y, z))
-        turned = normalised(multiply(pose.orientation, small_turn(errors[1])))
+        turned = normalised(multiply(pose.orientation, small_rotation(errors[1])))
         return (Pose(add(pose.position, errors[0]), turned),
                 Twist(add(twist.linear, errors[2]), add(twist.angular, errors[3])))
 
@@ -159,7 +159,7 @@ class RotorsOdometry(Plugin):
         message.covariance = list(self._covariances[0])
 
 
-def small_turn(angles: Vec3) -> Quat:
+def small_rotation(angles: Vec3) -> Quat:
     """The quaternion of a small rotation about x, y and z, rad."""
     x, y, z = (angle / 2.0 for angle in angles)
     return x, y, z, math.sqrt(max(0.0, 1.0 - x * x - y * y - z * z))

@@ -198,7 +198,7 @@ class RotorsGps(Plugin):
             x, y, z = (noise.apply(value, ns) for noise, value in zip(
                 self._place, transform(link.pose, self._mount.position)))
             found = gps.measure((x, y, z), velocity,
-                                context.place_on_earth or SphericalCoordinates())
+                                context.spherical_coordinates or SphericalCoordinates())
             message = stamped(context, "sensor_msgs/NavSatFix", self._frame)
             message.status.status, message.status.service = 0, 1
             message.latitude, message.longitude = found.latitude_deg, found.longitude_deg

@@ -10,7 +10,7 @@ from typing import List, Optional
 from ...engine.wrench_laws import ForceAtPoint
 from ...geometry import Vec3, add, scale, unit
 from ..base import Plugin
-from ..context import Ending, PluginError, Publication
+from ..context import CallHandle, PluginError, Publication
 from ..frames import stamped
 from ..parameters import namespace_or
 from .body_wrench import fill_wrench
@@ -46,7 +46,7 @@ class RotorsWind(Plugin):
             context.observe(0.0, self._publish_speed, [self._speed])
         except PluginError as missing:
             context.info(f"the speed of the wind is not published: {missing}")
-        self._changes: List[Ending] = []   # when the gust begins and ends
+        self._changes: List[CallHandle] = []   # when the gust begins and ends
         self.reset()
 
     def reset(self) -> None:

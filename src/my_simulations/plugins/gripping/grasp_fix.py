@@ -15,7 +15,7 @@ from typing import Dict, List, NamedTuple, Optional, Tuple
 
 from ...geometry import Vec3, add, conjugate, dot, inverse, norm, rotate, scale, subtract, transform
 from ..base import Plugin
-from ..context import Ending, PluginError
+from ..context import CallHandle, PluginError
 from ..parameters import Parameters
 
 _FORGET = 1e-6  # N: a contact that does not press
@@ -84,7 +84,7 @@ class GraspFix(Plugin):
             context.warn("<disable_collisions_on_attach> is not heeded: what is held collides")
         hertz = p.number("update_rate", 5.0)
         self._rare = 0.0 < hertz < _SAMPLE_HZ
-        self._samples: Optional[Ending] = None
+        self._samples: Optional[CallHandle] = None
         self._step = -1
         context.every(hertz, self.update)
 

@@ -27,7 +27,7 @@ from ...geometry import (
     subtract,
 )
 from ..base import Plugin
-from ..context import Ending, PluginError
+from ..context import CallHandle, PluginError
 from ..finite_messages import finite_only
 from ..parameters import Parameters
 
@@ -88,7 +88,7 @@ class Harness(Plugin):
         context.subscribe(f"{above}/velocity", "std_msgs/Float32",
                           finite_only(context, f"{above}/velocity", self._receive_rate))
         context.subscribe(f"{above}/detach", "std_msgs/Bool", self._receive_detach)
-        self._timer: Optional[Ending] = None   # while it hangs
+        self._timer: Optional[CallHandle] = None   # while it hangs
         self.reset()
 
     def _read_joint(self, joint: Parameters) -> None:

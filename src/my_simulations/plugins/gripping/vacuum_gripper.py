@@ -10,7 +10,7 @@ from typing import List, Optional, Tuple
 
 from ...geometry import norm, subtract
 from ..base import Plugin
-from ..context import Ending, PluginError
+from ..context import CallHandle, PluginError
 from ..parameters import namespace_or
 
 _REACH = 0.05   # m, between the origins of the links
@@ -32,7 +32,7 @@ class VacuumGripper(Plugin):
         self._topic = context.publish(p.text("topicName"), "std_msgs/Bool")
         context.serve("on", "std_srvs/Empty", lambda request, response: self._switch(True))
         context.serve("off", "std_srvs/Empty", lambda request, response: self._switch(False))
-        self._search: Optional[Ending] = None   # while it is on
+        self._search: Optional[CallHandle] = None   # while it is on
         context.observe(_HERTZ, self.publish, [self._topic])
 
     def reset(self) -> None:

@@ -21,11 +21,12 @@ CONTEXT = 0
 PROPERTIES = frozenset((
     "step_size", "is_stepped_manually", "pose", "twist", "gravity", "seed", "magnetic_field",
     "wind",
-    "place_on_earth", "description"))
+    "spherical_coordinates", "description"))
 """Properties of the context whose values are sent."""
 
 METHODS = frozenset((
-    "transmissions", "move", "hold", "scoped", "joint_spec", "slip", "mimic", "models", "attach",
+    "transmissions", "move", "hold", "scoped", "joint_spec", "set_wheel_slip", "mimic", "models",
+    "attach",
     "detach", "efforts", "set_joint_positions", "joint_wrench", "contacts", "scan", "photograph",
     "sensors", "link_names", "lights", "set_light", "set_material",
     "use_namespace", "message", "stamp", "parameter", "search_parameter"))
@@ -35,7 +36,8 @@ HANDLES = {"link": "link", "model_link": "link", "joint": "joint", "publish": "t
            "subscribe": "end", "serve": "end", "every": "end", "observe": "end", "once": "end"}
 """Methods of the context that return handles, and the kinds of these."""
 
-CALLS_WITHOUT_RESULT = frozenset(("drive_level", "set_wrench", "set_wrench_law", "transform",
+CALLS_WITHOUT_RESULT = frozenset(("set_planar_velocity", "set_wrench", "set_wrench_law",
+                                  "transform",
                                   "info", "warn", "declare_parameters"))
 """Methods of the context without a result."""
 

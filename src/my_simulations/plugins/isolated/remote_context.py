@@ -98,7 +98,7 @@ class RemoteTopic(RemoteHandle):
         self._call_handle("close")
 
 
-class RemoteEnd(RemoteHandle):
+class RemoteCallHandle(RemoteHandle):
     """A scheduled call, an observation, a subscription or a service."""
 
     def end(self) -> None:
@@ -111,7 +111,7 @@ class RemoteEnd(RemoteHandle):
 
 
 _KINDS: Dict[str, Any] = {
-    "link": RemoteLink, "joint": RemoteJoint, "topic": RemoteTopic, "end": RemoteEnd}
+    "link": RemoteLink, "joint": RemoteJoint, "topic": RemoteTopic, "end": RemoteCallHandle}
 
 
 class RemoteContext:
@@ -153,21 +153,21 @@ class RemoteContext:
         """The step count."""
         return self._connection.readings.step
 
-    def every(self, hertz: float, call: Callable[[], None]) -> RemoteEnd:
+    def every(self, hertz: float, call: Callable[[], None]) -> RemoteCallHandle:
         """Call a function at a rate."""
         return self._scheduled("every", hertz, call)
 
     def observe(self, hertz: float, call: Callable[[], None], topics: Sequence[Any] = (),
-                **options: Any) -> RemoteEnd:
+                **options: Any) -> RemoteCallHandle:
         """Call a function that only reads, at a rate."""
         return self._scheduled("observe", hertz, call, list(topics), **options)
 
-    def once(self, ns: int, call: Callable[[], None]) -> RemoteEnd:
+    def once(self, ns: int, call: Callable[[], None]) -> RemoteCallHandle:
         """Call a function once."""
         return self._scheduled("once", ns, call)
 
-    def _scheduled(self, name: str, *arguments: Any, **named: Any) -> RemoteEnd:
-        made: RemoteEnd = self._handle(name, *arguments, **named)
+    def _scheduled(self, name: str, *arguments: Any, **named: Any) -> RemoteCallHandle:
+        made: RemoteCallHandle = self._handle(name, *arguments, **named)
         return made
 
     # -- the model -------------------------------------------------------------------------------
@@ -193,9 +193,9 @@ class RemoteContext:
         found: RemoteLink = self._once_for_all("model_link", scoped)
         return found
 
-    def drive_level(self, x: float, y: float, yaw_rate: float) -> None:
+    def set_planar_velocity(self, x: float, y: float, yaw_rate: float) -> None:
         """Move the model in its horizontal plane from now on."""
-        self._call_handle("drive_level", finite(x, "x"), finite(y, "y"),
+        self._call_handle("set_planar_velocity", finite(x, "x"), finite(y, "y"),
                           finite(yaw_rate, "yaw_rate"))
 
     def set_wrench(self, link: str, force: Vec3, torque: Vec3) -> None:
@@ -223,11 +223,11 @@ class RemoteContext:
         return topic
 
     def subscribe(self, name: str, kind: str, call: Callable[[Any], None],
-                  queue: int = 1) -> RemoteEnd:
+                  queue: int = 1) -> RemoteCallHandle:
         """Subscribe to a topic."""
         return self._scheduled("subscribe", name, kind, call, queue)
 
-    def serve(self, name: str, kind: str, call: Callable[[Any, Any], None]) -> RemoteEnd:
+    def serve(self, name: str, kind: str, call: Callable[[Any, Any], None]) -> RemoteCallHandle:
         """Advertise a service."""
         def answer(request: Any, response: Any) -> Any:
             call(request, response)

@@ -13,7 +13,7 @@ from ...sensing.api import DEPTH, RGB
 from ..base import Plugin
 from ..context import Context, Publication
 from .camera_parameters import CameraTopics, ImagerRate, enter_namespace, topics_of
-from .image_messages import DepthGeometry, Once, cloud_message, header, image
+from .image_messages import DepthGeometry, LazyValue, cloud_message, header, image
 from .picture_stream import PictureStream, blocks_of
 
 _FAR = float("inf")
@@ -68,8 +68,8 @@ class DepthStream:
             self._info.publish(self._lens.calibration.message(head))
         if depth is None:
             return
-        seen = Once(lambda: _within(self._span, depth))
-        points = seen if self._cloud_span == self._span else Once(
+        seen = LazyValue(lambda: _within(self._span, depth))
+        points = seen if self._cloud_span == self._span else LazyValue(
             lambda: _within(self._cloud_span, depth))
         if self._image.wanted:
             self._image.publish_later(lambda: self._picture(head, seen.get()))

@@ -25,7 +25,7 @@ from .rays import SampledNoise
 _DIAGONAL_KNOWN = 2  # of sensor_msgs/NavSatFix
 
 
-class _OfSensor(Plugin):
+class _SensorPlugin(Plugin):
     """Base class of the three sensors."""
 
     block: Any = None
@@ -66,7 +66,7 @@ class _OfSensor(Plugin):
         raise NotImplementedError
 
 
-class GpsSensor(_OfSensor):
+class GpsSensor(_SensorPlugin):
     """sensor_msgs/NavSatFix on `fix`, velocity east, north, up on `fix_velocity`."""
 
     def load(self) -> None:
@@ -92,7 +92,7 @@ class GpsSensor(_OfSensor):
         x, y, z = (noise.apply(value, ns) for noise, value in zip(
             self._place, transform(link.pose, self._mount.position)))
         found = gps.measure((x, y, z), velocity_at(link.pose, link.twist, self._mount),
-                            context.place_on_earth or SphericalCoordinates())
+                            context.spherical_coordinates or SphericalCoordinates())
         east, north, up = (noise.apply(value, ns) for noise, value in zip(
             self._speed, found.velocity))
         if self._fix.wanted:
@@ -108,7 +108,7 @@ class GpsSensor(_OfSensor):
             self._velocity.publish(vector(context, self._header(), (east, north, up)))
 
 
-class MagnetometerSensor(_OfSensor):
+class MagnetometerSensor(_SensorPlugin):
     """sensor_msgs/MagneticField on `magnetic_field`, T in the sensor's axes."""
 
     def load(self) -> None:
@@ -134,7 +134,7 @@ class MagnetometerSensor(_OfSensor):
         self._topic.publish(message)
 
 
-class AltimeterSensor(_OfSensor):
+class AltimeterSensor(_SensorPlugin):
     """geometry_msgs/PointStamped on `altitude` (m over where it began) and the speed upwards."""
 
     def load(self) -> None:

@@ -25,7 +25,7 @@ _SONAR_HERTZ = 10.0             # where it has no rate of its own, whatever its 
 _SCALE_HEIGHT, _EXPONENT = 44330.0, 5.263157  # of the standard atmosphere
 
 
-class _OfLink(Plugin):
+class _LinkSensor(Plugin):
     """On the link `<bodyName>`, or the model's own."""
 
     _link: Link
@@ -54,7 +54,7 @@ class _OfLink(Plugin):
         """Return the world's coordinates, if they are used; the default is 0, 0 as in Gazebo."""
         if not self.context.parameters.flag("useWorldSphericalCoordinates", False):
             return None
-        return self.context.place_on_earth or SphericalCoordinates()
+        return self.context.spherical_coordinates or SphericalCoordinates()
 
     def _heading(self) -> float:
         """Of the world's x axis, rad clockwise from north."""
@@ -63,7 +63,7 @@ class _OfLink(Plugin):
         return math.radians(self.context.parameters.number("referenceHeading", usual))
 
 
-class Gps(_OfLink):
+class Gps(_LinkSensor):
     """sensor_msgs/NavSatFix, and the velocity as geometry_msgs/Vector3Stamped."""
 
     def load(self) -> None:
@@ -85,7 +85,7 @@ class Gps(_OfLink):
                                          "geometry_msgs/Vector3Stamped", 10)
         # The error of the position contains the integral of that of the velocity.
         context.observe(rate_of(p, 4.0), self.update, [self._fix, self._velocity],
-                        remembers=self._velocity_errors.drifts)
+                        remembers=self._velocity_errors.has_drift)
 
     def reset(self) -> None:
         """Reset the errors."""
@@ -141,7 +141,7 @@ def vector(context: Any, head: Any, values: Vec3) -> Any:
     return message
 
 
-class Magnetic(_OfLink):
+class Magnetic(_LinkSensor):
     """The earth's field in the link's axes; of `magnitude` 1 where none is given."""
 
     def load(self) -> None:
@@ -174,7 +174,7 @@ class Magnetic(_OfLink):
         self._topic.publish(message)
 
 
-class Baro(_OfLink):
+class Baro(_LinkSensor):
     """The height as geometry_msgs/PointStamped, and hector_uav_msgs/Altimeter where it is there."""
 
     def load(self) -> None:
@@ -222,7 +222,7 @@ class Sonar(RayPlugin):
     def load(self) -> None:
         """Read parameters."""
         context, p = self.context, self.context.parameters
-        self.take_ray()
+        self.read_ray_element()
         context.use_namespace(namespace_or(p, ""))
         self._frame = (p.text("frameId") or "/sonar_link").lstrip("/")
         flat, high = self._ray.horizontal, self._ray.vertical

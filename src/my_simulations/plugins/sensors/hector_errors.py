@@ -56,13 +56,13 @@ class SensorErrors:
         self.current = begin
 
     @property
-    def drifts(self) -> bool:
+    def has_drift(self) -> bool:
         """Whether the drift is not 0."""
         return any(self.drift)
 
     def _stepped(self, number: int, before: Sequence[float]) -> List[float]:
         """The drift a stride after `before`, at the end of stride `number`."""
-        if not self.drifts:
+        if not self.has_drift:
             return list(before)
         elapsed = self._stride_ns * 1e-9
         return [math.exp(-f * elapsed) * now + size * math.sqrt(-math.expm1(-2 * f * elapsed)) * n

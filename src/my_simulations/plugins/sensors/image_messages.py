@@ -22,8 +22,8 @@ _RGB_AT = 16
 UINT16, FLOAT32 = 4, 7  # of sensor_msgs/PointField
 
 
-class Once:
-    """A value that is made when it is first asked for; for one thread."""
+class LazyValue:
+    """A value that the first `get` computes; for one thread."""
 
     def __init__(self, make: Callable[[], Any]) -> None:
         self._make, self._value = make, None
@@ -75,9 +75,9 @@ def image(context: Context, header: Any, pixels: Any, encoding: str) -> Any:
 
 def compressed(context: Context, header: Any, rgb: Any, encoding: str, form: str, quality: int,
                ) -> Any:
-    """A sensor_msgs/CompressedImage as image_transport's subscribers read it.
+    """Return a sensor_msgs/CompressedImage in the form that image_transport reads.
 
-    `rgb` is uint8 (h, w, 3); `encoding` that of the raw topic, which what is decoded has again;
+    `rgb` is uint8 (h, w, 3); `encoding` is that of the raw topic, which the decoded image gets;
     `form` jpeg or png; `quality` of jpeg, 1 to 100.
     """
     from PIL import Image

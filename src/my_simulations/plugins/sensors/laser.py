@@ -18,7 +18,7 @@ class Laser(RayPlugin):
     def load(self) -> None:
         """Read parameters."""
         context, p = self.context, self.context.parameters
-        self.take_ray()
+        self.read_ray_element()
         context.use_namespace(namespace_or(
             p, context.model if "robotNamespace" in p else ""))
         self._frame = prefixed(context, p.text("frameName", "/world"))

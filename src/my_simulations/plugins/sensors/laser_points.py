@@ -28,7 +28,7 @@ class Points(RayPlugin):
     def load(self) -> None:
         """Read parameters."""
         context, p = self.context, self.context.parameters
-        self.take_ray()
+        self.read_ray_element()
         context.use_namespace(namespace_or(p, ""))
         self._range_noise = SampledNoise(context, self._ray.noise, "range")
         self._noise = Noise(NoiseSpec(GAUSSIAN, stddev=p.number("gaussianNoise", 0.0)),

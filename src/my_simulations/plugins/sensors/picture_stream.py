@@ -10,7 +10,7 @@ from ...sensing.api import RGB
 from ...sensing.noise import noisy_picture
 from ..context import Context, PluginError, Publication, View
 from .camera_parameters import Calibration, CameraTopics, spec_of
-from .image_messages import ENCODINGS, Once, compressed, encoded, header, image
+from .image_messages import ENCODINGS, LazyValue, compressed, encoded, header, image
 
 _QUALITY = 80  # of jpeg, as compressed_image_transport
 
@@ -97,7 +97,7 @@ class PictureStream:
         if rgb is None or not self.wanted:
             return
         encoding = self._encoding
-        noisy = Once(lambda: self._picture(rgb, ns))
+        noisy = LazyValue(lambda: self._picture(rgb, ns))
         if self._image.wanted:
             self._image.publish_later(
                 lambda: image(context, head, encoded(noisy.get(), encoding), encoding))

@@ -20,7 +20,7 @@ class Range(RayPlugin):
     def load(self) -> None:
         """Read parameters."""
         context, p = self.context, self.context.parameters
-        self.take_ray()
+        self.read_ray_element()
         context.use_namespace(namespace_or(p, ""))
         self._frame = prefixed(context, p.text("frameName", "/world"))
         self._kind = _ULTRASOUND if p.text("radiation", "ultrasound") == "ultrasound" \

@@ -21,7 +21,7 @@ _ULTRASOUND, _INFRARED = 0, 1   # of sensor_msgs/Range
 _STEP = 16                      # bytes of a point
 
 
-class PointsOfRays(Points):
+class PointCloudOutput(Points):
     """sensor_msgs/PointCloud2 of what is met: x, y, z, intensity, at least `<minIntensity>`."""
 
     message_type = "sensor_msgs/PointCloud2"
@@ -48,13 +48,13 @@ class PointsOfRays(Points):
         return message
 
 
-class NearestOfRays(RayPlugin):
+class RangeOutput(RayPlugin):
     """sensor_msgs/Range of the nearest of all rays."""
 
     def load(self) -> None:
         """Read parameters."""
         context, p = self.context, self.context.parameters
-        self.take_ray()
+        self.read_ray_element()
         context.use_namespace(namespace_or(p, ""))
         self._frame = p.text("frameName", "/world").lstrip("/")
         self._kind = _INFRARED if p.text("radiationType") in ("infrared", "infared") \
@@ -76,7 +76,7 @@ class NearestOfRays(RayPlugin):
 
 _KINDS: Dict[str, Type[Plugin]] = {
     "sensor_msgs/LaserScan": Laser, "sensor_msgs/PointCloud": BlockLaser,
-    "sensor_msgs/PointCloud2": PointsOfRays, "sensor_msgs/Range": NearestOfRays}
+    "sensor_msgs/PointCloud2": PointCloudOutput, "sensor_msgs/Range": RangeOutput}
 
 
 class RaySensor(Plugin):
@@ -87,7 +87,7 @@ class RaySensor(Plugin):
         p = self.context.parameters
         if p.text("topicName", "/world") == "":
             raise PluginError("its <topicName> is empty")
-        self._one = p.choice("outputType", _KINDS, PointsOfRays)(self.context)
+        self._one = p.choice("outputType", _KINDS, PointCloudOutput)(self.context)
         self._one.load()
 
     def reset(self) -> None:

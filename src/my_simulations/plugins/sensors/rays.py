@@ -41,7 +41,7 @@ class RayPlugin(Plugin):
 
     _topic: Publication
 
-    def take_ray(self) -> None:
+    def read_ray_element(self) -> None:
         """Read the `<ray>` of the sensor. Raises PluginError."""
         self._ray, self._visuals = ray_of(self.context)
         self._fan = fan_of(self._ray, self._visuals)

@@ -37,7 +37,8 @@ class RealSense(Plugin):
             if sensor is not None:
                 found += 1
                 stream = self._stream(sensor, words, True)
-                context.observe(self._rate(name, sensor[1]), partial(self._look, name, stream),
+                context.observe(self._rate(name, sensor[1]),
+                                partial(self._request_picture, name, stream),
                                 stream.publications, world=True)
         depth = self._sensor("depth")
         if depth is not None:
@@ -76,15 +77,15 @@ class RealSense(Plugin):
             (name, _info_of(name), cloud if p.flag("pointCloud", False) else ""),
             p.number("rangeMinDepth", 0.2), p.number("rangeMaxDepth", 10.0), False,
             (p.number("pointCloudCutoff", 0.0), p.number("pointCloudCutoffMax", 5.0)))
-        context.observe(self._rate("depth", found[1]), self._look_deep,
+        context.observe(self._rate("depth", found[1]), self._request_depth,
                         [*self._gray.publications, *self._depth.publications], world=True)
 
-    def _look(self, name: str, stream: PictureStream) -> None:
+    def _request_picture(self, name: str, stream: PictureStream) -> None:
         self._take(name, stream, (RGB,) if stream.wanted else (),
                    lambda picture, ns: stream.publish(
                        None if picture is None else picture.rgb, ns))
 
-    def _look_deep(self) -> None:
+    def _request_depth(self) -> None:
         outputs = ((DEPTH,) if self._depth.wanted else ()) + (
             (RGB,) if self._depth.cloud_wanted or self._gray.wanted else ())
 

@@ -11,7 +11,7 @@ from typing import Any, List, Tuple
 
 from ...geometry import Pose, compose, inverse, normalised, pose_is_finite
 from ..base import Plugin
-from ..context import Ending, Joint, Link, PluginError
+from ..context import CallHandle, Joint, Link, PluginError
 from ..finite_messages import is_all_finite
 from ..parameters import namespace_or
 
@@ -29,7 +29,7 @@ class JointPoseTrajectory(Plugin):
         self._joints: List[Joint] = []
         self._points: List[Tuple[int, List[float]]] = []
         self._anchor: "Link | None" = None
-        self._next: "Ending | None" = None
+        self._next: "CallHandle | None" = None
         self._held = False
         topic = p.text("topicName", "set_joint_trajectory")
         service = p.text("serviceName", "set_joint_trajectory")

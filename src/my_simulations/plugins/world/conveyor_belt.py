@@ -11,7 +11,7 @@ from typing import Any, Optional
 
 from ...description.model import INFINITE
 from ..base import Plugin
-from ..context import Ending, PluginError
+from ..context import CallHandle, PluginError
 from ..parameters import namespace_or
 
 PACKAGES = ("osrf_gear", "nist_gear", "gazebo_conveyor", "conveyor_gazebo")
@@ -35,7 +35,7 @@ class ConveyorBelt(Plugin):
         axis = self._joint.spec.axis
         self._lower, self._upper = (0.0, INFINITE) if axis is None else (
             max(0.0, axis.lower), axis.upper)
-        self._timer: Optional[Ending] = None
+        self._timer: Optional[CallHandle] = None
         self._initial_power = self._checked(p.number("power", 0.0))
         self._offer(p.text("control_topic") or "conveyor/control",
                     p.text("state_topic") or "conveyor/state")

@@ -9,7 +9,7 @@ import genpy
 import rospy
 
 from ...errors import SimulationError
-from ...plugins.graph import Closing, MissingTypeError, ServiceTakenError, Topic, TransformOf
+from ...plugins.graph import GraphHandle, MissingTypeError, ServiceTakenError, Topic, TransformOf
 from ..direct_connection import direct_publish
 from ..topics.subscriber_events import SubscriberEvents
 from .packed_transforms import PackedTransforms
@@ -80,12 +80,13 @@ class RosGraph:
         return RosTopic(rospy.Publisher(name, self._type(kind, "msg"), SubscriberEvents(changed),
                                         queue_size=queue, latch=latch, tcp_nodelay=True))
 
-    def subscribe(self, name: str, kind: str, call: Callable[[Any], None], queue: int) -> Closing:
+    def subscribe(self, name: str, kind: str, call: Callable[[Any], None],
+                  queue: int) -> GraphHandle:
         """Hear a topic."""
         return _Closing(rospy.Subscriber(name, self._type(kind, "msg"), call, queue_size=queue,
                                          tcp_nodelay=True).unregister)
 
-    def serve(self, name: str, kind: str, call: Callable[[Any, Any], None]) -> Closing:
+    def serve(self, name: str, kind: str, call: Callable[[Any, Any], None]) -> GraphHandle:
         """Offer a service; a plugin's refusal goes to who has asked, and not into the log."""
         service = self._type(kind, "srv")
 
