@@ -53,7 +53,7 @@ class _ClassReader(ValueReader):
             return None
         name = self.text(top.get("class", os.path.splitext(os.path.basename(file))[0]),
                          ("class",))
-        port = self.whole(top.get("port", _FIRST_PORT), ("port",), 1024, 65000)
+        port = self.integer(top.get("port", _FIRST_PORT), ("port",), 1024, 65000)
         folder = self.text(top.get("folder", name), ("folder",))
         return ClassPlan(
             name, file, os.path.join(os.path.dirname(file), os.path.expanduser(folder)),
@@ -69,7 +69,7 @@ class _ClassReader(ValueReader):
     def _students(self, value: Any, port: int) -> Tuple[Student, ...]:
         path = ("students",)
         if isinstance(value, int) and not isinstance(value, bool):
-            count = self.whole(value, path, 1, _MOST_STUDENTS)
+            count = self.integer(value, path, 1, _MOST_STUDENTS)
             names = [f"student{number}" for number in range(1, count + 1)]
         else:
             names = list(self.names(value, path))
@@ -108,7 +108,7 @@ class _ClassReader(ValueReader):
         default = vars(ClassLimits())
         memory, size = (self.number(inside.get(name, default[name]), ("limits", name), above=0.0)
                         for name in ("memory_mb", "file_mb"))
-        processors, processes = (self.whole(inside.get(name, default[name]), ("limits", name), 1,
+        processors, processes = (self.integer(inside.get(name, default[name]), ("limits", name), 1,
                                             100000) for name in ("processors", "processes"))
         return ClassLimits(memory, processors, processes, size)
 

@@ -90,7 +90,7 @@ class _AssignmentReader(AssignmentValues):
         numbers: Dict[str, float] = {
             name: self.number(inside.get(name, default[name]), ("limits", name), above=0.0)
             for name in _LIMITS if name != "processes"}
-        processes = self.whole(inside.get("processes", default["processes"]),
+        processes = self.integer(inside.get("processes", default["processes"]),
                                ("limits", "processes"), 1, 10000)
         return GradeLimits(processes=processes, **numbers)
 

@@ -79,10 +79,11 @@ class CheckReader:
         shape = self._one_of(inside["shape"], (*path, "shape"), SHAPES) if "shape" in inside else ""
         if not {"at_least", "at_most", "exactly"} & set(inside):
             values.fault(path, "'count' needs at_least, at_most or exactly", code="grade-key")
-        least = values.whole(inside.get("at_least", 0), (*path, "at_least"))
-        most = values.whole(inside["at_most"], (*path, "at_most")) if "at_most" in inside else None
+        least = values.integer(inside.get("at_least", 0), (*path, "at_least"))
+        most = values.integer(inside["at_most"],
+                              (*path, "at_most")) if "at_most" in inside else None
         if "exactly" in inside:
-            least = most = values.whole(inside["exactly"], (*path, "exactly"))
+            least = most = values.integer(inside["exactly"], (*path, "exactly"))
         partial = inside.get("partial", False)
         if not isinstance(partial, bool):
             values.fault((*path, "partial"), "'partial' of a count must be true or false")

@@ -98,7 +98,7 @@ class WorldRun:
                 if check.name not in self._readers and signals:
                     self._readers[check.name] = SignalReader(self._world, signals, {})
                 if check.name in self._readers:
-                    self._readers[check.name].take()
+                    self._readers[check.name].add_sample()
                 self._faults.pop(check.name, None)
             except EngineLostError:
                 raise

@@ -8,8 +8,8 @@ from .row import CRASHED, Row
 Kept = TypeVar("Kept")
 
 
-def until_no_crash(most: int, attempt: Callable[[int], Tuple[Row, Kept]]) -> Tuple[Row, Kept]:
-    """The first attempt, counted from 1, that does not crash, or the last of `most`.
+def repeat_after_crash(most: int, attempt: Callable[[int], Tuple[Row, Kept]]) -> Tuple[Row, Kept]:
+    """Return the first attempt, counted from 1, that does not crash, or the last of `most`.
 
     One that comes out after a crash is flaky, and its row describes the first crash.
     """

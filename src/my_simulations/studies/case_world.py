@@ -7,7 +7,7 @@ from ..errors import InputError, error, errors_of
 from ..python_api import OpenWorld, WorldChoice
 from .changes import CaseChanges
 from .plan import Case, CasePlan
-from .variation import needed_of
+from .variation import value_requirement
 
 _SLICE = 1000  # steps at a time
 
@@ -20,7 +20,7 @@ def world_choice_of(plan: CasePlan, case: Case) -> Tuple[WorldChoice, CaseChange
     study = plan.study
     for parameter in study.parameters:
         value = case.settings[parameter.name]
-        needed = needed_of(parameter.target, value)
+        needed = value_requirement(parameter.target, value)
         if needed:
             raise InputError([error("study-value", f"'{parameter.name}' must be {needed}, is"
                                                    f" {value}", file=study.file)])

@@ -154,10 +154,10 @@ def _work(options: argparse.Namespace, folder: StudyFolder, plan: CasePlan, shar
         before = signal.signal(signal.SIGTERM, _interrupt)
         try:
             if address:
-                _run_on_dask(options, plan, recorder, finished, address, progress.tell, shard)
+                _run_on_dask(options, plan, recorder, finished, address, progress.count_case, shard)
             else:
                 StudyRunner(plan, recorder, finished, _slots(options, os.cpu_count() or 1),
-                            progress.tell, hook).run(shard)
+                            progress.count_case, hook).run(shard)
         finally:
             signal.signal(signal.SIGTERM, before)
             progress.close()

@@ -33,7 +33,7 @@ from .study_runner import Report, waiting_cases
 _WINDOW = 2        # shards in flight on a worker
 _SHARD_S = 10.0    # that a shard should take
 _MOST_CASES = 5000  # of a shard
-_LOOK_S = 1.0      # between two looks at which workers there are
+_POLL_S = 1.0      # between two queries of the list of workers
 _CONNECT_S = 30.0
 _GATHER_S = 10.0   # for the rows of a shard to arrive
 _CONNECTED = "running"  # the status of a client whose scheduler answers
@@ -247,20 +247,20 @@ class DaskRunner:
         first = next(cases, None)
         cases = cases if first is None else itertools.chain([first], cases)
         over = first is None
-        looked, told = float("-inf"), False
+        polled_at, told = float("-inf"), False
         while not over:
-            if time.monotonic() - looked > _LOOK_S:
-                self._look(client)
-                looked = time.monotonic()
+            if time.monotonic() - polled_at > _POLL_S:
+                self._update_workers(client)
+                polled_at = time.monotonic()
                 if not self._nodes and not told:
                     self._say("waiting for a worker")
                 told = not self._nodes
             for address, node in self._nodes.items():
                 self._fill(client, name, address, node, cases)
             over = not self._flights and bool(self._nodes) and not self._suspects
-            self._collect(0.0 if over else _LOOK_S)
+            self._collect(0.0 if over else _POLL_S)
 
-    def _look(self, client: Client) -> None:
+    def _update_workers(self, client: Client) -> None:
         """Read the list of workers; cases of workers that have left run again."""
         threads: Dict[str, int] = client.nthreads()
         for address in [address for address in self._nodes if address not in threads]:

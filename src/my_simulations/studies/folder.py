@@ -45,10 +45,10 @@ class StudyFolder:
         return kind if shard.of == 1 else f"{kind}-{shard.index}-of-{shard.of}"
 
     def journals(self) -> List[str]:
-        """All journals. Raises CommandError if there is none.
+        """Return the paths of all journals. Raises CommandError if there is none.
 
-        One without a whole first line is none yet: its process was killed, or the disk was full,
-        before it said of which study it is. No case has run then.
+        A file without a complete first line, which names the study, is ignored: its process was
+        killed, or the disk was full, before the first case ran.
         """
         found = [path for path in self._files() if has_header(path)]
         if not found:

@@ -24,7 +24,7 @@ class SignalReader:
         settings: of the case, for `vary`.
 
     Raises:
-        CommandError: the world has no model, link or axis of a name; also from `take`.
+        CommandError: the world has no model, link or axis of a name; also from `add_sample`.
     """
 
     def __init__(self, world: OpenWorld, signals: Iterable[Signal],
@@ -43,7 +43,7 @@ class SignalReader:
         self._links = any(name not in models for name in bodies)
         self._check_pairs(models)
 
-    def take(self) -> None:
+    def add_sample(self) -> None:
         """Add a sample of the present state."""
         world = self._world
         read: List[Readings] = []

@@ -15,13 +15,13 @@ from typing import Dict, List, Optional, Tuple
 from ..child_process import signal_name, wait_or_kill
 from ..errors import CommandError, InputError
 from . import scenario_process
-from .attempts import until_no_crash
+from .attempts import repeat_after_crash
 from .junit import results_below
 from .kept import ScenarioFiles
 from .plan import Case, CasePlan
 from .row import CRASHED, FAILED, OK, REFUSED, TIMED_OUT, Row
 from .scenario_files import SCENARIO, declared_arguments, scenario_path
-from .slot import RefusedError, StoppedError
+from .slot import CaseRefusedError, CaseStoppedError
 from .variation import Setting
 
 _LOOK_S = 0.1
@@ -47,7 +47,7 @@ def launch_words(plan: CasePlan, case: Case) -> List[str]:
 
     Raises:
         InputError: the file cannot be used.
-        RefusedError: it does not declare what is varied.
+        CaseRefusedError: it does not declare what is varied.
     """
     path = scenario_path(str(case.settings[SCENARIO]), plan.study.file)
     known = declared_arguments(path)
@@ -56,7 +56,7 @@ def launch_words(plan: CasePlan, case: Case) -> List[str]:
         name = parameter.target.name
         if parameter.target.kind == "arg":
             if name not in known:
-                raise RefusedError(f"{path} declares no <arg name=\"{name}\"/> to vary")
+                raise CaseRefusedError(f"{path} declares no <arg name=\"{name}\"/> to vary")
             words.append(f"{name}:={_text(case.settings[parameter.name])}")
     if "seed" in known and not any(word.startswith("seed:=") for word in words):
         words.append(f"seed:={case.seed}")
@@ -75,7 +75,7 @@ class ScenarioSlot:
     Args:
         plan: of the study.
         processor: model of the processor, for rows.
-        stop: ends the scenario that runs with StoppedError once it is set.
+        stop: ends the scenario that runs with CaseStoppedError once it is set.
     """
 
     def __init__(self, plan: CasePlan, processor: str, stop: threading.Event) -> None:
@@ -86,14 +86,14 @@ class ScenarioSlot:
     def close(self) -> None:
         """Nothing is kept from one scenario to the next."""
 
-    def look(self) -> None:
-        """Limits are watched where the scenario runs."""
+    def enforce_limits(self) -> None:
+        """Do nothing: the process of the scenario enforces its limits."""
 
     def run(self, case: Case) -> Tuple[Row, Optional[ScenarioFiles]]:
         """Run a scenario; once more if rostest crashes.
 
         Raises:
-            StoppedError: `stop` was set; there is no result.
+            CaseStoppedError: `stop` was set; there is no result.
         """
         def attempt(number: int) -> Tuple[Row, Optional[ScenarioFiles]]:
             row = Row(OK, case.id, case.index, case.seed, dict(case.settings), attempt=number,
@@ -106,7 +106,7 @@ class ScenarioSlot:
             except CommandError as fault:
                 row.status, row.issue = REFUSED, str(fault)
             return row, kept
-        return until_no_crash(self._plan.study.limits.attempts, attempt)
+        return repeat_after_crash(self._plan.study.limits.attempts, attempt)
 
     def _attempt(self, case: Case, row: Row) -> ScenarioFiles:
         require_ros()
@@ -153,7 +153,7 @@ class ScenarioSlot:
                     code = process.wait(_LOOK_S)
                     return code if code >= 0 else 128 - code
                 if self._stop.is_set():
-                    raise StoppedError
+                    raise CaseStoppedError
         finally:
             if process.poll() is None:
                 process.terminate()

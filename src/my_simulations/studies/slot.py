@@ -19,7 +19,7 @@ from ..python_api import OpenWorld
 from ..python_api.kept_files import FileCache
 from ..python_api.world_choice import WorldChoice
 from ..simulator.watchdog import process_time
-from .attempts import until_no_crash
+from .attempts import repeat_after_crash
 from .case_world import world_choice_of
 from .kept import CaseTrajectory
 from .plan import Case, CasePlan
@@ -34,11 +34,11 @@ Hook = Callable[[Case, int, OpenWorld], None]
 """Called before a case begins to move, with its attempt and its world."""
 
 
-class StoppedError(SimulationError):
+class CaseStoppedError(SimulationError):
     """The study was told to stop during a case."""
 
 
-class RefusedError(CommandError):
+class CaseRefusedError(CommandError):
     """A case that cannot be run as the study says."""
 
 
@@ -95,7 +95,7 @@ class Slot:
     Args:
         plan: of the study.
         processor: model of the processor, for rows.
-        stop: ends the case that runs with StoppedError once it is set.
+        stop: ends the case that runs with CaseStoppedError once it is set.
         files: reads worlds and models, for all slots.
         hook: for tests.
     """
@@ -121,7 +121,7 @@ class Slot:
             self._world.close()
         self._world = self._engine = None
 
-    def look(self) -> None:
+    def enforce_limits(self) -> None:
         """End the engine if its case has used up its processor time or memory.
 
         Called from another thread.
@@ -142,14 +142,14 @@ class Slot:
         """Run a case; once more in a new engine if its engine crashes.
 
         Raises:
-            StoppedError: `stop` was set; there is no result.
+            CaseStoppedError: `stop` was set; there is no result.
         """
         def attempt(number: int) -> Tuple[Row, Optional[CaseTrajectory]]:
             row, trajectory = self._attempt(case, number)
             if row.status == CRASHED:
                 self.close()
             return row, trajectory
-        return until_no_crash(self._study.limits.attempts, attempt)
+        return repeat_after_crash(self._study.limits.attempts, attempt)
 
     def _attempt(self, case: Case, attempt: int) -> Tuple[Row, Optional[CaseTrajectory]]:
         row = Row(OK, case.id, case.index, case.seed, dict(case.settings), attempt=attempt,
@@ -164,7 +164,7 @@ class Slot:
             trajectory = self._measured(case, row)
         except InputError as fault:
             row.status, row.issue = REFUSED, str(fault.first)
-        except RefusedError as fault:
+        except CaseRefusedError as fault:
             row.status, row.issue = REFUSED, str(fault)
         except CommandError as fault:
             row.status, row.issue = FAILED, str(fault)
@@ -205,9 +205,11 @@ class Slot:
         expressions = study.measure + study.require
         steps = round(study.duration / world.step_size)
         if steps > study.limits.steps:
-            raise RefusedError(f"the case needs {steps} steps, the limit is {study.limits.steps}")
+            raise CaseRefusedError(
+                f"the case needs {steps} steps, the limit is {study.limits.steps}")
         if steps < 1:
-            raise RefusedError(f"the duration of {study.duration:g} s is less than half a step of"
+            raise CaseRefusedError(
+                f"the duration of {study.duration:g} s is less than half a step of"
                                f" {world.step_size:g} s: there is no step to make")
         signals = [signal for _, expression in expressions for signal in expression.signals]
         run = _Run(world, SignalReader(world, signals, case.settings), steps, [], [])
@@ -239,7 +241,7 @@ class Slot:
             raise InputError(faults)
         unused = changes.unused()
         if unused:
-            raise RefusedError("the world has no '" + "', '".join(unused) + "' to vary")
+            raise CaseRefusedError("the world has no '" + "', '".join(unused) + "' to vary")
         return world
 
     def _in_new_engine(self, choice: WorldChoice) -> OpenWorld:
@@ -263,7 +265,7 @@ class Slot:
         study, world = self._study, run.world
         sample = _interval(study.sample, world) if sampled else run.steps
         frame = _interval(study.trajectory.every, world) if study.trajectory else 0
-        run.reader.take()
+        run.reader.add_sample()
         self._frame(run)
         done = 0
         while done < run.steps:
@@ -273,9 +275,9 @@ class Slot:
             world.step(min(ends) - done)
             done = min(ends)
             if self._stop.is_set():
-                raise StoppedError
+                raise CaseStoppedError
             if done % sample == 0 or done == run.steps:
-                run.reader.take()
+                run.reader.add_sample()
             if frame and (done % frame == 0 or done == run.steps):
                 self._frame(run)
 

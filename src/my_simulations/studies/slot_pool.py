@@ -14,7 +14,7 @@ from .plan import Case, CasePlan
 from .provenance import processor_type
 from .row import Row
 from .scenario_slot import ScenarioSlot
-from .slot import Hook, Slot, StoppedError
+from .slot import CaseStoppedError, Hook, Slot
 
 _LOOK_S = 0.25
 _KEPT_FILES = 16  # worlds, models and lists of objects
@@ -27,9 +27,9 @@ class CaseSlot(Protocol):
     """Runs one case at a time, for one thread."""
 
     def run(self, case: Case) -> Tuple[Row, Optional[Kept]]:
-        """Run a case. Raises StoppedError if it was told to stop."""
+        """Run a case. Raises CaseStoppedError if `stop` was set."""
 
-    def look(self) -> None:
+    def enforce_limits(self) -> None:
         """End a case that has used up a limit; called from another thread."""
 
     def close(self) -> None:
@@ -62,12 +62,12 @@ class SlotPool:
         self._watcher = threading.Thread(target=self._watch, name="limits of cases", daemon=True)
         self._watcher.start()
 
-    def run(self, cases: Iterator[Case], take: Take) -> None:
+    def run(self, cases: Iterator[Case], add_row: Take) -> None:
         """Run cases; returns when all are done or `stop` was set. May be called by many threads.
 
         Args:
             cases: taken one by one, as slots become free.
-            take: gets each row, from any thread.
+            add_row: gets each row, from any thread.
 
         Raises:
             BaseException: the first one that is no result of a case, such as that of a full disk;
@@ -78,7 +78,7 @@ class SlotPool:
             self._used += 1
             self._idle_since = None
         try:
-            futures = [self._threads.submit(self._serve, cases, next_one, take)
+            futures = [self._threads.submit(self._serve, cases, next_one, add_row)
                        for _ in self._slots]
             done, _ = wait(futures, return_when=FIRST_EXCEPTION)
             for future in done:
@@ -104,7 +104,7 @@ class SlotPool:
     def _close_slot(self) -> None:
         self._free.get().close()
 
-    def _serve(self, cases: Iterator[Case], next_one: threading.Lock, take: Take) -> None:
+    def _serve(self, cases: Iterator[Case], next_one: threading.Lock, add_row: Take) -> None:
         slot = self._free.get()
         try:
             while not self.stop.is_set():
@@ -112,8 +112,8 @@ class SlotPool:
                     case = next(cases, None)
                 if case is None:
                     return
-                take(*slot.run(case))
-        except StoppedError:
+                add_row(*slot.run(case))
+        except CaseStoppedError:
             return
         finally:
             self._free.put(slot)
@@ -121,7 +121,7 @@ class SlotPool:
     def _watch(self) -> None:
         while not self._over.wait(_LOOK_S):
             for slot in self._slots:
-                slot.look()
+                slot.enforce_limits()
             with self._guard:
                 since = self._idle_since
                 if since is not None and time.monotonic() - since > _IDLE_S:

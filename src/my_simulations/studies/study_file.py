@@ -128,23 +128,23 @@ class StudyReader(ValueReader):
         if value is None:
             return Seeds()
         if isinstance(value, list):
-            listed = tuple(self.whole(item, ("seeds",)) for item in value)
+            listed = tuple(self.integer(item, ("seeds",)) for item in value)
             if not listed or len(set(listed)) < len(listed):
                 self.fault(("seeds",), "'seeds' must be a list of different numbers")
             return Seeds(listed=listed)
         if isinstance(value, Mapping):
             inside = self.mapping(value, ("seeds",), ("first", "count"))
-            return Seeds(self.whole(inside.get("first", 0), ("seeds", "first")),
-                         self.whole(inside.get("count"), ("seeds", "count"), 1))
-        return Seeds(0, self.whole(value, ("seeds",), 1))
+            return Seeds(self.integer(inside.get("first", 0), ("seeds", "first")),
+                         self.integer(inside.get("count"), ("seeds", "count"), 1))
+        return Seeds(0, self.integer(value, ("seeds",), 1))
 
     def _plan(self, value: Any) -> Plan:
         if value is None or value == "grid":
             return Plan()
         inside = self.mapping(value, ("plan",), ("random", "seed"))
-        seed = self.whole(inside.get("seed", 0), ("plan", "seed"))
+        seed = self.integer(inside.get("seed", 0), ("plan", "seed"))
         if "random" in inside:
-            return Plan(self.whole(inside["random"], ("plan", "random"), 1, MOST_CASES), seed)
+            return Plan(self.integer(inside["random"], ("plan", "random"), 1, MOST_CASES), seed)
         return Plan(0, seed)
 
     def _expressions(self, top: Mapping[str, Any], key: str, conditions: bool = False
@@ -191,8 +191,8 @@ class StudyReader(ValueReader):
         return Limits(
             self.number(inside.get("processor_seconds", default.processor_seconds),
                         ("limits", "processor_seconds"), above=0.0),
-            self.whole(inside.get("steps", default.steps), ("limits", "steps"), 1),
-            self.whole(inside.get("attempts", default.attempts), ("limits", "attempts"), 1, 10),
+            self.integer(inside.get("steps", default.steps), ("limits", "steps"), 1),
+            self.integer(inside.get("attempts", default.attempts), ("limits", "attempts"), 1, 10),
             self.number(inside.get("memory_mb", default.memory_mb), ("limits", "memory_mb"),
                         above=0.0),
             self.number(inside.get("seconds", default.seconds), ("limits", "seconds"), above=0.0))

@@ -28,7 +28,7 @@ class Progress:
         self._live = stream.isatty() and not as_json
         self._told = time.monotonic()
 
-    def tell(self, row: Row) -> None:
+    def count_case(self, row: Row) -> None:
         """A case has finished."""
         self._rate.add(row)
         now = time.monotonic()
@@ -51,7 +51,7 @@ class Progress:
             others = ", ".join(f"{count} {status}" for status, count in sorted(rate.counts.items())
                                if status != OK)
             self._stream.write(f"{before}{bar(rate.done, rate.total)} {rate.done}/{rate.total}"
-                               f"  {rate.per_second:.1f}/s  {left(rate.seconds_left)} left"
+                               f"  {rate.per_second:.1f}/s  {duration_text(rate.seconds_left)} left"
                                + (f"  {others}" if others else "") + after)
         self._stream.flush()
 
@@ -62,7 +62,7 @@ def bar(done: int, total: int, width: int = 24) -> str:
     return "[" + "#" * full + "." * (width - full) + "]"
 
 
-def left(seconds: float) -> str:
+def duration_text(seconds: float) -> str:
     """A time as h:mm:ss."""
     if seconds == float("inf"):
         return "?"

@@ -128,7 +128,7 @@ class ValueReader:
             return float(value)
         return 1.0
 
-    def whole(self, value: Any, path: KeyPath, least: int = 0, most: int = 2 ** 62) -> int:
+    def integer(self, value: Any, path: KeyPath, least: int = 0, most: int = 2 ** 62) -> int:
         """A whole number in a range."""
         if isinstance(value, bool) or not isinstance(value, int):
             self.fault(path, f"'{_shown(path)}' must be a whole number, is {kind_of(value)}")

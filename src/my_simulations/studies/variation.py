@@ -61,8 +61,8 @@ def target_of(text: str) -> Optional[Target]:
     return Target(kind, part=rest) if kind == "gravity" and rest in "xyz" else None
 
 
-def needed_of(target: Target, value: Setting) -> str:
-    """What a value of a target would have to be; "" if it can be set.
+def value_requirement(target: Target, value: Setting) -> str:
+    """Return what a value of a target must be, such as "above 0"; "" if the value is allowed.
 
     As in a file: Gazebo refuses a link whose mass is not above 0.
     """

@@ -19,8 +19,8 @@ from .variation import (
     Parameter,
     Setting,
     Target,
-    needed_of,
     target_of,
+    value_requirement,
 )
 
 _MOST_VALUES = 1_000_000
@@ -66,10 +66,10 @@ def parameter_of(reader: ValueReader, name: str, value: Any, path: KeyPath,
     drawn = reader.numbers(inside[key], below, (2,))
     if len(reader.issues) == before:
         _check_distribution(reader, key, drawn, below)
-        needed = needed_of(target, drawn[0])
+        needed = value_requirement(target, drawn[0])
         if needed and key == "uniform" and drawn[0] < 0.0:  # others are refused as they are drawn
             reader.fault(below, f"'{name}' must be {needed}, and may be {drawn[0]:g}")
-    samples = reader.whole(inside.get("samples", 0), (*path, "samples"), 0, _MOST_VALUES)
+    samples = reader.integer(inside.get("samples", 0), (*path, "samples"), 0, _MOST_VALUES)
     if len(reader.issues) > before:
         return None
     return Parameter(name, target, (), key, drawn, samples)
@@ -131,7 +131,7 @@ def _range(reader: ValueReader, value: Any, path: KeyPath) -> Tuple[float, ...]:
         reader.fault(path, "a range needs one of 'step' and 'count'", code="study-key")
         return ()
     if "count" in inside:
-        count = reader.whole(inside["count"], (*path, "count"), 1, _MOST_VALUES)
+        count = reader.integer(inside["count"], (*path, "count"), 1, _MOST_VALUES)
         if first == last:
             reader.fault(path, "'from' and 'to' must differ")
         step = (last - first) / (count - 1) if count > 1 else 0.0
@@ -152,7 +152,7 @@ def _check_values(reader: ValueReader, name: str, target: Target, values: Sequen
                   path: KeyPath) -> None:
     """Note a fault of the first value that the target cannot have."""
     for value in values:
-        needed = needed_of(target, value)
+        needed = value_requirement(target, value)
         if target.part == "iterations" and isinstance(value, float) and not value.is_integer():
             needed = needed or "a whole number"  # else the table would show another value
         if needed:

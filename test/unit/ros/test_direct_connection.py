@@ -18,7 +18,7 @@ from rospy.topics import _PublisherImpl
 from tf2_msgs.msg import TFMessage
 
 from my_simulations.geometry import Pose
-from my_simulations.ros.direct_connection import DirectConnection, direct
+from my_simulations.ros.direct_connection import DirectConnection, direct_publish
 from my_simulations.ros.plugins.packed_transforms import PackedTransforms
 
 MESSAGE = 100_000
@@ -129,7 +129,7 @@ def test_a_subscriber_that_was_there_first_has_no_thread_either(pair):
     queues = set(threading.enumerate()) - threads
     assert len(queues) == 1  # rospy's
 
-    publish = direct(publisher)
+    publish = direct_publish(publisher)
     publish(Clock(Time(3, 4)))
     assert theirs.recv(100) == struct.pack("<III", 8, 3, 4)
     queue, = queues

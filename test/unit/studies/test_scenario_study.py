@@ -7,7 +7,7 @@ from my_simulations.errors import InputError
 from my_simulations.studies.junit import results_below
 from my_simulations.studies.plan import CasePlan
 from my_simulations.studies.scenario_slot import launch_words
-from my_simulations.studies.slot import RefusedError
+from my_simulations.studies.slot import CaseRefusedError
 from my_simulations.studies.study_file import read_study
 from my_simulations.studies.table import columns_of
 
@@ -63,7 +63,7 @@ def test_what_a_scenario_does_not_declare_is_refused(folder):
     study = study_of(folder, "scenarios: test/a.test\nvary:\n"
                              "  x: {set: arg.fixed, values: [1]}\n")
     plan = CasePlan(study)
-    with pytest.raises(RefusedError, match='no <arg name="fixed"/>'):
+    with pytest.raises(CaseRefusedError, match='no <arg name="fixed"/>'):
         launch_words(plan, plan.case(0))
     (folder / "test" / "a.test").write_text("<robot/>")
     with pytest.raises(InputError, match="<robot>, not <launch>"):
