@@ -19,12 +19,12 @@ while robot.running() and robot.nearest() > distance + 0.1:
     robot.drive(speed)
 robot.come_to_rest()
 heading = robot.pose[2]
-while robot.running() and robot.turned_from(heading) < 0.95 * math.pi / 2:
+while robot.running() and robot.angle_from(heading) < 0.95 * math.pi / 2:
     robot.drive(0.0, 0.6)
 
 driven, last = 0.0, robot.pose
 while robot.running() and driven < way:
-    driven, last = driven + robot.way_from(last), robot.pose
+    driven, last = driven + robot.distance_from(last), robot.pose
     if robot.nearest() < distance + 0.1:     # a corner: turn on the spot
         robot.drive(0.0, 0.6)
         continue

@@ -21,8 +21,8 @@ robot.come_to_rest()
 # To the box and on, towards its middle.
 gap, start = robot.nearest() - front, robot.pose
 robot.say(f"the box is {gap:.2f} m away")
-while robot.running() and robot.way_from(start) < gap + way:
-    steer = robot.direction_of_nearest(0.0, 0.6) if robot.way_from(start) < 0.8 * gap else 0.0
+while robot.running() and robot.distance_from(start) < gap + way:
+    steer = robot.direction_of_nearest(0.0, 0.6) if robot.distance_from(start) < 0.8 * gap else 0.0
     robot.drive(speed, steer)
 robot.come_to_rest()
-robot.say(f"pushed it for {robot.way_from(start) - gap:.2f} m")
+robot.say(f"pushed it for {robot.distance_from(start) - gap:.2f} m")

@@ -107,7 +107,7 @@ class Robot:
         """Print a line."""
         print(text, flush=True)
 
-    # -- knowing -----------------------------------------------------------------------------------
+    # -- state and parameters --------------------------------------------------------------------
 
     @property
     def pose(self) -> Tuple[float, float, float]:
@@ -117,13 +117,15 @@ class Robot:
         return (pose.position.x, pose.position.y,
                 2.0 * math.atan2(pose.orientation.z, pose.orientation.w))
 
-    def way_from(self, start: Tuple[float, float, float]) -> float:
-        """How far the robot is from where it was, m."""
+    def distance_from(self, start: Tuple[float, float, float]) -> float:
+        """Return the distance (m) of the robot from an earlier pose."""
         x, y, _ = self.pose
         return math.hypot(x - start[0], y - start[1])
 
-    def turned_from(self, heading: float) -> float:
-        """How far the robot has turned to the left since a heading, -pi to pi."""
+    def angle_from(self, heading: float) -> float:
+        """Return the angle (rad, -pi to pi) that the robot has turned to the left since a
+        heading.
+        """
         return math.remainder(self.pose[2] - heading, 2.0 * math.pi)
 
     def distances(self, towards: float = 0.0, width: float = 0.4) -> List[Tuple[float, float]]:

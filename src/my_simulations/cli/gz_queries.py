@@ -180,7 +180,7 @@ def _place(running: Running, name: str, numbers: Sequence[float]) -> None:
     from ..geometry import Pose, quat_from_rpy
 
     x, y, z, roll, pitch, yaw = numbers
-    running.simulator.place(name, Pose((x, y, z), quat_from_rpy(roll, pitch, yaw)))
+    running.simulator.set_model_pose(name, Pose((x, y, z), quat_from_rpy(roll, pitch, yaw)))
 
 
 def _show(running: Running, name: str) -> None:

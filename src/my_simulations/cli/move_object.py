@@ -170,7 +170,7 @@ def _wait_for_models(simulator: client.SimulatorClient, parameters: client.Param
 def _place(simulator: client.SimulatorClient, parameters: client.Parameters,
            options: argparse.Namespace, pose: Pose) -> None:
     def reached() -> bool:
-        simulator.place(options.name, pose)
+        simulator.set_model_pose(options.name, pose)
         state = simulator.model_state(options.name)
         if state is None:
             raise client.ToolError(f"model '{options.name}' was deleted")
@@ -198,8 +198,8 @@ def _follow(simulator: client.SimulatorClient, options: argparse.Namespace, path
         else:
             distance, blocked_since = ahead, None
         place = path.at(distance)
-        simulator.place(options.name, Pose((place.x, place.y, options.height),
-                                           quat_from_rpy(0.0, 0.0, place.yaw)))
+        simulator.set_model_pose(options.name, Pose((place.x, place.y, options.height),
+                                                     quat_from_rpy(0.0, 0.0, place.yaw)))
 
 
 def _blocked(simulator: client.SimulatorClient, path: Path, ahead: float, stops: List[str],

@@ -218,7 +218,7 @@ class SimulatorClient:
         answer = self._call("get_model_state", "GetModelState", model_name=name)
         return answer if answer.success else None
 
-    def place(self, name: str, pose: Pose) -> None:
+    def set_model_pose(self, name: str, pose: Pose) -> None:
         """Set the pose of a model in the world frame, with zero twist.
 
         Raises:
