@@ -8,7 +8,7 @@ import re
 import struct
 
 from my_simulations.editor.logs.state_log import MESSAGE, LogReader
-from my_simulations.editor.topics.topic_frame import parts_of
+from my_simulations.editor.topics.topic_frame import decode_frame
 
 
 def replay_content(page, log):
@@ -22,7 +22,7 @@ def replay_content(page, log):
     messages = {}
     for kind, content in reader.records(-1, 10 ** 6):
         if kind == MESSAGE:
-            message, _ = parts_of(content)
+            message, _ = decode_frame(content)
             messages.setdefault(message["topic"], []).append(message["view"])
     reader.close()
     return head, messages

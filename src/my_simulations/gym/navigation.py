@@ -85,7 +85,7 @@ class Navigate:
                                    "angular": {"z": turn * TURNS}})
 
     def observe(self, world: OpenWorld) -> np.ndarray:
-        """See the class."""
+        """Return the numbers that the docstring of the class lists."""
         ranges = np.minimum(self._scan.latest.ranges, RANGE).reshape(SECTORS, -1).min(axis=1)
         self._nearest = float(ranges.min())
         states = world.states()
@@ -100,7 +100,7 @@ class Navigate:
                                    [*ranges, self._left, bearing, forward, turn])
 
     def evaluate(self, world: OpenWorld, action: Any) -> Evaluation:
-        """See the class."""
+        """Return reward and end of the episode as the docstring of the class defines them."""
         nearer, self._before = self._before - self._left, self._left
         collided = self._nearest < _SAFE and _collides(world)
         arrived = self._left < NEAR and not collided

@@ -12,7 +12,7 @@ from ..geometry import Pose
 from ..python_api import OpenWorld, Randomisation, RobotOptions, WorldChoice
 from . import arm_scene
 from .task_models import box, disc
-from .world_env import Evaluation, View, WorldEnv, clipped_observation, within
+from .world_env import Evaluation, View, WorldEnv, clipped_observation, symmetric_box
 
 SIZE = 0.04          # m, of the cube
 FASTEST = 0.3        # m/s, of the tool
@@ -36,7 +36,7 @@ class _Scene:
         """From the tool to the cube, and from there to its place; m."""
         return math.dist(self.arm.tool, self.cube) + math.dist(self.cube, self.mark)
 
-    def rests(self) -> bool:
+    def is_at_rest(self) -> bool:
         """Whether the cube lies on the mark, at rest."""
         return math.dist(self.cube, self.mark) < NEAR and float(
             np.abs(self.twist).max()) < _AT_REST
@@ -63,7 +63,7 @@ class PickAndPlace:
             ("cube", box("cube", 3 * (SIZE,), "0.8 0.1 0.1 1", mass=0.1), Pose((0.3, 0.2, 0.02))),
             ("mark", disc("mark", NEAR, "0.1 0.7 0.2 1"), Pose())))
         self.action_space = gymnasium.spaces.Box(-1.0, 1.0, (4,), np.float32)
-        self._numbers = within(17 * [_FAR])
+        self._numbers = symmetric_box(17 * [_FAR])
         self.observation_space = arm_scene.observation_space(self._numbers, camera)
         self._camera = camera
         self._mark = np.zeros(3)
@@ -89,7 +89,7 @@ class PickAndPlace:
         arm_scene.drive_fingers(world, grip > 0.0)
 
     def observe(self, world: OpenWorld) -> Any:
-        """See the class."""
+        """Return the numbers that the docstring of the class lists."""
         links = world.links()
         scene = _Scene(arm_scene.read_arm(world), links.pose["cube::link"][:3],
                        links.twist["cube::link"], self._mark)
@@ -101,9 +101,9 @@ class PickAndPlace:
         return arm_scene.observation(world, numbers, self._camera)
 
     def evaluate(self, world: OpenWorld, action: Any) -> Evaluation:
-        """See the class."""
+        """Return reward and end of the episode as the docstring of the class defines them."""
         assert self._scene is not None, "observe is called before judge"
-        placed = self._scene.rests() and not _held(world)
+        placed = self._scene.is_at_rest() and not _held(world)
         return Evaluation(self._before - self._scene.distance() + placed, placed,
                          {"is_success": placed})
 

@@ -11,7 +11,7 @@ import numpy as np
 from ..geometry import Pose, rpy_from_quat
 from ..python_api import OpenWorld, Randomisation, WorldChoice
 from ..resources.package_files import own_directory
-from .world_env import Evaluation, View, WorldEnv, clipped_observation, within
+from .world_env import Evaluation, View, WorldEnv, clipped_observation, symmetric_box
 
 FASTEST = 0.5     # m/s
 TURNS = 2.0       # rad/s
@@ -53,7 +53,8 @@ class PushBox:
         self.choice = WorldChoice(models=(("robo", robot, Pose()), ("box", _BOX, Pose()),
                                           ("mark", _MARK, Pose())))
         self.action_space = gymnasium.spaces.Box(-1.0, 1.0, (2,), np.float32)
-        self.observation_space = within([_FAR, _FAR, 1.0, 1.0, _FAST, _FAST, *4 * [_FAR], _FAR])
+        self.observation_space = symmetric_box([_FAR, _FAR, 1.0, 1.0, _FAST, _FAST, *4 * [_FAR],
+                                                _FAR])
         self._before: Optional[Tuple[float, float]] = None
         self._apart = (0.0, 0.0)  # m from the box to the mark, from the robot to the box
 
@@ -74,7 +75,7 @@ class PushBox:
                                    "right_wheel_joint": (ahead + aside) / _RADIUS}, effort=_TORQUE)
 
     def observe(self, world: OpenWorld) -> np.ndarray:
-        """See the class."""
+        """Return the numbers that the docstring of the class lists."""
         states = world.states()
         poses: Any = states.pose
         robot, box, mark = (poses[name] for name in ("robo", "box", "mark"))
@@ -88,7 +89,7 @@ class PushBox:
             box[0], box[1], mark[0], mark[1], self._apart[0]])
 
     def evaluate(self, world: OpenWorld, action: Any) -> Evaluation:
-        """See the class."""
+        """Return reward and end of the episode as the docstring of the class defines them."""
         to_mark, to_box = self._apart
         before, self._before = self._before or self._apart, self._apart
         reward = before[0] - to_mark + 0.1 * (before[1] - to_box)

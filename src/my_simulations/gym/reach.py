@@ -11,7 +11,7 @@ from ..geometry import Pose
 from ..python_api import OpenWorld, Randomisation, RobotOptions, WorldChoice
 from . import arm_scene
 from .task_models import ball
-from .world_env import Evaluation, View, WorldEnv, clipped_observation, within
+from .world_env import Evaluation, View, WorldEnv, clipped_observation, symmetric_box
 
 NEAR = 0.03         # m: the tool has arrived
 _FAR, _FAST = 10.0, 20.0  # bounds of observations, m or rad, rad/s
@@ -34,7 +34,7 @@ class Reach:
         self.choice = WorldChoice(models=(
             arm_scene.document(), ("target", ball("target", 0.02, "0.9 0.1 0.1 1"), Pose())))
         self.action_space = gymnasium.spaces.Box(-1.0, 1.0, (6,), np.float32)
-        self._numbers = within([*6 * [_FAR], *6 * [_FAST], *6 * [_FAR]])
+        self._numbers = symmetric_box([*6 * [_FAR], *6 * [_FAST], *6 * [_FAR]])
         self.observation_space = arm_scene.observation_space(self._numbers, camera)
         self._camera = camera
         self._target = np.zeros(3)
@@ -57,7 +57,7 @@ class Reach:
         arm_scene.drive_axes(world, np.clip(action, -1.0, 1.0) * arm_scene.FASTEST)
 
     def observe(self, world: OpenWorld) -> Any:
-        """See the class."""
+        """Return the numbers that the docstring of the class lists."""
         arm = arm_scene.read_arm(world)
         left = math.dist(arm.tool, self._target)
         self._before, self._left = left if self._left is None else self._left, left
@@ -66,7 +66,7 @@ class Reach:
         return arm_scene.observation(world, numbers, self._camera)
 
     def evaluate(self, world: OpenWorld, action: Any) -> Evaluation:
-        """See the class."""
+        """Return reward and end of the episode as the docstring of the class defines them."""
         left = math.inf if self._left is None else self._left
         arrived = left < NEAR
         return Evaluation(self._before - left + arrived, arrived, {"is_success": arrived})

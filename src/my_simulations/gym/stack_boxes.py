@@ -12,7 +12,7 @@ import numpy as np
 from ..geometry import Pose
 from ..python_api import OpenWorld, Randomisation, WorldChoice
 from ..resources.package_files import own_directory
-from .world_env import Evaluation, View, WorldEnv, clipped_observation, within
+from .world_env import Evaluation, View, WorldEnv, clipped_observation, symmetric_box
 
 SIZE = 0.05       # m, of a box
 FASTEST = 0.25    # m/s, of an axis
@@ -48,7 +48,7 @@ class _Scene:
         goal = self.blue + np.array([0.0, 0.0, SIZE])
         return math.dist(self.middle, self.red) + math.dist(self.red, goal)
 
-    def rests(self) -> bool:
+    def is_at_rest(self) -> bool:
         """Whether red lies on blue, at rest."""
         apart = self.red - self.blue
         level = abs(apart[2] - SIZE) < _LEVEL and float(np.abs(apart[:2]).max()) < _CENTRED
@@ -84,7 +84,7 @@ class StackBoxes:
             ("red", _BOX.format(name="red", colour="0.8 0.1 0.1 1"), Pose()),
             ("blue", _BOX.format(name="blue", colour="0.1 0.2 0.8 1"), Pose((0.2, 0.0, 0.025)))))
         self.action_space = gymnasium.spaces.Box(-1.0, 1.0, (4,), np.float32)
-        self.observation_space = within(14 * [_FAR])
+        self.observation_space = symmetric_box(14 * [_FAR])
         self._left: Optional[float] = None
         self._scene: Optional[_Scene] = None
 
@@ -106,7 +106,7 @@ class StackBoxes:
         gripper.drive({finger: opening for finger in FINGERS}, effort=GRIP)
 
     def observe(self, world: OpenWorld) -> np.ndarray:
-        """See the class."""
+        """Return the numbers that the docstring of the class lists."""
         scene = self._scene = _scene_of(world)
         if self._left is None:
             self._left = scene.distance()
@@ -116,12 +116,12 @@ class StackBoxes:
                     [*axes, *scene.red, *scene.blue, *(scene.red - scene.blue)])
 
     def evaluate(self, world: OpenWorld, action: Any) -> Evaluation:
-        """See the class."""
+        """Return reward and end of the episode as the docstring of the class defines them."""
         scene = self._scene or _scene_of(world)
         left = scene.distance()
         nearer = 0.0 if self._left is None else self._left - left
         self._left = left
-        stands = scene.rests() and not self._held(world)
+        stands = scene.is_at_rest() and not self._held(world)
         return Evaluation(nearer + stands, stands, {"is_success": stands})
 
     @staticmethod

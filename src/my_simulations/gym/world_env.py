@@ -160,12 +160,12 @@ class WorldEnv(gymnasium.Env[Any, Any]):
             self._world = None
 
 
-def within(bounds: Sequence[float]) -> gymnasium.spaces.Box:
+def symmetric_box(bounds: Sequence[float]) -> gymnasium.spaces.Box:
     """A space of float32 numbers between plus and minus each of the bounds."""
     high = np.asarray(bounds, dtype=np.float32)
     return gymnasium.spaces.Box(-high, high, dtype=np.float32)
 
 
 def clipped_observation(space: gymnasium.spaces.Box, values: Sequence[float]) -> np.ndarray:
-    """An observation of `within`, cut to its bounds."""
+    """An observation of `symmetric_box`, cut to its bounds."""
     return np.clip(np.asarray(values, dtype=np.float32), space.low, space.high)

@@ -16,7 +16,7 @@ from my_simulations.editor.logs.log_channels import ContactChannel, TopicChannel
 from my_simulations.editor.logs.recorder import Recorder
 from my_simulations.editor.logs.replay_page import write_replay
 from my_simulations.editor.logs.state_log import CONTACTS, MESSAGE, TOPICS, LogReader, LogWriter
-from my_simulations.editor.topics.topic_frame import frame_of, parts_of
+from my_simulations.editor.topics.topic_frame import decode_frame, encode_frame
 from my_simulations.editor.transport.pose_messages import Poses
 from my_simulations.engine.inline_engine import InlineEngine
 from my_simulations.engine.kinematic_backend import KinematicBackend
@@ -65,7 +65,7 @@ def finished(writer):
 
 
 def ranges(notes):
-    return [parts_of(data)[0]["view"]["range"] for kind, data in notes if kind == MESSAGE]
+    return [decode_frame(data)[0]["view"]["range"] for kind, data in notes if kind == MESSAGE]
 
 
 def contact(position, force=2.0):
@@ -116,7 +116,7 @@ def test_messages_of_a_topic_are_written_as_pages_show_them(writer):
     assert ranges(found) == [0.5, 4.0]   # at most 15 a second
     (listed,) = [json.loads(data) for kind, data in found if kind == TOPICS and data != b"[]"]
     assert (listed[0]["name"], listed[0]["model"]) == ("/sonar", "robo")
-    head = parts_of(next(data for kind, data in found if kind == MESSAGE))[0]
+    head = decode_frame(next(data for kind, data in found if kind == MESSAGE))[0]
     assert (head["topic"], head["frame"], head["stamp"]) == ("/sonar", "sonar", 1.0)
 
 
@@ -176,7 +176,7 @@ def test_a_replay_has_the_end_of_a_log_with_its_notes(modules, tmp_path, writer)
         state(writer, time)
         writer.add_record(CONTACTS, time, json.dumps([step]).encode())
         payload = np.array([1.0 / 3.0, math.nan], dtype="<f4").tobytes()
-        writer.add_record(MESSAGE, time, frame_of({"topic": "/scan", "frame": "", "stamp": time,
+        writer.add_record(MESSAGE, time, encode_frame({"topic": "/scan", "frame": "", "stamp": time,
                                              "view": scan}, payload))
     writer.close()
     assert my_simulations.replay(str(tmp_path / "run"), str(tmp_path / "run.html"), rate=20.0,
@@ -187,7 +187,7 @@ def test_a_replay_has_the_end_of_a_log_with_its_notes(modules, tmp_path, writer)
     notes = list(thin.records(-1, 10))
     assert [json.loads(data)[0] for kind, data in notes if kind == CONTACTS] == list(
         range(50, 101, 5))
-    frames = [parts_of(data) for kind, data in notes if kind == MESSAGE]
+    frames = [decode_frame(data) for kind, data in notes if kind == MESSAGE]
     assert [head["stamp"] for head, _ in frames] == pytest.approx([0.5, 0.6, 0.7, 0.8, 0.9, 1.0])
     near, none = np.frombuffer(frames[0][1], dtype="<f4")
     assert near == round(1024 / 3) / 1024 and math.isnan(none)

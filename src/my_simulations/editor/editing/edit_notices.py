@@ -53,7 +53,7 @@ class EditNotices:
 
     @contextlib.contextmanager
     def notify_of_deletions(self, client: int) -> Iterator[None]:
-        """Notify users who drag a model that this client deletes, and the client itself."""
+        """Notify users whose dragged models this client deletes in the block, and the client."""
         yield
         me = self._users.name_of(client)
         for other, names in self._drags.remove_deleted().items():

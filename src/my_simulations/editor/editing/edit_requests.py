@@ -47,7 +47,7 @@ from .inserts import (
     free_name,
     regrouped,
     simple_shape,
-    taken_names,
+    used_names,
     world_of,
 )
 from .model_building import ModelBuilding
@@ -140,7 +140,7 @@ class EditRequests:
             self._report(issue)
         if isinstance(entity, Model) and op.get("scale"):
             entity = resized(entity, tuple(op["scale"]))  # type: ignore[arg-type]
-        name = free_name(op.get("name") or entity.name, taken_names(self._world))
+        name = free_name(op.get("name") or entity.name, used_names(self._world))
         pose = pose_from(op["pose"]) if op.get("pose") else entity.pose
         return f"Insert {name}", self._addition(entity, name, pose), {"name": name}
 
@@ -159,7 +159,7 @@ class EditRequests:
         kind = given.setdefault("type", "point")
         if kind not in ("point", "spot", "directional"):
             raise CommandError(f"unknown light type {kind!r}; use point, spot or directional")
-        taken = taken_names(self._world)
+        taken = used_names(self._world)
         wanted = str(given.get("name") or "")
         number = 0
         while not wanted:
@@ -189,7 +189,7 @@ class EditRequests:
             self._report(issue)
         if not entities:
             raise CommandError("the pasted text contains no models or lights")
-        taken = set(taken_names(self._world))
+        taken = set(used_names(self._world))
         target = _usable(pose_from(op["pose"])) if op.get("pose") else None
         entities = regrouped(entities, self._taken_groups())
         first = entities[-1].pose

@@ -106,7 +106,7 @@ def checked(model: Model) -> Tuple[MeshTable, List[Issue]]:
     return meshes, issues
 
 
-def taken_names(simulator: Simulator) -> Collection[str]:
+def used_names(simulator: Simulator) -> Collection[str]:
     """Names of all models and lights."""
     return {*simulator.models.names(), *(light.name for light in simulator.lights.all())}
 

@@ -25,7 +25,7 @@ from ...simulator.operations import AddModel, EditModel, Operation
 from ...simulator.simulator import Simulator
 from ..scene.plain_json import pose_of as pose_from
 from . import model_parts as parts
-from .inserts import checked, entity_of_text, entity_of_uri, free_name, taken_names
+from .inserts import checked, entity_of_text, entity_of_uri, free_name, used_names
 from .part_inertia import inertial_of
 from .property_path import made
 from .property_target import split_target
@@ -79,7 +79,7 @@ class ModelBuilding:
                             replace(model, links=[*model.links, link]), f"{model.name}::{name}")
 
     def _new_model(self, geometry: Geometry, pose: Pose) -> Planned:
-        name = free_name(NEW_MODEL, taken_names(self._world))
+        name = free_name(NEW_MODEL, used_names(self._world))
         x, y, z = pose.position
         place = Pose((x, y, 0.0))
         link = _solid_link("link_0", geometry, Pose((0.0, 0.0, z), pose.orientation))
@@ -89,7 +89,7 @@ class ModelBuilding:
 
     def _add_shape(self, op: Dict[str, Any]) -> Planned:
         model, link = self._link(op["link"])
-        changed = parts.shaped(link, self._geometry(op), _grey(), op["part"])
+        changed = parts.with_shape(link, self._geometry(op), _grey(), op["part"])
         return self._edited(f"Add {op['part']} to {op['link']}", model,
                             _with_link(model, link, changed), op["link"])
 
@@ -253,7 +253,7 @@ def _grey() -> Material:
 def _solid_link(name: str, geometry: Geometry, pose: Pose) -> Link:
     """A link of 1 kg."""
     paint = None if isinstance(geometry, Mesh) else _grey()
-    link = parts.shaped(Link(name, pose), geometry, paint)
+    link = parts.with_shape(Link(name, pose), geometry, paint)
     return replace(link, inertial=inertial_of(link.collisions, mass=1.0))
 
 

@@ -47,7 +47,7 @@ def nested_names(model: Model) -> List[str]:
                               if SCOPE in link.name))
 
 
-def shaped(link: Link, geometry: Geometry, material: Optional[Material],
+def with_shape(link: Link, geometry: Geometry, material: Optional[Material],
            part: str = "both") -> Link:
     """A link with one more shape to collide with, to look at, or both."""
     collisions, visuals = list(link.collisions), list(link.visuals)
@@ -73,7 +73,7 @@ def with_joint(model: Model, joint: Joint) -> Model:
 
 
 def with_changed_joint(model: Model, old: Joint, new: Joint) -> Model:
-    """The model with a joint replaced, perhaps under another name; who refers to it follows."""
+    """Return the model with a joint replaced; references follow a new name of the joint."""
     new = complete(model, new)
     joints = [new if one is old else one for one in model.joints]
     return _followed(replace(model, joints=joints), old.name, new.name)

@@ -47,12 +47,12 @@ def inertial_of(collisions: List[Collision], *, density: Optional[float] = None,
     total: Optional[Inertial] = None
     for solid, pose in solids:
         if solid is not None:
-            total = combined_inertia(total, of_density(solid, density), pose)
+            total = combined_inertia(total, with_density(solid, density), pose)
     assert total is not None
     return total
 
 
-def of_density(i: Inertial, factor: float) -> Inertial:
+def with_density(i: Inertial, factor: float) -> Inertial:
     """The inertial of the same solid at another density, of 1 kg/m^3 before."""
     return replace(i, mass=i.mass * factor, ixx=i.ixx * factor, iyy=i.iyy * factor,
                    izz=i.izz * factor, ixy=i.ixy * factor, ixz=i.ixz * factor,

@@ -18,7 +18,7 @@ from ...formats.sdf.writer.entities import write_entity
 from ...geometry import Pose
 from ...resources.resolver import Resolver
 from ..editing.inserts import checked, entity_of_uri
-from ..editing.part_inertia import mesh_solid, of_density
+from ..editing.part_inertia import mesh_solid, with_density
 from ..transport.error_messages import EditRefusedError
 
 MESHES = (".dae", ".stl", ".obj", ".glb")
@@ -201,7 +201,7 @@ def _inertial(path: str, uri: str, density: float) -> Tuple[Inertial, List[Issue
     issues = [] if closed else [
         warning("mesh-open", "the mesh is not closed: mass and inertia are those of its convex"
                 " hull", file=path)]
-    return of_density(solid, density), issues
+    return with_density(solid, density), issues
 
 
 def config_text(name: str, described: str,

@@ -12,7 +12,7 @@ from ...errors import EngineLostError, SimulationError
 from ...simulator.simulator import Simulator
 from ..topic_source import ListedTopic, Subscription, TopicSource
 from ..topics.message_views import Viewer
-from ..topics.topic_frame import document_of, frame_of
+from ..topics.topic_frame import document_of, encode_frame
 from .state_log import CONTACTS, MESSAGE, TOPICS, LogWriter
 
 CONTACTS_HZ = 30.0
@@ -136,7 +136,7 @@ class _RecordedTopic:
                 frame, stamp, (fields, payload) = self._viewer.view()
             except SimulationError:
                 return b""   # pages cannot show such messages
-        return frame_of({"topic": self._name, "frame": frame, "stamp": stamp, "view": fields},
+        return encode_frame({"topic": self._name, "frame": frame, "stamp": stamp, "view": fields},
                         payload)
 
 

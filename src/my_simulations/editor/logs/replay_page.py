@@ -14,7 +14,7 @@ from ...errors import CommandError
 from ...resources.resolver import Resolver
 from ...simulator.safe_file import write_atomically
 from ..scene.content_types import resource_type
-from ..topics.topic_frame import frame_of, parts_of
+from ..topics.topic_frame import decode_frame, encode_frame
 from ..transport.page_bundle import FOLDER, sources_of
 from ..transport.page_files import PageFiles, node_modules
 from ..transport.pose_messages import Poses
@@ -121,7 +121,7 @@ class _ThinRecords:
             elif kind == TOPICS:
                 self._writer.add_record(TOPICS, time, data)
             else:
-                self._waiting[parts_of(data)[0]["topic"]] = data
+                self._waiting[decode_frame(data)[0]["topic"]] = data
         if contacts:
             self._writer.add_record(CONTACTS, time, contacts)
         for topic in list(self._waiting):
@@ -134,11 +134,11 @@ def _rounded(frame: bytes) -> bytes:
     """A frame whose ranges are multiples of 1 mm (exactly: 2^-10 m); others as they are."""
     import numpy as np
 
-    head, payload = parts_of(frame)
+    head, payload = decode_frame(frame)
     if head["view"]["type"] != "scan":
         return frame
     ranges = np.frombuffer(payload, dtype="<f4")
-    return frame_of(head, (np.round(ranges * 1024.0) / 1024.0).astype("<f4").tobytes())
+    return encode_frame(head, (np.round(ranges * 1024.0) / 1024.0).astype("<f4").tobytes())
 
 
 def _shown(document: Dict[str, Any], files: ReplayFiles) -> Dict[str, Any]:

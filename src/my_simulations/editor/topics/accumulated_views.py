@@ -92,7 +92,7 @@ class Markers:
             self._drop_expired(now)
             known = list(self._known.items())
         return {"type": "markers", "markers": [
-            _marker(name, one.marker, one.left(now)) for name, one in known]}
+            _marker(name, one.marker, one.remaining_lifetime(now)) for name, one in known]}
 
 
 class _Kept:
@@ -104,7 +104,7 @@ class _Kept:
         lifetime = marker.lifetime.to_nsec() * 1e-9
         self._ends = came + lifetime if lifetime > _ENDLESS_S else math.inf
 
-    def left(self, now: float) -> float:
+    def remaining_lifetime(self, now: float) -> float:
         """What is left of its lifetime, s; 0 without an end."""
         return self._ends - now if math.isfinite(self._ends) else 0.0
 

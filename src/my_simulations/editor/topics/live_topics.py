@@ -17,7 +17,7 @@ from ..transport.hub import Hub
 from ..transport.watch_requests import PREFIX
 from .message_fields import number_at
 from .message_views import Viewer
-from .topic_frame import frame_of
+from .topic_frame import encode_frame
 
 _LOOK_S = 1.0
 """How soon a topic with its first publisher is found."""
@@ -269,4 +269,4 @@ class LiveTopics:
         frame, stamp, (fields, payload) = topic.viewer.view()
         head = {"topic": topic.name, "frame": frame, "stamp": stamp, "view": fields}
         self._hub.check_view(head)
-        return frame_of(head, payload)
+        return encode_frame(head, payload)

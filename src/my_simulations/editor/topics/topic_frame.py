@@ -15,14 +15,14 @@ TOPIC = 3
 _HEAD = struct.Struct("<II")
 
 
-def frame_of(head: Dict[str, Any], payload: bytes) -> bytes:
+def encode_frame(head: Dict[str, Any], payload: bytes) -> bytes:
     """A frame of a page; the payload begins at a multiple of 8."""
     text = json.dumps(head, separators=(",", ":"), allow_nan=False).encode()
     text += b" " * (-(len(text) + _HEAD.size) % 8)
     return _HEAD.pack(TOPIC, len(text)) + text + payload
 
 
-def parts_of(frame: bytes) -> Tuple[Dict[str, Any], bytes]:
+def decode_frame(frame: bytes) -> Tuple[Dict[str, Any], bytes]:
     """Head and payload of a frame. Raises CommandError for bytes that are no frame."""
     try:
         kind, size = _HEAD.unpack_from(frame)
