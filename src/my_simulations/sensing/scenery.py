@@ -68,7 +68,7 @@ class Scenery:
 
     @property
     def count(self) -> int:
-        """Rows behind those of the links."""
+        """Number of rows, which follow those of the links: fixed visuals and actors."""
         return len(self._fixed) + len(self._figures)
 
     def extended(self, poses: np.ndarray, ns: int) -> np.ndarray:

@@ -248,7 +248,7 @@ class Drives:
         return commands
 
     def adopt(self, commands: Sequence[Command]) -> None:
-        """Keep the drives of `transferred` commands, which the engine has applied."""
+        """Record the drives of commands from `transferred`, after the engine has applied them."""
         for command in commands:
             if isinstance(command, SetMotors):
                 self._motors.update({motor.row: motor for motor in command.motors})

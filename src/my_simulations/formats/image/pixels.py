@@ -113,7 +113,7 @@ def checked_format(content: bytes) -> str:
 
     Raises:
         OSError, ValueError, SyntaxError, EOFError: as `opened`.
-        InputError: another process gave it up.
+        InputError: the child process that decodes large images failed.
     """
     if not _takes_much(content):
         return format_of(io.BytesIO(content))

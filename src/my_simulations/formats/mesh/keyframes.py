@@ -138,7 +138,10 @@ class _NodeKeys:
 
 
 def decomposed(matrices: Array) -> Tuple[Array, Array, Array]:
-    """Places (..., 3), turns (..., 4) and scales (..., 3) of (..., 4, 4); shear is lost."""
+    """Return positions (..., 3), quaternions (..., 4) and scales (..., 3) of (..., 4, 4) matrices.
+
+    Shear is lost.
+    """
     scales = np.linalg.norm(matrices[..., :3, :3], axis=-2)
     mirrored = np.linalg.det(matrices[..., :3, :3]) < 0.0
     scales[..., 0] = np.where(mirrored, -scales[..., 0], scales[..., 0])

@@ -43,7 +43,7 @@ class Batch:
         self._arrays: Dict[str, Any] = {}
 
     def add(self, owner: str, row: int, local: np.ndarray) -> None:
-        """One more of it."""
+        """Add an instance: a visual of `owner`, with the row of its pose, and its (4, 4) matrix."""
         self.owners.append(owner)
         self.rows = np.append(self.rows, row)
         self.local = np.concatenate([self.local, local[None]])
