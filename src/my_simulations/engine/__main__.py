@@ -12,8 +12,8 @@ from ..child_process import die_with_parent, keep_freed_memory
 from .api import Event, Reply
 from .commands import Command, Post, SetModelState
 from .message_pipe import Wire
-from .runner import Runner
 from .ring import RingWriter
+from .runner import Runner
 from .wake_pipe import wake
 
 
