@@ -8,7 +8,9 @@ import json
 import os
 import zipfile
 
+import numpy as np
 import pytest
+from PIL import Image
 
 from my_simulations.cli import grade_command
 from my_simulations.cli.grade_command import main
@@ -16,6 +18,7 @@ from my_simulations.cli.grade_command import main
 BALL = """<model name="{name}"><pose>{x} 0 {z} 0 0 0</pose><link name="l">
 <inertial><mass>1</mass><inertia><ixx>.004</ixx><iyy>.004</iyy><izz>.004</izz></inertia></inertial>
 <collision name="c"><geometry><sphere><radius>0.1</radius></sphere></geometry></collision>
+<visual name="v"><geometry><sphere><radius>0.1</radius></sphere></geometry></visual>
 </link></model>"""
 WORLD = """<sdf version="1.6"><world name="w"><include><uri>model://ground_plane</uri></include>
 {}</world></sdf>"""
@@ -55,6 +58,14 @@ def points(row):
     return [float(row[name]) for name in ("valid", "place", "ground", "apart", "landed")]
 
 
+def assert_shows_a_ball(path):
+    with Image.open(path) as picture:
+        assert picture.size == (640, 400)
+        grey = np.asarray(picture.convert("L"), dtype=float)
+    middle = grey[160:240, 280:360]
+    assert middle.max() - middle.min() > 20.0   # the ball and its shading; a plain ground has less
+
+
 def test_worlds_are_run_and_marked_with_partial_points(folder, capsys):
     submit(folder, "good", ("ball", 0, 3))
     submit(folder, "near", ("ball", 0.51, 3))
@@ -80,6 +91,8 @@ def test_worlds_are_run_and_marked_with_partial_points(folder, capsys):
     assert "touches ground_plane at 0." in found["tests"][4]["output"]
     assert "no model" in (students / "none" / "index.html").read_text()
     assert "a.world:2" in (students / "broken" / "index.html").read_text()
+    assert 'src="picture.png"' in (students / "good" / "index.html").read_text()
+    assert_shows_a_ball(students / "good" / "picture.png")
     assert 'id="data"' in (students / "good" / "replay.html").read_text(encoding="utf-8")
 
 

@@ -28,6 +28,7 @@ from .file_checks import (
     invalid_model_file,
     read_world_file,
 )
+from .final_picture import PICTURE, final_picture
 from .launch_checks import LaunchChecks, package_folders
 from .mark import CheckResult, GradingError, result
 from .program import OUTPUT, Program, submission_account
@@ -138,6 +139,7 @@ class Judge:
                            robots=robots) as world:
                 with contextlib.closing(LogRecord(log)) as record:
                     self._decide(world, name, program, ThinnedRecorder(record))
+                self._send_picture(world)
         except GradingError:
             raise
         except InputError as fault:
@@ -194,6 +196,12 @@ class Judge:
                                            line) for check in self._assignment.of(Timed)]
         for one in found:
             self._writer.result(one)
+
+    def _send_picture(self, world: OpenWorld) -> None:
+        try:
+            self._writer.file(PICTURE, final_picture(world))
+        except SimulationError as fault:
+            self._writer.note(f"there is no picture: {fault}")
 
     def _send_replay(self, log: str) -> None:
         page = os.path.join(self._own, REPLAY)

@@ -8,6 +8,7 @@ from urllib.parse import quote
 
 from ..simulator.safe_file import write_atomically
 from .assignment import Assignment
+from .final_picture import PICTURE
 from .grader import STUDENTS
 from .lists import reason_with_location
 from .mark import GRADED, Mark
@@ -17,7 +18,7 @@ _STYLE = """body{font:15px/1.45 sans-serif;margin:2em auto;max-width:62em;paddin
 table{border-collapse:collapse}td,th{border:1px solid #ccc;padding:3px 9px;text-align:left;
 vertical-align:top}th{background:#f2f2f2}.full{background:#e7f5e7}.part{background:#fff7dc}
 .none{background:#fdeaea}.number{text-align:right;white-space:nowrap}code{overflow-wrap:anywhere}
-iframe{width:100%;height:34em;border:1px solid #ccc}"""
+img{max-width:100%}iframe{width:100%;height:34em;border:1px solid #ccc}"""
 
 
 def write_pages(assignment: Assignment, marks: Sequence[Mark], out: str) -> str:
@@ -56,11 +57,13 @@ def _student(assignment: Assignment, mark: Mark) -> str:
             + ("" if mark.status == GRADED else f" ({escape(mark.status)})") + "</p>",
             "<table><tr><th>check</th><th>points</th><th>reason</th><th>place</th></tr>",
             *rows, "</table>", *(f"<p>{escape(note)}</p>" for note in mark.notes)]
+    if PICTURE in mark.files:
+        body.append(f'<p><img src="{PICTURE}" alt="The world at the end of the run"></p>')
     if REPLAY in mark.files:
         body += [f'<h2>Replay</h2><p><a href="{REPLAY}">in a window of its own</a></p>',
                  f'<iframe src="{REPLAY}" title="Replay" loading="lazy"></iframe>']
     body += [f'<p><a href="{quote(name)}">{escape(name)}</a></p>' for name in mark.files
-             if name != REPLAY]
+             if name not in (PICTURE, REPLAY)]
     return _page(f"{assignment.lab}: {mark.student}", body)
 
 
