@@ -291,6 +291,14 @@ def test_hostile_programs_change_no_other_mark(tmp_path, monkeypatch):
     assert sum(path.stat().st_size for path in students.rglob("*")) < 30e6
 
 
+def test_a_program_that_exceeds_its_processor_time_is_told_so(tmp_path):
+    rows, students = grade(tmp_path, "limits: {processor_seconds: 1}\n" + QUICK,
+                           {"anna": "while True: pass\n"})
+    assert points(rows["anna"], "moved", "talks") == [0, 0]
+    page = (students / "anna" / "index.html").read_text()
+    assert "the program used more processor time than 1 s" in page
+
+
 def test_a_program_reaches_what_it_needs_below_a_closed_folder_and_nothing_else(tmp_path):
     closed = tmp_path / "closed"
     (closed / "ws" / "src").mkdir(parents=True)
