@@ -12,8 +12,9 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from my_simulations.cli import grade_command
 from my_simulations.cli.grade_command import main
+from my_simulations.errors import CommandError
+from my_simulations.grading import grade as grade_module
 
 BALL = """<model name="{name}"><pose>{x} 0 {z} 0 0 0</pose><link name="l">
 <inertial><mass>1</mass><inertia><ixx>.004</ixx><iyy>.004</iyy><izz>.004</izz></inertia></inertial>
@@ -128,7 +129,7 @@ def test_a_world_that_exceeds_the_time_leaves_the_checks_before_it(folder, capsy
 
 
 def test_programs_do_not_run_where_they_cannot_be_isolated(folder, capsys, monkeypatch):
-    monkeypatch.setattr(grade_command, "isolation", lambda: "this system permits no namespaces")
+    monkeypatch.setattr(grade_module, "isolation", lambda: "this system permits no namespaces")
     submit(folder, "anna", ("ball", 0, 3))
     status, rows = grade(folder, "anna")
     assert (status, points(rows["anna"])[0]) == (0, 1)
@@ -138,6 +139,20 @@ def test_programs_do_not_run_where_they_cannot_be_isolated(folder, capsys, monke
     assert main(["grade", "lab.yaml", "anna", "--out", "other"]) == 2
     assert "--no-isolation" in capsys.readouterr().err
     assert not (folder / "other").exists()
+
+
+def test_a_program_grades_by_the_function_of_the_library(folder):
+    submit(folder, "anna", ("ball", 0, 3))
+    kept = []
+    for expected in ([False], [True]):
+        done = grade_module.grade("lab.yaml", ["anna"], "marks",
+                                  told=lambda mark, was_kept: kept.append(was_kept))
+        assert [(mark.student, mark.points) for mark in done.marks] == [("anna", 10.0)]
+        assert kept == expected
+        assert all(os.path.exists(file) for file in done.files)
+        kept.clear()
+    with pytest.raises(CommandError, match="nobody"):
+        grade_module.grade("lab.yaml", ["nobody"])
 
 
 def test_a_submission_that_is_too_large_is_told_so(folder):

@@ -8,15 +8,11 @@ import threading
 from typing import List, Optional, Sequence
 
 from ..errors import CommandError, InputError
-from ..grading.assignment import Assignment, Launch, Rostest
+from ..grading.assignment import Assignment
 from ..grading.assignment_file import read_assignment
-from ..grading.box_support import isolation
-from ..grading.grader import Grader
-from ..grading.lists import write_lists
+from ..grading.grade import grade
 from ..grading.mark import GRADED, Mark
-from ..grading.pages import write_pages
 from ..grading.shipped import shipped_assignment
-from ..grading.submission import submissions_of
 from ..program_end import program
 from ..ros.arguments import Parser
 
@@ -80,8 +76,6 @@ def main(argv: Optional[Sequence[str]] = None) -> int:
 
 
 def _grade(assignment: Assignment, options: argparse.Namespace) -> int:
-    submissions = submissions_of(options.submissions)
-    namespaces = not options.no_isolation and _isolation_is_there(assignment)
     lock = threading.Lock()
     count: List[Mark] = []
 
@@ -89,29 +83,17 @@ def _grade(assignment: Assignment, options: argparse.Namespace) -> int:
         with lock:
             count.append(mark)
             ending = ", unchanged" if kept else "" if mark.status == GRADED else f", {mark.status}"
-            print(f"{len(count)}/{len(submissions)} {mark.student}: {mark.points:g} of"
+            print(f"{len(count)}/{len(options.submissions)} {mark.student}: {mark.points:g} of"
                   f" {mark.most:g}{ending}", file=sys.stderr, flush=True)
 
-    grader = Grader(assignment, options.out, options.jobs, namespaces, describe)
-    marks = grader.run(submissions)
-    files = [*write_lists(assignment, marks, options.out),
-             write_pages(assignment, marks, options.out)]
-    for path in files:
+    def warn(text: str) -> None:
+        print(f"{NAME}: warning: {text}", file=sys.stderr)
+
+    done = grade(assignment, options.submissions, options.out, jobs=options.jobs,
+                 isolate=not options.no_isolation, told=describe, warn=warn)
+    for path in done.files:
         print(path, flush=True)
-    return OK if all(mark.status == GRADED for mark in marks) else NOT_ALL
-
-
-def _isolation_is_there(assignment: Assignment) -> bool:
-    """Whether submissions can be isolated. Raises CommandError if their programs would not be."""
-    fault = isolation()
-    if fault and (assignment.form.run or assignment.of(Launch, Rostest)):
-        raise CommandError(f"{fault}: programs of submissions could change all that you can. Grade"
-                           " as root, or permit user namespaces; --no-isolation runs them"
-                           " nevertheless")
-    if fault:
-        print(f"{NAME}: warning: {fault}; world files are graded without isolation",
-              file=sys.stderr)
-    return not fault
+    return OK if all(mark.status == GRADED for mark in done.marks) else NOT_ALL
 
 
 if __name__ == "__main__":
