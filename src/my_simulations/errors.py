@@ -17,7 +17,9 @@ from __future__ import annotations
 
 import enum
 from dataclasses import dataclass, replace
-from typing import Iterable, List, Optional, Sequence
+from typing import Dict, Iterable, List, Optional, Sequence
+
+_MOST_LINES = 5   # that `grouped` names
 
 
 class Severity(enum.Enum):
@@ -86,6 +88,27 @@ def warning(code: str, message: str, **where: object) -> Issue:
 def errors_of(issues: Iterable[Issue]) -> List[Issue]:
     """Only those of severity ERROR, in order."""
     return [issue for issue in issues if issue.severity is Severity.ERROR]
+
+
+def grouped(issues: Iterable[Issue]) -> List[Issue]:
+    """The first of the issues that differ in their place only, with the lines of the others.
+
+    Robots repeat an element in each of their joints or wheels: the log then has one line for it.
+    """
+    places: Dict[Issue, List[Issue]] = {}
+    for issue in issues:
+        places.setdefault(replace(issue, line=0, column=0, xpath=""), []).append(issue)
+    found: List[Issue] = []
+    for first, *others in places.values():
+        lines = sorted({other.line for other in others if other.line})
+        if not lines:
+            found += dict.fromkeys((first, *others))
+            continue
+        shown = ", ".join(map(str, lines[:_MOST_LINES]))
+        more = f" and {len(lines) - _MOST_LINES} more" if len(lines) > _MOST_LINES else ""
+        noun = "lines" if len(lines) > 1 else "line"
+        found.append(replace(first, message=f"{first.message}; also in {noun} {shown}{more}"))
+    return found
 
 
 def strictly(issues: Iterable[Issue]) -> List[Issue]:

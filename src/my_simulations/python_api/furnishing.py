@@ -5,7 +5,7 @@ from dataclasses import replace
 from typing import Optional, Sequence
 
 from ..description.plugin_namespace import with_namespace
-from ..errors import InputError, Issue, errors_of
+from ..errors import InputError, Issue, errors_of, grouped
 from ..formats.reading import LoadedWorld, Text
 from ..geometry import Pose, compose
 from ..simulator.simulator import Simulator
@@ -59,7 +59,7 @@ class Furnisher:
         return model.name
 
     def _judge(self, issues: Sequence[Issue]) -> None:
-        for issue in issues:
+        for issue in grouped(issues):
             self._log(issue)
         if errors_of(issues):
             raise InputError(issues)

@@ -34,7 +34,7 @@ def test_every_element_has_a_use():
     (SENSOR, "logical_camera", "libmy_simulations_logical_camera.so")])
 def test_elements_of_plugins_are_listed_as_used_if_the_registry_has_the_plugin(
         table, element, library):
-    known = PluginRegistry().knows(library)
+    known = PluginRegistry().is_supported(library)
     assert uses(table)[element] is (Use.PLUGINS if known else Use.KEPT)
 
 
