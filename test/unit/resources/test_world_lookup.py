@@ -121,7 +121,7 @@ def test_a_students_file_in_the_packages_folder_is_the_students(tmp_path, monkey
 
 
 PROBE = ("import sys; from my_simulations.ros.lifecycle.launch_info import Launch; "
-         "one = Launch.of(sys.argv); print(one.pid, one.folder, one.alive)")
+         "one = Launch.of(sys.argv); print(one.pid, one.folder, one.is_alive)")
 
 
 def started_by(name, tmp_path, *words):
