@@ -190,6 +190,35 @@ def test_effort_joints_without_controllers_fall_after_a_while_and_the_log_says_s
     assert ", ".join(NAMES) in told
 
 
+@pytest.mark.parametrize("plugins", [
+    {"libgazebo_ros_control.so": "<plugin><robotSimType>franka_gazebo/FrankaHWSim</robotSimType>"
+     "</plugin>"},
+    {CONTROL: "<plugin/>", "libGravityCompensationPlugin.so": "<plugin/>"}])
+def test_an_arm_with_compensated_gravity_stays_also_after_a_reset(spawning, plugins):
+    one = spawning()
+    one.sim.clock.pause()
+    arm = heavy_arm("EffortJointInterface")
+    arm.plugins[:] = [PluginSpec(f"p{n}", name, text, "arm.urdf", 3)
+                      for n, (name, text) in enumerate(plugins.items())]
+    one.spawn(arm)
+    one.sim.clock.advance(round(PATIENCE_S * 1000) + 1500)
+    assert max(map(abs, one.positions())) < 1e-3
+    assert not [issue for issue in one.issues if "not simulated" in issue.message]
+    one.sim.resets.reset_world()
+    one.sim.clock.advance(round(PATIENCE_S * 1000) + 1500)
+    assert max(map(abs, one.positions())) < 1e-3
+
+
+def test_an_arm_without_a_joint_to_the_world_is_warned_of(spawning):
+    one = spawning()
+    arm = heavy_arm("EffortJointInterface")
+    arm.joints[:1] = []
+    arm.transmissions[:1] = []
+    arm.plugins[:] = [PluginSpec("p", "libGravityCompensationPlugin.so", "<plugin/>", "a.urdf", 3)]
+    one.spawn(arm)
+    assert any("gravity is not compensated: no joint" in issue.message for issue in one.issues)
+
+
 def test_joints_with_a_position_interface_are_held_for_ever(spawning):
     one = spawning()
     one.sim.clock.pause()

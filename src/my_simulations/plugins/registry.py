@@ -67,6 +67,7 @@ BUILT_IN: Mapping[str, str] = {
     "libLiftDragPlugin.so": "world.lift_drag:LiftDrag",
     "libgazebo_dipole_magnet.so": "world.dipole_magnet:DipoleMagnet",
     "libBuoyancyPlugin.so": "world.buoyancy:Buoyancy",
+    "libGravityCompensationPlugin.so": "world.gravity_compensation:GravityCompensationPlugin",
     "libgazebo_ros_laser.so": "sensors.laser:Laser",
     "libgazebo_ros_gpu_laser.so": "sensors.laser:Laser",
     "libgazebo_ros_ray_sensor.so": "sensors.ray_sensor:RaySensor",

@@ -5,6 +5,7 @@ from typing import Any, List, Mapping, Type
 
 from ...description.transmission import Transmission
 from ..base import Plugin
+from ..world.gravity_compensation import GravityCompensation
 from .hardware import Hardware, SwitchingHardware
 from .initial_hold import InitialHold
 from .manager import ControllerManager
@@ -13,8 +14,9 @@ from .steer_bot_hardware import SteerBotHardware
 
 DEFAULT, SWITCHING = ("gazebo_ros_control/DefaultRobotHWSim",
                       "cob_gazebo_ros_control/HWISwitchRobotHWSim")
+FRANKA = "franka_gazebo/FrankaHWSim"
 _HARDWARE: Mapping[str, Type[Hardware]] = {
-    DEFAULT: Hardware, SWITCHING: SwitchingHardware,
+    DEFAULT: Hardware, FRANKA: Hardware, SWITCHING: SwitchingHardware,
     "steer_bot_hardware_gazebo/SteerBotHardwareGazebo": SteerBotHardware,
     "hector_quadrotor_controller_gazebo/QuadrotorHardwareSim": QuadrotorHardware}
 
@@ -42,6 +44,7 @@ class GazeboRosControl(Plugin):
         if hardware.needs_transmissions and not transmissions:
             context.warn("the robot has no <transmission>: no joint can be controlled")
         self._hardware = hardware(context, self.controllable(transmissions))
+        self._compensation = GravityCompensation(context) if kind == FRANKA else None
         period = p.number("controlPeriod", 0.0)
         self._hold = InitialHold(context, self._hardware, lambda: self._manager.claimed)
         self._manager = ControllerManager(context, self._hardware, period,
@@ -59,6 +62,8 @@ class GazeboRosControl(Plugin):
     def reset(self) -> None:
         """Restart controllers at the initial joint positions, and hold the joints there."""
         self._hardware.set_emergency_stop(self._stopped)
+        if self._compensation is not None:
+            self._compensation.apply()
         self._manager.restart()
         self._hold.begin()
 
