@@ -5,7 +5,7 @@ from typing import Any, List, Mapping, Type
 
 from ...description.transmission import Transmission
 from ..base import Plugin
-from ..world.gravity_compensation import GravityCompensation
+from .franka import FrankaArm
 from .hardware import Hardware, SwitchingHardware
 from .initial_hold import InitialHold
 from .manager import ControllerManager
@@ -44,7 +44,7 @@ class GazeboRosControl(Plugin):
         if hardware.needs_transmissions and not transmissions:
             context.warn("the robot has no <transmission>: no joint can be controlled")
         self._hardware = hardware(context, self.controllable(transmissions))
-        self._compensation = GravityCompensation(context) if kind == FRANKA else None
+        self._franka = FrankaArm(context) if kind == FRANKA else None
         period = p.number("controlPeriod", 0.0)
         self._hold = InitialHold(context, self._hardware, lambda: self._manager.claimed)
         self._manager = ControllerManager(context, self._hardware, period,
@@ -62,8 +62,8 @@ class GazeboRosControl(Plugin):
     def reset(self) -> None:
         """Restart controllers at the initial joint positions, and hold the joints there."""
         self._hardware.set_emergency_stop(self._stopped)
-        if self._compensation is not None:
-            self._compensation.apply()
+        if self._franka is not None:
+            self._franka.reset()
         self._manager.restart()
         self._hold.begin()
 

@@ -56,6 +56,8 @@ TYPES: Mapping[str, str] = {
     "imu_sensor_controller/ImuSensorController": "sensor_controllers:ImuSensorController",
     "force_torque_sensor_controller/ForceTorqueSensorController":
         "sensor_controllers:ForceTorqueSensorController",
+    "franka_control/FrankaStateController": "franka:FrankaStateController",
+    "franka_gazebo/FrankaGripperSim": "franka:FrankaGripper",
     "unitree_legged_control/UnitreeJointController":
         "unitree_joint_controller:UnitreeJointController",
 }
