@@ -59,7 +59,7 @@ def states(file: str) -> List[Dict[str, Any]]:
 
 
 async def drive(address: str, seconds: float) -> None:
-    """Read the frames of an editor, and drive the robot along curves."""
+    """Read the frames of an editor, and drive the robot to and fro along curves, off the walls."""
     import aiohttp
 
     url, _, query = address.partition("?")
@@ -69,7 +69,8 @@ async def drive(address: str, seconds: float) -> None:
         reading = asyncio.ensure_future(read_all(socket))
         for number in range(int(seconds / PERIOD_S)):
             await socket.send_json({
-                "type": "drive", "id": 2 + number, "model": ROBOT, "linear": [0.2, 0.0, 0.0],
+                "type": "drive", "id": 2 + number, "model": ROBOT,
+                "linear": [0.2 * math.cos(PERIOD_S * number), 0.0, 0.0],
                 "angular": [0.0, 0.0, math.sin(PERIOD_S * number)]})
             await asyncio.sleep(PERIOD_S)
         reading.cancel()
