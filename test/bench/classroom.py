@@ -59,7 +59,7 @@ def states(file: str) -> List[Dict[str, Any]]:
 
 
 async def drive(address: str, seconds: float) -> None:
-    """Read the frames of an editor, and drive the robot to and fro along curves, off the walls."""
+    """Read the frames of an editor, and drive the robot back and forth, off the walls."""
     import aiohttp
 
     url, _, query = address.partition("?")

@@ -67,7 +67,7 @@ def tiles(file):
 
 
 def shown(file):
-    """The same as `tiles` without a process: what waits asks often."""
+    """The same as `tiles` without a process: tests that wait ask often."""
     try:
         address = urlsplit(ClassState(read_class(str(file))[0]).manager()["address"])
         with urlopen(f"{address.scheme}://{address.netloc}/status.json?{address.query}",

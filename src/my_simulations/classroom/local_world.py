@@ -24,7 +24,6 @@ from .world_states import ENDED, STARTING, STOPPED
 _RELAY_USER = 62999
 _END_S = 30.0
 _MEASURE_S = 3.0
-_DROPPED = ("MY_SIMULATIONS_PARENT", "MY_SIMULATIONS_RECORD")
 
 
 class LocalWorld:
@@ -97,9 +96,8 @@ class LocalWorld:
             "relay_user": _RELAY_USER, "descriptors": passed}
 
     def _environment(self, home: str) -> Dict[str, str]:
-        kept = {name: value for name, value in permitted_variables(child_environment()).items()
-                if name not in _DROPPED}
-        return {**kept, "HOME": home, "USER": self.student.name, "LOGNAME": self.student.name,
+        return {**permitted_variables(child_environment()), "HOME": home,
+                "USER": self.student.name, "LOGNAME": self.student.name,
                 "ROS_HOME": os.path.join(home, ".ros"), "ROS_MASTER_URI": "http://127.0.0.1:11311",
                 "ROS_IP": "127.0.0.1", "ROS_HOSTNAME": "127.0.0.1", "PYTHONUNBUFFERED": "1",
                 "MY_SIMULATIONS_NO_BROWSER": "1", "MY_SIMULATIONS_EDITOR_TOKEN": self.token}

@@ -15,11 +15,12 @@ _NAMES = frozenset((
     "OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS",
 ))
 _PREFIXES = ("LC_", "GAZEBO_", "MY_SIMULATIONS_")
+_OF_ONE_PROCESS = ("MY_SIMULATIONS_PARENT", "MY_SIMULATIONS_RECORD")
 _SECRET_WORDS = ("TOKEN", "SECRET", "PASSWORD", "CREDENTIAL", "KEY")
 
 
 def permitted_variables(environment: Mapping[str, str]) -> Dict[str, str]:
     """Return the variables of Python, ROS and this package, without those named like secrets."""
     return {name: value for name, value in environment.items()
-            if (name in _NAMES or name.startswith(_PREFIXES))
+            if (name in _NAMES or name.startswith(_PREFIXES)) and name not in _OF_ONE_PROCESS
             and not any(word in name for word in _SECRET_WORDS)}

@@ -131,7 +131,7 @@ class Program:
 
     @contextlib.contextmanager
     def suspended(self) -> Iterator[None]:
-        """Stop all its processes meanwhile; what is sent to them waits in their sockets."""
+        """Stop all its processes meanwhile. Messages to them wait in their sockets."""
         stopped: Set[int] = set()
         found = set(box.descendants(self.pid))
         while found - stopped and len(stopped) <= self._limits.processes:

@@ -15,6 +15,7 @@ def test_variables_of_python_and_ros_are_passed_on(name):
 
 @pytest.mark.parametrize("name", [
     "AWS_SESSION", "ROS_REGISTRY_LOGIN", "ROSBAG_UPLOAD", "PYTHON_INDEX_PASSWORD", "PATHS",
-    "GAZEBO_API_KEY", "MY_SIMULATIONS_EDITOR_TOKEN", "CATKIN_SECRET", "SSH_AUTH_SOCK", "DISPLAY"])
+    "GAZEBO_API_KEY", "MY_SIMULATIONS_EDITOR_TOKEN", "CATKIN_SECRET", "SSH_AUTH_SOCK", "DISPLAY",
+    "MY_SIMULATIONS_PARENT", "MY_SIMULATIONS_RECORD"])
 def test_variables_that_may_hold_secrets_are_not(name):
     assert permitted_variables({name: "a"}) == {}

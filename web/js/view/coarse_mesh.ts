@@ -4,7 +4,7 @@
  */
 /**
  * Triangles of all meshes of a world together, and how many a mesh keeps at least and at most: in
- * pictures at rest, and in those of what moves, in which a processor draws a thousand in a millisecond or two.
+ * pictures at rest, and in those of a moving scene, in which a processor draws a thousand in a millisecond or two.
  */
 const REST = {budget: 120000, least: 600, most: 80000};
 const MOVING = {budget: 24000, least: 120, most: 20000};

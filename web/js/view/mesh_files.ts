@@ -237,7 +237,7 @@ function figureOf(root: Object3D) {
 }
 
 /**
- * A geometry with fewer triangles; null where it has no more, or has textures, colours, several
+ * A geometry with fewer triangles; null where the limit allows all of them, or it has textures, colours, several
  * materials or bones.
  */
 function coarser({attributes, groups, index}: BufferGeometry, limit: number): BufferGeometry|null {
@@ -250,7 +250,7 @@ function coarser({attributes, groups, index}: BufferGeometry, limit: number): Bu
     .setIndex(new BufferAttribute(found.index, 1));
 }
 
-/** A part with a simplified geometry, and a plainer one for pictures of what moves. */
+/** A part with a simplified geometry, and a plainer one for pictures of a moving scene. */
 function simplified(part: MeshPart, files: number): MeshPart {
   const simple = coarser(part.geometry, limitFor(files));
   if (simple) part.geometry.dispose();

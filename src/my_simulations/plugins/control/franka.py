@@ -12,11 +12,11 @@ from ...engine.drive_commands import PidGains
 from ..actions import ActionServer, Goal
 from ..context import Context
 from ..finite_messages import is_all_finite
-from ..frames import stamped
 from ..stepwise_change import StepwiseChange
 from ..world.gravity_compensation import GravityCompensation
 from .controller import RUNNING, Controller
 from .hardware import EFFORT, HardwareJoint
+from .joint_state import measured_joints
 
 _UPDATE_HZ = 30.0          # without a rate
 _GRIPPER_HZ = 100.0        # checks whether the fingers rest
@@ -62,14 +62,8 @@ class FrankaStateController(Controller):
                      efforts=[joint.name for joint in self._joints])
 
     def _publish(self) -> None:
-        names = [joint.name for joint in self._joints]
         for topic in self._topics:
-            message = stamped(self.context, _JOINT_STATE)
-            message.name = names
-            message.position = [joint.position for joint in self._joints]
-            message.velocity = [joint.velocity for joint in self._joints]
-            message.effort = self.hardware.efforts(names)
-            topic.publish(message)
+            topic.publish(measured_joints(self.context, self.hardware, self._joints))
 
 
 class FrankaGripper(Controller):
@@ -181,10 +175,4 @@ class FrankaGripper(Controller):
         return result
 
     def _publish(self) -> None:
-        names = [finger.name for finger in self._fingers]
-        message = stamped(self.context, _JOINT_STATE)
-        message.name = names
-        message.position = [finger.position for finger in self._fingers]
-        message.velocity = [finger.velocity for finger in self._fingers]
-        message.effort = self.hardware.efforts(names)
-        self._topic.publish(message)
+        self._topic.publish(measured_joints(self.context, self.hardware, self._fingers))

@@ -1,15 +1,26 @@
 """joint_state_controller: publishes `joint_states` of all joints that have a transmission."""
 from __future__ import annotations
 
-from typing import List, Tuple
+from typing import Any, List, Sequence, Tuple, Union
 
-from ..context import PluginError
+from ..context import Context, Joint, PluginError
 from ..frames import stamped
 from .controller import Controller
-from .hardware import EFFORT, POSITION, VELOCITY
+from .hardware import EFFORT, POSITION, VELOCITY, Hardware, HardwareJoint
 
 _ORDER = (POSITION, VELOCITY, EFFORT)   # of the joints in a message
 _UPDATE_HZ = 100.0                      # without a rate
+
+
+def measured_joints(context: Context, hardware: Hardware,
+                    joints: Sequence[Union[Joint, HardwareJoint]]) -> Any:
+    """Return a sensor_msgs/JointState with the present positions, rates and efforts."""
+    message = stamped(context, "sensor_msgs/JointState")
+    message.name = [joint.name for joint in joints]
+    message.position = [joint.position for joint in joints]
+    message.velocity = [joint.velocity for joint in joints]
+    message.effort = list(hardware.efforts(message.name))
+    return message
 
 
 class JointStateController(Controller):
@@ -49,14 +60,12 @@ class JointStateController(Controller):
         return found
 
     def _tell(self) -> None:
-        message = stamped(self.context, "sensor_msgs/JointState")
-        names = [joint.name for joint in self._joints]
-        extra = self._extra
-        efforts = self.hardware.efforts(names)
-        message.name = names + [one[0] for one in extra]
-        message.position = [joint.position for joint in self._joints] + [one[1] for one in extra]
-        message.velocity = [joint.velocity for joint in self._joints] + [one[2] for one in extra]
-        message.effort = efforts + [one[3] for one in extra]
+        message = measured_joints(self.context, self.hardware, self._joints)
+        for name, position, velocity, effort in self._extra:
+            message.name.append(name)
+            message.position.append(position)
+            message.velocity.append(velocity)
+            message.effort.append(effort)
         self._topic.publish(message)
 
 
