@@ -25,17 +25,19 @@ from __future__ import annotations
 
 import contextlib
 import ctypes
+import errno
 import fcntl
 import json
 import os
 import shutil
 import signal
 import socket
+import stat
 import struct
 import subprocess
 import sys
 import time
-from typing import Any, Dict, List, Optional
+from typing import Any, BinaryIO, Dict, List, Optional
 
 TIMED_OUT = 124
 _LOOK_S = 0.05
@@ -196,7 +198,23 @@ def _copy(files: List[List[str]], folder: str) -> None:
     for relative, full in files:
         target = os.path.join(folder, relative)
         os.makedirs(os.path.dirname(target), exist_ok=True)
-        shutil.copy(full, target, follow_symlinks=False)
+        with open_regular(full) as source, open(target, "wb") as out:
+            shutil.copyfileobj(source, out)
+            runs = os.fstat(source.fileno()).st_mode & 0o111
+        os.chmod(target, 0o755 if runs else 0o644)
+
+
+def open_regular(path: str) -> BinaryIO:
+    """Open a regular file that may have been replaced by a link or a pipe since it was listed.
+
+    Raises:
+        OSError: it cannot be opened, or is not a regular file.
+    """
+    descriptor = os.open(path, os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK | os.O_CLOEXEC)
+    if not stat.S_ISREG(os.fstat(descriptor).st_mode):
+        os.close(descriptor)
+        raise OSError(errno.EINVAL, "is not a regular file", path)
+    return os.fdopen(descriptor, "rb")
 
 
 def hide(path: str) -> None:
@@ -246,8 +264,8 @@ def descendants(root: int) -> List[int]:
     for name in os.listdir("/proc"):
         if name.isdigit():
             with contextlib.suppress(OSError, IndexError):
-                with open(f"/proc/{name}/stat", encoding="utf-8", errors="replace") as stat:
-                    rest = stat.read().rpartition(")")[2].split()
+                with open(f"/proc/{name}/stat", encoding="utf-8", errors="replace") as stream:
+                    rest = stream.read().rpartition(")")[2].split()
                 if rest[0] not in "ZX":
                     children.setdefault(int(rest[1]), []).append(int(name))
     found: List[int] = []

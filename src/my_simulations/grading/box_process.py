@@ -18,7 +18,8 @@ from . import box
 from .assignment import Assignment
 from .mark import FAILED, GRADED, TIMED_OUT, CheckResult, Mark, without_result
 from .result_stream import ResultReader
-from .submission import Submission, regular_files
+from .submission import Submission
+from .submission_files import Content, content_of
 
 _END_S = 10.0
 _LOOK_S = 0.2
@@ -42,12 +43,12 @@ def grade_in_box(assignment: Assignment, submission: Submission, slot: int, hidd
         namespaces: whether to isolate the box by namespaces.
         stop: ends the grading with GradingStoppedError once it is set.
     """
-    files = list(regular_files(submission.path))
+    content = content_of(submission.path)
     reader = ResultReader(folder)
     with tempfile.TemporaryDirectory(prefix="my_simulations_grade_") as scratch:
         receiving, sending = os.pipe()
         try:
-            spec = _specification(assignment, submission, slot, hidden, scratch, sending, files)
+            spec = _specification(assignment, submission, slot, hidden, scratch, sending, content)
             spec["namespaces"] = namespaces
             code, output = _run(spec, receiving, sending, reader, stop)
         finally:
@@ -57,17 +58,17 @@ def grade_in_box(assignment: Assignment, submission: Submission, slot: int, hidd
 
 def _specification(assignment: Assignment, submission: Submission, slot: int,
                    hidden: Sequence[str], scratch: str, sending: int,
-                   files: Sequence[Any]) -> Dict[str, Any]:
+                   content: Content) -> Dict[str, Any]:
     root = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
     task = {"assignment": assignment.file, "scratch": scratch, "slot": slot,
-            "descriptor": sending}
+            "descriptor": sending, "unreadable": content.unreadable}
     environment = {**child_environment(), "PYTHONDONTWRITEBYTECODE": "1"}
     for name in ("MY_SIMULATIONS_PARENT", "MY_SIMULATIONS_RECORD"):
         environment.pop(name, None)
     return {"parent": os.getpid(), "seconds": assignment.limits.seconds,
             "command": child_command("grading.judge", json.dumps(task)),
             "environment": environment, "scratch": scratch,
-            "bytes": int(assignment.limits.file_mb * 1e6), "copy": files,
+            "bytes": int(assignment.limits.file_mb * 1e6), "copy": content.files,
             "hidden": [path for path in hidden if not _contains(path, assignment.file)],
             "kept": [root, assignment.file, sys.prefix, os.getcwd()],
             "descriptors": [sending]}

@@ -26,7 +26,6 @@ from .assignment import (
 )
 from .mark import CheckResult, result
 
-MISSING = "the submission contains no world file"
 NO_WORLD = "the file contains no <world>"
 
 
@@ -82,15 +81,22 @@ def invalid_model_file(folder: str, names: Sequence[str], resolver: Resolver) ->
     return None
 
 
-def check_files(assignment: Assignment, file: "WorldFile | None") -> List[CheckResult]:
-    """The results of all checks of the world file; `file` None if there is none."""
+def check_files(assignment: Assignment, file: "WorldFile | None", missing: str
+                ) -> List[CheckResult]:
+    """The results of all checks of the world file.
+
+    Args:
+        assignment: the assignment.
+        file: the world file; None if there is none.
+        missing: the reason if there is none.
+    """
+    if file is None:
+        return [result(check, 0.0, missing) for check in assignment.of(ValidFile, EntityCount)]
     found = [_valid(check, file) for check in assignment.of(ValidFile)]
     return found + [_counted(check, file) for check in assignment.of(EntityCount)]
 
 
-def _valid(check: ValidFile, file: "WorldFile | None") -> CheckResult:
-    if file is None:
-        return result(check, 0.0, MISSING)
+def _valid(check: ValidFile, file: WorldFile) -> CheckResult:
     faults = errors_of(strictly(file.issues) if check.strict else file.issues)
     if not faults and file.world is None:
         return result(check, 0.0, NO_WORLD, file.name)
@@ -102,9 +108,7 @@ def _valid(check: ValidFile, file: "WorldFile | None") -> CheckResult:
     return result(check, 0.0, f"{first.message}{hint}{more}", file.name, first.line)
 
 
-def _counted(check: EntityCount, file: "WorldFile | None") -> CheckResult:
-    if file is None:
-        return result(check, 0.0, MISSING)
+def _counted(check: EntityCount, file: WorldFile) -> CheckResult:
     if file.world is None:
         first = errors_of(file.issues)[:1]
         why = f": {first[0].message}" if first else ""

@@ -7,7 +7,8 @@ import queue
 import shutil
 import threading
 from concurrent.futures import ThreadPoolExecutor
-from typing import Callable, Dict, List, Optional, Sequence
+from dataclasses import replace
+from typing import Callable, Dict, List, Optional, Sequence, Tuple
 
 from .. import __version__
 from ..errors import CommandError
@@ -17,6 +18,7 @@ from .assignment import Assignment, Rostest
 from .box_process import GradingStoppedError, grade_in_box
 from .mark import FAILED, GRADED, Mark, all_failed, mark_of
 from .submission import Submission, content_key, size_of
+from .submission_files import SubmissionError
 from .unpacking import unpacked
 
 STUDENTS = "students"
@@ -83,41 +85,59 @@ class Grader:
     def _grade(self, submission: Submission, hidden: Sequence[str]) -> Mark:
         if self._stop.is_set():
             raise GradingStoppedError
-        key = ""
         folder = self.folder_of(submission.student)
         slot = self._slots.get()
         try:
-            limit = int(self._assignment.limits.file_mb * 1e6)
-            size = size_of(submission.path)
-            if size <= limit:    # larger files are not even read
-                key = content_key(submission.path, self._base)
-                kept = self._kept(submission.student, key)
-                if kept is not None:
-                    self._told(kept, True)
-                    return kept
-            shutil.rmtree(folder, ignore_errors=True)
-            os.makedirs(folder, exist_ok=True)
-            if size > limit:
-                mark = all_failed(self._assignment, submission.student, GRADED,
-                                  f"the submission has {size / 1e6:.0f} MB, the limit is"
-                                  f" {limit / 1e6:.0f} MB")
-            else:
-                with unpacked(submission, folder, limit) as content:
-                    mark = grade_in_box(self._assignment, content, slot, hidden, folder,
-                                        self._namespaces, self._stop)
-        except ArchiveError as fault:
-            mark = all_failed(self._assignment, submission.student, GRADED,
-                              f"the submission cannot be unpacked: {fault}")
+            mark, was_kept = self._kept_or_new(submission, folder, slot, hidden)
+        except SubmissionError as fault:
+            mark, was_kept = self._refused(submission, GRADED, f"cannot be graded: {fault}"), False
         except (OSError, ValueError) as fault:   # such as a full disk: one submission, not all
-            mark = all_failed(self._assignment, submission.student, FAILED,
-                              f"the grading program failed: {fault}")
+            reason = (f"could not be graded: {fault}" if os.path.exists(submission.path)
+                      else "was deleted")
+            mark, was_kept = self._refused(submission, FAILED, reason), False
         finally:
             self._slots.put(slot)
-        mark = Mark(**{**vars(mark), "key": key})
-        os.makedirs(folder, exist_ok=True)
-        write_atomically(os.path.join(folder, MARK), mark.to_json().encode(), overwrite=True)
-        self._told(mark, False)
+        if not was_kept:
+            os.makedirs(folder, exist_ok=True)
+            write_atomically(os.path.join(folder, MARK), mark.to_json().encode(), overwrite=True)
+        self._told(mark, was_kept)
         return mark
+
+    def _kept_or_new(self, submission: Submission, folder: str, slot: int, hidden: Sequence[str]
+                     ) -> Tuple[Mark, bool]:
+        """The mark, and whether it is that of a run before."""
+        limit = int(self._assignment.limits.file_mb * 1e6)
+        size = size_of(submission.path)
+        key = content_key(submission.path, self._base) if size <= limit else ""
+        kept = self._kept(submission.student, key) if key else None
+        if kept is not None:
+            return kept, True
+        shutil.rmtree(folder, ignore_errors=True)
+        os.makedirs(folder, exist_ok=True)
+        if not key:          # such files are not even read
+            return self._refused(submission, GRADED, f"has {size / 1e6:.0f} MB, the limit is"
+                                 f" {limit / 1e6:.0f} MB"), False
+        try:
+            with unpacked(submission, folder, limit) as content:
+                mark = grade_in_box(self._assignment, content, slot, hidden, folder,
+                                    self._namespaces, self._stop)
+        except ArchiveError as fault:
+            mark = self._refused(submission, GRADED, f"cannot be unpacked: {fault}")
+        if self._key_of(submission) != key:
+            note = "the submission was changed while it was graded; the next run grades it again"
+            return replace(mark, notes=[*mark.notes, note]), False
+        return replace(mark, key=key), False
+
+    def _refused(self, submission: Submission, status: str, reason: str) -> Mark:
+        """A mark without points; `reason` continues "the submission"."""
+        return all_failed(self._assignment, submission.student, status,
+                          f"the submission {reason}")
+
+    def _key_of(self, submission: Submission) -> str:
+        """Key of the submission now; "" if it cannot be read."""
+        with contextlib.suppress(OSError, SubmissionError):
+            return content_key(submission.path, self._base)
+        return ""
 
     def _kept(self, student: str, key: str) -> Optional[Mark]:
         """The mark of a run before, if it is of the same submission and was decided."""

@@ -3,7 +3,8 @@
     python3 -m my_simulations.grading.judge TASK
 
 TASK is JSON: the path of the assignment file, the folder SCRATCH of the box with the submission in
-SCRATCH/submission, the file descriptor for the results, and the number of the slot.
+SCRATCH/submission, the file descriptor for the results, the number of the slot, and the files that
+were left out because they cannot be read.
 """
 from __future__ import annotations
 
@@ -11,7 +12,7 @@ import contextlib
 import json
 import os
 import sys
-from typing import Any, Dict, Iterator, List, Optional
+from typing import Any, Dict, Iterator, List, Optional, Sequence
 
 from ..editor.logs.replay_page import write_replay
 from ..editor.logs.world_record import LogRecord
@@ -34,7 +35,7 @@ from .mark import CheckResult, GradingError, result
 from .program import OUTPUT, Program, submission_account
 from .program_graph import RosGraph, graph_environment
 from .result_stream import ResultWriter
-from .submission import all_matching, ambiguity, matching, reason_for_no_match
+from .submission import all_matching, ambiguity, listed, matching, reason_for_no_match
 from .world_run import WorldRun, world_choice_of
 
 _EVERY_S = 1.0 / 30.0   # between two states of the replay, s of sim time
@@ -51,7 +52,7 @@ def main(words: List[str]) -> int:
     os.environ["ROS_HOME"] = os.path.join(task["scratch"], "judge", ".ros")
     os.environ.pop("ROS_LOG_DIR", None)
     writer.isolation(os.environ.get("BOX_ISOLATION", ""))
-    Judge(assignment, task["scratch"], task["slot"], writer).run()
+    Judge(assignment, task["scratch"], task["slot"], task["unreadable"], writer).run()
     writer.end()
     return 0
 
@@ -77,15 +78,17 @@ class Judge:
         assignment: the assignment.
         scratch: folder of the box.
         slot: number of the slot.
+        unreadable: files of the submission that were left out because they cannot be read.
         writer: gets the results.
     """
 
-    def __init__(self, assignment: Assignment, scratch: str, slot: int,
+    def __init__(self, assignment: Assignment, scratch: str, slot: int, unreadable: Sequence[str],
                  writer: ResultWriter) -> None:
         self._assignment = assignment
         self._scratch, self._slot = scratch, slot
         self._folder = os.path.join(scratch, "submission")
         self._own = os.path.join(scratch, "judge")
+        self._unreadable = unreadable
         self._writer = writer
         self._resolver = Resolver.from_environment()
 
@@ -97,12 +100,16 @@ class Judge:
         if name:
             file = read_world_file(self._folder, name, self._resolver)
             self._note(ambiguity(self._folder, form.world))
-        for found in check_files(self._assignment, file):
+        if self._unreadable:
+            self._note(f"left out, because their permissions forbid reading:"
+                       f" {listed(self._unreadable)}")
+        for found in check_files(self._assignment, file, self._why_missing(form.world)):
             self._writer.result(found)
         if self._assignment.of(Timed):
             self._check_running_world(name, file)
-        launches = LaunchChecks(self._assignment, self._scratch, self._slot)
+        launches = LaunchChecks(self._assignment, self._scratch, self._slot, self._unreadable)
         for launch in self._assignment.of(Launch):
+            self._note(ambiguity(self._folder, launch.file))
             self._writer.result(launches.launch(launch))
         for test in self._assignment.of(Rostest):
             self._writer.result(launches.rostest(test))
@@ -123,12 +130,12 @@ class Judge:
 
     def _run_world(self, path: str, name: str) -> None:
         if not path:
-            self._refuse_timed(reason_for_no_match(self._folder, self._assignment.form.world))
+            self._refuse_timed(self._why_missing(self._assignment.form.world))
             return
         patterns = self._assignment.form.run
         program = matching(self._folder, patterns)
         if patterns and not program:
-            self._refuse_timed(reason_for_no_match(self._folder, patterns))
+            self._refuse_timed(self._why_missing(patterns))
             return
         self._note(ambiguity(self._folder, patterns))
         log = os.path.join(self._own, "state.log")
@@ -186,6 +193,9 @@ class Judge:
         return Program(command, os.path.dirname(path), self._scratch, self._assignment.limits,
                        submission_account(self._scratch, self._slot),
                        {**graph_environment(uri), "ROS_PACKAGE_PATH": packages})
+
+    def _why_missing(self, patterns: Sequence[str]) -> str:
+        return reason_for_no_match(self._folder, patterns, self._unreadable)
 
     def _note(self, text: str) -> None:
         if text:

@@ -37,19 +37,23 @@ class LaunchChecks:
         assignment: the assignment.
         scratch: folder of the box.
         slot: number of the slot.
+        unreadable: files of the submission that were left out because they cannot be read.
     """
 
-    def __init__(self, assignment: Assignment, scratch: str, slot: int) -> None:
+    def __init__(self, assignment: Assignment, scratch: str, slot: int,
+                 unreadable: Sequence[str]) -> None:
         self._assignment = assignment
         self._scratch = scratch
         self._folder = os.path.join(scratch, "submission")
         self._slot = slot
+        self._unreadable = unreadable
 
     def launch(self, check: Launch) -> CheckResult:
         """Start a launch file; it passes if its nodes run for the time of the check."""
         name = matching(self._folder, check.file)
         if not name:
-            return result(check, 0.0, reason_for_no_match(self._folder, check.file))
+            return result(check, 0.0, reason_for_no_match(self._folder, check.file,
+                                                          self._unreadable))
         port = free_port()
         uri = f"http://127.0.0.1:{port}/"
         words = ["roslaunch", "-p", str(port), os.path.join(self._folder, name),

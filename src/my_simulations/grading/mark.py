@@ -11,6 +11,8 @@ from .assignment import Assignment, Check
 GRADED, TIMED_OUT, FAILED = "graded", "timed out", "not graded"
 """Statuses: every check was decided; the time ended first; the grading program itself failed."""
 
+_LONGEST_REASON = 1000   # characters
+
 
 class GradingError(SimulationError):
     """The grading program itself failed, through no fault of the submission."""
@@ -44,7 +46,12 @@ class CheckResult:
 
 def result(check: Check, share: float, reason: str = "", file: str = "", line: int = 0
            ) -> CheckResult:
-    """The result of a check that gives a share of its points, 0..1; rounded to 0.01 points."""
+    """The result of a check that gives a share of its points, 0..1; rounded to 0.01 points.
+
+    A long reason is cut: it can contain any text of a submission.
+    """
+    if len(reason) > _LONGEST_REASON:
+        reason = f"{reason[:_LONGEST_REASON]}…"
     points = round(check.points * min(max(share, 0.0), 1.0), 2)
     return CheckResult(check.name, check.points, points, reason, file, line)
 

@@ -4,20 +4,18 @@ from __future__ import annotations
 import fnmatch
 import hashlib
 import os
-import stat
 from dataclasses import dataclass
-from typing import Dict, Iterator, List, Sequence, Tuple
+from typing import Dict, List, Sequence
 
 from ..errors import CommandError
+from .box import open_regular
+from .submission_files import content_of
 
 _CHUNK = 1 << 20
 _SHOWN_FILES = 5
 
 ARCHIVES = {".zip": "zip", ".tar.gz": "tar", ".tgz": "tar"}
 """Endings of archives that are unpacked, and their kinds."""
-
-_MAC_FOLDER = "__MACOSX"   # what macOS adds to zip files: it is not of the student
-
 
 @dataclass(frozen=True)
 class Submission:
@@ -61,36 +59,25 @@ def _without_ending(name: str) -> str:
     return os.path.splitext(name)[0]
 
 
-def regular_files(path: str) -> Iterator[Tuple[str, str]]:
-    """Relative and full path of each regular file of a submission, sorted.
-
-    Links, sockets, pipes and devices are left out: they may lead out of the submission.
-    """
-    if not os.path.isdir(path):
-        yield os.path.basename(path), path
-        return
-    for folder, folders, names in os.walk(path):
-        folders[:] = sorted(name for name in folders if not name.startswith(".")
-                            and name != _MAC_FOLDER
-                            and not os.path.islink(os.path.join(folder, name)))
-        for name in sorted(names):
-            full = os.path.join(folder, name)
-            if stat.S_ISREG(os.lstat(full).st_mode):
-                yield os.path.relpath(full, path), full
-
-
 def size_of(path: str) -> int:
-    """Bytes of all files of a submission."""
-    return sum(os.path.getsize(full) for _, full in regular_files(path))
+    """Bytes of all files of a submission. Raises as content_of."""
+    return sum(os.path.getsize(full) for _, full in content_of(path).files)
 
 
 def content_key(path: str, *more: str) -> str:
-    """SHA-256 of names, permissions to execute and contents of all files, and of more texts."""
+    """SHA-256 of names, permissions to execute and contents of all files, and of more texts.
+
+    Raises as content_of.
+    """
     digest = hashlib.sha256("\0".join(more).encode())
-    for relative, full in regular_files(path):
-        runs = bool(os.stat(full).st_mode & 0o111)
-        digest.update(os.fsencode(f"\0{relative}\0{runs}\0{os.path.getsize(full)}\0"))
-        with open(full, "rb") as stream:
+    content = content_of(path)
+    for name in content.unreadable:
+        digest.update(os.fsencode(f"\0{name}\0unreadable\0"))
+    for relative, full in content.files:
+        with open_regular(full) as stream:
+            status = os.fstat(stream.fileno())
+            runs = bool(status.st_mode & 0o111)
+            digest.update(os.fsencode(f"\0{relative}\0{runs}\0{status.st_size}\0"))
             for chunk in iter(lambda: stream.read(_CHUNK), b""):
                 digest.update(chunk)
     return digest.hexdigest()
@@ -115,27 +102,33 @@ def ambiguity(folder: str, patterns: Sequence[str]) -> str:
     """Which file `matching` has chosen, if others fit the same pattern; "" if none does."""
     for pattern, found in zip(patterns, _by_pattern(folder, patterns)):
         if len(found) > 1:
-            return (f"{found[0]} was graded; the submission contains more files that fit {pattern}:"
-                    f" {_listed(found[1:])}")
+            return (f"{found[0]} was graded, which has the fewest folders and then the first name;"
+                    f" the submission contains more files that fit {pattern}: {listed(found[1:])}")
         if found:
             return ""
     return ""
 
 
-def reason_for_no_match(folder: str, patterns: Sequence[str]) -> str:
-    """Why `matching` has found nothing."""
-    names = [relative for relative, _ in regular_files(folder)]
-    content = f"it contains {_listed(names)}" if names else "it is empty"
+def reason_for_no_match(folder: str, patterns: Sequence[str], unreadable: Sequence[str] = ()
+                        ) -> str:
+    """Why `matching` has found nothing; `unreadable` are files that were left out."""
+    hidden = [name for name in unreadable for pattern in patterns
+              if _fits(name.lower(), pattern.lower())]
+    if hidden:
+        return f"{hidden[0]} cannot be read: its permissions forbid it"
+    names = [relative for relative, _ in content_of(folder).files]
+    content = f"it contains {listed(names)}" if names else "it is empty"
     return f"the submission contains no {' or '.join(patterns)}; {content}"
 
 
-def _listed(names: Sequence[str]) -> str:
+def listed(names: Sequence[str]) -> str:
+    """The first names, and the number of the others."""
     more = len(names) - _SHOWN_FILES
     return ", ".join(names[:_SHOWN_FILES]) + (f" and {more} more" if more > 0 else "")
 
 
 def _by_pattern(folder: str, patterns: Sequence[str]) -> List[List[str]]:
-    names = sorted((relative for relative, _ in regular_files(folder)
+    names = sorted((relative for relative, _ in content_of(folder).files
                     if not os.path.basename(relative).startswith(".")),
                    key=lambda name: (name.count(os.sep), name))
     found = []

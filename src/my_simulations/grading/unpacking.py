@@ -9,9 +9,9 @@ from typing import Iterator
 
 from ..resources.database.archive import extract
 from ..resources.database.http_download import Limits
-from .submission import ARCHIVES, Submission, regular_files
+from .submission import ARCHIVES, Submission
+from .submission_files import MOST_FILES, content_of
 
-_MOST_FILES = 20000
 _SECONDS = 120.0
 
 
@@ -37,14 +37,14 @@ def unpacked(submission: Submission, folder: str, most_bytes: int) -> Iterator[S
     kind = next(kind for ending, kind in ARCHIVES.items() if archive.lower().endswith(ending))
     with tempfile.TemporaryDirectory(prefix=".unpacked_", dir=folder) as above:
         path = os.path.join(above, "files")
-        extract(kind, archive, path, Limits(files=_MOST_FILES, unpacked_bytes=most_bytes),
+        extract(kind, archive, path, Limits(files=MOST_FILES, unpacked_bytes=most_bytes),
                 time.monotonic() + _SECONDS, skips_links=True)
         yield Submission(submission.student, path)
 
 
 def archive_of(submission: Submission) -> str:
     """Path of the archive that a submission consists of; "" for none."""
-    files = [full for relative, full in regular_files(submission.path)
+    files = [full for relative, full in content_of(submission.path).files
              if not os.path.basename(relative).startswith(".")]
     is_archive = len(files) == 1 and files[0].lower().endswith(tuple(ARCHIVES))
     return files[0] if is_archive else ""

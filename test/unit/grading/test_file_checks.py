@@ -15,6 +15,7 @@ BOX = """<model name="{name}"><static>{static}</static><link name="l"><visual na
 <box><size>1 1 1</size></box></geometry></visual></link></model>"""
 WORLD = """<sdf version="1.6"><world name="w">
 <light name="sun" type="point"/>{}</world></sdf>"""
+MISSING = "the submission contains no *.world; it is empty"
 CHECKS = """submission: {world: "*.world"}
 checks:
 """
@@ -24,9 +25,10 @@ def results(folder, text, *checks):
     (folder / "lab.yaml").write_text(CHECKS + "".join(f"  - {check}\n" for check in checks))
     assignment, _ = read_assignment(str(folder / "lab.yaml"))
     if text is None:
-        return check_files(assignment, None)
+        return check_files(assignment, None, MISSING)
     (folder / "a.world").write_text(text)
-    return check_files(assignment, read_world_file(str(folder), "a.world", Resolver([])))
+    return check_files(assignment, read_world_file(str(folder), "a.world", Resolver([])),
+                       MISSING)
 
 
 def models(*names, static="true"):
@@ -90,4 +92,4 @@ def test_a_submission_without_a_world_gets_no_points(tmp_path):
     found = results(tmp_path, None, "{points: 1, check_model: lenient}",
                     "{points: 1, count: model, at_least: 1}")
     assert [one.points for one in found] == [0, 0]
-    assert {one.reason for one in found} == {"the submission contains no world file"}
+    assert {one.reason for one in found} == {MISSING}

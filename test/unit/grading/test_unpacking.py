@@ -9,7 +9,9 @@ import zipfile
 
 import pytest
 
-from my_simulations.grading.submission import regular_files, submissions_of
+from my_simulations.grading.submission import submissions_of
+from my_simulations.grading.submission_files import MOST_FILES
+from my_simulations.grading.submission_files import content_of as files_of
 from my_simulations.grading.unpacking import unpacked
 from my_simulations.resources.database.archive import ArchiveError
 
@@ -34,7 +36,7 @@ def content_of(path, folder):
     (submission,) = submissions_of([str(path)])
     with unpacked(submission, str(folder), MOST_BYTES) as found:
         assert found.student == submission.student
-        files = dict(regular_files(found.path))
+        files = dict(files_of(found.path).files)
         contents = {}
         for name, full in files.items():
             with open(full, encoding="utf-8") as stream:
@@ -80,8 +82,9 @@ def test_an_archive_as_the_only_file_of_a_folder_is_the_submission(tmp_path):
 @pytest.mark.parametrize("name, content, reason", [
     ("go.py", bytes(MOST_BYTES + 1), "more than 20000 files or 1048576 bytes"),
     ("../go.py", b"", "outside its folder"), ("/tmp/go.py", b"", "outside its folder"),
-    ("a\\..\\..\\go.py", b"", "outside its folder")],
-    ids=["bomb", "dots", "absolute", "backslashes"])
+    ("a\\..\\..\\go.py", b"", "outside its folder"),
+    (300 * "a/" + "go.py", b"", "more than 50 folders in each other")],
+    ids=["bomb", "dots", "absolute", "backslashes", "deep"])
 def test_an_archive_that_does_harm_is_refused(tmp_path, name, content, reason):
     write_zip(tmp_path / "dora.zip", (name, content))
     with pytest.raises(ArchiveError, match=reason):
@@ -100,3 +103,10 @@ def test_a_damaged_or_encrypted_archive_is_refused(tmp_path):
     (tmp_path / "encrypted.zip").write_bytes(packed)
     with pytest.raises(ArchiveError, match="'go.py' is encrypted"):
         content_of(tmp_path / "encrypted.zip", tmp_path / "second")
+
+
+def test_an_archive_of_too_many_files_is_refused(tmp_path):
+    write_zip(tmp_path / "many.zip", *((f"{number}", b"") for number in range(MOST_FILES + 1)))
+    with pytest.raises(ArchiveError, match=f"more than {MOST_FILES} files"):
+        content_of(tmp_path / "many.zip", tmp_path / "out")
+    assert os.listdir(tmp_path / "out") == []

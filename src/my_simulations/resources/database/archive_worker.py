@@ -21,6 +21,7 @@ except ImportError:   # a Python without liblzma, whose zipfile refuses such ent
 
 MEMORY = 256 << 20
 _CHUNK = 1 << 16
+_MOST_PARTS = 50   # of a path: deeper trees exhaust the stack of programs that walk them
 
 Entry = Tuple[str, str, int, Any, bool]
 """Name, kind (`file`, `folder`, `encrypted`, `other`), size in the header, a function that opens
@@ -116,6 +117,8 @@ def _safe_path(path: str, kind: str, folder: str, name: str) -> Optional[str]:
     parts = [part for part in path.split("/") if part not in ("", ".")]
     if path.startswith("/") or ".." in parts or "\0" in path or "\\" in path:
         raise ArchiveRefusedError(f"the archive contains a path outside its folder: {path!r}")
+    if len(parts) > _MOST_PARTS:
+        raise ArchiveRefusedError(f"the archive has more than {_MOST_PARTS} folders in each other")
     if name and parts and parts[0] != name:
         raise ArchiveRefusedError(f"the archive contains {parts[0]!r} besides {name!r}")
     target = os.path.join(folder, *parts)
