@@ -6,10 +6,10 @@ import signal
 
 import pytest
 from conftest import box, ground
+from inline_engine import InlineEngine
 
 from my_simulations.description.world import World
 from my_simulations.engine.bullet.backend import BulletBackend
-from my_simulations.engine.inline_engine import InlineEngine
 from my_simulations.engine.process_engine import ProcessEngine
 from my_simulations.errors import CommandError
 from my_simulations.geometry import STILL, Pose, Twist, compose, inverse

@@ -7,11 +7,11 @@ import signal
 
 import numpy as np
 import pytest
+from kinematic_backend import KinematicBackend
 from plugin_case import PluginCase, kept, until
 from walking_figures import rod
 
 from my_simulations.description.world import World
-from my_simulations.engine.kinematic_backend import KinematicBackend
 from my_simulations.formats.reading import read_any
 from my_simulations.resources.resolver import Resolver
 

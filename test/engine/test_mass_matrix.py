@@ -9,12 +9,12 @@ import numpy as np
 import pybullet
 import pytest
 from conftest import arm
+from inline_engine import InlineEngine
 
 from my_simulations.description.model import Inertial, Joint, JointAxis, Link, Model
 from my_simulations.description.world import World
 from my_simulations.engine.bullet.backend import BulletBackend
 from my_simulations.engine.bullet.mass_matrix import MassMatrix
-from my_simulations.engine.inline_engine import InlineEngine
 from my_simulations.geometry import Pose
 from my_simulations.simulator.simulator import Simulator
 

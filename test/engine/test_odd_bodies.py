@@ -2,11 +2,11 @@
 from __future__ import annotations
 
 import pytest
+from inline_engine import InlineEngine
 
 from my_simulations.description.model import Inertial, Joint, JointAxis, Link, Model
 from my_simulations.description.world import World
 from my_simulations.engine.bullet.backend import BulletBackend
-from my_simulations.engine.inline_engine import InlineEngine
 from my_simulations.geometry import Pose, Twist, rotate
 from my_simulations.simulator.simulator import Simulator
 

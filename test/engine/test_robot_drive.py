@@ -7,11 +7,11 @@ import time
 
 import pytest
 from conftest import ground
+from inline_engine import InlineEngine
 from plugin_graph import Graph
 
 from my_simulations.description.world import World
 from my_simulations.engine.bullet.backend import BulletBackend
-from my_simulations.engine.inline_engine import InlineEngine
 from my_simulations.engine.timed_forces import JointPid
 from my_simulations.formats.reading import read_file
 from my_simulations.geometry import rpy_from_quat

@@ -2,10 +2,10 @@
 from __future__ import annotations
 
 import pytest
+from inline_engine import InlineEngine
 
 from my_simulations.description.compare import differences
 from my_simulations.engine.bullet.backend import BulletBackend
-from my_simulations.engine.inline_engine import InlineEngine
 from my_simulations.formats.reading import parse_world, read_world
 from my_simulations.resources.resolver import Resolver
 from my_simulations.simulator.saving import present_world, save_world

@@ -3,6 +3,7 @@ from __future__ import annotations
 
 import pytest
 from conftest import ground
+from inline_engine import InlineEngine
 from plugin_case import kept, until
 from plugin_graph import Graph
 
@@ -11,7 +12,6 @@ from my_simulations.description.plugin import PluginSpec
 from my_simulations.description.transmission import Transmission, TransmissionJoint
 from my_simulations.description.world import World
 from my_simulations.engine.bullet.backend import BulletBackend
-from my_simulations.engine.inline_engine import InlineEngine
 from my_simulations.engine.ring import HEARTBEAT
 from my_simulations.geometry import Pose
 from my_simulations.plugins.base import Plugin

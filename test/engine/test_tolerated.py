@@ -6,10 +6,10 @@ import os
 from pathlib import Path
 
 import pytest
+from inline_engine import InlineEngine
 
 from my_simulations.description.world import World
 from my_simulations.engine.bullet.backend import BulletBackend
-from my_simulations.engine.inline_engine import InlineEngine
 from my_simulations.errors import InputError, errors_of
 from my_simulations.formats.reading import read_entity, read_file, read_world_text
 from my_simulations.resources.resolver import Resolver

@@ -7,11 +7,11 @@ import threading
 from contextlib import contextmanager
 
 from architecture_walks import walks
+from inline_engine import InlineEngine
 
 import my_simulations
 from my_simulations.description.world import World
 from my_simulations.engine.bullet.backend import BulletBackend
-from my_simulations.engine.inline_engine import InlineEngine
 from my_simulations.formats.mesh.loading import collision_meshes
 from my_simulations.formats.reading import parse_document
 from my_simulations.resources.resolver import Resolver

@@ -6,10 +6,9 @@ from typing import Any, List, Tuple
 
 from grammars import words
 from hypothesis import strategies as st
+from inline_engine import InlineEngine
 
 from my_simulations.description.world import World
-from my_simulations.engine.inline_engine import InlineEngine
-from my_simulations.engine.kinematic_backend import KinematicBackend
 from my_simulations.resources.resolver import Resolver
 from my_simulations.ros.endpoints import Endpoint
 from my_simulations.ros.interface import SERVES, TABLE
@@ -38,7 +37,7 @@ SIZES = {"bool": st.booleans(), "float64": numbers, "float32": numbers,
 def start(*models: Any) -> Tuple[Simulator, List[Endpoint]]:
     """A world on an engine without physics, and the services that need no master."""
     simulator = Simulator(World(models=list(models)), paused=True, log=lambda issue: None,
-                          engine_factory=lambda: InlineEngine(KinematicBackend))
+                          engine_factory=InlineEngine)
     simulator.start()
     handlers = {
         "joints": JointServices(simulator), "lights": LightServices(simulator),

@@ -71,7 +71,7 @@ def requests() -> Iterator[Dict[str, object]]:
 
 
 def test_a_flood_at_the_editor_stops_neither_time_nor_others(case, monkeypatch, record):
-    monkeypatch.setattr("editor_case.InlineEngine", lambda _backend: ProcessEngine())
+    monkeypatch.setattr("editor_case.InlineEngine", ProcessEngine)
     made: Case = case(box("a"), paused=False, check_outgoing=False)
 
     async def scenario(browser):

@@ -8,6 +8,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from editor_case import box
+from inline_engine import InlineEngine
 from test_replay_page import content, modules  # noqa: F401
 
 import my_simulations
@@ -18,8 +19,6 @@ from my_simulations.editor.logs.replay_page import write_replay
 from my_simulations.editor.logs.state_log import CONTACTS, MESSAGE, TOPICS, LogReader, LogWriter
 from my_simulations.editor.topics.topic_frame import decode_frame, encode_frame
 from my_simulations.editor.transport.pose_messages import Poses
-from my_simulations.engine.inline_engine import InlineEngine
-from my_simulations.engine.kinematic_backend import KinematicBackend
 from my_simulations.errors import CommandError, EngineLostError
 from my_simulations.geometry import IDENTITY
 from my_simulations.resources.resolver import Resolver
@@ -150,7 +149,7 @@ def test_messages_beyond_a_size_are_left_out(writer):
 def test_a_recorder_subscribes_to_the_topics_of_its_options(tmp_path):
     source, issues = Source("/sonar"), []
     sim = Simulator(World(models=[box("a")]), paused=True, log=issues.append,
-                    engine_factory=lambda: InlineEngine(KinematicBackend))
+                    engine_factory=InlineEngine)
     sim.start()
     recorder = Recorder(sim, Resolver([]), str(tmp_path / "state.log"), 0.001, issues.append,
                         source, ("/sonar",))

@@ -12,14 +12,13 @@ import time
 import numpy as np
 import pytest
 from editor_case import Case, box
+from inline_engine import InlineEngine
 
 from my_simulations.cli.front_ends import FrontEnds
 from my_simulations.description.world import World
 from my_simulations.editor.logs.recorder import Recorder, path_of
 from my_simulations.editor.logs.state_log import LogReader, LogWriter
 from my_simulations.editor.transport.pose_messages import Poses
-from my_simulations.engine.inline_engine import InlineEngine
-from my_simulations.engine.kinematic_backend import KinematicBackend
 from my_simulations.errors import CommandError, Severity
 from my_simulations.geometry import Pose, Twist
 from my_simulations.resources.resolver import Resolver
@@ -48,7 +47,7 @@ class Running:
         self.path = str(folder / "log" / "state.log")
         options = {} if steps is None else {"steps": steps}
         self.sim = Simulator(World(models=[box("a")]), paused=True, log=self.issues.append,
-                             engine_factory=lambda: InlineEngine(KinematicBackend), **options)
+                             engine_factory=InlineEngine, **options)
         self.sim.start()
         self.sim.states.set_model_state("a", Pose((0, 0, 9)), Twist((2.0, 0.0, 0.0)))
         self.recorder = Recorder(self.sim, Resolver.from_environment(), self.path, period,

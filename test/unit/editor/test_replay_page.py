@@ -9,6 +9,7 @@ import re
 import numpy as np
 import pytest
 from editor_case import box
+from inline_engine import InlineEngine
 
 from my_simulations.cli.replay_command import main
 from my_simulations.description.shapes import Heightmap, Mesh, Polyline
@@ -19,8 +20,6 @@ from my_simulations.editor.logs.state_log import LogReader, LogWriter
 from my_simulations.editor.transport.page_bundle import FOLDER, sources_of
 from my_simulations.editor.transport.page_files import PageFiles
 from my_simulations.editor.transport.pose_messages import Poses
-from my_simulations.engine.inline_engine import InlineEngine
-from my_simulations.engine.kinematic_backend import KinematicBackend
 from my_simulations.errors import CommandError
 from my_simulations.resources.resolver import Resolver
 from my_simulations.simulator.simulator import Simulator
@@ -51,7 +50,7 @@ def recorded(folder, models):
     """The log of the first state of a world."""
     issues = []
     sim = Simulator(World(models=models), paused=True, log=issues.append,
-                    engine_factory=lambda: InlineEngine(KinematicBackend))
+                    engine_factory=InlineEngine)
     sim.start()
     recorder = Recorder(sim, Resolver([str(folder)]), str(folder / "run" / "state.log"), 0.001,
                         issues.append)

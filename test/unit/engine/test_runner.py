@@ -5,6 +5,8 @@ import threading
 import time
 
 import pytest
+from inline_engine import InlineEngine
+from kinematic_backend import KinematicBackend
 
 from my_simulations.description.model import Inertial, Link, Model
 from my_simulations.engine.commands import (
@@ -23,8 +25,6 @@ from my_simulations.engine.commands import (
     SetModelState,
     SetPhysics,
 )
-from my_simulations.engine.inline_engine import InlineEngine
-from my_simulations.engine.kinematic_backend import KinematicBackend
 from my_simulations.engine.ring import DEMAND_NS, LATEST_POSES, POSE_DEMAND_NS
 from my_simulations.geometry import Pose, Twist
 
@@ -43,7 +43,7 @@ class Slow(KinematicBackend):
 
 @pytest.fixture
 def engine():
-    made = InlineEngine(KinematicBackend)
+    made = InlineEngine()
     yield made
     made.close()
 

@@ -6,6 +6,7 @@ from concurrent.futures import Future
 from dataclasses import replace
 
 import pytest
+from kinematic_backend import KinematicBackend
 from plugin_case import PluginCase, kept, until
 from plugin_graph import Graph
 
@@ -14,7 +15,6 @@ from my_simulations.description.plugin import PluginSpec
 from my_simulations.description.sensor import Ray, ScanAngles, Sensor
 from my_simulations.description.shapes import Collision, Sphere
 from my_simulations.description.world import World
-from my_simulations.engine.kinematic_backend import KinematicBackend
 from my_simulations.engine.ring import RECORDS
 from my_simulations.errors import Severity
 from my_simulations.geometry import Pose

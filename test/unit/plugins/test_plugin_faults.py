@@ -5,12 +5,12 @@ import itertools
 from dataclasses import replace
 
 import pytest
+from kinematic_backend import KinematicBackend
 from plugin_case import PluginCase, kept, until
 
 from my_simulations.description.model import Inertial, Joint, JointAxis, Link, Model
 from my_simulations.description.plugin import PluginSpec
 from my_simulations.description.world import World
-from my_simulations.engine.kinematic_backend import KinematicBackend
 from my_simulations.plugins.call_watch import CALL_LIMITS, CallLimits
 
 NUMBERS = itertools.count()

@@ -6,13 +6,12 @@ import threading
 import pytest
 from gazebo_msgs import srv
 from geometry_msgs.msg import Pose as PoseMessage
+from inline_engine import InlineEngine
 
 from my_simulations.description.light import Light
 from my_simulations.description.model import Inertial, Joint, JointAxis, Link, Model
 from my_simulations.description.world import World
 from my_simulations.engine.commands import FOREVER
-from my_simulations.engine.inline_engine import InlineEngine
-from my_simulations.engine.kinematic_backend import KinematicBackend
 from my_simulations.errors import CommandError
 from my_simulations.geometry import STILL, Pose
 from my_simulations.resources.resolver import Resolver
@@ -37,7 +36,7 @@ def model(name):
 def sim():
     made = Simulator(World(models=[model("a"), model("other")], lights=[Light("sun")]),
                      paused=True, log=lambda issue: None,
-                     engine_factory=lambda: InlineEngine(KinematicBackend))
+                     engine_factory=InlineEngine)
     made.start()
     yield made
     made.close()

@@ -7,10 +7,9 @@ from types import SimpleNamespace
 
 import pytest
 from geometry_msgs.msg import Pose, Quaternion
+from inline_engine import InlineEngine
 
 from my_simulations.description.world import World
-from my_simulations.engine.inline_engine import InlineEngine
-from my_simulations.engine.kinematic_backend import KinematicBackend
 from my_simulations.errors import CommandError, InputError
 from my_simulations.resources.package_files import own_directory
 from my_simulations.resources.resolver import Resolver
@@ -32,7 +31,7 @@ def request(name="a", xml=BOX, **fields):
 @pytest.fixture
 def services():
     issues, reported = [], []
-    simulator = Simulator(World(), engine_factory=lambda: InlineEngine(KinematicBackend),
+    simulator = Simulator(World(), engine_factory=InlineEngine,
                           paused=True, log=reported.append)
     simulator.start()
     made = ModelServices(simulator, Resolver(), issues.append, launcher=41)

@@ -5,11 +5,10 @@ from types import SimpleNamespace
 
 import pytest
 from geometry_msgs.msg import Pose, Quaternion
+from inline_engine import InlineEngine
 from work_count import lines_run
 
 from my_simulations.description.world import World
-from my_simulations.engine.inline_engine import InlineEngine
-from my_simulations.engine.kinematic_backend import KinematicBackend
 from my_simulations.plugins.running import ModelPlugins
 from my_simulations.resources.resolver import Resolver
 from my_simulations.ros.plugins.plugin_starter import PluginStarter
@@ -26,7 +25,7 @@ SAMPLES = 5
 
 @pytest.fixture
 def services():
-    simulator = Simulator(World(), engine_factory=lambda: InlineEngine(KinematicBackend),
+    simulator = Simulator(World(), engine_factory=InlineEngine,
                           paused=True, log=lambda issue: None)
     simulator.start()
     starter = PluginStarter(simulator, lambda issue: None)

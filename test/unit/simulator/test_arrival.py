@@ -4,12 +4,11 @@ from __future__ import annotations
 from dataclasses import replace
 
 import pytest
+from inline_engine import InlineEngine
 
 from my_simulations.description.model import Inertial, Joint, JointAxis, Link, Model
 from my_simulations.description.shapes import Box, Collision, Plane
 from my_simulations.description.world import World
-from my_simulations.engine.inline_engine import InlineEngine
-from my_simulations.engine.kinematic_backend import KinematicBackend
 from my_simulations.formats.loading_advice import ADVICE_LIMIT, Written, advice_issues
 from my_simulations.formats.reading import parse_document
 from my_simulations.geometry import STILL, Pose
@@ -31,7 +30,7 @@ GROUND = Model("ground", static=True, links=[Link("l", collisions=[Collision("c"
 @pytest.fixture
 def sim():
     made = Simulator(World(models=[GROUND, cube("deep", 0.2), cube("high", 5.0)]), paused=True,
-                     engine_factory=lambda: InlineEngine(KinematicBackend),
+                     engine_factory=InlineEngine,
                      log=lambda issue: pytest.fail(str(issue)))
     made.start()
     yield made

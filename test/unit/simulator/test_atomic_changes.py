@@ -4,14 +4,14 @@ from __future__ import annotations
 from dataclasses import replace
 
 import pytest
+from inline_engine import InlineEngine
+from kinematic_backend import KinematicBackend
 from test_simulator import arm, box
 
 from my_simulations.description.model import Joint
 from my_simulations.description.world import World
 from my_simulations.engine.api import CommandRefusedError
 from my_simulations.engine.commands import Ping
-from my_simulations.engine.inline_engine import InlineEngine
-from my_simulations.engine.kinematic_backend import KinematicBackend
 from my_simulations.errors import CommandError
 from my_simulations.formats.sdf.writer.entities import write_world
 from my_simulations.geometry import Pose

@@ -2,20 +2,19 @@
 from __future__ import annotations
 
 import pytest
+from inline_engine import InlineEngine
 
 from my_simulations.description import cost_budget
 from my_simulations.description.cost_budget import MODEL_BUDGET, Cost
 from my_simulations.description.model import Link, Model
 from my_simulations.description.world import World
-from my_simulations.engine.inline_engine import InlineEngine
-from my_simulations.engine.kinematic_backend import KinematicBackend
 from my_simulations.errors import CommandError
 from my_simulations.simulator.simulator import Simulator
 
 
 @pytest.fixture
 def simulator():
-    made = Simulator(World(), engine_factory=lambda: InlineEngine(KinematicBackend), paused=True,
+    made = Simulator(World(), engine_factory=InlineEngine, paused=True,
                      log=lambda issue: None)
     made.start()
     yield made

@@ -4,12 +4,11 @@ from __future__ import annotations
 import math
 
 import pytest
+from inline_engine import InlineEngine
 
 from my_simulations.description.light import Light
 from my_simulations.description.model import Link, Model
 from my_simulations.description.world import World
-from my_simulations.engine.inline_engine import InlineEngine
-from my_simulations.engine.kinematic_backend import KinematicBackend
 from my_simulations.geometry import STILL, Pose, quat_from_rpy
 from my_simulations.simulator.registry import UnknownFrameError
 from my_simulations.simulator.simulator import Simulator
@@ -19,7 +18,7 @@ from my_simulations.simulator.simulator import Simulator
 def sim():
     lamp = Light("lamp", pose=Pose((1.0, 2.0, 3.0), quat_from_rpy(0, 0, math.pi / 2)))
     made = Simulator(World(models=[Model("box", links=[Link("link")])], lights=[lamp]),
-                     engine_factory=lambda: InlineEngine(KinematicBackend), paused=True, log=print)
+                     engine_factory=InlineEngine, paused=True, log=print)
     made.start()
     yield made
     made.close()

@@ -2,14 +2,14 @@
 from __future__ import annotations
 
 import pytest
+from inline_engine import InlineEngine
+from kinematic_backend import KinematicBackend
 
 from my_simulations.description.model import Joint, JointAxis, Link, Model
 from my_simulations.description.shapes import Box, Collision, Mesh
 from my_simulations.description.world import World
 from my_simulations.engine.api import CommandRefusedError
 from my_simulations.engine.commands import LoadModel
-from my_simulations.engine.inline_engine import InlineEngine
-from my_simulations.engine.kinematic_backend import KinematicBackend
 from my_simulations.simulator import load_groups
 from my_simulations.simulator.load_groups import small_groups
 from my_simulations.simulator.simulator import Simulator

@@ -3,13 +3,13 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from inline_engine import InlineEngine
+from kinematic_backend import KinematicBackend
 
 from my_simulations.description.model import Link, Model
 from my_simulations.description.shapes import Collision, Mesh, MeshData, mesh_key
 from my_simulations.description.world import World
 from my_simulations.engine.commands import Batch, ContinuePreparation, LoadModel, PrepareModel
-from my_simulations.engine.inline_engine import InlineEngine
-from my_simulations.engine.kinematic_backend import KinematicBackend
 from my_simulations.simulator.model_preparation import PLAIN_TRIANGLES
 from my_simulations.simulator.simulator import Simulator
 

@@ -5,13 +5,13 @@ import threading
 import time
 
 import pytest
+from inline_engine import InlineEngine
+from kinematic_backend import KinematicBackend
 
 from my_simulations.description.model import Inertial, Link, Model
 from my_simulations.description.world import World
 from my_simulations.engine.api import MOST_POSTED, CommandRefusedError
 from my_simulations.engine.commands import SetModelState
-from my_simulations.engine.inline_engine import InlineEngine
-from my_simulations.engine.kinematic_backend import KinematicBackend
 from my_simulations.geometry import STILL, Pose
 from my_simulations.simulator.simulator import Simulator
 

@@ -5,12 +5,11 @@ import subprocess
 from pathlib import Path
 
 import pytest
+from inline_engine import InlineEngine
 from reading import VALID, model_of, sdf, world_of
 
 from my_simulations.description.model import Joint, JointAxis, Link, Mimic, Model
 from my_simulations.description.world import World
-from my_simulations.engine.inline_engine import InlineEngine
-from my_simulations.engine.kinematic_backend import KinematicBackend
 from my_simulations.formats.reading import read_file, read_world
 from my_simulations.formats.sdf.writer.entities import write_entity, write_world
 from my_simulations.resources.resolver import Resolver
@@ -86,7 +85,7 @@ def test_it_reads_a_running_world_with_joints_and_nested_models(faults, tmp_path
         Joint("screw", "screw", "world", "base", axis=JointAxis(mimic=Mimic("hinge", 2.0)))])
     outer = Model("outer", links=[Link("l")], models=[arm])
     sim = Simulator(World("w", models=[outer, Model("wall", static=True, links=[Link("l")])]),
-                    engine_factory=lambda: InlineEngine(KinematicBackend), paused=True,
+                    engine_factory=InlineEngine, paused=True,
                     log=lambda issue: pytest.fail(str(issue)))
     try:
         sim.start()

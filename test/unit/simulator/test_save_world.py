@@ -9,6 +9,7 @@ from dataclasses import replace
 
 import pytest
 from box_models import arm, box
+from inline_engine import InlineEngine
 from lxml import etree
 
 from my_simulations.description.compare import differences
@@ -18,8 +19,6 @@ from my_simulations.description.model import Joint, JointAxis, PluginSpec
 from my_simulations.description.model_group import group_of
 from my_simulations.description.unflatten import unflattened
 from my_simulations.description.world import World
-from my_simulations.engine.inline_engine import InlineEngine
-from my_simulations.engine.kinematic_backend import KinematicBackend
 from my_simulations.errors import CommandError, errors_of
 from my_simulations.formats.reading import parse_world, read_world
 from my_simulations.formats.sdf.state_applied import apply_state
@@ -48,7 +47,7 @@ def running():
 
     def run(*models, world=None):
         world = world or World("lab", models=list(models), lights=[Light("sun")])
-        sim = Simulator(world, engine_factory=lambda: InlineEngine(KinematicBackend), paused=True,
+        sim = Simulator(world, engine_factory=InlineEngine, paused=True,
                         log=lambda issue: pytest.fail(str(issue)))
         made.append(sim)
         sim.start()

@@ -7,13 +7,13 @@ import time
 
 import pytest
 from box_models import arm, box
+from inline_engine import InlineEngine
+from kinematic_backend import KinematicBackend
 
 from my_simulations.description.model import Model
 from my_simulations.description.shapes import Collision, Mesh
 from my_simulations.description.world import World
 from my_simulations.engine.commands import FOREVER
-from my_simulations.engine.inline_engine import InlineEngine
-from my_simulations.engine.kinematic_backend import KinematicBackend
 from my_simulations.engine.timed_forces import TimedWrench
 from my_simulations.errors import CommandError, EngineLostError
 from my_simulations.geometry import IDENTITY, STILL, Pose, Twist, quat_from_rpy
@@ -26,7 +26,7 @@ from my_simulations.simulator.simulator import Simulator
 class Case:
     def __init__(self, *models, paused=True):
         self.issues = []
-        self.engine = InlineEngine(KinematicBackend)
+        self.engine = InlineEngine()
         self.sim = Simulator(World(models=list(models)), engine_factory=lambda: self.engine,
                              paused=paused, log=self.issues.append)
         self.sim.start()
@@ -312,9 +312,8 @@ def test_a_restarted_world_runs_on_unless_it_was_paused(case):
 
 def test_the_command_that_killed_the_engine_fails_and_others_are_sent_again(case):
     made = case(box("a"))
-    from my_simulations.engine import kinematic_backend
     blown = threading.Event()
-    original = kinematic_backend.KinematicBackend.step
+    original = KinematicBackend.step
 
     def blow_up(self, first, count):
         if not blown.is_set() and self.models:
@@ -327,12 +326,12 @@ def test_the_command_that_killed_the_engine_fails_and_others_are_sent_again(case
                 time.sleep(0.001)
         original(self, first, count)
 
-    kinematic_backend.KinematicBackend.step = blow_up
+    KinematicBackend.step = blow_up
     try:
         with pytest.raises(EngineLostError, match="killed"):
             made.sim.clock.advance(5)
     finally:
-        kinematic_backend.KinematicBackend.step = original
+        KinematicBackend.step = original
     made.sim.states.set_model_state("a", Pose((1, 0, 0)), STILL)
     close(made.sim.states.model_state("a")[0], (1, 0, 0))
 

@@ -1,9 +1,8 @@
 import time
 
 import pytest
+from inline_engine import InlineEngine
 
-from my_simulations.engine.inline_engine import InlineEngine
-from my_simulations.engine.kinematic_backend import KinematicBackend
 from my_simulations.errors import InputError, Severity, warning
 from my_simulations.resources.resolver import Resolver
 from my_simulations.ros.lifecycle.engine_supply import EngineSupply
@@ -127,7 +126,7 @@ def test_a_seed_decides_where_a_population_stands(tmp_path):
 def test_a_world_starts_paused_with_its_seed_and_preset_and_stands_after_its_steps(tmp_path):
     (tmp_path / "a.world").write_text(RANDOM.replace("<population", PRESETS.split('"w">')[1].split(
         "</world>")[0] + "<population"))
-    engine, told = InlineEngine(KinematicBackend), []
+    engine, told = InlineEngine(), []
     sim = start_world(str(tmp_path / "a.world"), Resolver(), lambda: engine, told.append, seed=3,
                       profile="fast", steps=20, read=lambda: told.append("read"))
     try:

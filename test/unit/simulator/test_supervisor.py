@@ -7,10 +7,10 @@ import time
 import weakref
 
 import pytest
+from inline_engine import InlineEngine
+from kinematic_backend import KinematicBackend
 
 from my_simulations.engine.commands import Advance, Batch, Command, Ping, SetJoints
-from my_simulations.engine.inline_engine import InlineEngine
-from my_simulations.engine.kinematic_backend import KinematicBackend
 from my_simulations.errors import CommandError, EngineTimeoutError
 from my_simulations.simulator.supervisor import Supervisor
 from my_simulations.simulator.watchdog import Watchdog
@@ -62,7 +62,7 @@ def watch():
 
 
 def test_a_command_without_an_answer_is_a_named_error(watch):
-    supervisor = watch(lambda: _Silent(KinematicBackend), 0.1)
+    supervisor = watch(_Silent, 0.1)
     with pytest.raises(EngineTimeoutError, match=r"did not respond for 0\.1 s; Ping may still"):
         supervisor.call(Ping())
     assert issubclass(EngineTimeoutError, CommandError)
@@ -102,7 +102,7 @@ def test_a_restore_without_an_answer_is_told_and_ends_no_thread(watch):
         if "cannot restore" in issue.message:
             finished.set()
 
-    supervisor = Supervisor(lambda: _Silent(KinematicBackend), restore, log, 0.1)
+    supervisor = Supervisor(_Silent, restore, log, 0.1)
     try:
         supervisor.engine.kill()
         assert finished.wait(60), told
@@ -150,7 +150,7 @@ def test_an_engine_that_hangs_is_replaced_and_the_reason_is_told_not_the_signal(
     watchdog.begin()
 
     def made():
-        engines.append(_Hanging(KinematicBackend))
+        engines.append(_Hanging())
         return engines[-1]
 
     supervisor = Supervisor(made, lambda submit, paused: None, told.append, watchdog=watchdog)

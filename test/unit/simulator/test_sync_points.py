@@ -6,12 +6,11 @@ import threading
 import time
 
 import pytest
+from inline_engine import InlineEngine
 
 from my_simulations.description.model import Inertial, Joint, JointAxis, Link, Model
 from my_simulations.description.world import World
 from my_simulations.engine.drive_commands import JointMotor
-from my_simulations.engine.inline_engine import InlineEngine
-from my_simulations.engine.kinematic_backend import KinematicBackend
 from my_simulations.engine.rates import Rate
 from my_simulations.engine.ring import RECORDS
 from my_simulations.engine.step_records import RecordRule
@@ -30,7 +29,7 @@ def arm():
 
 @pytest.fixture
 def simulator():
-    engine = InlineEngine(KinematicBackend)
+    engine = InlineEngine()
     made = Simulator(World(models=[arm()]), engine_factory=lambda: engine, paused=True,
                      log=lambda issue: None)
     made.start()

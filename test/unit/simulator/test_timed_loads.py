@@ -4,13 +4,13 @@ from __future__ import annotations
 import math
 
 import pytest
+from inline_engine import InlineEngine
+from kinematic_backend import KinematicBackend
 
 from my_simulations.description.model import Inertial, Joint, JointAxis, Link, Model
 from my_simulations.description.world import World
 from my_simulations.engine.commands import FOREVER, Batch
 from my_simulations.engine.drive_commands import SetMotors, SetServos
-from my_simulations.engine.inline_engine import InlineEngine
-from my_simulations.engine.kinematic_backend import KinematicBackend
 from my_simulations.engine.ring import Clock
 from my_simulations.engine.timed_forces import JointPid, TimedWrench
 from my_simulations.errors import CommandError

@@ -4,13 +4,13 @@ from __future__ import annotations
 from dataclasses import replace
 
 import pytest
+from inline_engine import InlineEngine
+from kinematic_backend import KinematicBackend
 
 from my_simulations.description.model import Inertial, Joint, JointAxis, Link, Model
 from my_simulations.description.world import World
 from my_simulations.engine.commands import JointWrench
 from my_simulations.engine.drive_commands import WheelSlip
-from my_simulations.engine.inline_engine import InlineEngine
-from my_simulations.engine.kinematic_backend import KinematicBackend
 from my_simulations.errors import CommandError
 from my_simulations.simulator.simulator import Simulator
 

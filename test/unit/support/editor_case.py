@@ -6,6 +6,7 @@ import json
 import struct
 
 import aiohttp
+from inline_engine import InlineEngine
 
 from my_simulations import editor
 from my_simulations.description.light import Light
@@ -13,8 +14,6 @@ from my_simulations.description.model import Inertial, Joint, JointAxis, Link, M
 from my_simulations.description.shapes import Box, Collision, Visual
 from my_simulations.description.world import World
 from my_simulations.editor.topics.topic_frame import TOPIC
-from my_simulations.engine.inline_engine import InlineEngine
-from my_simulations.engine.kinematic_backend import KinematicBackend
 from my_simulations.geometry import Pose
 from my_simulations.resources.resolver import Resolver
 from my_simulations.simulator.simulator import Simulator
@@ -47,7 +46,7 @@ class Case:
         self.worlds = folder / "worlds"
         self.worlds.mkdir(exist_ok=True)
         self.issues = []
-        self.engine = InlineEngine(KinematicBackend)
+        self.engine = InlineEngine()
         world = World(models=list(models), lights=list(lights))
         self.sim = Simulator(world, engine_factory=lambda: self.engine, paused=paused,
                              log=self.issues.append)

@@ -3,9 +3,9 @@ from __future__ import annotations
 
 import time
 
+from inline_engine import InlineEngine
 from plugin_graph import Graph
 
-from my_simulations.engine.inline_engine import InlineEngine
 from my_simulations.plugins.call_watch import CALL_LIMITS
 from my_simulations.plugins.host import PluginHost
 from my_simulations.plugins.registry import PluginRegistry

@@ -1,4 +1,4 @@
-"""An engine in a thread of this process, for tests and for tools without crash safety."""
+"""An engine in a thread of this process, for tests."""
 from __future__ import annotations
 
 import queue
@@ -6,11 +6,13 @@ import threading
 from concurrent.futures import Future
 from typing import Callable, Dict, List, Tuple
 
-from .api import Backend, EngineDiedError, EngineNotRunningError, Event, Reply
-from .commands import Command, Ping, Post, SetModelState
-from .posted_commands import PostedCommands
-from .ring import Memory, RingReader, RingWriter
-from .runner import Runner
+from kinematic_backend import KinematicBackend
+
+from my_simulations.engine.api import Backend, EngineDiedError, EngineNotRunningError, Event, Reply
+from my_simulations.engine.commands import Command, Ping, Post, SetModelState
+from my_simulations.engine.posted_commands import PostedCommands
+from my_simulations.engine.ring import Memory, RingReader, RingWriter
+from my_simulations.engine.runner import Runner
 
 
 class _Queues:
@@ -49,7 +51,7 @@ class _Queues:
 class InlineEngine:
     """Runs `backend_factory`'s backend. `kill` drops it and every unanswered command."""
 
-    def __init__(self, backend_factory: Callable[[], Backend]) -> None:
+    def __init__(self, backend_factory: Callable[[], Backend] = KinematicBackend) -> None:
         self._factory = backend_factory
         self._memory = Memory(None)
         self._ring = RingReader(memory=self._memory)
@@ -65,24 +67,19 @@ class InlineEngine:
 
     @property
     def ring(self) -> RingReader:
-        """Where the states are read."""
         return self._ring
 
     @property
     def pid(self) -> int:
-        """There is no process."""
         return 0
 
     def on_event(self, listener: Callable[[Event], None]) -> None:
-        """Set the listener of events."""
         self._on_event = listener
 
     def on_death(self, listener: Callable[[str, List[Command]], bool]) -> None:
-        """Set the listener of deaths."""
         self._on_death = listener
 
     def restart(self) -> None:
-        """Start a new backend on the same ring."""
         self.backend = self._factory()
         self._channel = _Queues(self)
         runner = Runner(self.backend, RingWriter(memory=self._memory), self._channel)
@@ -91,7 +88,6 @@ class InlineEngine:
         self._thread.start()
 
     def submit(self, command: Command) -> "Future[Reply]":
-        """Queue a command."""
         future: "Future[Reply]" = Future()
         with self._send_lock, self._lock:
             if not self._alive:
@@ -103,7 +99,6 @@ class InlineEngine:
         return future
 
     def post(self, command: SetModelState) -> bool:
-        """Queue a command without a reply; see `Engine.post`."""
         with self._lock:
             if not self._alive or self._posts.full():
                 return False
@@ -115,19 +110,15 @@ class InlineEngine:
 
     @property
     def posted(self) -> int:
-        """Number of the last posted command; 0 for none."""
         return self._posts.last
 
     def notify(self) -> None:
-        """Notify the thread that the step budget is another."""
         self._channel.commands.put((0, Ping()))
 
     def notify_host(self) -> None:
-        """End a `wait_for_notice`."""
         self.notices.set()
 
     def wait_for_notice(self, timeout: float) -> bool:
-        """Wait for the engine or `notify_host`; False after `timeout` s."""
         noticed = self.notices.wait(timeout)
         self.notices.clear()
         return noticed
@@ -144,7 +135,6 @@ class InlineEngine:
         self._on_event(event)
 
     def wait_for_wake(self, timeout: float) -> bool:
-        """Wait for a wake-up and clear it."""
         rung = self.rung.wait(timeout)
         self.rung.clear()
         return rung
@@ -163,7 +153,6 @@ class InlineEngine:
             future.set_exception(EngineDiedError(reason, is_suspect and number == min(lost)))
 
     def close(self) -> None:
-        """Stop the engine."""
         self._stop()
         self.backend.close()
 

@@ -5,10 +5,9 @@ import struct
 from dataclasses import replace
 from typing import Any, Callable, Dict, Iterable, List, Tuple
 
-from ..description.model import Model
-from ..geometry import Pose, Quat, add, compose, inverse, multiply, normalised, scale
-from .api import CommandRefusedError, Event, RemovedError
-from .commands import (
+from my_simulations.description.model import Model
+from my_simulations.engine.api import CommandRefusedError, Event, RemovedError
+from my_simulations.engine.commands import (
     Clear,
     Command,
     ConnectModels,
@@ -29,7 +28,7 @@ from .commands import (
     SetLinkState,
     SetModelState,
 )
-from .drive_commands import (
+from my_simulations.engine.drive_commands import (
     JointMotor,
     JointServo,
     PlanarVelocity,
@@ -40,10 +39,11 @@ from .drive_commands import (
     SetWheelSlips,
     WheelSlip,
 )
-from .ring import JOINT_WIDTH, LINK_WIDTH
-from .ring_rows import axis_rows
-from .run_state import ReadRunState, RunState, SetRunState
-from .timed_forces import AddTimedForces, ClearTimedForces
+from my_simulations.engine.ring import JOINT_WIDTH, LINK_WIDTH
+from my_simulations.engine.ring_rows import axis_rows
+from my_simulations.engine.run_state import ReadRunState, RunState, SetRunState
+from my_simulations.engine.timed_forces import AddTimedForces, ClearTimedForces
+from my_simulations.geometry import Pose, Quat, add, compose, inverse, multiply, normalised, scale
 
 _LINK = struct.Struct(f"={LINK_WIDTH}d")
 
@@ -99,7 +99,6 @@ class KinematicBackend:
         }
 
     def apply(self, command: Command) -> object:
-        """Apply a command. Raises `CommandRefusedError`."""
         self._dirty = True
         handler = self._appliers.get(type(command))
         if handler is None:
@@ -142,22 +141,18 @@ class KinematicBackend:
         return self._dirty
 
     def read_rows(self, link_rows: Tuple[int, ...]) -> bytes:
-        """The states of some links; zeros where there is none."""
         links = self.tables()[0]
         size = _LINK.size
         return b"".join(bytes(links[row * size:(row + 1) * size]).ljust(size, b"\0")
                         for row in link_rows)
 
     def read_world(self) -> memoryview:
-        """The states of all links."""
         return self.tables()[0]
 
     def read_axes(self, joint_rows: Tuple[int, ...]) -> List[float]:
-        """Position and rate of some joint axes; zeros where there is none."""
         return [value for row in joint_rows for value in self.joints.get(row, (0.0, 0.0))]
 
     def tables(self) -> Tuple[memoryview, memoryview]:
-        """The used rows."""
         links = bytearray(_LINK.size * (max(self.links, default=-1) + 1))
         for row, state in self.links.items():
             _LINK.pack_into(links, row * _LINK.size, *state.pose.position,
@@ -168,7 +163,6 @@ class KinematicBackend:
         return memoryview(links), memoryview(joints)
 
     def events(self) -> List[Event]:
-        """No events."""
         return []
 
     def close(self) -> None:
