@@ -39,7 +39,6 @@ class BagRecord:
             raise CommandError(f"{path} cannot be written: {fault.strerror}") from None
 
     def record_state(self, world: OpenWorld) -> None:
-        """Add the present state."""
         layout, sequence, rows = world.simulator.feed.states()
         now = world.simulator.clock.sim_ns
         stamp = self._time(*divmod(max(now, 1), 1000000000))
@@ -54,5 +53,4 @@ class BagRecord:
             self._bag.write(topic, (kind._type, data, kind._md5sum, kind), stamp, raw=True)
 
     def close(self) -> None:
-        """Finish the file."""
         self._bag.close()

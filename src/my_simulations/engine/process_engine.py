@@ -62,7 +62,6 @@ class ProcessEngine:
 
     @property
     def ring(self) -> RingReader:
-        """The ring with the snapshots, the same for every child."""
         return self._ring
 
     @property
@@ -81,7 +80,6 @@ class ProcessEngine:
         return self._child.poll() if self._child else None
 
     def on_event(self, listener: Callable[[Event], None]) -> None:
-        """Set the listener of events."""
         self._event_listener = listener
 
     def on_death(self, listener: Callable[[str, List[Command]], bool]) -> None:
@@ -143,7 +141,6 @@ class ProcessEngine:
         return future
 
     def post(self, command: SetModelState) -> bool:
-        """Queue a command without a reply; see `Engine.post`."""
         with self._send_lock:
             with self._lock:
                 wire = self._wire
@@ -161,11 +158,9 @@ class ProcessEngine:
 
     @property
     def posted(self) -> int:
-        """Number of the last posted command; 0 for none."""
         return self._posts.last
 
     def notify(self) -> None:
-        """Notify the child that the step budget is another."""
         with self._send_lock:
             wire = self._wire
             if wire is not None:
@@ -175,7 +170,6 @@ class ProcessEngine:
                     _log.debug("the engine does not listen: %s", fault)
 
     def notify_host(self) -> None:
-        """End a `wait_for_notice`."""
         self._notices.wake()
 
     def wait_for_notice(self, timeout: float) -> bool:
@@ -183,7 +177,6 @@ class ProcessEngine:
         return self._notices.wait(timeout)
 
     def wait_for_wake(self, timeout: float) -> bool:
-        """Wait for a wake-up and clear it; False after `timeout` s."""
         return self._wake_pipe.wait(timeout)
 
     def kill(self, reason: str = "") -> None:

@@ -79,13 +79,11 @@ class Navigate:
         self._before = math.dist(self._mark, robot)
 
     def act(self, world: OpenWorld, action: Any) -> None:
-        """Send the speeds to the robot's drive."""
         forward, turn = (float(value) for value in np.clip(action, -1.0, 1.0))
         world.publish("/cmd_vel", {"linear": {"x": forward * FASTEST},
                                    "angular": {"z": turn * TURNS}})
 
     def observe(self, world: OpenWorld) -> np.ndarray:
-        """Return the numbers that the docstring of the class lists."""
         ranges = np.minimum(self._scan.latest.ranges, RANGE).reshape(SECTORS, -1).min(axis=1)
         self._nearest = float(ranges.min())
         states = world.states()
@@ -100,7 +98,6 @@ class Navigate:
                                    [*ranges, self._left, bearing, forward, turn])
 
     def evaluate(self, world: OpenWorld, action: Any) -> Evaluation:
-        """Return reward and end of the episode as the docstring of the class defines them."""
         nearer, self._before = self._before - self._left, self._left
         collided = self._nearest < _SAFE and _collides(world)
         arrived = self._left < NEAR and not collided

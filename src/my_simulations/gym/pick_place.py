@@ -83,13 +83,11 @@ class PickAndPlace:
         arm_scene.drive_fingers(world, False)
 
     def act(self, world: OpenWorld, action: Any) -> None:
-        """Set the motors of axes and fingers."""
         *speeds, grip = (float(value) for value in np.clip(action, -1.0, 1.0))
         arm_scene.drive_axes(world, _axis_rates(world, np.array(speeds) * FASTEST))
         arm_scene.drive_fingers(world, grip > 0.0)
 
     def observe(self, world: OpenWorld) -> Any:
-        """Return the numbers that the docstring of the class lists."""
         links = world.links()
         scene = _Scene(arm_scene.read_arm(world), links.pose["cube::link"][:3],
                        links.twist["cube::link"], self._mark)
@@ -101,7 +99,6 @@ class PickAndPlace:
         return arm_scene.observation(world, numbers, self._camera)
 
     def evaluate(self, world: OpenWorld, action: Any) -> Evaluation:
-        """Return reward and end of the episode as the docstring of the class defines them."""
         assert self._scene is not None, "observe is called before judge"
         placed = self._scene.is_at_rest() and not _held(world)
         return Evaluation(self._before - self._scene.distance() + placed, placed,

@@ -68,14 +68,12 @@ class PushBox:
         self._before = None
 
     def act(self, world: OpenWorld, action: Any) -> None:
-        """Set the rates of both wheels."""
         forward, turn = (float(value) for value in np.clip(action, -1.0, 1.0))
         ahead, aside = forward * FASTEST, turn * TURNS * _SEPARATION / 2.0
         world.robot("robo").drive({"left_wheel_joint": (ahead - aside) / _RADIUS,
                                    "right_wheel_joint": (ahead + aside) / _RADIUS}, effort=_TORQUE)
 
     def observe(self, world: OpenWorld) -> np.ndarray:
-        """Return the numbers that the docstring of the class lists."""
         states = world.states()
         poses: Any = states.pose
         robot, box, mark = (poses[name] for name in ("robo", "box", "mark"))
@@ -89,7 +87,6 @@ class PushBox:
             box[0], box[1], mark[0], mark[1], self._apart[0]])
 
     def evaluate(self, world: OpenWorld, action: Any) -> Evaluation:
-        """Return reward and end of the episode as the docstring of the class defines them."""
         to_mark, to_box = self._apart
         before, self._before = self._before or self._apart, self._apart
         reward = before[0] - to_mark + 0.1 * (before[1] - to_box)

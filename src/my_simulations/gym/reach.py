@@ -53,11 +53,9 @@ class Reach:
         self._left = None
 
     def act(self, world: OpenWorld, action: Any) -> None:
-        """Set the motors of the axes."""
         arm_scene.drive_axes(world, np.clip(action, -1.0, 1.0) * arm_scene.FASTEST)
 
     def observe(self, world: OpenWorld) -> Any:
-        """Return the numbers that the docstring of the class lists."""
         arm = arm_scene.read_arm(world)
         left = math.dist(arm.tool, self._target)
         self._before, self._left = left if self._left is None else self._left, left
@@ -66,7 +64,6 @@ class Reach:
         return arm_scene.observation(world, numbers, self._camera)
 
     def evaluate(self, world: OpenWorld, action: Any) -> Evaluation:
-        """Return reward and end of the episode as the docstring of the class defines them."""
         left = math.inf if self._left is None else self._left
         arrived = left < NEAR
         return Evaluation(self._before - left + arrived, arrived, {"is_success": arrived})

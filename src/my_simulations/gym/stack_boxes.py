@@ -99,14 +99,12 @@ class StackBoxes:
         self._left = None
 
     def act(self, world: OpenWorld, action: Any) -> None:
-        """Set the motors of axes and fingers."""
         *speeds, grip = (float(value) for value in np.clip(action, -1.0, 1.0))
         gripper, opening = world.robot("gripper"), _OPENING if grip > 0.0 else -_OPENING
         gripper.drive({axis: speed * FASTEST for axis, speed in zip(AXES, speeds)}, effort=_DRIVE)
         gripper.drive({finger: opening for finger in FINGERS}, effort=GRIP)
 
     def observe(self, world: OpenWorld) -> np.ndarray:
-        """Return the numbers that the docstring of the class lists."""
         scene = self._scene = _scene_of(world)
         if self._left is None:
             self._left = scene.distance()
@@ -116,7 +114,6 @@ class StackBoxes:
                     [*axes, *scene.red, *scene.blue, *(scene.red - scene.blue)])
 
     def evaluate(self, world: OpenWorld, action: Any) -> Evaluation:
-        """Return reward and end of the episode as the docstring of the class defines them."""
         scene = self._scene or _scene_of(world)
         left = scene.distance()
         nearer = 0.0 if self._left is None else self._left - left

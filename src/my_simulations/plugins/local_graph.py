@@ -59,7 +59,6 @@ class LocalTopic:
 
     @property
     def wanted(self) -> bool:
-        """Whether a listener exists."""
         return self._graph.has_listener(self.name)
 
     def send(self, message: Any) -> None:
@@ -73,7 +72,6 @@ class LocalTopic:
         self._graph.deliver(self.name, self.kind, message)
 
     def close(self) -> None:
-        """Remove the topic from the graph."""
         self._graph.end_publisher(self)
 
 
@@ -112,7 +110,6 @@ class LocalGraph:
         return self.to_plugin.blank(kind)
 
     def stamp(self, ns: int) -> Time:
-        """Return a time as a message field."""
         return Time.of_ns(ns)
 
     def publish(self, name: str, kind: str, queue: int, latch: bool,
@@ -151,21 +148,17 @@ class LocalGraph:
         return _Closing(close)
 
     def parameter(self, namespace: str, name: str, default: Any) -> Any:
-        """Return a parameter of a namespace."""
         return self.parameters.get(resolve_name(name, resolve_name(namespace)), default)
 
     def search_parameter(self, namespace: str, name: str, default: Any) -> Any:
-        """Return a parameter of a namespace or of the nearest parent that has it."""
         return self.parameters.search(resolve_name(namespace), name, default)
 
     def offer_transforms(self, changed: Callable[[], None]) -> None:
-        """Advertise /tf."""
         if self._tf is None:
             self._tf = self.publish(_TF, _TF_KIND, 1, False, changed)
 
     @property
     def transforms_wanted(self) -> bool:
-        """Whether /tf has a listener."""
         return self.has_listener(_TF)
 
     def send_transforms(self, transforms: List[TransformOf], ns: int) -> None:

@@ -139,27 +139,22 @@ class SimulatedContext(GraphUser):
 
     @property
     def now_ns(self) -> int:
-        """Sim time of this step, ns."""
         return self._schedule.sim_ns
 
     @property
     def step_size(self) -> float:
-        """Step size of the simulation, s."""
         return self.simulator.physics.settings.max_step_size
 
     @property
     def is_stepped_manually(self) -> bool:
-        """Whether the world is stepped manually."""
         return self.simulator.clock.is_stepped_manually
 
     @property
     def step(self) -> int:
-        """The step count."""
         time_step = self._schedule.time_step
         return time_step.step if time_step is not None else self.simulator.clock.step
 
     def every(self, hertz: float, call: Callable[[], None]) -> ScheduledCall:
-        """Call a function at a rate."""
         return self._schedule.every(self, hertz, call)
 
     def observe(self, hertz: float, call: Callable[[], None],
@@ -168,7 +163,6 @@ class SimulatedContext(GraphUser):
                 remembers: bool = False,
                 contacts: bool = False, efforts: Sequence[str] = (),
                 wrenches: Sequence[str] = (), world: bool = False) -> Observation:
-        """Call a function that only reads, at a rate."""
         if transforms:
             self.graph.offer_transforms()
         made = self.observations.add(
@@ -187,14 +181,12 @@ class SimulatedContext(GraphUser):
                 queries_of(reads, self._rows))
 
     def once(self, ns: int, call: Callable[[], None]) -> ScheduledCall:
-        """Call a function once."""
         return self._schedule.once(self, ns, call)
 
     # -- the model -------------------------------------------------------------------------------
 
     @property
     def pose(self) -> Pose:
-        """World pose of the model frame."""
         if not self.entity.link_names:
             return self.entity.pose
         pose = self._view.link_at(self.entity.canonical_row)[0]
@@ -203,36 +195,29 @@ class SimulatedContext(GraphUser):
 
     @property
     def twist(self) -> Twist:
-        """Twist of the canonical link."""
         return self._view.link_at(self.entity.canonical_row)[1]
 
     @property
     def gravity(self) -> Vec3:
-        """Gravity, m/s^2, world axes."""
         return self.simulator.physics.gravity
 
     @property
     def seed(self) -> int:
-        """Seed of random numbers."""
         return self.simulator.world.seed
 
     @property
     def magnetic_field(self) -> Vec3:
-        """Magnetic field, T, world axes."""
         return self.simulator.world.magnetic_field
 
     @property
     def wind(self) -> Vec3:
-        """Present wind, m/s, world axes."""
         return self.simulator.world.wind.linear_velocity
 
     @property
     def spherical_coordinates(self) -> Optional[SphericalCoordinates]:
-        """Spherical coordinates of the world's origin."""
         return self.simulator.world.spherical_coordinates
 
     def link(self, name: str) -> SimulatedLink:
-        """A link of the model."""
         if not name and self.entity.link_names:
             name = self.entity.link_names[self.entity.canonical]
         if name not in self._links:
@@ -246,7 +231,6 @@ class SimulatedContext(GraphUser):
         link.inertial = self.entity.model.links[link.row - self.entity.first_link_row].inertial
 
     def joint(self, name: str) -> SimulatedJoint:
-        """A joint of the model that moves."""
         if name not in self._joints:
             spec = self._rows.joint(name)
             joint = SimulatedJoint(self._view, self.commands, spec, name)
@@ -255,31 +239,25 @@ class SimulatedContext(GraphUser):
         return self._joints[name]
 
     def joint_wrench(self, name: str) -> Optional[JointWrench]:
-        """Return the wrench that a joint transmitted in the last step."""
         return self._readings.wrench(self.entity, self._rows.joint(name).name)
 
     def set_planar_velocity(self, x: float, y: float, yaw_rate: float) -> None:
-        """Move the model in its horizontal plane from now on."""
         self.commands.planar = self._level = PlanarVelocity(
             self.entity.model_id, finite(x, "x"), finite(y, "y"), finite(yaw_rate, "yaw_rate"))
 
     @property
     def description(self) -> Model:
-        """The flattened description."""
         return self.entity.model
 
     def transmissions(self, parameter: str) -> List[Transmission]:
-        """Return the transmissions of the description, else of a parameter."""
         return transmissions_of(self.entity.model, parameter,
                                 lambda: self.search_parameter(parameter, ""))
 
     def set_wrench(self, link: str, force: Vec3, torque: Vec3) -> None:
-        """Apply a wrench from now on."""
         self.commands.wrenches[self._pushed(link)] = (vector(force, "force"),
                                                   vector(torque, "torque"), None, "")
 
     def set_wrench_law(self, link: str, law: WrenchLaw, joint: str = "") -> None:
-        """Apply the wrench of a law from now on."""
         followed = joint and f"{self.model}::{self._rows.joint(joint).name}"
         self.commands.wrenches[self._pushed(link)] = (ZERO3, ZERO3, law, followed)
 
@@ -287,7 +265,6 @@ class SimulatedContext(GraphUser):
         return link if "::" in link and not self._rows.has_link(link) else self.scoped(link)
 
     def scoped(self, link: str) -> str:
-        """Return the name of a link of the model in the world."""
         return f"{self.model}::{self._link_name(link)}"
 
     def _link_name(self, link: str) -> str:
@@ -295,28 +272,23 @@ class SimulatedContext(GraphUser):
         return self.entity.link_names[self._rows.link(link) - self.entity.first_link_row]
 
     def joint_spec(self, name: str) -> JointSpec:
-        """The description of a joint."""
         return self._rows.joint(name)
 
     def move(self, pose: Pose, twist: Twist = STILL) -> None:
-        """Set the model's pose and twist."""
         self.simulator.states.set_model_state(self.model, pose, twist)
 
     def hold(self, held: bool) -> None:
-        """Keep the model at rest at its pose, or release it."""
         self._held = held
         self.simulator.models.hold(self.model, held)
 
     def set_wheel_slip(self, link: str, joint: str, radius: float, normal_force: float,
                        lateral: float,
              longitudinal: float) -> None:
-        """Let a wheel slip."""
         self.simulator.drives.set_wheel_slips([WheelSlip(
             self._rows.link(link), self._rows.axis(self._rows.joint(joint).name), radius,
             normal_force, lateral, longitudinal)])
 
     def mimic(self, follower: str, leader: str, multiplier: float, offset: float) -> None:
-        """Make a joint follow another one."""
         (joint, ahead) = self.joint(follower), self.joint(leader)
         spec = next(one for one in self.entity.model.joints if one.name == joint.spec_name)
         wanted = Mimic(ahead.spec_name, multiplier, offset)
@@ -328,7 +300,6 @@ class SimulatedContext(GraphUser):
     # -- other models ----------------------------------------------------------------------------
 
     def model_link(self, scoped: str) -> SimulatedLink:
-        """A link of any model."""
         found = self.simulator.models.link_place(scoped)
         if found is None:
             raise PluginError(f"there is no link '{scoped}'")
@@ -337,30 +308,25 @@ class SimulatedContext(GraphUser):
         return link
 
     def models(self) -> Dict[str, Model]:
-        """All models."""
         return {entity.model.name: entity.model
                 for entity in self.simulator.models.inventory()[1]}
 
     def lights(self) -> Dict[str, Light]:
-        """Return the lights of the world by name."""
         return {light.name: light for light in self.simulator.lights.all()}
 
     def set_light(self, light: Light) -> None:
-        """Replace the light of that name."""
         try:
             self.simulator.lights.set(light.name, light)
         except CommandError as fault:
             raise PluginError(str(fault)) from fault
 
     def set_material(self, link: str, visual: str, material: Material) -> None:
-        """Show a visual in another material."""
         try:
             self.simulator.models.set_material(self.model, self._link_name(link), visual, material)
         except CommandError as fault:
             raise PluginError(str(fault)) from fault
 
     def attach(self, name: str, parent: str, child: str) -> None:
-        """Fix a link to another."""
         try:
             self.simulator.models.attach(name, parent, child)
         except CommandError as fault:
@@ -369,23 +335,19 @@ class SimulatedContext(GraphUser):
             self._attached.append(name)
 
     def detach(self, name: str) -> bool:
-        """Remove the joint of `attach`."""
         self._attached = [one for one in self._attached if one != name]
         return self.simulator.models.detach(name)
 
     def efforts(self, joints: Sequence[str]) -> List[float]:
-        """Return the efforts of motors and servos in the last step."""
         return self._readings.efforts([self.joint(name).row for name in joints])
 
     def set_joint_positions(self, positions: Dict[str, float]) -> None:
-        """Set joint positions at once."""
         self.simulator.joints.set_positions(
             {f"{self.model}::{self.joint(name).spec_name}": value
              for name, value in positions.items()})
 
     def scan(self, fan: RayFan, visuals: bool, call: Callable[[RayReturns, int], None],
              place: Optional[Tuple[str, Pose]] = None) -> None:
-        """Cast rays from the plugin's sensor, or from a place on a link."""
         if place is None:
             assert self.sensor is not None
             place = (self.sensor_link, self.sensor.pose)
@@ -394,7 +356,6 @@ class SimulatedContext(GraphUser):
 
     def photograph(self, views: Sequence[View], call: Callable[[List[Pictures], int], None],
                    stream: str = "", queue: bool = False) -> bool:
-        """Take pictures."""
         mounted = [(Mount(self._rows.link(view.link), view.pose), view) for view in views]
 
         def again() -> None:
@@ -406,15 +367,12 @@ class SimulatedContext(GraphUser):
                                        stream, queue)
 
     def sensors(self) -> List[Tuple[str, Sensor]]:
-        """The sensors of the model's links."""
         return [(link.name, sensor) for link in self.entity.model.links for sensor in link.sensors]
 
     def link_names(self) -> Dict[int, str]:
-        """Scoped names by row."""
         return self.simulator.states.link_names()
 
     def contacts(self) -> List[Any]:
-        """The contacts of the last step."""
         return self._readings.contacts()
 
     def topic_uses(self) -> List[TopicUse]:
@@ -435,11 +393,9 @@ class SimulatedContext(GraphUser):
     # -- log -------------------------------------------------------------------------------------
 
     def info(self, text: str) -> None:
-        """Report information to the user."""
         self._say(Severity.NOTE, text)
 
     def warn(self, text: str) -> None:
-        """Report a warning to the user."""
         self._say(Severity.WARNING, text)
 
     def _say(self, severity: Severity, text: str) -> None:

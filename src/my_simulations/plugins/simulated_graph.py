@@ -22,7 +22,6 @@ class PluginTopic:
 
     @property
     def wanted(self) -> bool:
-        """Whether the topic has a subscriber."""
         return self._topic.wanted
 
     def publish(self, message: Any) -> None:
@@ -133,18 +132,15 @@ class PluginGraph:
         return f"{self._namespace.rstrip('/')}/{name}"
 
     def message(self, kind: str) -> Any:
-        """Return a new message."""
         try:
             return self._graph.message(kind)
         except MissingTypeError as missing:
             raise PluginError(str(missing)) from missing
 
     def stamp(self, ns: int) -> Any:
-        """Return a time as a message field."""
         return self._graph.stamp(ns)
 
     def publish(self, name: str, kind: str, queue: int, latch: bool) -> PluginTopic:
-        """Advertise a topic."""
         if not name:
             return PluginTopic(self, _UnnamedTopic())
         return PluginTopic(self, self._open(
@@ -153,7 +149,6 @@ class PluginGraph:
 
     def subscribe(self, name: str, kind: str, call: Callable[[Any], None],
                   queue: int) -> PluginGraphHandle:
-        """Subscribe to a topic."""
         waiting: Deque[Any] = deque(maxlen=max(1, queue))
 
         def deliver() -> None:
@@ -204,15 +199,12 @@ class PluginGraph:
         return PluginGraphHandle(self, end)
 
     def parameter(self, name: str, default: Any) -> Any:
-        """Return a parameter of the namespace."""
         return self._graph.parameter(self._namespace, name, default)
 
     def search_parameter(self, name: str, default: Any) -> Any:
-        """Return a parameter of the namespace or of a parent."""
         return self._graph.search_parameter(self._namespace, name, default)
 
     def offer_transforms(self) -> None:
-        """Advertise tf."""
         self._graph.offer_transforms(self._changed)
 
     def transform(self, parent: str, child: str, pose: Pose, ns: int) -> None:
@@ -243,32 +235,25 @@ class GraphUser:
         self.graph.use_namespace(namespace)
 
     def message(self, kind: str) -> Any:
-        """Return a new message."""
         return self.graph.message(kind)
 
     def stamp(self, ns: Optional[int] = None) -> Any:
-        """Return a time as a message field."""
         return self.graph.stamp(self.now_ns if ns is None else ns)
 
     def publish(self, name: str, kind: str, queue: int = 1, latch: bool = False) -> PluginTopic:
-        """Advertise a topic."""
         return self.graph.publish(name, kind, queue, latch)
 
     def subscribe(self, name: str, kind: str, call: Callable[[Any], None],
                   queue: int = 1) -> PluginGraphHandle:
-        """Subscribe to a topic."""
         return self.graph.subscribe(name, kind, call, queue)
 
     def serve(self, name: str, kind: str, call: Callable[[Any, Any], None]) -> PluginGraphHandle:
-        """Advertise a service."""
         return self.graph.serve(name, kind, call, self.warn)
 
     def parameter(self, name: str, default: Any) -> Any:
-        """Return a parameter of the namespace."""
         return self.graph.parameter(name, default)
 
     def search_parameter(self, name: str, default: Any) -> Any:
-        """Return a parameter of the namespace or of a parent."""
         return self.graph.search_parameter(name, default)
 
     def transform(self, parent: str, child: str, pose: Pose) -> None:

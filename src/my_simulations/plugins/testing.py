@@ -136,11 +136,9 @@ class FakeContext(FakeGraph):
 
     @property
     def now_ns(self) -> int:
-        """Sim time."""
         return round(self.step * self.step_size * 1e9)
 
     def every(self, hertz: float, call: Callable[[], None]) -> Any:
-        """Call a function at a rate."""
         self._calls.append(_Call(self._calls, call, Rate(hertz), stops=True))
         return self._calls[-1]
 
@@ -154,7 +152,6 @@ class FakeContext(FakeGraph):
                 transforms: bool = False, remembers: bool = False, contacts: bool = False,
                 efforts: Sequence[str] = (), wrenches: Sequence[str] = (),
                 world: bool = False) -> Any:
-        """Be called at a rate while a topic is wanted."""
         idle = False
 
         def follow() -> None:
@@ -168,38 +165,31 @@ class FakeContext(FakeGraph):
         return self._calls[-1]
 
     def once(self, ns: int, call: Callable[[], None]) -> Any:
-        """Call a function once."""
         self._calls.append(_Call(self._calls, call, None, ns))
         return self._calls[-1]
 
     def link(self, name: str) -> FakeLink:
-        """A link."""
         name = name or "base"
         if self._closed_links and name not in self.links:
             raise PluginError(f"model '{self.model}' has no link '{name}'")
         return self.links.setdefault(name, FakeLink(name))
 
     def joint(self, name: str) -> FakeJoint:
-        """A joint."""
         if name not in self.joints:
             raise PluginError(f"model '{self.model}' has no joint '{name}'")
         return self.joints[name]
 
     def transmissions(self, parameter: str) -> List[Transmission]:
-        """Return the transmissions of the description."""
         return self.description.transmissions
 
     def set_planar_velocity(self, x: float, y: float, yaw_rate: float) -> None:
-        """Record the call."""
         self.level = (x, y, yaw_rate)
 
     def set_wrench(self, link: str, force: Vec3, torque: Vec3) -> None:
-        """Record the call."""
         self.wrenches[link] = (force, torque)
         self._laws.pop(link, None)
 
     def set_wrench_law(self, link: str, law: WrenchLaw, joint: str = "") -> None:
-        """Record the call."""
         self._laws[link] = law, joint
         self._compute_laws()
 
@@ -211,40 +201,32 @@ class FakeContext(FakeGraph):
                 (self.joint(joint).position, self.joint(joint).velocity) if joint else AT_REST)
 
     def move(self, pose: Pose, twist: Twist = STILL) -> None:
-        """Set the model's pose and twist."""
         self.pose, self.twist = pose, twist
 
     def hold(self, held: bool) -> None:
-        """Record the call."""
         self.held = held
 
     def scoped(self, link: str) -> str:
-        """Return the link's name below that of the model."""
         self.link(link)
         return f"{self.model}::{link}"
 
     def joint_spec(self, name: str) -> JointSpec:
-        """Return the description of a joint."""
         for joint in self.description.joints:
             if joint.name == name:
                 return joint
         raise PluginError(f"model '{self.model}' has no joint '{name}'")
 
     def set_wheel_slip(self, link: str, joint: str, *values: float) -> None:
-        """Record the call."""
         self.slips[link] = (joint, *values)
 
     def mimic(self, follower: str, leader: str, multiplier: float, offset: float) -> None:
-        """Record the call."""
         self.joint(follower), self.joint(leader)
         self.followers[follower] = (leader, multiplier, offset)
 
     def model_link(self, scoped: str) -> FakeLink:
-        """A link by its scoped name."""
         return self.links.setdefault(scoped, FakeLink(scoped))
 
     def models(self) -> Dict[str, Model]:
-        """Return the value set by the test."""
         return self.others
 
     def lights(self) -> Dict[str, Light]:
@@ -252,7 +234,6 @@ class FakeContext(FakeGraph):
         return dict(self.world_lights)
 
     def set_light(self, light: Light) -> None:
-        """Replace the light of that name."""
         if light.name not in self.world_lights:
             raise PluginError(f"unknown light '{light.name}'")
         self.world_lights[light.name] = light
@@ -263,19 +244,15 @@ class FakeContext(FakeGraph):
         self.materials[link, visual] = material
 
     def attach(self, name: str, parent: str, child: str) -> None:
-        """Record the call."""
         self.attached[name] = (parent, child)
 
     def detach(self, name: str) -> bool:
-        """Record the call."""
         return self.attached.pop(name, None) is not None
 
     def efforts(self, joints: Sequence[str]) -> List[float]:
-        """Return the efforts of joints."""
         return [self.joint(name).effort for name in joints]
 
     def set_joint_positions(self, positions: Dict[str, float]) -> None:
-        """Set joint positions at once."""
         for name, value in positions.items():
             self.joint(name).put(value)
 
@@ -295,25 +272,19 @@ class FakeContext(FakeGraph):
         return True
 
     def sensors(self) -> List[Tuple[str, Sensor]]:
-        """Return the value set by the test."""
         return self.model_sensors
 
     def link_names(self) -> Dict[int, str]:
-        """Return the value set by the test."""
         return self.labels
 
     def joint_wrench(self, name: str) -> Optional[JointWrench]:
-        """Return the value set by the test."""
         return self.joint_wrenches.get(name)
 
     def contacts(self) -> List[Any]:
-        """Return the value set by the test."""
         return self.touching
 
     def info(self, text: str) -> None:
-        """Record the call."""
         self.log_messages.append(text)
 
     def warn(self, text: str) -> None:
-        """Record the call."""
         self.log_messages.append(text)

@@ -129,7 +129,6 @@ class FakeGraph:
             raise PluginError(str(fault)) from fault
 
     def stamp(self, ns: Optional[int] = None) -> Time:
-        """Return a time as a message field."""
         return Time.of_ns(self.now_ns if ns is None else ns)
 
     def publish(self, name: str, kind: str, queue: int = 1, latch: bool = False) -> Any:
@@ -182,7 +181,6 @@ class FakeGraph:
         return found
 
     def search_parameter(self, name: str, default: Any) -> Any:
-        """Return the value set by the test."""
         return self.ros_parameters.get(name, default)
 
     def transform(self, parent: str, child: str, pose: Pose) -> None:

@@ -393,7 +393,6 @@ class OpenWorld(WorldChanges):
             self._listener(issue)
 
     def _running_simulator(self) -> Simulator:
-        """The simulator, whose engine was not lost. Raises EngineLostError."""
         if self._lost is not None:
             raise EngineLostError(f"the world has lost its state, call reset: {self._lost}")
         return self.simulator

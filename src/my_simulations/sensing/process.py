@@ -95,11 +95,9 @@ class SensingProcess:
         return child.pid if child is not None and child.poll() is None else 0
 
     def on_problem(self, listener: Callable[[str], None]) -> None:
-        """Set who hears one sentence of each death and of what is left out of the scene."""
         self._listener = listener
 
     def change(self, change: Change) -> None:
-        """Change the scene."""
         with self._lock:
             self._refusals.clear()
             self._deaths = dict.fromkeys(self._deaths, 0)
@@ -109,15 +107,12 @@ class SensingProcess:
                 self._outbox.put(change)
 
     def cast(self, request: CastRays) -> "Future[RayReturns]":
-        """Ask for ranges; see `api.Sensing`."""
         return self._submit(request)
 
     def cast_all(self, request: CastBatch) -> "Future[List[Union[RayReturns, SensingError]]]":
-        """Ask for the ranges of several sensors; see `api.Sensing`."""
         return self._submit(request)
 
     def render(self, request: RenderCamera) -> "Future[Pictures]":
-        """Ask for pictures; see `api.Sensing`."""
         return self._submit(request)
 
     def _submit(self, request: Request) -> "Future[Any]":
@@ -147,7 +142,6 @@ class SensingProcess:
         return None
 
     def close(self) -> None:
-        """End the child and wait for the end."""
         with self._lock:
             self._closing = True
             writer, child = self._writer, self._child

@@ -95,7 +95,6 @@ class SceneSensing:
                 for mount, camera, outputs in shots]
 
     def close(self) -> None:
-        """End the process, if there is one."""
         if self._process is not None:
             self._process.close()
             self._process = None

@@ -33,13 +33,11 @@ class RecordingResolver(Resolver):
         self.found = {}
 
     def resolve(self, uri: str, base_dir: str = "") -> str:
-        """See `Resolver`."""
         path = super().resolve(uri, base_dir)
         self.found[path] = None
         return path
 
     def model_file(self, uri: str, base_dir: str = "") -> str:
-        """See `Resolver`."""
         path = super().model_file(uri, base_dir)
         self.found[path] = None
         return path

@@ -116,7 +116,6 @@ class Slot:
         self._excess = ""  # the status of a case that has used up a limit
 
     def close(self) -> None:
-        """End the engine."""
         if self._world is not None:
             self._world.close()
         self._world = self._engine = None

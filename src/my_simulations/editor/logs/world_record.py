@@ -69,6 +69,5 @@ class LogRecord:
             self._topics.pop().close()
 
     def close(self) -> None:
-        """Finish the file."""
         self.end_topics()
         self._writer.close()

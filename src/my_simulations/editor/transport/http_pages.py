@@ -45,7 +45,6 @@ class Pages(PageFiles):
         self._uploads = os.path.join(os.path.dirname(options.data_dir), "uploads")
 
     def routes(self) -> List[web.RouteDef]:
-        """For the application."""
         return [
             *super().routes(),
             web.get("/resource/{root}/{inside:.+}", self._resource),

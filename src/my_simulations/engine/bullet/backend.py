@@ -97,7 +97,6 @@ class BulletBackend:
     # -- Backend ---------------------------------------------------------------------------------
 
     def apply(self, command: Command) -> object:
-        """Carry out a command; raises `CommandRefusedError`."""
         if not isinstance(command, (Restart, Clear)):
             self._settle()
         self._helpers.loop.changed()
@@ -117,7 +116,6 @@ class BulletBackend:
                     self._helpers.use_step_size(body, entry.model)
 
     def step(self, first: int, count: int) -> None:
-        """Make `count` steps."""
         self._settle()
         self._is_fresh = False
         self._readout.stepped()
@@ -136,35 +134,28 @@ class BulletBackend:
         self._helpers.loop.changed()
 
     def read(self) -> bool:
-        """Bring the tables up to date."""
         return self._put_off is not None or self._readout.read()
 
     def read_poses(self) -> bool:
-        """Bring the poses in the link table up to date."""
         return self._put_off is not None or self._readout.read_poses()
 
     def read_rows(self, link_rows: Tuple[int, ...]) -> bytes:
-        """The current states of some links."""
         self._settle()
         return self._row_reader.read_links(link_rows)
 
     def read_world(self) -> memoryview:
-        """The current states of all links."""
         self._settle()
         self._readout.update()
         return self._readout.tables()[0]
 
     def read_axes(self, joint_rows: Tuple[int, ...]) -> List[float]:
-        """Position and rate of some joint axes."""
         self._settle()
         return self._row_reader.read_axes(joint_rows)
 
     def tables(self) -> Tuple[memoryview, memoryview]:
-        """Return the used rows of the link and the joint table."""
         return self._readout.tables()
 
     def events(self) -> List[Event]:
-        """Return the events since the last call."""
         return self._notices.taken()
 
     def close(self) -> None:

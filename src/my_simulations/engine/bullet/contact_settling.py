@@ -124,7 +124,6 @@ class ContactSettling(StepHelper):
             self._rigid[body.uid] = body
 
     def forget(self, body: Body) -> None:
-        """Discard the data of a removed body."""
         self._trees.pop(body.uid, None)
         self._arrived = [tree for tree in self._arrived if tree.body is not body]
         self._moving.discard(body.uid)

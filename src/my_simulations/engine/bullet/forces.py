@@ -77,7 +77,6 @@ class Forces(StepHelper):
         self.servos = JointServos(self._axes, wake, release)
 
     def add(self, body: Body) -> None:
-        """Register the rows of a new body."""
         for part in body.parts:
             self._parts[part.row] = (body, part)
             if not part.gravity and body.moves:

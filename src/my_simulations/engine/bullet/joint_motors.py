@@ -76,7 +76,6 @@ class JointMotors(BodyObserver):
                 self._note(axis.row, spec.motor_rate, spec.friction)
 
     def forget(self, body: Body) -> None:
-        """Discard the data of a removed body."""
         for axis in body.axes:
             self._motors.pop(axis.row, None)
             self._specs.pop(axis.row, None)

@@ -134,7 +134,6 @@ class JointWrenches(BodyObserver):
         return tuple(self._found.get(key) for key in command.joints)
 
     def forget(self, body: Body) -> None:
-        """Discard the data of a removed body and its model."""
         for table in (self._cuts, self._wanted, self._found):
             for key in [key for key in table if key[0] == body.model_id]:
                 del table[key]

@@ -67,7 +67,6 @@ class FrictionBalance(StepHelper):
         self._ring = FAR   # the step of the next solution of a ring
 
     def add(self, body: Body) -> None:
-        """Register a new body."""
         if body.rigid:
             self._rigid.add(body.uid)
         for uid, part in body.surfaces:
@@ -80,7 +79,6 @@ class FrictionBalance(StepHelper):
                 self._fixed[node] = max(part.friction, _SMALLEST)
 
     def forget(self, body: Body) -> None:
-        """Discard the data of a removed body."""
         for uid, part in body.surfaces:
             for pair in list(self._touching.get((uid, part.index), ())):
                 self._part(pair)

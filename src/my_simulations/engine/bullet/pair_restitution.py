@@ -61,7 +61,6 @@ class PairRestitution(StepHelper):
         self._models: Dict[LinkKey, int] = {}
 
     def add(self, body: Body) -> None:
-        """Register a new body."""
         for uid, part in body.surfaces:
             surface = surface_coefficients.of_link(part.link)
             if surface.restitution <= 0.0:
@@ -75,7 +74,6 @@ class PairRestitution(StepHelper):
             self._models[node] = body.model_id
 
     def forget(self, body: Body) -> None:
-        """Discard the data of a removed body."""
         for uid, part in body.surfaces:
             for table in (self._kinds, self._stored, self._thresholds, self._models):
                 self._changed |= table.pop((uid, part.index), None) is not None

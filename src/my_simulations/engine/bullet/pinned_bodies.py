@@ -42,7 +42,6 @@ class PinnedBodies(StepHelper):
         self._poses[body.uid] = Pose(*pybullet.getBasePositionAndOrientation(body.uid))
 
     def forget(self, body: Body) -> None:
-        """Discard the data of a removed body."""
         self._bodies.pop(body.uid, None)
         self._poses.pop(body.uid, None)
 

@@ -42,7 +42,6 @@ class PlanarMotion(StepHelper):
                 set_sleep(body)
 
     def forget(self, body: Body) -> None:
-        """Discard the data of a removed body and its model."""
         self._velocities.pop(body.model_id, None)
 
     def due(self, step: int) -> int:

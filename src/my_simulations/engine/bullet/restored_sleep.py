@@ -74,7 +74,6 @@ class RestoredSleep(StepHelper):
         self._commanded.add(body.uid)
 
     def forget(self, body: Body) -> None:
-        """Discard the data of a removed body."""
         self._rests.pop(body.uid, None)
 
     def due(self, step: int) -> int:

@@ -86,7 +86,6 @@ class StateReadout(BodyObserver):
             self._closing.pop(row, None)
 
     def add(self, body: Body) -> None:
-        """Register a new body."""
         self._asked = []
         for part in body.parts:
             self.used_links = max(self.used_links, part.row + 1)

@@ -56,13 +56,11 @@ class StepLoop(BodyObserver):
         self._moving: Set[int] = set()
 
     def add(self, body: Body) -> None:
-        """Register a new body."""
         self.changed()
         if body.moves:
             self._moving.add(body.uid)
 
     def forget(self, body: Body) -> None:
-        """Discard the data of a removed body."""
         self.changed()
         self._moving.discard(body.uid)
 

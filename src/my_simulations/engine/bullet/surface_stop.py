@@ -57,7 +57,6 @@ class SurfaceStop(StepHelper):
                             self._floors)
 
     def add(self, body: Body) -> None:
-        """Register a new body."""
         if not body.moves:
             self._floors |= body.with_role("floor")
             return

@@ -43,7 +43,6 @@ class VelocityDecay(StepHelper):
                 self._links[part.row] = (body, part, linear, angular)
 
     def forget(self, body: Body) -> None:
-        """Discard the data of a removed body."""
         for part in body.parts:
             self._links.pop(part.row, None)
 

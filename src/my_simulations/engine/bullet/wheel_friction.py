@@ -127,7 +127,6 @@ class WheelFriction(StepHelper):
                 self._give_back(key)
 
     def add(self, body: Body) -> None:
-        """Register a new body."""
         self._axes.update((axis.row, (body, axis)) for axis in body.axes)
         if body.base is None:
             self._fixed.add(body.uid)
@@ -143,7 +142,6 @@ class WheelFriction(StepHelper):
                 table.setdefault(body.uid, {})[key[1]] = link
 
     def forget(self, body: Body) -> None:
-        """Discard the data of a removed body."""
         super().forget(body)
         for axis in body.axes:
             self._axes.pop(axis.row, None)

@@ -31,7 +31,6 @@ class AckermannDriveController(BaseController):
     """Joints `front_left_wheel`, `mid_left_wheel`, `front_left_steer` and so on."""
 
     def load_wheels(self) -> None:
-        """Read lengths; claim the joints."""
         s = self.settings
         self._corners = [
             (self.claim_joint(VELOCITY, s.text(f"{name}_wheel", f"{name}_wheel_joint")),
@@ -59,7 +58,6 @@ class AckermannDriveController(BaseController):
             wheel.command((speed - yaw_rate * side * self._width) / self._radius)
 
     def begin_count(self) -> None:
-        """Store the present joint positions as the start of the odometry."""
         self._turned = [wheel.position for wheel in self._middle]
 
     def displacement(self, dt: float) -> Planar:

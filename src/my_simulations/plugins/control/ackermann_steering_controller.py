@@ -17,7 +17,6 @@ class AckermannSteeringController(BaseController):
     """Joints `rear_wheel`, by its rate, and `front_steer`, by its position."""
 
     def load_wheels(self) -> None:
-        """Claim the joints of the rear wheel and of the steering; read lengths."""
         s = self.settings
         self._wheel = self.claim_joint(VELOCITY, s.text("rear_wheel", "rear_wheel_joint"))
         self._steer = self.claim_joint(POSITION, s.text("front_steer", "front_steer_joint"))
@@ -43,7 +42,6 @@ class AckermannSteeringController(BaseController):
         self._steer.command(velocity[2])
 
     def begin_count(self) -> None:
-        """Store the present joint positions as the start of the odometry."""
         self._turned = self._wheel.position
 
     def displacement(self, dt: float) -> Planar:

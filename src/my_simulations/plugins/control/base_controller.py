@@ -91,7 +91,6 @@ class BaseController(Controller):
     # -- Controller --------------------------------------------------------------------------------
 
     def load(self) -> None:
-        """Read parameters; claim the wheel joints; advertise topics."""
         s = self.settings
         self.load_wheels()
         self.publish_hz = s.number("publish_rate", 50.0)

@@ -17,7 +17,6 @@ class CurrentLimitController(Controller):
     """Checks the names in messages on `command`; the current limits have no effect."""
 
     def load(self) -> None:
-        """Read the names of the motors; subscribe to `command`."""
         self._names = set(self.settings.texts("actuators"))
         try:
             self.subscribe("command", _MESSAGE, self._receive, checks=True)

@@ -24,7 +24,6 @@ class DiffDriveController(BaseController):
     """Wheels `left_wheel` and `right_wheel`: a joint each, or several."""
 
     def load(self) -> None:
-        """Read parameters; claim the wheel joints; advertise topics and dynamic_reconfigure."""
         super().load()
         values: Dict[str, Value] = dict(zip(_MULTIPLIERS, self._multipliers))
         self.keep(Reconfigure(self.context, self.name, _OPTIONS, {
@@ -52,7 +51,6 @@ class DiffDriveController(BaseController):
         self._states.publish(self._rates(self.command))
 
     def load_wheels(self) -> None:
-        """Claim the joints of both sides, which have equally many wheels."""
         s = self.settings
         names = [s.texts("left_wheel"), s.texts("right_wheel")]
         if len(names[0]) != len(names[1]):
@@ -104,7 +102,6 @@ class DiffDriveController(BaseController):
                 wheel.command(rate)
 
     def begin_count(self) -> None:
-        """Store the present joint positions as the start of the odometry."""
         self._turned = [_mean(side) for side in self._sides]
 
     def displacement(self, dt: float) -> Planar:

@@ -13,7 +13,6 @@ class ForwardCommandController(Controller):
     interface = ""
 
     def load(self) -> None:
-        """Claim the joint."""
         self._joint = self.claim_joint(self.interface, self.settings.text("joint"))
         self.subscribe("command", "std_msgs/Float64", self._receive)
 
@@ -31,7 +30,6 @@ class ForwardGroupController(Controller):
     interface = ""
 
     def load(self) -> None:
-        """Claim the joints."""
         self.joints: List[HardwareJoint] = [self.claim_joint(self.interface, name)
                                             for name in self.settings.texts("joints")]
         self.subscribe("command", "std_msgs/Float64MultiArray", self._receive)

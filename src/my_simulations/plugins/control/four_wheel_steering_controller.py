@@ -82,7 +82,6 @@ class FourWheelSteeringController(BaseController):
     smooths = False
 
     def load_wheels(self) -> None:
-        """Read lengths; claim the joints; subscribe to commands with steering angles."""
         s = self.settings
         self._wheels = self._pairs(VELOCITY, "front_wheel", "rear_wheel")
         self._steers = self._pairs(POSITION, "front_steering", "rear_steering")
@@ -165,7 +164,6 @@ class FourWheelSteeringController(BaseController):
         return [(angle, rim * moving) for angle, rim in angles]
 
     def begin_count(self) -> None:
-        """Store the present joint positions as the start of the odometry."""
         self._turned = self._positions()
         self._changes: Deque[Tuple[float, float, float, float]] = deque(maxlen=self.window)
         self._state = (0.0, 0.0, 0.0)
@@ -191,7 +189,6 @@ class FourWheelSteeringController(BaseController):
         self._state = state
 
     def more_topics(self) -> List[Publication]:
-        """Return the topic with the state of the steering."""
         return [] if self._odom_steer is None else [self._odom_steer]
 
     def publish_more(self) -> None:

@@ -49,7 +49,6 @@ class FrankaStateController(Controller):
     """
 
     def load(self) -> None:
-        """Find the joints."""
         names = self.settings.texts("joint_names", [])
         self._joints = [self.hardware.state(name) for name in names]
         self._rate = self.settings.number("publish_rate", _UPDATE_HZ)
@@ -57,7 +56,6 @@ class FrankaStateController(Controller):
                         for name in ("joint_states", "joint_states_desired")]
 
     def start(self) -> None:
-        """Publish from now on."""
         self.observe(self._rate if self._rate > 0.0 else _UPDATE_HZ, self._publish, self._topics,
                      efforts=[joint.name for joint in self._joints])
 
@@ -74,7 +72,6 @@ class FrankaGripper(Controller):
     """
 
     def load(self) -> None:
-        """Read parameters; take both fingers; offer the action."""
         s = self.settings
         arm = s.text("arm_id", "")
         self._fingers: List[HardwareJoint] = []

@@ -21,7 +21,6 @@ class Gripper(Controller):
     interface = ""
 
     def load(self) -> None:
-        """Read parameters; take the joint; offer the action."""
         s = self.settings
         self._joint = self.claim_joint(self.interface, s.text("joint"))
         path = f"gains/{self._joint.name}"

@@ -24,7 +24,6 @@ class JointLoop(Controller):
     of_rate = False
 
     def load(self) -> None:
-        """Claim the joint."""
         self._gains = self.settings.needed_gains("pid")
         self._joint = self.claim_joint(self.interface, self.settings.text("joint"))
         self._wanted = 0.0
@@ -82,7 +81,6 @@ class EffortPositionGroup(ForwardGroupController):
     interface = EFFORT
 
     def load(self) -> None:
-        """Claim the joints; read their gains."""
         super().load()
         self._gains: Dict[str, PidGains] = {
             joint.name: self.settings.needed_gains(f"{joint.name}/pid") for joint in self.joints}

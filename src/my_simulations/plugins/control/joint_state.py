@@ -41,7 +41,6 @@ class JointStateController(Controller):
         self.keep(self._topic)
 
     def start(self) -> None:
-        """Publish from now on."""
         if self._rate > 0.0:
             self.observe(self._rate, self._tell, [self._topic],
                          efforts=[joint.name for joint in self._joints])
@@ -77,13 +76,11 @@ class JointReadCommandController(Controller):
     """
 
     def load(self) -> None:
-        """Read the rate."""
         self._rate = self.settings.number("publish_rate", 0.0)
         self._topic = self.context.publish("joint_commands", "sensor_msgs/JointState", 4)
         self.keep(self._topic)
 
     def start(self) -> None:
-        """Publish from now on."""
         self.observe(self._rate if self._rate > 0.0 else _UPDATE_HZ, self._tell, [self._topic])
 
     def _tell(self) -> None:

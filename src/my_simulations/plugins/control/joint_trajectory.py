@@ -37,7 +37,6 @@ class JointTrajectory(Controller):
     interface = ""
 
     def load(self) -> None:
-        """Read parameters; take joints; offer topics, the action and the service."""
         s = self.settings
         self._names = s.texts("joints")
         self._joints = [self.claim_joint(self.interface, name) for name in self._names]

@@ -26,7 +26,6 @@ class MecanumDriveController(BaseController):
     goes_sideways = True
 
     def load_wheels(self) -> None:
-        """Claim the joints of four wheels; read their radius."""
         s = self.settings
         self._wheels = [self.claim_joint(VELOCITY, s.text(self.wheel_parameter(corner)))
                         for corner in _CORNERS]
@@ -72,7 +71,6 @@ class MecanumDriveController(BaseController):
             wheel.command((x + way * y + side * self._arm * yaw) / self._radius)
 
     def begin_count(self) -> None:
-        """Store the present joint positions as the start of the odometry."""
         self._turned = self._positions()
 
     def _positions(self) -> Tuple[float, ...]:
@@ -89,7 +87,6 @@ class MecanumDriveController(BaseController):
         return cosine * x + sine * y, -sine * x + cosine * y, yaw
 
     def more_topics(self) -> List[Publication]:
-        """Return the second topic of the odometry."""
         return [self._more]
 
     def publish_more(self) -> None:

@@ -29,7 +29,6 @@ class WheelController(Controller):
     """Follows geometry_msgs/Twist on `command` until `timeout`."""
 
     def load(self) -> None:
-        """Read parameters; take the joints; offer topics."""
         s = self.settings
         self._wheels = read_wheels(self.context, s, steered=True)
         self._steers = [self.claim_joint(VELOCITY, wheel.steer) for wheel in self._wheels]
@@ -130,7 +129,6 @@ class OdometryController(Controller):
     """Publishes `odometry` and its transform; `reset_odometry` begins at the origin again."""
 
     def load(self) -> None:
-        """Read parameters; offer topics and the service."""
         s = self.settings
         self._wheels = read_wheels(self.context, s, steered=False)
         self._joints = [(self.hardware.state(wheel.steer), self.hardware.state(wheel.drive))

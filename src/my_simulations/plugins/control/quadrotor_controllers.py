@@ -92,7 +92,6 @@ class PositionController(_OfQuadrotor):
     place = _POSITION
 
     def load(self) -> None:
-        """Read gains and limits."""
         super().load()
         self._axes = [self.pid(axis) for axis in "xyz"]
         self._yaw_pid = self.pid("yaw")
@@ -160,7 +159,6 @@ class VelocityController(_OfQuadrotor):
     place = _VELOCITY
 
     def load(self) -> None:
-        """Read gains and limits."""
         super().load()
         self._axes = [self.pid(axis) for axis in "xyz"]
         self._limits = VectorLimits(self.settings)
@@ -234,7 +232,6 @@ class AttitudeController(_OfQuadrotor):
     place = _ATTITUDE
 
     def load(self) -> None:
-        """Read gains and limits."""
         super().load()
         context, s = self.context, self.settings
         self._roll_pid, self._pitch_pid, self._yaw_pid = map(self.pid, ("roll", "pitch", "yawrate"))

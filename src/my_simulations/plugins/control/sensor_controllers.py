@@ -38,7 +38,6 @@ class ImuSensorController(_SensorController):
     """sensor_msgs/Imu of each `<sensor type="imu">`; the frame is that of its link."""
 
     def load(self) -> None:
-        """Find the sensors."""
         self._hertz = self._rate()
         self._sensors: List[Tuple[Sensor, Link, Publication]] = []
         for link, sensor in self.context.sensors():
@@ -49,7 +48,6 @@ class ImuSensorController(_SensorController):
             raise PluginError(f"controller '{self.name}': the robot has no <sensor type=\"imu\">")
 
     def start(self) -> None:
-        """Publish from now on."""
         self._before: Dict[str, Any] = {}
         if self._hertz > 0.0:
             self.observe(self._hertz, self._tell, [topic for _, _, topic in self._sensors],
@@ -81,7 +79,6 @@ class ForceTorqueSensorController(_SensorController):
     """geometry_msgs/WrenchStamped of each force_torque sensor; the frame is that of the child."""
 
     def load(self) -> None:
-        """Find the sensors."""
         self._hertz = self._rate()
         self._looks: List[Callable[[], None]] = []
         self._topics: List[Publication] = []
@@ -116,7 +113,6 @@ class ForceTorqueSensorController(_SensorController):
         return tell
 
     def start(self) -> None:
-        """Publish from now on."""
         if self._hertz > 0.0:
             self.observe(self._hertz, self._tell, self._topics, wrenches=[
                 joint.name for joint in self.context.description.joints

@@ -57,7 +57,6 @@ class JointGroup(HardwareJoint):
                 joint.command(share(value))
 
     def commanded(self, step: int, step_size: float) -> float:
-        """The last command."""
         return self._value
 
     def hold(self) -> None:

@@ -25,7 +25,6 @@ class UnitreeJointController(Controller):
     """One joint: `joint`, topics `command` (MotorCmd) and `state` (MotorState)."""
 
     def load(self) -> None:
-        """Take the joint."""
         self._joint = self.claim_joint(EFFORT, self.settings.text("joint"))
         self._hertz = self.settings.number("publish_rate", _STATE_HZ)
         self._state = self.publish("state", "unitree_legged_msgs/MotorState")

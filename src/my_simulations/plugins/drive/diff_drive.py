@@ -21,7 +21,6 @@ class DiffDrive(OdometryDrive):
     """A differential drive."""
 
     def load(self) -> None:
-        """Read parameters; take the motors."""
         context, p = self.context, self.context.parameters
         context.use_namespace(namespace_or(p, context.model))
         self._separation = p.positive("wheelSeparation", 0.34)
@@ -56,7 +55,6 @@ class DiffDrive(OdometryDrive):
                             remembers=self._encoder and self._publishes)
 
     def reset(self) -> None:
-        """Stop the robot, and restart the odometry."""
         self._command.stop()
         self._change.end()
         self._counter.reset()

@@ -37,7 +37,6 @@ class ForceBasedMove(Plugin):
     """Where the elements are missing: N s/m along x and y, N m s/rad about z."""
 
     def load(self) -> None:
-        """Read parameters."""
         context, p = self.context, self.context.parameters
         context.use_namespace(namespace_or(p, ""))
         base = p.text("robotBaseFrame", "base_footprint")
@@ -66,7 +65,6 @@ class ForceBasedMove(Plugin):
                             transforms=self._broadcasts)
 
     def reset(self) -> None:
-        """Stop the robot."""
         self._command.stop()
         self._change.end()
         self._begin()

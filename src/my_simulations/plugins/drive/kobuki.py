@@ -37,7 +37,6 @@ class Kobuki(Plugin):
     """Two driven wheels and what the base senses."""
 
     def load(self) -> None:
-        """Read parameters; offer topics."""
         context, p = self.context, self.context.parameters
         context.use_namespace(namespace_or(p, context.model))
         self._wheels = [context.joint(_needed(p, f"{side}_wheel_joint_name"))
@@ -78,7 +77,6 @@ class Kobuki(Plugin):
         self._change.begin()
 
     def reset(self) -> None:
-        """Stop the robot, and restart the odometry."""
         self._command.stop()
         self._change.end()
         self._begin_count()

@@ -21,7 +21,6 @@ class LimoAckermann(SkidSteerDrive):
     """`angular.z` of a command is the yaw rate."""
 
     def load(self) -> None:
-        """Read parameters; offer the topics of the steering."""
         self._steers = [self.context.publish(name, "std_msgs/Float64", 50) for name in _COMMANDS]
         super().load()
 

@@ -20,7 +20,6 @@ class PlanarMove(Plugin):
     """Moves a model in its own x and y, and about the vertical."""
 
     def load(self) -> None:
-        """Read parameters."""
         context, p = self.context, self.context.parameters
         context.use_namespace(namespace_or(p, ""))
         self._odometer = Odometer(context, p.text("odometryTopic", "odom"),
@@ -38,7 +37,6 @@ class PlanarMove(Plugin):
         self.move()
 
     def reset(self) -> None:
-        """Stop the model."""
         self._command.stop()
         self._change.end()
         self.clock_set()

@@ -17,7 +17,6 @@ class SkidSteerDrive(Plugin):
     """A skid-steered drive."""
 
     def load(self) -> None:
-        """Read parameters; take the motors."""
         context, p = self.context, self.context.parameters
         context.use_namespace(namespace_or(p, ""))
         self._separation = p.positive("wheelSeparation", 0.4)
@@ -39,7 +38,6 @@ class SkidSteerDrive(Plugin):
         context.observe(hertz, self.publish, self._odometer.topics, transforms=self._broadcasts)
 
     def reset(self) -> None:
-        """Stop the robot."""
         self._command.stop()
         self._change.end()
         self._drive()

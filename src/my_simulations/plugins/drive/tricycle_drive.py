@@ -29,7 +29,6 @@ class TricycleDrive(OdometryDrive):
     """`linear.x` of a command is the speed of the driven wheel, `angular.z` the steering angle."""
 
     def load(self) -> None:
-        """Read parameters; take the motors."""
         context, p = self.context, self.context.parameters
         context.use_namespace(namespace_or(p, context.model))
         self._radius = p.positive("actuatedWheelDiameter", 0.15) / 2.0
@@ -69,7 +68,6 @@ class TricycleDrive(OdometryDrive):
         return (left, right) if one >= other else (right, left)
 
     def reset(self) -> None:
-        """Stop the robot, and restart the odometry."""
         self._command.stop()
         self._change.end()
         self._counter.reset()

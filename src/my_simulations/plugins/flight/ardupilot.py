@@ -62,7 +62,6 @@ class ArduPilot(Plugin):
     _socket: Optional[socket.socket] = None
 
     def load(self) -> None:
-        """Read parameters; open the socket."""
         p = self.context.parameters
         blocks = p.children("control") or p.children("rotor")
         self._channels = [self._channel(block, number) for number, block in enumerate(blocks)]

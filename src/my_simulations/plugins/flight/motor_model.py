@@ -30,7 +30,6 @@ class MotorModel(Plugin):
     """
 
     def load(self) -> None:
-        """Read parameters; offer topics."""
         context, p = self.context, self.context.parameters
         context.use_namespace(namespace_or(p, ""))
         for name in ("jointName", "linkName", "motorNumber"):
@@ -87,7 +86,6 @@ class MotorModel(Plugin):
         self.context.observe(0.0, publish, [topic], efforts=efforts)
 
     def reset(self) -> None:
-        """Stop the rotor."""
         if self._commanded:
             self._commanded = False
             self._joint.set_servo(JointServo(0, ""))

@@ -22,7 +22,6 @@ class MultirotorBase(Plugin):
     """Of the rotors whose joints are on `<linkName>` and whose links are called rotor_NUMBER."""
 
     def load(self) -> None:
-        """Find the rotors."""
         context, p = self.context, self.context.parameters
         context.use_namespace(namespace_or(p, ""))
         self._base = context.link(p.text("linkName", "base_link")).name
@@ -58,7 +57,6 @@ class ControllerInterface(Plugin):
     """From `<commandMotorSpeedSubTopic>` to `<motorSpeedCommandPubTopic>`."""
 
     def load(self) -> None:
-        """Offer topics."""
         context, p = self.context, self.context.parameters
         context.use_namespace(namespace_or(p, ""))
         self._rotors = context.publish(

@@ -29,7 +29,6 @@ class QuadrotorAerodynamics(Plugin):
     """Acts on the first link of the model."""
 
     def load(self) -> None:
-        """Read parameters."""
         context, p = self.context, self.context.parameters
         context.use_namespace(namespace_or(p, ""))
         self._link = context.link("")

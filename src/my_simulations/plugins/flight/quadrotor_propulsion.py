@@ -99,7 +99,6 @@ class QuadrotorPropulsion(Plugin):
     """Acts on the first link of the model."""
 
     def load(self) -> None:
-        """Read parameters; offer topics."""
         context, p = self.context, self.context.parameters
         context.use_namespace(namespace_or(p, ""))
         self._link = context.link("")
@@ -136,7 +135,6 @@ class QuadrotorPropulsion(Plugin):
         self.reset()
 
     def reset(self) -> None:
-        """The motors are off."""
         if self._timer is not None:
             self._timer.end()
             self._timer = None

@@ -38,7 +38,6 @@ class QuadrotorSimpleController(Plugin):
     """Flies the link `<bodyName>`, or the model's first one."""
 
     def load(self) -> None:
-        """Read parameters; offer topics and services."""
         context, p = self.context, self.context.parameters
         context.use_namespace(namespace_or(p, ""))
         self._link = context.link(p.text("bodyName"))
@@ -72,7 +71,6 @@ class QuadrotorSimpleController(Plugin):
         self._wrench = NO_WRENCH
 
     def reset(self) -> None:
-        """The motors are off."""
         if self._timer is not None:
             self._timer.end()
             self._timer = None
@@ -80,7 +78,6 @@ class QuadrotorSimpleController(Plugin):
         self._apply()
 
     def clock_set(self) -> None:
-        """Restart the time since the last update."""
         self._last_ns = self.context.now_ns
 
     def _receive(self, message: Any) -> None:

@@ -45,7 +45,6 @@ class RotorsOdometry(Plugin):
     """Publishes five types of messages and a transform."""
 
     def load(self) -> None:
-        """Read parameters; offer topics."""
         context, p = self.context, self.context.parameters
         context.use_namespace(namespace_or(p, ""))
         self._link = context.link(p.text("linkName", "odometry_sensor_link"))

@@ -96,7 +96,6 @@ class RotorsMagnetometer(Plugin):
     """sensor_msgs/MagneticField in the axes of `<linkName>`; the world's x, y, z are N, E, D."""
 
     def load(self) -> None:
-        """Read parameters."""
         context, p = self.context, self.context.parameters
         context.use_namespace(namespace_or(p, ""))
         self._link = context.link(p.text("linkName"))
@@ -129,7 +128,6 @@ class RotorsPressure(Plugin):
     """sensor_msgs/FluidPressure at the height of the model."""
 
     def load(self) -> None:
-        """Read parameters."""
         context, p = self.context, self.context.parameters
         context.use_namespace(namespace_or(p, ""))
         self._frame = context.link(p.text("linkName")).name
@@ -163,7 +161,6 @@ class RotorsGps(Plugin):
     """sensor_msgs/NavSatFix and the velocity of a `<sensor type="gps">`."""
 
     def load(self) -> None:
-        """Read parameters."""
         context, p = self.context, self.context.parameters
         if context.sensor is None:
             raise PluginError("it belongs into a <sensor> of type gps")
@@ -184,7 +181,6 @@ class RotorsGps(Plugin):
         context.observe(context.sensor.update_rate, self.update, [self._fix, self._speed])
 
     def reset(self) -> None:
-        """Reset the noise."""
         for noise in self._place:
             noise.reset(self.context.now_ns)
 

@@ -20,7 +20,6 @@ class RotorsWind(Plugin):
     """Acts on `<linkName>` at `<xyzOffset>`."""
 
     def load(self) -> None:
-        """Read parameters; offer topics."""
         context, p = self.context, self.context.parameters
         context.use_namespace(namespace_or(p, ""))
         self._link = context.link(p.text("linkName", "base_link"))

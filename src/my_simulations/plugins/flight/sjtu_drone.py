@@ -34,7 +34,6 @@ class SjtuDrone(Plugin):
     """
 
     def load(self) -> None:
-        """Read parameters; offer topics."""
         context, p = self.context, self.context.parameters
         self._link = context.link(p.text("bodyName"))
         self._most_force = p.number("maxForce", -1.0)

@@ -62,7 +62,6 @@ class GraspFix(Plugin):
     """Watches the fingers of one or more arms."""
 
     def load(self) -> None:
-        """Read parameters."""
         context, p = self.context, self.context.parameters
         if not p.children("arm"):
             raise PluginError("it has no <arm>")

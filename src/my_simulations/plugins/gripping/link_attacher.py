@@ -17,7 +17,6 @@ class LinkAttacher(Plugin):
     """`/link_attacher_node/attach` and `/link_attacher_node/detach`."""
 
     def load(self) -> None:
-        """Offer the services."""
         self.context.serve("/link_attacher_node/attach", _KIND, self._attach)
         self.context.serve("/link_attacher_node/detach", _KIND, self._detach)
 

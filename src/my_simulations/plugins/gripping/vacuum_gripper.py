@@ -21,7 +21,6 @@ class VacuumGripper(Plugin):
     """The link `<bodyName>`, with services `on` and `off`; the topic reports whether it holds."""
 
     def load(self) -> None:
-        """Read parameters."""
         context, p = self.context, self.context.parameters
         context.use_namespace(namespace_or(p, ""))
         if not p.text("topicName"):

@@ -62,15 +62,12 @@ class IsolatedPlugin(Plugin):
         self._call("construct", limits=limits.doubled())
 
     def load(self) -> None:
-        """Load it."""
         self._call("load", limits=self._limits.doubled())
 
     def reset(self) -> None:
-        """The world was reset."""
         self._call("reset")
 
     def clock_set(self) -> None:
-        """Sim time was set."""
         self._call("clock_set")
 
     def close(self) -> None:

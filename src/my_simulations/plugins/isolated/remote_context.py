@@ -82,7 +82,6 @@ class RemoteTopic(RemoteHandle):
 
     @property
     def wanted(self) -> bool:
-        """Whether it has a subscriber."""
         return bool(self._connection.state(self.number))
 
     def publish(self, message: Any) -> None:
@@ -94,7 +93,6 @@ class RemoteTopic(RemoteHandle):
         self._call_handle("publish", make())
 
     def close(self) -> None:
-        """Remove the topic from the ROS graph."""
         self._call_handle("close")
 
 
@@ -145,25 +143,20 @@ class RemoteContext:
 
     @property
     def now_ns(self) -> int:
-        """Sim time of this step, ns."""
         return self._connection.readings.now_ns
 
     @property
     def step(self) -> int:
-        """The step count."""
         return self._connection.readings.step
 
     def every(self, hertz: float, call: Callable[[], None]) -> RemoteCallHandle:
-        """Call a function at a rate."""
         return self._scheduled("every", hertz, call)
 
     def observe(self, hertz: float, call: Callable[[], None], topics: Sequence[Any] = (),
                 **options: Any) -> RemoteCallHandle:
-        """Call a function that only reads, at a rate."""
         return self._scheduled("observe", hertz, call, list(topics), **options)
 
     def once(self, ns: int, call: Callable[[], None]) -> RemoteCallHandle:
-        """Call a function once."""
         return self._scheduled("once", ns, call)
 
     def _scheduled(self, name: str, *arguments: Any, **named: Any) -> RemoteCallHandle:
@@ -173,12 +166,10 @@ class RemoteContext:
     # -- the model -------------------------------------------------------------------------------
 
     def link(self, name: str) -> RemoteLink:
-        """A link of the model."""
         found: RemoteLink = self._once_for_all("link", name)
         return found
 
     def joint(self, name: str) -> RemoteJoint:
-        """A joint of the model that moves."""
         found: RemoteJoint = self._once_for_all("joint", name)
         return found
 
@@ -189,21 +180,17 @@ class RemoteContext:
         return self._found[key]
 
     def model_link(self, scoped: str) -> RemoteLink:
-        """A link of any model."""
         found: RemoteLink = self._once_for_all("model_link", scoped)
         return found
 
     def set_planar_velocity(self, x: float, y: float, yaw_rate: float) -> None:
-        """Move the model in its horizontal plane from now on."""
         self._call_handle("set_planar_velocity", finite(x, "x"), finite(y, "y"),
                           finite(yaw_rate, "yaw_rate"))
 
     def set_wrench(self, link: str, force: Vec3, torque: Vec3) -> None:
-        """Apply a wrench from now on."""
         self._call_handle("set_wrench", link, vector(force, "force"), vector(torque, "torque"))
 
     def set_wrench_law(self, link: str, law: WrenchLaw, joint: str = "") -> None:
-        """Apply the wrench of a law from now on."""
         self._call_handle("set_wrench_law", link, law, joint)
 
     def _call_handle(self, name: str, *arguments: Any) -> None:
@@ -212,23 +199,19 @@ class RemoteContext:
     # -- topics, services, log -------------------------------------------------------------------
 
     def message(self, kind: str) -> Any:
-        """A new message."""
         if kind not in self._messages:
             self._messages[kind] = pickle.dumps(self._connection.query("message", kind))
         return pickle.loads(self._messages[kind])
 
     def publish(self, name: str, kind: str, queue: int = 1, latch: bool = False) -> RemoteTopic:
-        """Advertise a topic."""
         topic: RemoteTopic = self._handle("publish", name, kind, queue, latch)
         return topic
 
     def subscribe(self, name: str, kind: str, call: Callable[[Any], None],
                   queue: int = 1) -> RemoteCallHandle:
-        """Subscribe to a topic."""
         return self._scheduled("subscribe", name, kind, call, queue)
 
     def serve(self, name: str, kind: str, call: Callable[[Any, Any], None]) -> RemoteCallHandle:
-        """Advertise a service."""
         def answer(request: Any, response: Any) -> Any:
             call(request, response)
             return response
@@ -236,7 +219,6 @@ class RemoteContext:
         return self._scheduled("serve", name, kind, answer)
 
     def transform(self, parent: str, child: str, pose: Pose) -> None:
-        """Broadcast a transform to tf."""
         self._call_handle("transform", str(parent), str(child), pose_of(pose, "a transform"))
 
     def declare_parameters(self) -> None:
@@ -244,9 +226,7 @@ class RemoteContext:
         self._call_handle("declare_parameters", self.parameters.declared())
 
     def info(self, text: str) -> None:
-        """Report information to the user."""
         self._call_handle("info", str(text))
 
     def warn(self, text: str) -> None:
-        """Report a warning to the user."""
         self._call_handle("warn", str(text))

@@ -20,7 +20,6 @@ class Bumper(Plugin):
     """Publishes while there are subscribers; without a contact `states` is empty."""
 
     def load(self) -> None:
-        """Read parameters."""
         context, p = self.context, self.context.parameters
         if context.sensor is None:
             raise PluginError("it belongs into a <sensor> of type contact")

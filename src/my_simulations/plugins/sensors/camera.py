@@ -26,7 +26,6 @@ class Camera(Plugin):
     stream_type: Type[PictureStream] = PictureStream
 
     def load(self) -> None:
-        """Read parameters."""
         context, p = self.context, self.context.parameters
         block, sensor = blocks_of(context, "camera")[0], context.sensor
         assert sensor is not None
@@ -131,7 +130,6 @@ class TriggeredCamera(_Triggered, Camera):
     """A camera that waits for triggers."""
 
     def load(self) -> None:
-        """Read parameters."""
         super().load()
         self._triggers = [Trigger(self.context, self._stream)]
 
@@ -140,7 +138,6 @@ class MultiCamera(Plugin):
     """Several cameras that look at the same time; a pair has `left` and `right` in its names."""
 
     def load(self) -> None:
-        """Read parameters."""
         context, p = self.context, self.context.parameters
         blocks, sensor = blocks_of(context, "multicamera"), context.sensor
         assert sensor is not None
@@ -177,7 +174,6 @@ class TriggeredMultiCamera(_Triggered, MultiCamera):
     """Several cameras, each with a trigger topic of its own beside its pictures."""
 
     def load(self) -> None:
-        """Read parameters."""
         super().load()
         self._triggers = [Trigger(self.context, stream, stream.topics.base)
                           for stream in self._streams]

@@ -105,7 +105,6 @@ class DepthCamera(Plugin):
     """Default of `<pointCloudCutoffMax>`, m."""
 
     def load(self) -> None:
-        """Read parameters."""
         context, p = self.context, self.context.parameters
         block, sensor = blocks_of(context, "depth")[0], context.sensor
         assert sensor is not None

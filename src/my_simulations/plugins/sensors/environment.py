@@ -52,7 +52,6 @@ class _SensorPlugin(Plugin):
         return made
 
     def reset(self) -> None:
-        """Reset the noise."""
         for noise in self._noises:
             noise.reset(self.context.now_ns)
 
@@ -70,7 +69,6 @@ class GpsSensor(_SensorPlugin):
     """sensor_msgs/NavSatFix on `fix`, velocity east, north, up on `fix_velocity`."""
 
     def load(self) -> None:
-        """Read parameters."""
         self._begin("gps")
         block, context = self.block or Gps(), self.context
         self._place = [self._noise(one, f"position/{axis}") for one, axis in (
@@ -87,7 +85,6 @@ class GpsSensor(_SensorPlugin):
         self._follow(self._fix, self._velocity)
 
     def update(self) -> None:
-        """Measure and publish."""
         context, ns, link = self.context, self.context.now_ns, self._link
         x, y, z = (noise.apply(value, ns) for noise, value in zip(
             self._place, transform(link.pose, self._mount.position)))
@@ -112,7 +109,6 @@ class MagnetometerSensor(_SensorPlugin):
     """sensor_msgs/MagneticField on `magnetic_field`, T in the sensor's axes."""
 
     def load(self) -> None:
-        """Read parameters."""
         self._begin("magnetometer")
         block, context = self.block or Magnetometer(), self.context
         self._axes = [self._noise(getattr(block, axis), axis) for axis in "xyz"]
@@ -123,7 +119,6 @@ class MagnetometerSensor(_SensorPlugin):
         self._follow(self._topic)
 
     def update(self) -> None:
-        """Measure and publish."""
         context = self.context
         felt = magnetometer.measure(self._link.pose, self._mount, context.magnetic_field)
         x, y, z = (noise.apply(value, context.now_ns) for noise, value in zip(self._axes, felt))
@@ -138,7 +133,6 @@ class AltimeterSensor(_SensorPlugin):
     """geometry_msgs/PointStamped on `altitude` (m over where it began) and the speed upwards."""
 
     def load(self) -> None:
-        """Read parameters."""
         self._begin("altimeter")
         block, context = self.block or Altimeter(), self.context
         self._up = self._noise(block.vertical_position, "vertical_position")
@@ -150,7 +144,6 @@ class AltimeterSensor(_SensorPlugin):
         self._follow(self._height, self._velocity)
 
     def update(self) -> None:
-        """Measure and publish."""
         context, ns = self.context, self.context.now_ns
         found = altimeter.measure(self._link.pose, self._link.twist, self._mount, self._reference)
         height = self._up.apply(found.vertical_position, ns)

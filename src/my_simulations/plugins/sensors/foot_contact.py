@@ -15,7 +15,6 @@ class FootContact(Plugin):
     """Publishes at the sensor's rate while there are subscribers."""
 
     def load(self) -> None:
-        """Find the link."""
         context = self.context
         if context.sensor is None:
             raise PluginError("it belongs into a <sensor> of type contact")

@@ -44,7 +44,6 @@ class _LinkSensor(Plugin):
         return made
 
     def reset(self) -> None:
-        """Reset the errors."""
         for errors in self._all_errors:
             errors.reset(self.context.now_ns)
 
@@ -67,7 +66,6 @@ class Gps(_LinkSensor):
     """sensor_msgs/NavSatFix, and the velocity as geometry_msgs/Vector3Stamped."""
 
     def load(self) -> None:
-        """Read parameters."""
         self._begin("/world")
         context, p, place = self.context, self.context.parameters, self._place()
         self._latitude = p.number("referenceLatitude", place.latitude_deg if place else 49.9)
@@ -88,7 +86,6 @@ class Gps(_LinkSensor):
                         remembers=self._velocity_errors.has_drift)
 
     def reset(self) -> None:
-        """Reset the errors."""
         super().reset()
         self._last_ns = self.context.now_ns
 
@@ -145,7 +142,6 @@ class Magnetic(_LinkSensor):
     """The earth's field in the link's axes; of `magnitude` 1 where none is given."""
 
     def load(self) -> None:
-        """Read parameters."""
         self._begin()
         context, p = self.context, self.context.parameters
         down = math.radians(p.number("inclination", 60.0))
@@ -178,7 +174,6 @@ class Baro(_LinkSensor):
     """The height as geometry_msgs/PointStamped, and hector_uav_msgs/Altimeter where it is there."""
 
     def load(self) -> None:
-        """Read parameters."""
         self._begin()
         context, p = self.context, self.context.parameters
         self._elevation, self._qnh = p.number("elevation", 0.0), p.number("qnh", 1013.25)
@@ -220,7 +215,6 @@ class Sonar(RayPlugin):
     """sensor_msgs/Range of a ray sensor: the nearest of all rays."""
 
     def load(self) -> None:
-        """Read parameters."""
         context, p = self.context, self.context.parameters
         self.read_ray_element()
         context.use_namespace(namespace_or(p, ""))
@@ -233,7 +227,6 @@ class Sonar(RayPlugin):
         self.follow(rate_of(p, _SONAR_HERTZ))
 
     def reset(self) -> None:
-        """Reset the errors."""
         self._errors.reset(self.context.now_ns)
 
     clock_set = reset

@@ -16,7 +16,6 @@ class Laser(RayPlugin):
     """Publishes scans while there are subscribers."""
 
     def load(self) -> None:
-        """Read parameters."""
         context, p = self.context, self.context.parameters
         self.read_ray_element()
         context.use_namespace(namespace_or(
@@ -28,7 +27,6 @@ class Laser(RayPlugin):
         self.follow(context.sensor.update_rate)
 
     def reset(self) -> None:
-        """Reset the noise."""
         self._noise.reset(self.context.now_ns)
 
     clock_set = reset

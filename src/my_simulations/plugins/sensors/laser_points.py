@@ -26,7 +26,6 @@ class Points(RayPlugin):
     message_type = ""
 
     def load(self) -> None:
-        """Read parameters."""
         context, p = self.context, self.context.parameters
         self.read_ray_element()
         context.use_namespace(namespace_or(p, ""))
@@ -43,7 +42,6 @@ class Points(RayPlugin):
         return prefixed(self.context, frame)
 
     def reset(self) -> None:
-        """Reset the noise."""
         self._range_noise.reset(self.context.now_ns)
 
     clock_set = reset
@@ -112,7 +110,6 @@ class Velodyne(Points):
     message_type = "sensor_msgs/PointCloud2"
 
     def load(self) -> None:
-        """Read parameters."""
         p = self.context.parameters
         super().load()
         self._near = max(p.number("min_range", 0.0), self._fan.near)

@@ -18,7 +18,6 @@ class Range(RayPlugin):
     """Publishes while there are subscribers; without a hit, the maximum range."""
 
     def load(self) -> None:
-        """Read parameters."""
         context, p = self.context, self.context.parameters
         self.read_ray_element()
         context.use_namespace(namespace_or(p, ""))

@@ -52,7 +52,6 @@ class RangeOutput(RayPlugin):
     """sensor_msgs/Range of the nearest of all rays."""
 
     def load(self) -> None:
-        """Read parameters."""
         context, p = self.context, self.context.parameters
         self.read_ray_element()
         context.use_namespace(namespace_or(p, ""))
@@ -91,9 +90,7 @@ class RaySensor(Plugin):
         self._one.load()
 
     def reset(self) -> None:
-        """Reset the noise."""
         self._one.reset()
 
     def clock_set(self) -> None:
-        """Reset the noise."""
         self._one.clock_set()

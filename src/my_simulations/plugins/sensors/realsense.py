@@ -27,7 +27,6 @@ class RealSense(Plugin):
     """Four cameras in a housing."""
 
     def load(self) -> None:
-        """Find the sensors."""
         context = self.context
         context.use_namespace(context.parameters.attribute("name"))
         self._prefix = context.parameters.text("prefix")

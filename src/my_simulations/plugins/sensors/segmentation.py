@@ -21,7 +21,6 @@ class SegmentationCamera(Plugin):
     """Image of numbers, CameraInfo, names of the numbers."""
 
     def load(self) -> None:
-        """Read parameters."""
         context, p = self.context, self.context.parameters
         block, sensor = blocks_of(context, "camera")[0], context.sensor
         assert sensor is not None

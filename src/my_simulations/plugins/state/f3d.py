@@ -21,7 +21,6 @@ class F3d(Plugin):
     """Publishes after each step while there are subscribers."""
 
     def load(self) -> None:
-        """Read parameters."""
         context, p = self.context, self.context.parameters
         context.use_namespace(namespace_or(p, ""))
         for name in ("bodyName", "topicName"):

@@ -14,7 +14,6 @@ class Force(Plugin):
     """The last geometry_msgs/Wrench acts in every step, world axes, at the centre of mass."""
 
     def load(self) -> None:
-        """Read parameters."""
         context, p = self.context, self.context.parameters
         context.use_namespace(namespace_or(p, ""))
         topic = p.text("topicName")

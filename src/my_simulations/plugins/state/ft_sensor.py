@@ -23,7 +23,6 @@ class FtSensor(Plugin):
     """Publishes while there are subscribers."""
 
     def load(self) -> None:
-        """Read parameters."""
         context, p = self.context, self.context.parameters
         context.use_namespace(namespace_or(p, ""))
         self._name = p.text("jointName") or context.sensor_joint
@@ -63,7 +62,6 @@ class FtSensor(Plugin):
         return joint.child
 
     def reset(self) -> None:
-        """Reset the noise."""
         for noise in self._noise:
             noise.reset(self.context.now_ns)
 

@@ -29,7 +29,6 @@ class HandOfGod(Plugin):
     """Pulls the link `<linkName>`."""
 
     def load(self) -> None:
-        """Read parameters."""
         context, p = self.context, self.context.parameters
         context.use_namespace(namespace_or(p, ""))
         name = p.text("linkName")

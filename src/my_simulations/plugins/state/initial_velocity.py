@@ -12,11 +12,9 @@ class InitialVelocity(Plugin):
     """Sets the velocity of all links when the model comes, and after a reset."""
 
     def load(self) -> None:
-        """Read parameters."""
         p = self.context.parameters
         self._twist = Twist(p.vector("linear"), p.vector("angular"))
         self.reset()
 
     def reset(self) -> None:
-        """Begin again."""
         self.context.move(self.context.pose, self._twist)

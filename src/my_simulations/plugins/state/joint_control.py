@@ -24,7 +24,6 @@ class JointControl(Plugin):
     """Send the servos once; the engine does the rest."""
 
     def load(self) -> None:
-        """Read parameters."""
         controllers = self.context.parameters.children("controller")
         if not controllers:
             raise PluginError("it has no <controller>")

@@ -23,7 +23,6 @@ class JointPoseTrajectory(Plugin):
     """Plays trajectory_msgs/JointTrajectory; another one replaces what is left of the first."""
 
     def load(self) -> None:
-        """Read parameters."""
         context, p = self.context, self.context.parameters
         context.use_namespace(namespace_or(p, ""))
         self._joints: List[Joint] = []
@@ -39,7 +38,6 @@ class JointPoseTrajectory(Plugin):
             context.serve(service, "gazebo_msgs/SetJointTrajectory", self._asked)
 
     def reset(self) -> None:
-        """Stop playing."""
         self._end()
 
     clock_set = reset

@@ -16,7 +16,6 @@ class Differential(Plugin):
     """A bar between two rockers: efforts -k (a - b) on `<jointA>` and k (a - b) on `<jointB>`."""
 
     def load(self) -> None:
-        """Read parameters."""
         p = self.context.parameters
         for name in ("jointA", "jointB", "forceConstant"):
             if not p.text(name):
@@ -36,7 +35,6 @@ class WarthogSuspension(Plugin):
     """Springs of `<suspension_k>` and dampers of `<suspension_b>` about 0."""
 
     def load(self) -> None:
-        """Read parameters."""
         p = self.context.parameters
         gains = PidGains(p.number("suspension_k", 0.0), d=p.number("suspension_b", 0.0))
         for name in _SUSPENSIONS:

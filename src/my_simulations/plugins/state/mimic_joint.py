@@ -15,7 +15,6 @@ class MimicJoint(Plugin):
     """Couples `<mimicJoint>` to `<joint>`."""
 
     def load(self) -> None:
-        """Read parameters."""
         p = self.context.parameters
         leader, follower = p.text("joint"), p.text("mimicJoint")
         for name, value in (("joint", leader), ("mimicJoint", follower)):

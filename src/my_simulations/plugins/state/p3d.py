@@ -21,7 +21,6 @@ class P3d(Plugin):
     """Publishes nav_msgs/Odometry of a link while there are subscribers."""
 
     def load(self) -> None:
-        """Read parameters."""
         context, p = self.context, self.context.parameters
         context.use_namespace(namespace_or(p, ""))
         if "topicName" not in p:   # an empty one is legal: nothing is published

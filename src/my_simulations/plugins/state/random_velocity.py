@@ -20,7 +20,6 @@ class RandomVelocity(Plugin):
     """Sets the linear velocity of the model before each step; it turns freely."""
 
     def load(self) -> None:
-        """Read parameters."""
         context, p = self.context, self.context.parameters
         if not p.text("link"):
             raise PluginError("it has no <link>")

@@ -40,7 +40,6 @@ class PalWorldOdometry(Plugin):
     """Publishes nav_msgs/Odometry of `<bodyName>` in the world."""
 
     def load(self) -> None:
-        """Read parameters."""
         context, p = self.context, self.context.parameters
         context.use_namespace(namespace_or(p, ""))
         self._frame = p.text("frameName", "world")
@@ -73,7 +72,6 @@ class RobotnikGroundTruthOdometry(Plugin):
     """Publishes nav_msgs/Odometry of `<bodyName>`, and with `<broadcastTF>` its transform."""
 
     def load(self) -> None:
-        """Read parameters."""
         context, p = self.context, self.context.parameters
         context.use_namespace(namespace_or(p, ""))
         for name in ("bodyName", "topicName"):

@@ -27,7 +27,6 @@ class ConveyorBelt(Plugin):
     """Moves the joint `<joint>`, `belt_joint` by default."""
 
     def load(self) -> None:
-        """Read parameters; offer the service and the topic."""
         context, p = self.context, self.context.parameters
         context.use_namespace(p.text("robot_namespace") or namespace_or(p, ""))
         self._joint = context.joint((p.text("joint") or "belt_joint").rpartition("::")[2])

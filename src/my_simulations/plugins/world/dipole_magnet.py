@@ -78,7 +78,6 @@ class DipoleMagnet(Plugin):
     """The magnet `<bodyName>`; with `<calculate>` false it only acts on others."""
 
     def load(self) -> None:
-        """Read parameters."""
         context, p = self.context, self.context.parameters
         context.use_namespace(namespace_or(p, ""))
         if not p.text("bodyName"):

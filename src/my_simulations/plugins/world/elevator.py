@@ -29,7 +29,6 @@ class Elevator(Plugin):
     """Drives the joints `<lift_joint>` and `<door_joint>`."""
 
     def load(self) -> None:
-        """Read parameters; subscribe to calls."""
         context, p = self.context, self.context.parameters
         context.use_namespace(namespace_or(p, ""))
         self._lift, self._door = self._joint("lift_joint"), self._joint("door_joint")

@@ -42,7 +42,6 @@ class GravityCompensationPlugin(Plugin):
     """Carries the links of its model. Gazebo's joint commands and their gains have no effect."""
 
     def load(self) -> None:
-        """Begin."""
         self._compensation = GravityCompensation(self.context)
 
     def reset(self) -> None:

@@ -19,7 +19,6 @@ class LiftDrag(Plugin):
     """Acts on the link `<link_name>` at its centre of pressure `<cp>`."""
 
     def load(self) -> None:
-        """Read parameters."""
         context, p = self.context, self.context.parameters
         if not p.text("link_name"):
             raise PluginError("it has no <link_name>")

@@ -35,7 +35,6 @@ class Wind(Plugin):
     """A plugin of the world."""
 
     def load(self) -> None:
-        """Read parameters."""
         context, p = self.context, self.context.parameters
         self._factor = p.number("force_approximation_scaling_factor", 0.0)
         if abs(self._factor) < _LEAST_FACTOR:

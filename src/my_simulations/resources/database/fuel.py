@@ -83,7 +83,6 @@ class FuelModels:
             self._time.give(seconds)
 
     def folders(self) -> List[str]:
-        """The existing caches."""
         return [cache for cache in self.caches if os.path.isdir(cache)]
 
     def path(self, uri: FuelUri) -> str:

@@ -29,7 +29,6 @@ class RosTopic:
 
     @property
     def wanted(self) -> bool:
-        """Whether the topic has a subscriber."""
         implementation = self._publisher.impl
         return implementation is not None and bool(implementation.connections)
 
@@ -42,7 +41,6 @@ class RosTopic:
                 raise
 
     def close(self) -> None:
-        """Take it off the graph."""
         with contextlib.suppress(OSError):  # the master has gone: nothing is registered any more
             self._publisher.unregister()
 
@@ -65,24 +63,20 @@ class RosGraph:
         self._stamp = (0, genpy.Time())
 
     def message(self, kind: str) -> Any:
-        """A new message."""
         return self._type(kind, "msg")()
 
     def stamp(self, ns: int) -> Any:
-        """A time."""
         if ns != self._stamp[0]:  # all plugins that act in one step have one
             self._stamp = (ns, genpy.Time(ns // 10 ** 9, ns % 10 ** 9))
         return self._stamp[1]
 
     def publish(self, name: str, kind: str, queue: int, latch: bool,
                 changed: Callable[[], None] = _ignore) -> Topic:
-        """Offer a topic."""
         return RosTopic(rospy.Publisher(name, self._type(kind, "msg"), SubscriberEvents(changed),
                                         queue_size=queue, latch=latch, tcp_nodelay=True))
 
     def subscribe(self, name: str, kind: str, call: Callable[[Any], None],
                   queue: int) -> GraphHandle:
-        """Hear a topic."""
         return _Closing(rospy.Subscriber(name, self._type(kind, "msg"), call, queue_size=queue,
                                          tcp_nodelay=True).unregister)
 
@@ -107,13 +101,11 @@ class RosGraph:
                                     " another plugin") from None
 
     def parameter(self, namespace: str, name: str, default: Any) -> Any:
-        """A parameter of a namespace."""
         at = rospy.resolve_name(namespace) if namespace else rospy.get_namespace()
         return rospy.get_param(name if name.startswith("/") else f"{at.rstrip('/')}/{name}",
                                default)
 
     def search_parameter(self, namespace: str, name: str, default: Any) -> Any:
-        """A parameter of a namespace or of the next one above that has it."""
         at = rospy.resolve_name(namespace) if namespace else rospy.get_namespace()
         while True:
             found = rospy.get_param(f"{at.rstrip('/')}/{name}", None)
@@ -124,13 +116,11 @@ class RosGraph:
             at = at.rstrip("/").rpartition("/")[0] or "/"
 
     def offer_transforms(self, changed: Callable[[], None]) -> None:
-        """Offer /tf."""
         if self._tf is None:
             self._tf = self.publish("/tf", "tf2_msgs/TFMessage", _TF_QUEUE, False, changed)
 
     @property
     def transforms_wanted(self) -> bool:
-        """Whether /tf has a subscriber."""
         return self._tf is not None and self._tf.wanted
 
     def send_transforms(self, transforms: List[TransformOf], ns: int) -> None:
