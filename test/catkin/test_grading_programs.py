@@ -206,6 +206,29 @@ def test_the_replay_contains_topics_of_the_assignment(tmp_path):
     assert len(times) > 8 and times == sorted(times) and times[-1] > 1.5
 
 
+def test_each_lost_point_has_the_line_of_the_fault_of_the_program(tmp_path):
+    rows, students = grade(tmp_path, QUICK, {"loop": "x = 1\nwhile True:\n    x += 1\n",
+                                             "typo": "def f(:\n", "idle": "pass\n"})
+    pages = {name: (students / name / "index.html").read_text() for name in rows}
+    assert all(points(row, "moved", "talks") == [0, 0] for row in rows.values())
+    assert (pages["loop"].count("<code>go.py:2</code>")
+            + pages["loop"].count("<code>go.py:3</code>")) == 2, pages["loop"]
+    assert pages["loop"].count("; the program computes without a pause") == 2
+    assert pages["typo"].count("<code>go.py:1</code>") == 2, pages["typo"]
+    assert pages["typo"].count("go.py:1: SyntaxError") == 3
+    assert "&gt; 0.1; pose.box.x is " in pages["idle"]
+
+
+def test_a_script_that_an_archive_has_changed_runs(tmp_path):
+    line = "rosparam set /gazebo/changed 1; rostopic pub -r 30 /chat std_msgs/String here\n"
+    rows, students = grade(tmp_path, QUICK.replace("go.py", "go.sh"), {
+        "bare": line, "windows": "#!/bin/sh\r\n" + line}, name="go.sh")
+    bare, windows = ((students / name / "index.html").read_text() for name in rows)
+    assert "go.sh is not executable and was run nevertheless: use chmod +x go.sh" in bare
+    assert points(rows["bare"], "talks") == [2], bare
+    assert "go.sh has line ends of Windows" in windows
+
+
 def test_a_program_that_cannot_be_read_is_named(tmp_path):
     (tmp_path / "anna").mkdir()
     (tmp_path / "anna" / "helper.py").touch(0)

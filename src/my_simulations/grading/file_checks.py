@@ -26,6 +26,7 @@ from .assignment import (
 )
 from .mark import CheckResult, result
 
+_MOST_FAULTS = 4   # shown
 NO_WORLD = "the file contains no <world>"
 
 
@@ -103,9 +104,11 @@ def _valid(check: ValidFile, file: WorldFile) -> CheckResult:
     if not faults:
         return result(check, 1.0)
     first = faults[0]
-    more = f" ({len(faults) - 1} more)" if len(faults) > 1 else ""
     hint = f"; {first.hint}" if first.hint else ""
-    return result(check, 0.0, f"{first.message}{hint}{more}", file.name, first.line)
+    others = [f"; line {one.line}: {one.message}" for one in faults[1:_MOST_FAULTS]]
+    more = f"; {len(faults) - _MOST_FAULTS} more" if len(faults) > _MOST_FAULTS else ""
+    return result(check, 0.0, f"{first.message}{hint}{''.join(others)}{more}", file.name,
+                  first.line)
 
 
 def _counted(check: EntityCount, file: WorldFile) -> CheckResult:
@@ -119,7 +122,9 @@ def _counted(check: EntityCount, file: WorldFile) -> CheckResult:
     number = len(counted)
     if number < check.least:
         share = number / check.least if check.partial else 0.0
-        return result(check, share, f"{_of(number, check)}, {check.least} are needed", file.name)
+        verb = "is" if check.least == 1 else "are"
+        return result(check, share, f"{_of(number, check)}, {check.least} {verb} needed",
+                      file.name)
     if check.most is not None and number > check.most:
         return result(check, 0.0, f"{_of(number, check)}, at most {check.most} are allowed",
                       file.name)

@@ -12,6 +12,7 @@ import contextlib
 import json
 import os
 import sys
+from dataclasses import replace
 from typing import Any, Dict, Iterator, List, Optional, Sequence
 
 from ..editor.logs.replay_page import write_replay
@@ -32,7 +33,7 @@ from .file_checks import (
 from .final_picture import PICTURE, final_picture
 from .launch_checks import LaunchChecks, package_folders
 from .mark import CheckResult, GradingError, result
-from .program import OUTPUT, Program, submission_account
+from .program import OUTPUT, Program, PythonError, submission_account
 from .program_graph import RosGraph, graph_environment
 from .result_stream import ResultWriter
 from .submission import all_matching, ambiguity, listed, matching, reason_for_no_match
@@ -167,11 +168,31 @@ class Judge:
         with contextlib.closing(RosGraph(self._assignment, world, self._resolver)) as graph:
             with contextlib.closing(self._program(file, graph.uri)) as program:
                 graph.run(program)
+                results: List[CheckResult] = []
                 with self._recorded_topics(world, graph, record.record):
-                    WorldRun(self._assignment, world, name, graph).run(record, self._writer.result)
-                for note in (program.why_ended(), graph.busy, graph.refused):
+                    WorldRun(self._assignment, world, name, graph).run(
+                        record, lambda found: self._keep(results, found))
+                ended, place = program.why_ended(), program.error if program.status else None
+                if graph.busy:
+                    place = program.interrupted_at()
+                self._explain(results, graph.busy or (ended if place else ""), place)
+                for note in (ended, graph.busy, graph.refused):
                     self._note(note)
                 self._writer.file(OUTPUT, program.output())
+
+    def _keep(self, results: List[CheckResult], found: CheckResult) -> None:
+        results.append(found)
+        self._writer.result(found)
+
+    def _explain(self, results: Sequence[CheckResult], cause: str, place: Optional[PythonError]
+                 ) -> None:
+        """Send results without all points again, with the fault of the program and its line."""
+        for found in results:
+            if not found.passed and cause:
+                reason = found.reason if cause in found.reason else f"{found.reason}; {cause}"
+                self._writer.result(replace(found, reason=reason,
+                                            file=place.file if place else found.file,
+                                            line=place.line if place else found.line))
 
     @contextlib.contextmanager
     def _recorded_topics(self, world: OpenWorld, graph: RosGraph, record: LogRecord
@@ -187,12 +208,24 @@ class Judge:
 
     def _program(self, file: str, uri: str) -> Program:
         path = os.path.join(self._folder, file)
-        command = [sys.executable, path] if file.lower().endswith(".py") else [path]
+        command = [sys.executable, path] if file.lower().endswith(".py") else self._script(path)
         packages = os.pathsep.join([*package_folders(self._folder),
                                     os.environ.get("ROS_PACKAGE_PATH", "")])
         return Program(command, os.path.dirname(path), self._scratch, self._assignment.limits,
                        submission_account(self._scratch, self._slot),
                        {**graph_environment(uri), "ROS_PACKAGE_PATH": packages})
+
+    def _script(self, path: str) -> List[str]:
+        """The command of a script, which archives and Windows may have changed."""
+        name = os.path.relpath(path, self._folder)
+        with open(path, "rb") as stream:
+            first = stream.readline(200)
+        if first.endswith(b"\r\n"):
+            self._note(f"{name} has line ends of Windows, with which it fails: save it with LF")
+        if not os.access(path, os.X_OK):
+            os.chmod(path, 0o755)
+            self._note(f"{name} is not executable and was run nevertheless: use chmod +x {name}")
+        return [path] if first[:2] == b"#!" or first[:4] == b"\x7fELF" else ["/bin/sh", path]
 
     def _why_missing(self, patterns: Sequence[str]) -> str:
         return reason_for_no_match(self._folder, patterns, self._unreadable)

@@ -30,6 +30,7 @@ TESTS = "tests"
 _LOOK_S = 0.1
 _END_S = 10.0
 _KEPT_OUTPUT = 200_000
+_LOOP_S = 2.0     # wall time in which a program prints where it is
 _LONGEST_ERROR = 300
 _PLACE = re.compile(r'(?:File "|in file )([^"\n]+?)"?(?:,| on) line (\d+)')
 _ERROR = re.compile(r"[\w.]+(Error|Exception)\b")
@@ -71,6 +72,24 @@ def tester_account(scratch: str, slot: int) -> Account:
                    os.path.join(judge, "tests.txt"))
 
 
+@dataclass(frozen=True)
+class PythonError:
+    """An error of a program in Python.
+
+    Attributes:
+        file: path in the submission; the name alone of a file elsewhere.
+        line: in that file, from 1.
+        message: the last line of the error; "" for an endless loop.
+    """
+
+    file: str
+    line: int
+    message: str
+
+    def __str__(self) -> str:
+        return f"{self.file}:{self.line}: {self.message}"
+
+
 class Program:
     """A running program.
 
@@ -92,6 +111,7 @@ class Program:
                  account: Account, environment: Dict[str, str]) -> None:
         self._limits = limits
         self._output = account.output
+        self._submission = os.path.join(scratch, "submission")
         self._most_bytes = int(limits.file_mb * 1e6 / 2)
         self.excess = ""
         self.watcher = 0
@@ -173,10 +193,37 @@ class Program:
         if status == 128 + signal.SIGXCPU:
             most = self._limits.processor_seconds
             return f"the program used more processor time than {most:g} s"
-        error = python_error(self.output().decode("utf-8", "replace")) if status else ""
+        error = self.error if status else None
+        text = str(error) if error is not None else ""
         if status and os.path.getsize(self._output) >= self._most_bytes:
-            error = f"its output has reached {self._most_bytes * 1e-6:g} MB"
-        return f"the program ended with status {status}" + (f": {error}" if error else "")
+            text = f"its output has reached {self._most_bytes * 1e-6:g} MB"
+        return f"the program ended with status {status}" + (f": {text}" if text else "")
+
+    @property
+    def error(self) -> Optional[PythonError]:
+        """The Python error that ended it; None if none did."""
+        return python_error(self._text(), self._submission)
+
+    def interrupted_at(self) -> Optional[PythonError]:
+        """End an endless loop in Python, and return where it was; None if that is unknown."""
+        self._signal(self._pythons(), signal.SIGABRT)     # faulthandler prints where it is
+        with contextlib.suppress(subprocess.TimeoutExpired):
+            self._process.wait(_LOOP_S)
+        return loop_place(self._text(), self._submission)
+
+    def _pythons(self) -> List[int]:
+        """Processes that run a Python program of the submission."""
+        found = []
+        for pid in box.descendants(self.pid):
+            with contextlib.suppress(OSError, IndexError):
+                with open(f"/proc/{pid}/cmdline", "rb") as stream:
+                    words = stream.read().split(b"\0")
+                if words[1].startswith(os.fsencode(self._submission) + b"/"):
+                    found.append(pid)
+        return found
+
+    def _text(self) -> str:
+        return self.output().decode("utf-8", "replace")
 
     def _watch(self) -> None:
         self.watcher = threading.get_native_id()
@@ -189,20 +236,31 @@ class Program:
                 return
 
 
-def python_error(output: str) -> str:
-    """File, line and message of the Python error at the end of an output; "" for none."""
+def python_error(output: str, folder: str) -> Optional[PythonError]:
+    """The Python error at the end of an output, in the last file of `folder` that it names."""
     last = output.rstrip().rpartition("\n")[2]
     places = _PLACE.findall(output)
-    if not places or not _ERROR.match(last):
-        return ""
-    file, line = places[-1]
-    return f"{os.path.basename(file)}:{line}: {last}"[:_LONGEST_ERROR]
+    return _error_at(places, folder, last) if places and _ERROR.match(last) else None
+
+
+def loop_place(output: str, folder: str) -> Optional[PythonError]:
+    """Where a program was that faulthandler has ended, in a file of `folder`; else None."""
+    _, found, dump = output.rpartition("Fatal Python error: Aborted")
+    places = [place for place in _PLACE.findall(dump) if place[0].startswith(f"{folder}/")]
+    return _error_at(places[:1], folder, "") if found and places else None
+
+
+def _error_at(places: Sequence[Tuple[str, str]], folder: str, message: str) -> PythonError:
+    inside = [place for place in places if place[0].startswith(f"{folder}/")]
+    file, line = (inside or places)[-1]
+    name = os.path.relpath(file, folder) if inside else os.path.basename(file)
+    return PythonError(name, int(line), message[:_LONGEST_ERROR])
 
 
 def _environment(account: Account) -> Dict[str, str]:
     return {**permitted_variables(os.environ), "HOME": account.home,
             "ROS_HOME": os.path.join(account.home, ".ros"), "TMPDIR": account.temporary,
-            "PYTHONUNBUFFERED": "1", "USER": "student"}
+            "PYTHONUNBUFFERED": "1", "PYTHONFAULTHANDLER": "1", "USER": "student"}
 
 
 def _needed(scratch: str) -> List[str]:

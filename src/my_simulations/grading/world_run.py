@@ -22,6 +22,7 @@ from .assignment import (
 from .mark import CheckResult, result
 
 _SHOWN = 3   # decimals of a length, m
+_MOST_MEASURED = 6
 
 
 class Recorder(Protocol):
@@ -155,6 +156,9 @@ def _required(check: Requirement, samples: Samples, name: str) -> CheckResult:
     if check.require.value(samples):
         return result(check, 1.0)
     reason = f"not true within {check.within:g} s of sim time: {check.require.text}"
+    measured = check.require.measured(samples)[:_MOST_MEASURED]
+    if measured:
+        reason += f"; {', '.join(measured)}"
     share = 0.0
     if check.partial is not None:
         share = float(check.partial.value(samples))

@@ -29,6 +29,7 @@ TWIST_PARTS = ("vx", "vy", "vz", "wx", "wy", "wz")
 JOINT_PARTS = ("position", "rate")
 _DEEPEST = 50
 _LONGEST = 2000
+_NOISE = 1e-9
 
 _TOKEN = re.compile(r"\s*(?:(?P<number>(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)"
                     r"|(?P<word>[A-Za-z_]\w*(?:::\w+)*)|'(?P<quoted>[^']+)'"
@@ -67,6 +68,7 @@ class Expression:
         signals: what it reads.
         sampled: whether it needs values between the start and the end of a run.
         condition: whether its value is true or false.
+        compared: text and value of each side of its comparisons that reads a signal.
     """
 
     text: str
@@ -74,12 +76,18 @@ class Expression:
     sampled: bool
     condition: bool
     _value: Callable[[Samples], Value]
+    compared: Tuple[Tuple[str, Callable[[Samples], Value]], ...] = ()
 
     def value(self, samples: Samples) -> Union[float, bool]:
         """Its value in a run; NaN where none is defined, such as a division by zero."""
         with np.errstate(all="ignore"):
             found = self._value(samples)
         return bool(found) if self.condition else float(found)
+
+    def measured(self, samples: Samples) -> List[str]:
+        """What a run gave for each side of its comparisons, such as `final(speed.box) is 0.2`."""
+        with np.errstate(all="ignore"):
+            return [f"{text} is {_shown(value(samples))}" for text, value in self.compared]
 
 
 @dataclass(frozen=True)
@@ -95,6 +103,13 @@ class _Node:
     condition: bool = False
     inner: bool = False
     signals: FrozenSet[Signal] = frozenset()
+
+
+def _shown(value: Value) -> str:
+    """A number, or the range of a series; noise of the arithmetic counts as 0."""
+    ends = [0.0 if abs(end) < _NOISE else float(end) for end in (np.min(value), np.max(value))]
+    texts = list(dict.fromkeys(f"{end:.3g}" for end in ends))
+    return " to ".join(texts)
 
 
 def _first_time(values: np.ndarray, times: np.ndarray) -> float:
@@ -147,7 +162,8 @@ def parse(text: str) -> Expression:
     if node.series:
         raise ExpressionError(f"'{text}' has a value for each sample: say which, for example"
                               f" final({text}) or max({text})")
-    return Expression(text, node.signals, node.inner, node.condition, node.value)
+    return Expression(text, node.signals, node.inner, node.condition, node.value,
+                      tuple(parser.compared.items()))
 
 
 class _Parser:
@@ -156,6 +172,7 @@ class _Parser:
         self._tokens = list(_tokens(text))
         self._at = 0
         self._depth = 0
+        self.compared: Dict[str, Callable[[Samples], Value]] = {}
 
     def whole(self) -> _Node:
         node = self._or()
@@ -216,12 +233,22 @@ class _Parser:
         return node if negations % 2 == 0 else _with(node, lambda s: np.logical_not(inner(s)))
 
     def _comparison(self) -> _Node:
-        node = self._sum()
+        node = self._side()
         sign = self._take(*_COMPARISONS)
         if not sign:
-            return node
-        other = self._sum()
-        return self._joined(_COMPARISONS[sign], [node, other], sign, condition=True)
+            return node[1]
+        sides = [node, self._side()]
+        self.compared.update((text, side.value) for text, side in sides if side.signals)
+        return self._joined(_COMPARISONS[sign], [side for _, side in sides], sign, condition=True)
+
+    def _side(self) -> Tuple[str, _Node]:
+        """A side of a comparison, with its text."""
+        first = self._at
+        node = self._sum()
+        begin = self._tokens[first][2] - 1
+        end = (self._tokens[self._at][2] - 1 if self._at < len(self._tokens) else len(self._text))
+        begin -= self._text[begin - 1:begin] == "'"     # the column is that of the quoted name
+        return self._text[begin:end].strip(), node
 
     def _sum(self) -> _Node:
         node = self._product()

@@ -13,7 +13,7 @@ from my_simulations.grading.assignment_file import read_assignment
 from my_simulations.grading.lists import write_lists
 from my_simulations.grading.mark import GRADED, TIMED_OUT, CheckResult, Mark, mark_of, result
 from my_simulations.grading.pages import write_pages
-from my_simulations.grading.program import python_error
+from my_simulations.grading.program import PythonError, loop_place, python_error
 from my_simulations.grading.result_stream import ResultReader, ResultWriter
 from my_simulations.grading.submission import (
     all_matching,
@@ -151,8 +151,31 @@ def test_the_error_of_a_program_has_its_file_and_line():
                    ^
 SyntaxError: '(' was never closed
 """
-    assert python_error(output) == "go.py:7: SyntaxError: '(' was never closed"
+    folder = "/tmp/x/submission"
+    assert str(python_error(output, folder)) == "go.py:7: SyntaxError: '(' was never closed"
+    inner = output.replace("go.py", "lab/go.py").replace("SyntaxError", """
+  File "/usr/lib/python3/dist-packages/rospy/core.py", line 12, in call
+rospy.exceptions.ROSException""")
+    assert str(python_error(inner, folder)) == (
+        "lab/go.py:7: rospy.exceptions.ROSException: '(' was never closed")
     encoding = "SyntaxError: Non-UTF-8 code starting with '\\xf6' in file /tmp/go.py on line 3"
-    assert python_error(encoding) == f"go.py:3: {encoding}"
-    assert python_error("done\n") == python_error("") == python_error("ValueError: x") == ""
-    assert len(python_error(output.replace("closed", 1000 * "x"))) == 300
+    assert str(python_error(encoding, folder)) == f"go.py:3: {encoding}"
+    assert [python_error(text, folder) for text in ("done\n", "", "ValueError: x")] == 3 * [None]
+    assert len(python_error(output.replace("closed", 1000 * "x"), folder).message) == 300
+
+
+def test_the_place_of_an_endless_loop_is_that_in_the_submission():
+    dump = """hello
+Fatal Python error: Aborted
+
+Thread 0x00007f (most recent call first):
+  File "/usr/lib/python3.11/threading.py", line 320 in wait
+
+Current thread 0x00007e (most recent call first):
+  File "/usr/lib/python3.11/json.py", line 3 in loads
+  File "/tmp/x/submission/lab/go.py", line 9 in loop
+  File "/tmp/x/submission/lab/go.py", line 12 in <module>
+"""
+    assert loop_place(dump, "/tmp/x/submission") == PythonError("lab/go.py", 9, "")
+    assert loop_place(dump, "/tmp/y") is None
+    assert loop_place("Traceback", "/tmp/x/submission") is None

@@ -51,6 +51,19 @@ def test_a_condition_is_decided(text, expected):
     assert type(found) is bool and found is expected
 
 
+@pytest.mark.parametrize(("text", "measured"), [
+    ("final(pose.box.z) > 2", ["final(pose.box.z) is 1"]),
+    ("all( pose.box.z  < 3 ) and not 5 > max(speed.'my box')",
+     ["pose.box.z is -1 to 4", "max(speed.'my box') is 2"]),
+    ("vary.mass * 0.33333 > 2", ["vary.mass * 0.33333 is 1.67"]),
+    ("speed.'my box' < 9", ["speed.'my box' is 1 to 2"]),
+    ("pose.box.x * 1e-12 == 1 or 1 / final(pose.box.x) < 1",
+     ["pose.box.x * 1e-12 is 0", "1 / final(pose.box.x) is 0.333"]),
+    ("contact(a, robo::arm)", [])])
+def test_a_condition_shows_what_it_has_compared(text, measured):
+    assert parse(text).measured(SAMPLES) == measured
+
+
 def test_what_is_not_defined_is_nan():
     assert math.isnan(value("0 / 0")) and math.isnan(value("sqrt(-1)"))
     assert math.isnan(value("first(pose.box.z > 100)"))
