@@ -1,9 +1,12 @@
 """A recorded run as one file: opened from the disk, without a server."""
 from __future__ import annotations
 
+import contextlib
+import math
 import os
 import struct
 import zlib
+from pathlib import Path
 
 import pytest
 from support import wait_for
@@ -15,6 +18,7 @@ from my_simulations.editor.logs.world_record import LogRecord
 from my_simulations.errors import CommandError
 from my_simulations.python_api import open_world
 
+ROBOT = Path(__file__).resolve().parents[2] / "urdf" / "robo.urdf"
 OBJ = """mtllib stone.mtl
 v 0 0 0
 v 1 0 0
@@ -78,7 +82,7 @@ def page_file(tmp_path, monkeypatch):
 
 
 def test_the_time_bar_moves_a_model_and_nothing_is_loaded_from_elsewhere(browser, page_file):
-    replay = browser.open(page_file.as_uri(), wait=False)
+    replay = browser.open(page_file.as_uri(), wait=False, offline=True)
     requests = []
     replay.page.on("request", lambda request: requests.append(request.url))
     replay.wait_for_world()
@@ -96,6 +100,29 @@ def test_the_time_bar_moves_a_model_and_nothing_is_loaded_from_elsewhere(browser
     assert not [url for url in requests if not url.startswith(("blob:", "data:"))
                 and url != replay.page.url]
     assert replay.get("editor.store.issues") == []
+    assert replay.faults == []
+    replay.close()
+
+
+def test_a_minute_in_the_lab_room_takes_less_than_five_megabytes(browser, tmp_path):
+    log = tmp_path / "run" / "state.log"
+    with open_world("worlds/lab_room.world") as world:
+        world.spawn(str(ROBOT), "robo")
+        with contextlib.closing(LogRecord(str(log))) as record:
+            start, steps = world.time, round(1.0 / 30.0 / world.step_size)
+            while world.time < start + 60.0:
+                record.record_state(world)
+                world.publish("/cmd_vel", {"linear": {"x": 0.2 * math.cos(world.time)},
+                                           "angular": {"z": math.sin(world.time)}})
+                world.step(steps)
+    page = tmp_path / "run.html"
+    assert my_simulations.replay(str(log.parent), str(page)) == []
+    assert page.stat().st_size < 5e6
+    replay = browser.open(page.as_uri(), offline=True)
+    replay.until("editor.view.waiting === 0", "the meshes")
+    assert {"robo", "ground_plane"} < set(replay.names()) and len(replay.names()) > 10
+    length = replay.get("editor.store.log.end - editor.store.log.begin")
+    assert length == pytest.approx(60.0, abs=0.1)
     assert replay.faults == []
     replay.close()
 
