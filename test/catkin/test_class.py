@@ -226,16 +226,72 @@ def test_a_student_reaches_no_files_processes_and_tokens_of_others(class_of_two)
     assert secret.read_text() == "of ben"
 
 
+EXCESSES = {
+    "memory": ("kept = []\nwhile True: kept.append(bytearray(1000000)); time.sleep(0.002)\n",
+               "more memory than 200 MB", ""),
+    "processes": ("""
+count = 0
+try:
+    while count < 1000:
+        if os.fork() == 0: time.sleep(1000)
+        count += 1
+except OSError as fault: print('forks', count < 40, fault, flush=True)
+os.killpg(0, 9)
+""", "the processes ended with status", "forks True"),
+    "file": ("""
+sizes = []
+for folder in ('/tmp', os.path.expanduser('~')):
+    try:
+        with open(folder + '/big', 'wb') as big:
+            while True: big.write(bytes(1000000))
+    except OSError: sizes.append(os.path.getsize(folder + '/big'))
+print('full', len(sizes), max(sizes) <= 5000000)
+""", "the processes ended with status 0", "full 2 True"),
+    "priority": ("""
+print('score', open('/proc/self/oom_score_adj').read().strip())
+try: os.nice(-1)
+except OSError as fault: print('nice', fault)
+print('processors', len(os.sched_getaffinity(0)))
+""", "the processes ended with status 0", "score 500"),
+}
+"""Programs of students, the reason on the tutor's page, and what is in the log."""
+
+
+@pytest.mark.parametrize("name", list(EXCESSES))
+def test_a_student_who_exceeds_a_limit_ends_alone(tmp_path, name):
+    assert isolation() == "", "excesses need isolation"
+    program, reason, logged = EXCESSES[name]
+    plan = read_class(str(written(tmp_path / "course", "limits: {memory_mb: 200, processes: 40,"
+                                                       " file_mb: 5}\n")))[0]
+    tokens = ClassState(plan).tokens(plan)
+    with contextlib.ExitStack() as held:
+        worlds = []
+        for student, text in zip(plan.students, (program, "time.sleep(1000)\n")):
+            listening = held.enter_context(socket.create_server(("127.0.0.1", student.port)))
+            world = Attacker(plan, student, tokens[student.name], listening)
+            world.code = "import os, time\n" + text
+            world.start()
+            held.callback(lambda world=world: world.stop("the test ended"))
+            worlds.append(world)
+        anna, ben = worlds
+        wait_for(lambda: anna.poll() or not anna.is_alive and anna.reason, "the end", SECONDS)
+        ben.poll()
+        assert ben.is_alive and ben.reason == ""
+    said = Path(log_file(plan, plan.students[0])).read_text()
+    assert reason in anna.reason and logged in said, (anna.reason, said)
+
+
 class Attacker(LocalWorld):
     """The processes of a student who attempts to reach what belongs to others."""
 
     given = {}
+    code = ATTEMPTS
 
     def _specification(self, home, passed):
         found = super()._specification(home, passed)
         if os.getuid() != 0:     # numbers of other users have no meaning in this namespace
             self.given["user"] = FIRST_USER
-        return {**found, "command": ["/usr/bin/python3", "-c", ATTEMPTS, json.dumps(self.given)]}
+        return {**found, "command": ["/usr/bin/python3", "-c", self.code, json.dumps(self.given)]}
 
 
 def written_assignment(folder):

@@ -34,6 +34,7 @@ from types import FrameType
 from typing import Any, Dict, List, Optional
 
 _PR_SET_PDEATHSIG = 1
+_OOM_SCORE = "500"   # of -1000 to 1000; a student cannot lower it below that of the class
 _GRADING = os.path.join(os.path.dirname(os.path.dirname(os.path.abspath(__file__))), "grading")
 
 
@@ -94,6 +95,9 @@ def _inside(spec: Dict[str, Any], box: Any, cell: Any) -> int:
 
     def start() -> None:
         cell.limit_resources(spec)
+        with contextlib.suppress(OSError):   # if memory runs out, the kernel ends students first
+            with open("/proc/self/oom_score_adj", "w", encoding="ascii") as stream:
+                stream.write(_OOM_SCORE)
         _become(spec["user"], box, cell)
 
     with tempfile.TemporaryFile() as text:
