@@ -4,7 +4,8 @@
 usage: editor.py [ROW …]   rows: page slow idle frames moving meshes stl release (default: all)
 
 The browser is a headless Chromium that draws with the processor, as where there is no graphics
-card.
+card: SwiftShader computes WebGL, and the page itself is composed without WebGL. The switch for
+SwiftShader alone would let it compose the page too, which takes five to ten times as long.
 Nothing here fails on a slow machine.
 """
 from __future__ import annotations
@@ -69,7 +70,8 @@ def browser() -> Iterator[Any]:
 
     with sync_playwright() as driver:
         chromium = driver.chromium.launch(executable_path=CHROMIUM, args=[
-            "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--no-sandbox"])
+            "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--disable-gpu-compositing",
+            "--no-sandbox"])
         try:
             yield chromium.new_page(viewport={"width": 1366, "height": 768})
         finally:

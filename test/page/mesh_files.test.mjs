@@ -89,3 +89,15 @@ test('a large mesh keeps its form with fewer triangles, a small one is left as i
   assert.ok(limitFor(1) > limitFor(200) && limitFor(1e6) >= 500);
   for (const files of [1, 10, 200, 1e6]) assert.ok(limitFor(files, {moving: true}) <= limitFor(files) / 4);
 });
+
+test('a mesh is closed that surrounds a volume and faces outwards', () => {
+  const corners = sphere(100);
+  const turned = corners.map((_, at) => corners[9 * Math.floor(at / 9) + 3 * (2 - Math.floor(at % 9 / 3)) + at % 3]);
+  const open = corners.slice(0, corners.length / 2);
+  const twice = Float32Array.from([...corners, ...turned]);
+  for (const [name, mesh, closed] of [['sphere', corners, true], ['inside out', turned, false],
+    ['half a sphere', open, false], ['both sides of a half', Float32Array.from([...open, ...turned.slice(0, open.length)]), false],
+    ['both sides', twice, false]]) {
+    for (const limit of [300, 2000]) assert.equal(coarse(mesh, mesh, null, limit).closed, closed, name);
+  }
+});

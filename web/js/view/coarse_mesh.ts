@@ -19,8 +19,11 @@ export const limitFor = (files: number, {moving = false}: {moving?: boolean} = {
   return Math.min(most, Math.max(least, Math.round(budget / Math.max(files, 1))));
 };
 
-/** Three numbers for each corner; three corners for each triangle. */
-export type Shape = {position: Float32Array, normal: Float32Array, index: Uint32Array};
+/**
+ * Three numbers for each corner; three corners for each triangle. `closed`: its triangles surround a volume and
+ * face outwards, so that none is seen from behind.
+ */
+export type Shape = {position: Float32Array, normal: Float32Array, index: Uint32Array, closed: boolean};
 
 /**
  * A mesh of about `limit` triangles at most; null for one that has no more.
@@ -33,9 +36,9 @@ export function coarse(position: ArrayLike<number>, normal: ArrayLike<number>,
   if ((index ?? position).length / (index ? 3 : 9) <= limit) return null;
   let cells = Math.min(MOST_CELLS, Math.max(4, Math.round(Math.sqrt(limit / 6))));
   for (;;) {
-    const found = clustered(position, normal, index, cells);
-    const count = found.index.length / 3;
-    if (count <= 1.2 * limit || cells <= 4) return found;
+    const {shape, cornerOf, middle} = clustered(position, normal, index, cells);
+    const count = shape.index.length / 3;
+    if (count <= 1.2 * limit || cells <= 4) return {...shape, closed: isClosed(cornerOf, index, middle)};
     cells = Math.max(4, Math.min(cells - 1, Math.floor(cells * Math.sqrt(limit / count))));
   }
 }
@@ -75,7 +78,7 @@ function clustered(position: ArrayLike<number>, normal: ArrayLike<number>,
     facing[to + 2] += normal[at + 2];
   }
   for (let at = 0; at < middle.length; at += 1) middle[at] /= members[Math.floor(at / 3)];
-  return triangles(cornerOf, index, middle, facing);
+  return {shape: triangles(cornerOf, index, middle, facing), cornerOf, middle};
 }
 
 function bounds(position: ArrayLike<number>) {
@@ -119,11 +122,45 @@ function triangles(cornerOf: Int32Array, index: ArrayLike<number>|null, middle: 
 }
 
 /**
+ * Whether triangles surround a volume and face outwards. Each edge is then passed as often in one direction as in
+ * the other. Only a sum of hashes is kept of the edges, which is 0 then, and else with a probability of 2^-32.
+ * @param cornerOf  place in `middle` of each corner of the file
+ */
+function isClosed(cornerOf: Int32Array, index: ArrayLike<number>|null, middle: Float64Array) {
+  const count = (index ?? cornerOf).length;
+  const [x0, y0, z0] = middle;
+  let [edges, volume, sizes] = [0, 0, 0];
+  for (let at = 0; at < count; at += 3) {
+    const a = cornerOf[index ? index[at] : at];
+    const b = cornerOf[index ? index[at + 1] : at + 1];
+    const c = cornerOf[index ? index[at + 2] : at + 2];
+    if (a === b || b === c || c === a) continue;
+    edges = (edges + edgeHash(a, b) + edgeHash(b, c) + edgeHash(c, a)) | 0;
+    const [i, j, k] = [3 * a, 3 * b, 3 * c];
+    const [bx, by, bz] = [middle[j] - x0, middle[j + 1] - y0, middle[j + 2] - z0];
+    const [cx, cy, cz] = [middle[k] - x0, middle[k + 1] - y0, middle[k + 2] - z0];
+    const part = (middle[i] - x0) * (by * cz - bz * cy) + (middle[i + 1] - y0) * (bz * cx - bx * cz) +
+      (middle[i + 2] - z0) * (bx * cy - by * cx);
+    volume += part;
+    sizes += Math.abs(part);
+  }
+  // A sheet with two sides has no volume, but for errors of rounding.
+  return edges === 0 && volume > 1e-6 * sizes;
+}
+
+/** A number for an edge, negative in the other direction. */
+function edgeHash(from: number, to: number) {
+  const hash = Math.imul(Math.min(from, to), 0x9e3779b1) ^ Math.imul(Math.max(from, to) + 1, 0x85ebca6b);
+  const mixed = Math.imul(hash ^ hash >>> 15, 0x2c1b3c6d);
+  return from < to ? mixed ^ mixed >>> 13 : -(mixed ^ mixed >>> 13);
+}
+
+/**
  * Corners of curved surfaces are shared by their triangles: a processor that draws computes each once.
  * Corners at edges belong to one triangle, with its normal.
  * @param kept  places in `middle`, three for each triangle
  */
-function withSharedCorners(kept: number[], middle: Float64Array, facing: Float64Array): Shape {
+function withSharedCorners(kept: number[], middle: Float64Array, facing: Float64Array): Omit<Shape, 'closed'> {
   const cells = middle.length / 3;
   const mean = new Float32Array(facing.length);
   for (let at = 0; at < facing.length; at += 3) writeUnit(mean, at, facing[at], facing[at + 1], facing[at + 2]);

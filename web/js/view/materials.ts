@@ -27,6 +27,8 @@ export interface Variant {
   /** times the material's own, 0..1 */
   opacity?: number;
   wireframe?: boolean;
+  /** draw what is seen from the front only */
+  frontOnly?: boolean;
 }
 
 export class Materials {
@@ -63,12 +65,14 @@ export class Materials {
 
   /** A mesh's own material in another appearance. */
   own(material: ThreeMaterial, variant: Variant) {
-    const {opacity = 1, wireframe = false} = variant;
-    if (opacity === 1 && !wireframe) return material;
-    const key = `${material.uuid} ${opacity} ${wireframe}`;
+    const {opacity = 1, wireframe = false, frontOnly = false} = variant;
+    if (opacity === 1 && !wireframe && !frontOnly) return material;
+    const key = `${material.uuid} ${opacity} ${wireframe} ${frontOnly}`;
     let made = this.#cache.get(key);
     if (!made) {
-      made = frontsFirst(material.clone());
+      made = material.clone();
+      if (frontOnly) made.side = FrontSide;
+      else frontsFirst(made);
       Object.assign(made, {wireframe});
       made.opacity = material.opacity * opacity;
       made.transparent = made.opacity < 1 || material.transparent;

@@ -245,9 +245,12 @@ function coarser({attributes, groups, index}: BufferGeometry, limit: number): Bu
   const {position, normal} = attributes;
   if (!plain || !(position instanceof BufferAttribute) || !(normal instanceof BufferAttribute)) return null;
   const found = coarse(position.array, normal.array, index?.array ?? null, limit);
-  return found && new BufferGeometry().setAttribute('position', new BufferAttribute(found.position, 3))
+  if (!found) return null;
+  const geometry = new BufferGeometry().setAttribute('position', new BufferAttribute(found.position, 3))
     .setAttribute('normal', new BufferAttribute(found.normal, 3))
     .setIndex(new BufferAttribute(found.index, 1));
+  geometry.userData.closed = found.closed;
+  return geometry;
 }
 
 /** A part with a simplified geometry, and a plainer one for pictures of a moving scene. */

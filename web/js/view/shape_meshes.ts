@@ -160,19 +160,26 @@ export function meshOf({geometry, material, matrix}: Part) {
   return mesh;
 }
 
+/**
+ * Whether all of a part is seen from the front. Mirrored parts are not: where copies are merged, their triangles
+ * would be taken for backs.
+ */
+const isClosed = ({geometry, matrix}: BasicPart) => Boolean(geometry.userData.closed) && matrix.determinant() > 0;
+
 function finished(part: BasicPart, shape: DrawnShape, materials: Materials, {material, opacity = 1,
     wireframe = false}: Look) {
   const variant = {opacity: opacity * (1 - (shape.transparency ?? 0)), wireframe};
+  const frontOnly = isClosed(part) && variant.opacity === 1 && !wireframe;
   let made: Material|Material[]|undefined = material;
   if (!made && shape.geometry.type === 'heightmap' && shape.geometry.layers.length) {
     made = materials.terrain(shape.geometry.layers, shape.geometry.position[2], variant);
   }
   if (!made && part.own && !Materials.speaks(shape.material)) {
-    made = Array.isArray(part.own) ? part.own.map((one) => materials.own(one, variant))
-      : materials.own(part.own, variant);
+    const own = (one: Material) => materials.own(one, {...variant, frontOnly: frontOnly && !one.transparent});
+    made = Array.isArray(part.own) ? part.own.map(own) : own(part.own);
   }
   made ??= materials.get(shape.material ?? null, variant,
-    {doubleSided: shape.geometry.type !== 'box' && shape.geometry.type !== 'plane',
+    {doubleSided: shape.geometry.type !== 'box' && shape.geometry.type !== 'plane' && !frontOnly,
       pushed: part.pushed ?? false, endless: Boolean(part.endless && !shape.material?.texture)});
   return {geometry: part.geometry, material: made,
     matrix: matrixOf(shape.pose).multiply(part.matrix)};
