@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
+from itertools import islice
 from typing import Dict, Iterator, List, Optional, Sequence, Set, Tuple
 
 from ..errors import Severity
@@ -21,6 +22,12 @@ MOST_PIECES = 127
 
 THINNEST_M = 1e-4
 DEEPEST_M = 0.005
+MOST_OVERLAPS, MOST_COMPARED = 10_000, 1_000_000
+"""Limits of the search for overlapping collisions: pairs found, and pairs compared.
+
+The search takes 2 microseconds for each pair found and 0.3 for each compared.
+"""
+
 _TOO_LARGE = 10.0
 _TOO_SMALL = 0.01
 
@@ -314,12 +321,18 @@ def _support(geometry: Geometry, pose: Pose, normal: Vec3) -> float:
 
 def _in_each_other(cores: List[_Core],
                    only: str) -> Iterator[Tuple[str, str, float, Collision]]:
-    """Overlapping pairs, by sweep and prune along x."""
+    """Overlapping pairs, by sweep and prune along x; at most `MOST_OVERLAPS` of them."""
     cores = sorted(cores, key=lambda core: core.low[0])
+    found = compared = 0
     for n, one in enumerate(cores):
-        for other in cores[n + 1:]:
+        if found >= MOST_OVERLAPS or compared >= MOST_COMPARED:
+            return
+        for other in islice(cores, n + 1, None):
             if other.low[0] > one.high[0] - DEEPEST_M:
                 break
+            compared += 1
+            if other.low[1] > one.high[1] or one.low[1] > other.high[1]:
+                continue
             if one.model == other.model or (one.static and other.static):
                 continue
             if only and only not in (one.model, other.model):
@@ -330,6 +343,7 @@ def _in_each_other(cores: List[_Core],
                 # The one that is asked for, where both can move.
                 swap = one.static or (other.model == only and not other.static)
                 mover, still = (other, one) if swap else (one, other)
+                found += 1
                 yield mover.link, still.link, depth, mover.collision
 
 

@@ -24,10 +24,10 @@ from typing import Any, Dict, List, Tuple
 from ..child_process import child_command, child_environment, wait_or_kill
 from ..errors import InputError, Issue, Severity, error
 
-MEMORY, SECONDS, DEADLINE_S = 1 << 30, 20, 300.0
+MEMORY, SECONDS, DEADLINE_S = 1 << 30, 4, 300.0
 """Limits of a small file: bytes, s of processor time, and s of wall time on a busy machine."""
 
-_MEMORY_PER_BYTE, _BYTES_PER_SECOND = 16, 1 << 20
+_MEMORY_PER_BYTE, _BYTES_PER_SECOND = 16, 5_000_000
 _KINDS = {"<f8", "<i8", "<i4", "<u2", "|u1", "|b1"}
 _LENGTH = struct.Struct("<Q")
 _LONGEST_HEADER = 64 << 20

@@ -5,14 +5,16 @@ import struct
 
 import pytest
 
-from my_simulations.description import cost_budget
+from my_simulations.description import advice, cost_budget
 from my_simulations.description.cost_budget import MODEL_BUDGET, Cost
 from my_simulations.errors import InputError, errors_of
 from my_simulations.formats import reading
 from my_simulations.formats.mesh.loading import collision_meshes
 from my_simulations.formats.reading import parse_document, read_entity, read_world_text
 from my_simulations.formats.sdf import include, model
+from my_simulations.formats.sdf import world as sdf_world
 from my_simulations.formats.sdf.link import LinkReader
+from my_simulations.formats.urdf import robot
 from my_simulations.resources.resolver import Resolver
 
 BOX = "<collision name='c'><geometry><box><size>1 1 1</size></box></geometry></collision>"
@@ -89,6 +91,39 @@ def test_models_after_the_limit_of_the_world_are_not_read(monkeypatch):
     assert [light.name for light in loaded.world.lights] == ["sun"]
     (issue,) = errors_of(loaded.issues)
     assert (issue.code, issue.line) == ("world-too-large", 5)
+
+
+@pytest.mark.parametrize("faulty", ["<model name='m0'><link name='l'/></model>",
+                                    "<model name='e'><link/></model>"])
+def test_models_after_many_unusable_ones_are_not_read(monkeypatch, faulty):
+    monkeypatch.setattr(sdf_world, "MOST_UNUSABLE", 3)
+    good = "<model name='{}'><link name='l'/></model>"
+    loaded = read_world_text(
+        f"<sdf version='1.7'><world name='w'>{good.format('m0')}{faulty * 3}{good.format('m1')}\n"
+        f"{faulty}{good.format('m2')}</world></sdf>", Resolver())
+    assert [model.name for model in loaded.world.models] == ["m0", "m1"]
+    found = [issue for issue in errors_of(loaded.issues) if issue.code == "world-too-large"]
+    assert [issue.line for issue in found] == [2]
+
+
+def test_a_robot_of_very_many_links_is_refused_before_they_are_read(monkeypatch):
+    monkeypatch.setattr(robot, "MOST_LINKS", 3)
+    monkeypatch.setattr(robot, "read_body", None)
+    links = "\n".join(f"<link name='l{n}'/>" for n in range(4))
+    (issue,) = errors(f"<robot name='r'>{links}</robot>")
+    assert (issue.code, issue.line) == ("model-too-large", 4)
+
+
+def test_the_search_for_overlaps_is_bounded(monkeypatch):
+    monkeypatch.setattr(advice, "MOST_OVERLAPS", 5)
+    models = "".join(f"<model name='m{n}'><link name='l'>{BOX}</link></model>" for n in range(30))
+    text = f"<sdf version='1.7'><world name='w'>{models}</world></sdf>"
+    found = read_world_text(text, Resolver(), advice_limit=None).issues
+    # Of the first body, with each of the others; later ones are not compared.
+    assert [issue.code for issue in found].count("starts-inside") == 29
+    monkeypatch.setattr(advice, "MOST_COMPARED", 0)
+    found = read_world_text(text, Resolver(), advice_limit=None).issues
+    assert "starts-inside" not in [issue.code for issue in found]
 
 
 def stl(path, count):

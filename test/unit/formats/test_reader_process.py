@@ -122,6 +122,26 @@ def test_memory_is_limited_and_the_next_file_is_read(kept, tmp_path, monkeypatch
     assert grey_levels(path, 1025).values.shape == (1000, 1000)
 
 
+def test_the_limit_of_processor_time_grows_with_the_file(kept, tmp_path, monkeypatch):
+    asked = []
+    monkeypatch.setattr(kept, "ask",
+                        lambda request, *_: asked.append(request) or ({"value": 0}, []))
+    for megabytes in (0, 10, 50):
+        with open(tmp_path / "mesh.ply", "wb") as stream:
+            stream.truncate(megabytes * 1_000_000)
+        reader_process.read_elsewhere("mesh", stream.name, "mesh-unreadable")
+    assert [request["seconds"] for request in asked] == [4, 6, 14]
+
+
+def test_an_obj_file_of_many_groups_is_read_by_another_process(kept, tmp_path):
+    corners = "v 0 0 0\nv 1 0 0\nv 0 1 0\n"
+    for count, reads_elsewhere in ((2000, False), (2001, True)):
+        path = tmp_path / f"{count}.obj"
+        path.write_text(corners + "".join(f"g {n}\nf 1 2 3\n" for n in range(count)))
+        assert len(load_mesh(Mesh(path.name, str(path))).triangles) == count
+        assert bool(kept.pid) is reads_elsewhere
+
+
 def test_processor_time_is_limited(kept, tmp_path, monkeypatch):
     mesh = doubling(tmp_path / "million.dae", 40, sets=20)
     monkeypatch.setattr(reader_process, "SECONDS", 0)

@@ -30,6 +30,9 @@ from .saved_state import read_state
 from .state_applied import state_issues
 from .world_scene import read_surroundings
 
+MOST_UNUSABLE = 2000
+"""Most models of a world that are skipped because of faults; each takes 0.2 ms to read."""
+
 
 def read_world_element(element: Any, source: Source, seed: int = 0, profile: str = "") -> World:
     """A world; models with a fatal fault are skipped. Source: SDF spec 1.7, world.
@@ -82,43 +85,54 @@ class _Entities:
             "light": lambda child: read_light(child, self._source),
             "population": lambda child: read_population(child, self._source, self._world.seed),
         }
+        unusable = 0
         for child in element:
             reader = readers.get(child.tag)
             if reader is None or (self._full and child.tag != "light"):
                 continue
             before = self._source.log.fatal
             entity = reader(child)
-            if entity is not None and self._source.log.fatal == before:
-                self._add(entity, child)
+            if (entity is not None and self._source.log.fatal == before
+                    and self._add(entity, child)):
+                continue
+            unusable += 1
+            if unusable > MOST_UNUSABLE and not self._full:
+                self._full = True
+                self._source.report(FaultLevel.ERROR, "world-too-large", f"{unusable} models or"
+                                    " lights of the world cannot be used; the following models are"
+                                    " skipped", child)
         self._declare_frames()
         self._place()
         self._connect()
 
-    def _add(self, entity: Any, element: Any) -> None:
+    def _add(self, entity: Any, element: Any) -> bool:
+        """Add an entity to the world; False if its name is taken or there is no room."""
         if isinstance(entity, list):  # of a population
-            for model in entity:
-                self._add(ParsedModel(model), element)
+            return all([self._add(ParsedModel(model), element) for model in entity])
         elif isinstance(entity, Actor):
             entity.include = to_xml(element)
             self._world.actors.append(entity)
         elif isinstance(entity, ParsedModel):
             model = entity.model
-            if (self._is_new(model.name, self._models, "model", element)
+            if not (self._is_new(model.name, self._models, "model", element)
                     and self._fits(model, element)):
-                self._world.models.append(model)
-                self._frames.add(model.name, model.pose, entity.relative_to, element)
-                self._inner.append((entity, element))
-                self._pending += [one.moved_out(model.name) for one in entity.unresolved_joints]
-                if entity.relative_to:
-                    self._waiting.append((model, element))
+                return False
+            self._world.models.append(model)
+            self._frames.add(model.name, model.pose, entity.relative_to, element)
+            self._inner.append((entity, element))
+            self._pending += [one.moved_out(model.name) for one in entity.unresolved_joints]
+            if entity.relative_to:
+                self._waiting.append((model, element))
         elif isinstance(entity, LightPlacement):
             light: Light = entity.light
-            if self._is_new(light.name, self._lights, "light", element):
-                self._world.lights.append(light)
-                if entity.relative_to:
-                    self._frames.add(f"(light) {light.name}", light.pose, entity.relative_to,
-                                     element)
-                    self._waiting.append((light, element))
+            if not self._is_new(light.name, self._lights, "light", element):
+                return False
+            self._world.lights.append(light)
+            if entity.relative_to:
+                self._frames.add(f"(light) {light.name}", light.pose, entity.relative_to,
+                                 element)
+                self._waiting.append((light, element))
+        return True
 
     def _fits(self, model: Model, element: Any) -> bool:
         """Whether the world has room for the model; otherwise no further one is read."""

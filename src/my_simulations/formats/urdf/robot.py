@@ -1,9 +1,9 @@
 """Reads URDF robots as models. Source: the URDF specification and Gazebo's converter."""
 from __future__ import annotations
 
-from typing import Any, Dict, List, Optional, Union
+from typing import Any, Dict, List, Optional, Sequence, Union
 
-from ...description.cost_budget import budget_faults, cost_of
+from ...description.cost_budget import MODEL_BUDGET, budget_faults, cost_of
 from ...description.model import WORLD, Joint, JointAxis, Link, Model
 from ...description.validate import faults
 from ...errors import Issue, Severity
@@ -23,6 +23,9 @@ from .link import read_body, read_origin, read_palette
 from .lumped_references import Renamed, rename
 from .transmission import read_transmission
 from .urdf_tables import ROBOT
+
+MOST_LINKS = 5 * MODEL_BUDGET.links
+"""Most links of a file; those that fixed joints lump do not count in the budget of a model."""
 
 
 def read_robot(element: Any, source: Source, changes: Optional[IncludeOverrides] = None) -> Model:
@@ -61,6 +64,8 @@ class _RobotReader:
             model.static = changes.static
         model.plugins += changes.plugins
         self._elements[id(model)] = self._element
+        if self._has_too_many(found.get("link", ())):
+            return model
         self._read_bodies(found.get("link", ()), read_palette(found.get("material", ()), source))
         self._read_connections(found.get("joint", ()))
         for body in self._bodies.values():
@@ -84,6 +89,14 @@ class _RobotReader:
                     model.joints.append(joint)
         self._check()
         return model
+
+    def _has_too_many(self, links: Sequence[Any]) -> bool:
+        """Whether the robot has so many links that it is refused before they are read."""
+        if len(links) <= MOST_LINKS:
+            return False
+        self._fatal("model-too-large", f"model {self._model.name!r} has {len(links)} links;"
+                    f" {MOST_LINKS} are possible before fixed joints are lumped", links[MOST_LINKS])
+        return True
 
     def _read_sensors(self) -> None:
         """Read sensors from the kept XML of links and joints, after lumping has changed it."""
