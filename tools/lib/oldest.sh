@@ -73,6 +73,12 @@ tests_without_ros() {
     --exclude=test_save_sdformat.py | sort
 }
 
+# tests_of_readers: those of them in folders whose code uses the packages that requirements-oldest.txt
+# has in other versions. That all other code runs on Python 3.8, mypy and ruff check.
+tests_of_readers() {
+  tests_without_ros | grep -E '^test/unit/(description|formats|messages|objects|resources|studies)/'
+}
+
 # oldest_files FILE...: their tests with the oldest Python.
 oldest_files() {
   # The paths of ROS lead to packages of another Python.

@@ -164,6 +164,18 @@ def test_the_oldest_python_gets_the_unit_tests_that_import_nothing_of_ros():
     assert not [name for name in chosen if name.startswith("test/unit/project/")]
 
 
+def test_a_usual_run_has_the_oldest_python_run_the_tests_of_the_readers():
+    done = subprocess.run(
+        ["bash", "-c", ". tools/lib/oldest.sh; tests_of_readers; echo; tests_without_ros"],
+        cwd=REPOSITORY, text=True, capture_output=True, check=True)
+    usual, _, all_tests = (part.split() for part in done.stdout.partition("\n\n"))
+    assert {"test/unit/formats/test_mesh.py", "test/unit/objects/test_yaml_lists.py"} <= set(usual)
+    assert set(usual) < set(all_tests) and len(usual) > 40
+    # What imports a package of another version is among them, or in one of these folders.
+    assert {name.split("/")[2] for name in usual} == {
+        "description", "formats", "messages", "objects", "resources", "studies"}
+
+
 def oldest(tmp_path, all_tests, has_pyenv=False, on_path=False, system=False, named=None):
     """(the Python that was chosen, what is said where there is none)"""
     pyenv = tmp_path / "pyenv" / "versions" / "3.8.18" / "bin"
