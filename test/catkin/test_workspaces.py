@@ -99,7 +99,9 @@ class Workspace:
 
 @pytest.mark.parametrize(("first", "devel"), [
     (["catkin init", "catkin build --no-status"], "devel"),
-    (["catkin_make_isolated"], "devel_isolated")], ids=["catkin_tools", "isolated"])
+    # Moved workspaces of it are built in every run.
+    pytest.param(["catkin_make_isolated"], "devel_isolated", marks=pytest.mark.long)],
+    ids=["catkin_tools", "isolated"])
 def test_workspace_is_built_by_its_own_command_and_simulates(tmp_path, first, devel):
     workspace = Workspace(tmp_path, *first)
     of_packages = tmp_path / "ws" / ("devel/.private" if devel == "devel" else devel)
