@@ -159,11 +159,17 @@ CASES: List[Case] = [
 
 
 def _runs() -> Iterator[object]:
-    """Each case at one step size, in turn; its other ones are long runs, for they take minutes."""
+    """The first case of each law at one of its two largest steps; all others are long runs.
+
+    Small steps take longest, and most laws run at 1 ms in their own file.
+    """
+    known = set()
     for n, case in enumerate(CASES):
         uses = [use for use in USES if use.step_size <= case.largest_step]
+        first = case.law not in known
+        known.add(case.law)
         for m, use in enumerate(uses):
-            usual = m == len(uses) - 1 - n % min(3, len(uses))
+            usual = first and m == len(uses) - 1 - n % min(2, len(uses))
             yield pytest.param(case, replace(use, wind=not case.calm), id=f"{case}-{use}",
                                marks=() if usual else pytest.mark.long)
 
