@@ -21,7 +21,7 @@ _KEPT_BYTES, _HEAP_BYTES = 64 << 20, 32 << 20
 class Connection(Protocol):
     """What a child and its parent talk through."""
 
-    def hang_up(self) -> None:
+    def shut_down(self) -> None:
         """Close this end."""
 
 
@@ -59,7 +59,7 @@ def shielded() -> Iterator[None]:
 
 def await_end(child: "subprocess.Popen[bytes]", wire: Connection) -> None:
     """Wait for the end of a child whose stream has ended; one that lives on is killed."""
-    wire.hang_up()
+    wire.shut_down()
     wait_or_kill(child, _END_S)
 
 

@@ -46,12 +46,12 @@ def check_file_name(name: str) -> None:
     Raises:
         CommandError: it contains such a character.
     """
-    found = hidden_in(name)
+    found = hidden_character(name)
     if found:
         raise CommandError(f"the file name contains the character {found}, which is not shown")
 
 
-def hidden_in(text: str) -> str:
+def hidden_character(text: str) -> str:
     """The first character of a text that is not shown, e.g. `U+202E at position 4`; "" for none.
 
     Positions are counted from 1.

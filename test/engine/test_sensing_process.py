@@ -177,7 +177,7 @@ def test_what_waits_fails_when_all_ends_before_a_process_is_started(monkeypatch)
     start = sensing._start
     monkeypatch.setattr(sensing, "_start", lambda: begin.wait(DEADLINE_S) and start())
     waiting = sensing.cast(CastRays(MOUNT, AHEAD))
-    monkeypatch.setattr(sensing, "_hang_up", begin.set)  # called once it is closing
+    monkeypatch.setattr(sensing, "_shut_down_wire", begin.set)  # called once it is closing
     sensing.close()
     with pytest.raises(SensingEndedError, match="ended"):
         waiting.result(DEADLINE_S)

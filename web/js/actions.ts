@@ -122,7 +122,7 @@ export function createActions({store, connection}: {store: Store,
     resetPoses: () => edit({kind: 'reset', what: 'poses'}),
     resetWorld: () => edit({kind: 'reset', what: 'world'}),
     resetTime: () => edit({kind: 'reset', what: 'time'}),
-    /** Copies models and lights (default: the selection). */
+    /** Copies models and lights (default: the selection) to the clipboard. */
     async copy(names = store.selection): Promise<Outcome> {
       const items = names.flatMap((name) => {
         const copied = copyOf(store.entity(name));

@@ -37,7 +37,7 @@ class Materials:
         self._seen: Dict[str, ScriptMaterial] = {}
         self._lock = threading.Lock()
 
-    def look(self, material: Optional[Material]) -> Optional[Look]:
+    def resolve(self, material: Optional[Material]) -> Optional[Look]:
         """The resolved material; None for none.
 
         Colours of the file override those of the script (Gazebo behaviour).
@@ -59,7 +59,7 @@ class Materials:
 
     def of_visual(self, visual: Visual) -> Optional[Look]:
         """The resolved material of a visual, with the layers of a terrain; None for none."""
-        found = self.look(visual.material)
+        found = self.resolve(visual.material)
         layers = terrain_layers(visual, self._resolver)
         return replace(found or Look(), layers=layers) if layers else found
 

@@ -97,7 +97,7 @@ def _item(link: Link, model: Pose) -> Optional[_Item]:
         return None
     shapes = link.visuals or link.collisions
     visual = link.visuals[0] if link.visuals else None
-    color, texture = _look(visual.material if visual is not None else None)
+    color, texture = _color_and_texture(visual.material if visual is not None else None)
     return _Item(found.group(1), int(found.group(2)), compose(model, link.pose),
                  [_block(shape.geometry, shape.pose) for shape in shapes
                   if isinstance(shape.geometry, Box)],
@@ -113,7 +113,7 @@ def _block(box: Box, pose: Pose) -> _Block:
     return _Block((x - half[0], y - half[1], z - half[2]), (x + half[0], y + half[1], z + half[2]))
 
 
-def _look(material: Optional[Material]) -> Tuple[str, str]:
+def _color_and_texture(material: Optional[Material]) -> Tuple[str, str]:
     if material is None:
         return WHITE, ""
     shade = material.ambient or (1.0, 1.0, 1.0, 1.0)

@@ -113,6 +113,7 @@ class _ClassReader(ValueReader):
         return ClassLimits(memory, processors, processes, size)
 
     def _containers(self, value: Any) -> str:
+        """Return the name of the container program; "" for processes without containers."""
         if value is None or value in PROGRAMS:
             return value or ""
         self.fault(("containers",), f"'containers' must be one of {', '.join(PROGRAMS)}, is"

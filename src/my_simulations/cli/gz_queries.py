@@ -28,9 +28,9 @@ class Running:
         self.parameters = client.Parameters(remappings)
         self.simulator = client.SimulatorClient(self.parameters, self.node, FIND_SECONDS)
 
-    def ask(self, service: str, kind: str, **fields: Any) -> Any:
+    def call_service(self, service: str, kind: str, **fields: Any) -> Any:
         """The response of a service. Raises ToolError if it fails."""
-        answer = self.simulator.ask(service, kind, **fields)
+        answer = self.simulator.call_service(service, kind, **fields)
         if not getattr(answer, "success", True):
             raise client.ToolError(answer.status_message)
         return answer
@@ -40,17 +40,17 @@ def world(options: argparse.Namespace, running: Running) -> int:
     """`gz world`."""
     done = 0
     if options.pause is not None:
-        running.ask("pause_physics" if options.pause else "unpause_physics", "Empty")
+        running.call_service("pause_physics" if options.pause else "unpause_physics", "Empty")
         done += 1
     for wanted, service in ((options.reset_all, "reset_simulation"),
                             (options.reset_time, "reset_time"),
                             (options.reset_models, "reset_world")):
         if wanted:
-            running.ask(service, "Empty")
+            running.call_service(service, "Empty")
             done += 1
     steps = 1 if options.step else options.multi_step
     if steps:
-        running.ask("step_world", "StepWorld", steps=steps)
+        running.call_service("step_world", "StepWorld", steps=steps)
         done += 1
     return _something(done, "gz world", "-p 0|1, -s, -m N, -r, -t or -o")
 
@@ -88,7 +88,7 @@ def model(options: argparse.Namespace, running: Running) -> int:
 
 def physics(options: argparse.Namespace, running: Running) -> int:
     """`gz physics`."""
-    now = running.ask("get_physics_properties", "GetPhysicsProperties")
+    now = running.call_service("get_physics_properties", "GetPhysicsProperties")
     fields = {"time_step": now.time_step, "max_update_rate": now.max_update_rate,
               "gravity": now.gravity, "ode_config": now.ode_config}
     changed = False
@@ -102,7 +102,7 @@ def physics(options: argparse.Namespace, running: Running) -> int:
         if value is not None:
             fields[key], changed = value, True
     if changed:
-        running.ask("set_physics_properties", "SetPhysicsProperties", **fields)
+        running.call_service("set_physics_properties", "SetPhysicsProperties", **fields)
         return OK
     print(f"gravity: {now.gravity.x:g},{now.gravity.y:g},{now.gravity.z:g} m/s^2\n"
           f"step size: {now.time_step:g} s\nupdate rate: {now.max_update_rate:g} Hz\n"
@@ -144,11 +144,11 @@ def topic(options: argparse.Namespace, running: Running) -> int:
 def _measured(running: Running, duration: float) -> Iterator[Tuple[float, float, float, bool]]:
     """Real-time factor, sim time (s), real time (s) and paused, for `duration` wall seconds."""
     began = before = time.monotonic()
-    sim_before = running.ask("get_world_properties", "GetWorldProperties").sim_time
+    sim_before = running.call_service("get_world_properties", "GetWorldProperties").sim_time
     while before - began < duration:
         time.sleep(STATS_SECONDS)
-        paused = running.ask("get_physics_properties", "GetPhysicsProperties").pause
-        sim, now = running.ask("get_world_properties", "GetWorldProperties").sim_time, \
+        paused = running.call_service("get_physics_properties", "GetPhysicsProperties").pause
+        sim, now = running.call_service("get_world_properties", "GetWorldProperties").sim_time, \
             time.monotonic()
         yield max(0.0, sim - sim_before) / (now - before), sim, now - began, paused
         sim_before, before = sim, now
@@ -170,7 +170,7 @@ def _spawn(options: argparse.Namespace, running: Running) -> int:
 
 
 def _pose(running: Running, name: str) -> Tuple[Vec3, Vec3]:
-    state = running.ask("get_model_state", "GetModelState", model_name=name)
+    state = running.call_service("get_model_state", "GetModelState", model_name=name)
     place, turn = state.pose.position, state.pose.orientation
     return (place.x, place.y, place.z), rpy_from_quat((turn.x, turn.y, turn.z, turn.w))
 
@@ -185,7 +185,7 @@ def _place(running: Running, name: str, numbers: Sequence[float]) -> None:
 
 def _show(running: Running, name: str) -> None:
     """Print a model's links, collisions, joints and nested models as YAML."""
-    found = running.ask("get_model_properties", "GetModelProperties", model_name=name)
+    found = running.call_service("get_model_properties", "GetModelProperties", model_name=name)
     position, rpy = _pose(running, name)
     print(f"name: {name}\nis_static: {str(found.is_static).lower()}\n"
           f"pose: [{', '.join(f'{value:.6g}' for value in (*position, *rpy))}]\n"

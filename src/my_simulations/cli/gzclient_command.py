@@ -78,7 +78,7 @@ class _Client:
         while not self.ended.is_set():
             server = master_api.running_node(self._master, self._server)
             if server is not None:
-                url = self._parameter() or self._ask()
+                url = self._parameter() or self._open_editor()
                 if url:
                     return url
             if time.monotonic() > until:
@@ -96,7 +96,7 @@ class _Client:
                                  f"{self._server}/my_simulations/editor_url")
         return found if isinstance(found, str) else ""
 
-    def _ask(self) -> str:
+    def _open_editor(self) -> str:
         """Have the server start its editor, if it supports that; returns the URL."""
         service = f"{self._server}/open_editor"
         if not master_api.call(self._master, "lookupService", self._name, service):

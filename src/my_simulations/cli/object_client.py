@@ -176,7 +176,7 @@ class SimulatorClient:
         answer = self._call("get_world_properties", "GetWorldProperties")
         return list(answer.model_names)
 
-    def ask(self, service: str, kind: str, **fields: Any) -> Any:
+    def call_service(self, service: str, kind: str, **fields: Any) -> Any:
         """The response of a service of the node, with a type of gazebo_msgs or my_simulations_msgs.
 
         Raises:
@@ -269,6 +269,7 @@ class SimulatorClient:
         return str(answer.status_message)
 
     def _call(self, service: str, kind: str, **fields: Any) -> Any:
+        """Call a service by the open connection, or a new one. Raises ToolError."""
         full = f"{self.name}/{service}"
         of_kind = _service_class(kind)
 

@@ -158,7 +158,7 @@ class _Planner:
         joint = next(j for j in self.at_world if end in (j.parent, j.child))
         self.visited.add(end)
         self.used.add(joint.name)
-        self._hang(body, joint, end, BASE)
+        self._attach_link(body, joint, end, BASE)
         return self._grow(body, end, len(body.links) - 1)
 
     def _from_held(self, name: str) -> List[BodyPlan]:
@@ -188,13 +188,13 @@ class _Planner:
                 else:
                     self.visited.add(other)
                     self.used.add(joint.name)
-                    self._hang(body, joint, other, position[name])
+                    self._attach_link(body, joint, other, position[name])
                 position[other] = len(body.links) - 1
                 queue.append(other)
         return body
 
-    def _hang(self, body: BodyPlan, joint: Joint, name: str, parent: int) -> None:
-        """`name` hangs on `joint`, on `body.links[parent]` or on the fixed base (BASE)."""
+    def _attach_link(self, body: BodyPlan, joint: Joint, name: str, parent: int) -> None:
+        """Attach link `name` by `joint` to `body.links[parent]`, or to the fixed base (BASE)."""
         link = self.model.links[self.by_name[name]]
         if joint.child == WORLD:
             model_from_joint = joint.pose

@@ -30,7 +30,7 @@ class Wire:
         try:
             self.sock.sendall(_LENGTH.pack(len(body)) + body)
         except OSError:
-            self.hang_up()  # a part may have left: nothing that follows could be read
+            self.shut_down()  # a part may have left: nothing that follows could be read
             raise
 
     def notify(self) -> None:
@@ -40,9 +40,9 @@ class Wire:
         """
         self.sock.sendall(_NOTICE)
 
-    def hang_up(self) -> None:
-        """Let both sides see the end."""
-        with contextlib.suppress(OSError):  # it may have hung up already
+    def shut_down(self) -> None:
+        """Shut the connection down: both sides read its end."""
+        with contextlib.suppress(OSError):  # it may be shut down already
             self.sock.shutdown(socket.SHUT_RDWR)
 
     def receive(self, timeout: float) -> List[Any]:
@@ -60,12 +60,12 @@ class Wire:
             if not chunk:
                 raise EOFError
             self._pending += chunk
-            found = self._whole()
+            found = self._complete_messages()
             if found:
                 return found
             timeout = 60.0  # the rest of a large message is on its way
 
-    def _whole(self) -> List[Any]:
+    def _complete_messages(self) -> List[Any]:
         found, at = [], 0
         while len(self._pending) >= at + _LENGTH.size:
             (length,) = _LENGTH.unpack_from(self._pending, at)

@@ -194,7 +194,7 @@ class ProcessEngine:
         with self._lock:
             wire, self._wire = self._wire, None
         if wire is not None:
-            wire.hang_up()
+            wire.shut_down()
         if self._child is not None:
             wait_or_kill(self._child, _END_S)
         if self._reader is not None and self._reader is not threading.current_thread():

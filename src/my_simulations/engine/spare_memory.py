@@ -34,7 +34,7 @@ def made_without_zero_pages(make: Callable[[], Made]) -> Made:
     for found in _without(_anonymous(), before):
         if found[1] - found[0] >= _LEAST:
             for block in _allocated_in(found):
-                _give_back(block)
+                _release_zero_pages(block)
     return made
 
 
@@ -92,7 +92,7 @@ def _pages(block: _Range) -> "np.ndarray[Any, Any]":
     return words.reshape(-1, mmap.PAGESIZE // 8)
 
 
-def _give_back(block: _Range) -> None:
+def _release_zero_pages(block: _Range) -> None:
     used = np.concatenate(
         ([True], np.bitwise_or.reduce(_pages(block), axis=1) != 0, [True]))
     edges = np.flatnonzero(used[1:] != used[:-1]).tolist()

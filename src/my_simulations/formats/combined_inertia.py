@@ -25,7 +25,7 @@ def combined_inertia(a: Optional[Inertial], b: Optional[Inertial],
     if b is None or b.mass <= 0:
         return a
     centre_b = transform(b_pose, b.pose.position)
-    tensor_b = _turned(_tensor(b), compose(b_pose, b.pose).orientation)
+    tensor_b = _rotate_tensor(_tensor(b), compose(b_pose, b.pose).orientation)
     if a is None or a.mass <= 0:
         return _inertial(b.mass, centre_b, tensor_b)
     mass = a.mass + b.mass
@@ -34,7 +34,7 @@ def combined_inertia(a: Optional[Inertial], b: Optional[Inertial],
         (a.mass * a.pose.position[1] + b.mass * centre_b[1]) / mass,
         (a.mass * a.pose.position[2] + b.mass * centre_b[2]) / mass,
     )
-    tensor_a = _turned(_tensor(a), a.pose.orientation)
+    tensor_a = _rotate_tensor(_tensor(a), a.pose.orientation)
     total = _sum(
         _shifted(tensor_a, a.mass, subtract(a.pose.position, centre)),
         _shifted(tensor_b, b.mass, subtract(centre_b, centre)),
@@ -50,7 +50,7 @@ def _inertial(mass: float, centre: Vec3, t: Matrix) -> Inertial:
     return Inertial(mass, Pose(centre), t[0][0], t[0][1], t[0][2], t[1][1], t[1][2], t[2][2])
 
 
-def _turned(t: Matrix, q: Quat) -> Matrix:
+def _rotate_tensor(t: Matrix, q: Quat) -> Matrix:
     """R t R^T, as R applied to the columns, then to the rows; `t` is symmetric."""
     once = tuple(rotate(q, row) for row in t)
     columns = tuple((once[0][k], once[1][k], once[2][k]) for k in range(3))

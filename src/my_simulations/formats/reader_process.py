@@ -54,7 +54,7 @@ def read_elsewhere(task: str, path: str, code: str, **options: Any) -> Answer:
     request = {"task": task, "path": path, "options": options,
                "memory": MEMORY + _MEMORY_PER_BYTE * size,
                "seconds": SECONDS + size // _BYTES_PER_SECOND}
-    header, arrays = kept().ask(request, path, code)
+    header, arrays = kept().send_request(request, path, code)
     if "issues" in header:
         raise InputError([Issue(**{**issue, "severity": Severity(issue["severity"])})
                           for issue in header["issues"]])
@@ -78,7 +78,7 @@ class ReaderProcess:
         self._last = 0.0
         self._keeper: Any = None
 
-    def ask(self, request: Dict[str, Any], path: str, code: str) -> Tuple[Any, List[Any]]:
+    def send_request(self, request: Dict[str, Any], path: str, code: str) -> Tuple[Any, List[Any]]:
         """The answer to a request. Raises InputError if limits were exceeded."""
         until = time.monotonic() + DEADLINE_S + request["seconds"]
         with self._lock:

@@ -34,6 +34,7 @@ def send_commands(simulator: Simulator, contexts: Sequence[SimulatedContext],
 
 def _send_wrenches(simulator: Simulator, contexts: Sequence[SimulatedContext],
                  revision: int) -> bool:
+    """As `send_commands`, for the wrenches on links."""
     if not contexts:
         return True
     commands = [(context, link, *push) for context in contexts

@@ -72,7 +72,7 @@ class PluginHost:
         self._records = RecordHandover(self._sync, self._observations, view, self._schedule)
         readings = StepReadings(simulator, self._schedule, view)
         self._shared = SharedServices(simulator, graph, log, self._scene, self._schedule, readings,
-                              self._observations, view, self._look_at_subscribers)
+                              self._observations, view, self._request_subscriber_check)
         self.barrier = Barrier(self.wake)
         self._outgoing = Outgoing(graph, self.wake)
         self._models = ModelPlugins(simulator, self._rebind)
@@ -92,7 +92,7 @@ class PluginHost:
         self._loader = PluginLoader(
             registry, log, limits, isolate, is_used,
             lambda running, waited: self._nested_turns.take_turn(running, waited))
-        self._guard = PluginGuard(log, limits, self._mark_output, self._go_on_without)
+        self._guard = PluginGuard(log, limits, self._mark_output, self._abandon_thread)
         self._overdue: Deque[Tuple[RunningPlugin, str]] = deque()
         self._turns = 0
         self._nested_turns = self._new_nested_turns()
@@ -143,7 +143,7 @@ class PluginHost:
         """Wake the plugins' thread, which then checks for changes."""
         self._sync.notify()
 
-    def _look_at_subscribers(self) -> None:
+    def _request_subscriber_check(self) -> None:
         """Make the plugins' thread check the topics for subscribers; from any thread."""
         self._observations.changed = True
         self.wake()
@@ -168,7 +168,7 @@ class PluginHost:
     def _deliver_all(self) -> None:
         """Wait until all received messages and requests are handed over and applied."""
         if self._was_stepped_manually != self._simulator.clock.is_stepped_manually:
-            self._look_at_subscribers()
+            self._request_subscriber_check()
         with self._loaded:
             self._loaded.wait_for(lambda: not self.has_pending_input or self._stop.is_set(),
                                   _LOADING_S)
@@ -219,7 +219,7 @@ class PluginHost:
         with self._loaded:
             self._loaded.notify_all()
 
-    def _go_on_without(self, running: RunningPlugin, why: str) -> None:
+    def _abandon_thread(self, running: RunningPlugin, why: str) -> None:
         """Abandon a thread that does not return from a plugin; called by the watch."""
         running.plugin = None
         self._overdue += [(one, why) for one in (running, *self._nested_turns.busy)]

@@ -393,11 +393,11 @@ class SimulatedContext(GraphUser):
     # -- log -------------------------------------------------------------------------------------
 
     def info(self, text: str) -> None:
-        self._say(Severity.NOTE, text)
+        self._report_issue(Severity.NOTE, text)
 
     def warn(self, text: str) -> None:
-        self._say(Severity.WARNING, text)
+        self._report_issue(Severity.WARNING, text)
 
-    def _say(self, severity: Severity, text: str) -> None:
+    def _report_issue(self, severity: Severity, text: str) -> None:
         self._report(Issue(severity, "plugin", f"plugin '{self.spec.name}' of model"
                            f" '{self.model}': {text}", self.spec.file, self.spec.line))

@@ -42,7 +42,7 @@ class StepReadings:
         if self._view.is_record:
             query, values = self._view.answer(ReadEfforts)
             return [_value(query.rows, values, row) for row in rows]
-        self._look()
+        self._discard_old()
         if not self._efforts.keys() >= set(rows):
             wanted = sorted(self._asked.union(rows))
             self._efforts.update(zip(wanted, self._simulator.drives.efforts(wanted)))
@@ -54,7 +54,7 @@ class StepReadings:
         """The contacts, with the scoped names of both links. Raises CommandError, PluginError."""
         if self._view.is_record:
             return self._simulator.states.named_contacts(self._view.answer(ReadContacts)[1])
-        self._look()
+        self._discard_old()
         if self._contacts is None:
             self._contacts = self._simulator.states.contacts()
         return self._contacts
@@ -69,7 +69,7 @@ class StepReadings:
             found = self._simulator.joints.wrenches([f"{entity.model.name}::{joint}"])[0]
         return found
 
-    def _look(self) -> None:
+    def _discard_old(self) -> None:
         time_step = self._schedule.time_step
         step = None if time_step is None else (time_step.clock_sets, time_step.step)
         if step is None or step != self._step:

@@ -76,7 +76,7 @@ class Controllers:
         found = read_parameters(parameters)
         if found:
             self._robots.graph.parameters.set(f"{namespace}/{name}", found)
-        self._ask(namespace, "load_controller", {"name": name})
+        self._call_manager(namespace, "load_controller", {"name": name})
 
     def start(self, *names: str, robot: str = "") -> None:
         """Start loaded controllers."""
@@ -88,13 +88,13 @@ class Controllers:
 
     def switch(self, start: Sequence[str], stop: Sequence[str], robot: str = "") -> None:
         """Stop some controllers and start others at the same step."""
-        self._ask(self._namespace(robot), "switch_controller", {
+        self._call_manager(self._namespace(robot), "switch_controller", {
             "start_controllers": list(start), "stop_controllers": list(stop),
             "strictness": _STRICT})
 
     def unload(self, name: str, robot: str = "") -> None:
         """Unload a controller that does not run."""
-        self._ask(self._namespace(robot), "unload_controller", {"name": name})
+        self._call_manager(self._namespace(robot), "unload_controller", {"name": name})
 
     def states(self, robot: str = "") -> Dict[str, ControllerReading]:
         """The loaded controllers, by name."""
@@ -119,7 +119,7 @@ class Controllers:
         raise CommandError("several robots have a controller manager, name one of them:"
                            f" {', '.join(one or '/' for one in found)}")
 
-    def _ask(self, namespace: str, service: str, request: Mapping[str, Any]) -> None:
+    def _call_manager(self, namespace: str, service: str, request: Mapping[str, Any]) -> None:
         known = len(self._issues())
         response: Any = self._robots.call(f"{namespace}{_MANAGER}{service}", request)
         if not response.ok:

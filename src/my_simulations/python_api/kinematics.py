@@ -187,7 +187,7 @@ class InverseKinematics:
         for _ in range(_ATTEMPTS):
             error = math.inf
             for _ in range(_STEPS):
-                miss, jacobian = self._look(root, start, values, target)
+                miss, jacobian = self._residual(root, start, values, target)
                 error = max(float(np.linalg.norm(miss[:3])), float(np.linalg.norm(miss[3:])))
                 if error <= target.tolerance:
                     return dict(zip(self._free, map(float, values)))
@@ -199,8 +199,8 @@ class InverseKinematics:
         raise CommandError(f"the target is not reached, the best attempt misses it by {best:.3g}"
                            " (m or rad)")
 
-    def _look(self, root: Pose, start: Mapping[str, float], values: np.ndarray, target: Target
-              ) -> Tuple[np.ndarray, np.ndarray]:
+    def _residual(self, root: Pose, start: Mapping[str, float], values: np.ndarray, target: Target
+                  ) -> Tuple[np.ndarray, np.ndarray]:
         """What is missing to the target, and its derivative by the free joints."""
         positions = {**start, **dict(zip(self._free, map(float, values)))}
         for name, one in self._followers.items():

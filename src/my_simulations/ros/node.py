@@ -236,7 +236,7 @@ class Node:
             self._plugins.wait_until_loaded()
 
     def spawn_robot(self) -> None:
-        """Spawn the parameter `robot_description` if `~spawn_robot` is true.
+        """Spawn the parameter `robot_description` if `~spawn_robot` is true; delete `~spawn_robot`.
 
         Errors are logged with what to do; the node keeps running.
         """

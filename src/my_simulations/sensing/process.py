@@ -148,7 +148,7 @@ class SensingProcess:
         if writer is None:
             return
         self._outbox.put(None)
-        self._hang_up()
+        self._shut_down_wire()
         if child is not None:
             wait_or_kill(child, _END_S)
         writer.join(_END_S)
@@ -157,11 +157,11 @@ class SensingProcess:
             reader.join(_END_S)
         self._fail_all("the sensing process was ended")  # what came before a child was there
 
-    def _hang_up(self) -> None:
+    def _shut_down_wire(self) -> None:
         with self._lock:
             wire = self._wire
         if wire is not None:
-            wire.hang_up()
+            wire.shut_down()
 
     # The writer: keeps the scene, starts children. It lives as long as this object, as it must: the
     # kernel ends a child with the thread that started it.
@@ -183,7 +183,7 @@ class SensingProcess:
                 if self._wire is None and not self._start():
                     continue
                 self._send((number, waiting.request))
-        self._hang_up()
+        self._shut_down_wire()
 
     def _start(self) -> bool:
         reader = self._reader
@@ -202,7 +202,7 @@ class SensingProcess:
         self._reader = threading.Thread(target=self._read, args=(child, wire),
                                         name="sensing answers", daemon=True)
         self._reader.start()
-        self._send((0, self._scene.whole()))
+        self._send((0, self._scene.load_command()))
         return True
 
     def _spawn(self) -> "Tuple[subprocess.Popen[bytes], Wire]":
@@ -286,14 +286,14 @@ class SensingProcess:
             closing = self._closing
             if wire is not None:
                 wire.sock.close()
-            given_up = self._give_up(reason, {one.kind for one in waiting.values()})
+            given_up = self._count_death(reason, {one.kind for one in waiting.values()})
         if not closing:
             self._listener(given_up or f"{reason}; physics goes on, and the next ray or picture "
                            "starts another")
         for one in waiting.values():
             one.future.set_exception(SensingEndedError(reason))
 
-    def _give_up(self, reason: str, kinds: Set[str]) -> str:
+    def _count_death(self, reason: str, kinds: Set[str]) -> str:
         """Count a death with such requests pending; returns the message if a kind is given up."""
         for kind in kinds:
             self._deaths[kind] += 1

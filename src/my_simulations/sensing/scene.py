@@ -43,7 +43,7 @@ def body(name: str, model: Model, first_link_row: int, materials: "Materials") -
 def scenery(world: World, materials: "Materials", resolver: "Resolver") -> SetScenery:
     """Roads with their materials resolved, and actors with their files found."""
     return SetScenery(
-        tuple(PaintedRoad(road, materials.look(road.material) or Look(pattern="road"))
+        tuple(PaintedRoad(road, materials.resolve(road.material) or Look(pattern="road"))
               for road in world.roads),
         tuple(_figure(actor, resolver) for actor in world.actors))
 
@@ -87,6 +87,6 @@ class SceneState:
             self.lights, self.scene = change.lights, change.scene
             self.scenery = change.scenery
 
-    def whole(self) -> LoadScene:
-        """The one change that makes this of nothing."""
+    def load_command(self) -> LoadScene:
+        """Return the change that creates this scene from an empty one."""
         return LoadScene(list(self.bodies.values()), self.lights, self.scene, self.scenery)

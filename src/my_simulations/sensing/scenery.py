@@ -47,7 +47,7 @@ class Scenery:
         self.parts: List[ScenicPart] = []
         self._figures: List[Tuple[FigureShape, int]] = []   # with the number of its first part
         self._forms: List[Optional[Form]] = []
-        fixed = [self._lay(road, -1 - n) for n, road in enumerate(scenery.roads)]
+        fixed = [self._add_road(road, -1 - n) for n, road in enumerate(scenery.roads)]
         for figure in scenery.figures:
             shape = FigureShape(figure, trouble, viewers)
             row = -1 - len(fixed) - len(self._figures)
@@ -57,7 +57,7 @@ class Scenery:
         self._fixed = np.array([[*pose.position, *pose.orientation] for pose in reversed(fixed)]
                                ).reshape(-1, 7)
 
-    def _lay(self, road: PaintedRoad, row: int) -> Pose:
+    def _add_road(self, road: PaintedRoad, row: int) -> Pose:
         made = strip(road.road)
         at = Pose(road.road.points[0]) if made is not None else Pose()
         if made is not None:

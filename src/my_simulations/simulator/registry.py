@@ -88,7 +88,7 @@ class Registry:
                  on_ambiguous_name: Callable[[str], object] = lambda _text: None) -> None:
         self._lights = lights
         self._on_ambiguous_name = on_ambiguous_name
-        self._told: Set[Tuple[str, str]] = set()
+        self._warned: Set[Tuple[str, str]] = set()
         self._entities: Dict[str, Entity] = {}
         # By model id, in the order of models: one that goes costs no look at the others.
         self._plain_links: Dict[str, Dict[int, Tuple[Entity, int]]] = {}
@@ -118,7 +118,7 @@ class Registry:
         if entity.model.name in self._entities:
             self.remove(entity.model.name)
         self._entities[entity.model.name] = entity
-        self._know_parts(entity)
+        self._index_parts(entity)
         if slot is not None:
             self._insert(entity, slot)
         self.revision += 1
@@ -130,11 +130,11 @@ class Registry:
                           new if entity is old else entity
                           for entity in self._entities.values()}
         self._forget_parts(old)
-        self._know_parts(new)
+        self._index_parts(new)
         self._sort_links(new)
         self.revision += 1
 
-    def _know_parts(self, entity: Entity) -> None:
+    def _index_parts(self, entity: Entity) -> None:
         for index, link in enumerate(entity.link_names):
             self._plain_links.setdefault(link, {})[entity.model_id] = entity, index
         if entity.has_plugins:
@@ -266,23 +266,23 @@ class Registry:
         found = self._plain_links.get(name)
         if found is None:
             return None
-        if len(found) > 1 and ("link", name) not in self._told:
-            self._tell("link", name, [entity.model.name for entity, _ in found.values()])
+        if len(found) > 1 and ("link", name) not in self._warned:
+            self._warn_ambiguous("link", name, [entity.model.name for entity, _ in found.values()])
         return next(iter(found.values()))
 
     def _joint_taken(self, name: str, taken: Entity) -> None:
         """Log once if the plain name of a joint exists in several models."""
-        if ("joint", name) in self._told or name.startswith(taken.model.name + "::"):
+        if ("joint", name) in self._warned or name.startswith(taken.model.name + "::"):
             return
-        self._tell("joint", name, [
+        self._warn_ambiguous("joint", name, [
             entity.model.name for entity in self._entities.values()
             if any(joint.name == name for joint in entity.model.joints)
             or name in entity.joint_names])
 
-    def _tell(self, kind: str, name: str, owners: Sequence[str]) -> None:
-        if len(owners) < 2 or (kind, name) in self._told:
+    def _warn_ambiguous(self, kind: str, name: str, owners: Sequence[str]) -> None:
+        if len(owners) < 2 or (kind, name) in self._warned:
             return
-        self._told.add((kind, name))
+        self._warned.add((kind, name))
         others = f"'{owners[1]}'" if len(owners) == 2 else f"{len(owners) - 1} other models"
         self._on_ambiguous_name(
             f"'{owners[0]}' and {others} have a {kind} '{name}'; using that of "

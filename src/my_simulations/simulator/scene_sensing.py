@@ -68,7 +68,7 @@ class SceneSensing:
         """
         self._running()
         if visuals:
-            self._tell_scenery()
+            self._send_scenery()
         future: "Future[RayReturns]" = Future()
         if rows != self._cast_at:
             self.send()
@@ -89,8 +89,8 @@ class SceneSensing:
     def render(self, shots: Sequence[Shot], ns: int, rows: bytes) -> "List[Future[Pictures]]":
         """Pictures, one of each shot; of the rows of all links, as of a sim time (ns)."""
         process = self._running()
-        self._tell_surroundings()
-        self._tell_scenery()
+        self._send_surroundings()
+        self._send_scenery()
         return [process.render(RenderCamera(mount, camera, outputs, rows, ns))
                 for mount, camera, outputs in shots]
 
@@ -113,10 +113,10 @@ class SceneSensing:
         revision, entities = self._simulator.models.inventory()
         if revision != self._revision:
             self._revision = revision
-            self._tell({entity.model.name: entity for entity in entities})
+            self._send_models({entity.model.name: entity for entity in entities})
         return self._process
 
-    def _tell(self, present: Dict[str, Entity]) -> None:
+    def _send_models(self, present: Dict[str, Entity]) -> None:
         from ..sensing.scene import body
 
         assert self._process is not None
@@ -128,8 +128,8 @@ class SceneSensing:
                 change(AddBody(body(name, entity.model, entity.first_link_row, self._materials)))
         self._known = present
 
-    def _tell_surroundings(self) -> None:
-        """Lights and the scene, where others were set."""
+    def _send_surroundings(self) -> None:
+        """Send the lights and the scene if they have changed."""
         assert self._process is not None
         world = self._simulator.world
         lights, scene = world.lights, world.scene
@@ -138,8 +138,8 @@ class SceneSensing:
             self._surroundings = (lights, scene)
             self._process.change(SetLights(list(lights), scene))
 
-    def _tell_scenery(self) -> None:
-        """Roads and actors, where others are in the world than before."""
+    def _send_scenery(self) -> None:
+        """Send roads and actors if they have changed."""
         world = self._simulator.world
         if self._scenery[0] is world.roads and self._scenery[1] is world.actors:
             return

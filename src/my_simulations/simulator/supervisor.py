@@ -210,7 +210,7 @@ class Supervisor:
 
     def _watch_engine(self, engine: Engine) -> None:
         words = engine.ring.words
-        silence = self._watchdog.look(engine.pid, (words[HEARTBEAT], words[PROGRESS]))
+        silence = self._watchdog.check(engine.pid, (words[HEARTBEAT], words[PROGRESS]))
         if silence:
             self._log(error("engine-stalled", "the physics engine did not respond for "
                             f"{silence}; restarting it"))

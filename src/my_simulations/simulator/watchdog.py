@@ -49,7 +49,7 @@ class Watchdog:
         self._forget(0.0)
         self._looked = self._clock()
 
-    def look(self, pid: int, sign: object) -> str:
+    def check(self, pid: int, sign: object) -> str:
         """For how long the engine has hung; "" if it does not.
 
         Args:

@@ -265,7 +265,7 @@ class DaskRunner:
         threads: Dict[str, int] = client.nthreads()
         for address in [address for address in self._nodes if address not in threads]:
             for flight in self._nodes.pop(address).flights:
-                self._lose(flight)
+                self._remove_lost(flight)
         for address, count in threads.items():
             self._nodes.setdefault(address, _Node(count))
 
@@ -317,7 +317,7 @@ class DaskRunner:
         except (KilledWorker, CancelledError):
             if flight.future.client.status != _CONNECTED:
                 raise  # the client cancels all futures when the scheduler is lost
-            self._lose(flight)
+            self._remove_lost(flight)
             return
         except Exception as fault:  # such as a module that is not installed there
             if flight.future.status != "error":
@@ -345,7 +345,7 @@ class DaskRunner:
         if node is not None and flight in node.flights:
             node.flights.remove(flight)
 
-    def _lose(self, flight: _Flight) -> None:
+    def _remove_lost(self, flight: _Flight) -> None:
         """The worker of a shard has gone."""
         self._remove(flight)
         flight.future.cancel()

@@ -156,7 +156,7 @@ def parse(text: str) -> Expression:
     if len(text) > _LONGEST:
         raise ExpressionError(f"an expression has at most {_LONGEST} characters")
     parser = _Parser(text)
-    node = parser.whole()
+    node = parser.parse_all()
     if node.series and node.condition:  # a condition of a run: whether it ever held
         node = _reduced("any", node)
     if node.series:
@@ -174,7 +174,7 @@ class _Parser:
         self._depth = 0
         self.compared: Dict[str, Callable[[Samples], Value]] = {}
 
-    def whole(self) -> _Node:
+    def parse_all(self) -> _Node:
         node = self._or()
         if self._at < len(self._tokens):
             raise self._expected("an operator or the end")

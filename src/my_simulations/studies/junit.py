@@ -57,14 +57,14 @@ def results_below(folder: str) -> TestResults:
             tests += 1
             failures += bool(faults)
             if faults and not first:
-                first = _told(case, faults[0], own)
+                first = _name_and_message(case, faults[0], own)
         suites.extend([root] if root.tag == "testsuite" else list(root))
     return TestResults(tests, failures, first, etree.tostring(
         suites, encoding="UTF-8", xml_declaration=True))
 
 
-def _told(case: "etree._Element", fault: "etree._Element", own: bool) -> str:
-    """The name of a test and what it says; a traceback comes after that in rosunit's text."""
+def _name_and_message(case: "etree._Element", fault: "etree._Element", own: bool) -> str:
+    """Return the name of a test and its message; in rosunit's text a traceback follows."""
     name = ".".join(part for part in (case.get("classname"), case.get("name")) if part)
     if own:  # of a <test> whose program wrote no results: rostest puts "test" before its name
         name = (case.get("name") or "")[len("test"):]

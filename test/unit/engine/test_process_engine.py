@@ -46,7 +46,7 @@ class Engine(ProcessEngine):
 def engine():
     made = Engine()
     yield made
-    made.theirs.hang_up()
+    made.theirs.shut_down()
     made.close()
 
 
@@ -93,7 +93,7 @@ def test_of_several_commands_only_the_first_is_suspected_of_a_death(engine):
     told = []
     engine.on_death(lambda reason, commands: told.append(commands) or True)
     first, second = engine.submit(Ping()), engine.submit(Ping())
-    engine.theirs.hang_up()
+    engine.theirs.shut_down()
     assert first.exception(WAIT).is_suspect and not second.exception(WAIT).is_suspect
     assert len(told) == 1 and len(told[0]) == 2
     # A sender that finds no engine comes after the listener.

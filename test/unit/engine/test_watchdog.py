@@ -14,8 +14,8 @@ class Case:
     def __init__(self):
         self.now, self.cpu, self.state, self.sign = 0.0, 0.0, "S", 1
         self.dog = Watchdog(lambda pid: (self.cpu, self.state), lambda: self.now)
-        self.dog.look(7, 0)
-        self.dog.look(7, self.sign)  # the start is over
+        self.dog.check(7, 0)
+        self.dog.check(7, self.sign)  # the start is over
 
     def passes(self, seconds, cpu=0.0, step=2.0):
         """Time goes by in looks; the first verdict and when it came."""
@@ -23,7 +23,7 @@ class Case:
         while self.now < until:
             self.now += step
             self.cpu += cpu * step
-            said = self.dog.look(7, self.sign)
+            said = self.dog.check(7, self.sign)
             if said:
                 return said
         return ""
@@ -91,7 +91,7 @@ def test_without_a_process_wall_time_counts():
     verdicts = []
     for _ in range(60):
         now[0] += 2.0
-        verdicts.append(dog.look(0, "same"))
+        verdicts.append(dog.check(0, "same"))
     assert verdicts[10] == "" and "while idle" in verdicts[-1]
 
 

@@ -224,7 +224,7 @@ def test_a_server_that_hangs_costs_no_more_than_the_deadline_for_all_models(
     assert server.asked.count("slow/model.tar.gz") == 1
     assert nothing_left(tmp_path)
     server.hang.clear()
-    source.give(30.0)  # what follows is no matter of time: a busy machine unpacks slowly
+    source.set_seconds(30.0)  # what follows is no matter of time: a busy machine unpacks slowly
     source.begin()
     assert source.provide("other")
 

@@ -207,7 +207,7 @@ def test_a_server_that_hangs_costs_the_deadline_once(server, cache):
             models.path(lamp(server))
     assert len(server.asked) == 1
     server.hang.clear()
-    models.give(30.0)  # what follows is no matter of time: a busy machine unpacks slowly
+    models.set_seconds(30.0)  # what follows is no matter of time: a busy machine unpacks slowly
     models.begin()
     assert models.path(lamp(server))
 

@@ -41,7 +41,7 @@ def test_each_pattern_of_gazebos_materials_can_be_drawn():
 @pytest.fixture
 def look():
     resolver = Resolver()
-    return Materials(resolver, TextureFiles(resolver)).look
+    return Materials(resolver, TextureFiles(resolver)).resolve
 
 
 def test_the_alpha_of_a_colour_counts_once(look):

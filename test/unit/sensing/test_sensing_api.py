@@ -69,7 +69,7 @@ def test_changes_sum_up():
     state.apply(AddBody(other))
     state.apply(AddBody(Body("a", Model("a"), 5)))
     state.apply(SetLights([], Scene(shadows=False)))
-    whole = state.whole()
+    whole = state.load_command()
     assert [body.name for body in whole.bodies] == ["a", "b"]
     assert whole.bodies[0].first_link_row == 5
     assert whole.lights == [] and not whole.scene.shadows
@@ -78,8 +78,8 @@ def test_changes_sum_up():
     assert list(state.bodies) == ["b"]
     told = SetScenery((PaintedRoad(Road("r"), Look()),))
     state.apply(told)
-    assert state.whole().scenery == told
-    state.apply(state.whole())
+    assert state.load_command().scenery == told
+    state.apply(state.load_command())
     assert state.scenery == told and list(state.bodies) == ["b"]
 
 

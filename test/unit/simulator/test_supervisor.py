@@ -138,7 +138,7 @@ class _Hanging(InlineEngine):
 class _Impatient(Watchdog):
     """Takes the first engine to hang."""
 
-    def look(self, pid, sign):
+    def check(self, pid, sign):
         return "a test's time" if self.fresh else ""
 
     def begin(self):

@@ -135,7 +135,7 @@ export function listenToKeys(element: HTMLElement, {session, files, exit, draw}:
       else session.select([]);
     },
   };
-  const pressed = (event: KeyboardEvent) => {
+  const onKeyDown = (event: KeyboardEvent) => {
     if (isModalOpen() || event.defaultPrevented || belongsToControl(event)) return;
     if (type(event)) {
       event.preventDefault();
@@ -168,10 +168,10 @@ export function listenToKeys(element: HTMLElement, {session, files, exit, draw}:
   }
 
   const forget = () => { typed = ''; };   // a click has ended the wall that it was typed for
-  window.addEventListener('keydown', pressed, true);
+  window.addEventListener('keydown', onKeyDown, true);
   element.addEventListener('pointerdown', forget, true);
   return () => {
-    window.removeEventListener('keydown', pressed, true);
+    window.removeEventListener('keydown', onKeyDown, true);
     element.removeEventListener('pointerdown', forget, true);
   };
 }

@@ -8,8 +8,8 @@ import type {Point} from './plane_geometry.js';
 /** A copied item; `place`: where an opening is whose wall was not copied. */
 export type Clip = {kind: Kind, item: AnyItem, place?: {point: Point, yaw: number}};
 
-/** What is selected, apart from the plan. */
-function copied(plan: Plan, at: number, refs: Ref[]) {
+/** The referenced items as clips. */
+function clipsOf(plan: Plan, at: number, refs: Ref[]) {
   return refs.flatMap((ref) => {
     const item = itemOf(plan, at, ref);
     return item ? [{kind: ref.kind, item}] : [];
@@ -53,14 +53,14 @@ export function pasted(plan: Plan, at: number, clips: Clip[], by: Point): {plan:
   return {plan: made, refs};
 }
 
-/** As `copied`, with the openings of copied walls and the places of those whose walls stay behind. */
+/** As `clipsOf`, with the openings of copied walls and the places of those whose walls stay behind. */
 export function clipboardOf(plan: Plan, at: number, refs: Ref[]) {
   const level = plan.levels[at];
   const walls = new Set(refs.filter(({kind}) => kind === 'walls').map(({id}) => id));
   const more = OPENING_KINDS.flatMap((kind) => level[kind]
     .filter((item) => walls.has(item.wall ?? -1)).map(({id}) => ({kind, id})));
   const all = [...refs.filter((ref) => !more.some((one) => one.kind === ref.kind && one.id === ref.id)), ...more];
-  return copied(plan, at, all).map((clip) => 'along' in clip.item &&
+  return clipsOf(plan, at, all).map((clip) => 'along' in clip.item &&
     clip.item.wall !== null && !walls.has(clip.item.wall ?? -1)
     ? {...clip, place: placeOf(clip.item, level)} : clip);
 }

@@ -188,7 +188,7 @@ export function menus(page: Page): Menu[] {
   ];
 }
 
-/** A step of the history, with its author where it is another's. */
+/** The menu text of the next step to undo or redo, with its author if that is another user. */
 function labelOf(verb: string, store: Page['store'], which: 'undo'|'redo') {
   const [label] = store.history[which];
   if (!label) return verb;

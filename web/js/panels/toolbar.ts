@@ -130,7 +130,7 @@ export function mountToolBar(element: HTMLElement, page: Page) {
     }
     const title = (which: 'undo'|'redo', verb: string, keys: string) => {
       const [label] = store.history[which];
-      return label ? `${verb} ${label}${byOther(store, which, 0)} (${keys})` : `${verb} (${keys})`;
+      return label ? `${verb} ${label}${authorSuffix(store, which, 0)} (${keys})` : `${verb} (${keys})`;
     };
     undo.title = title('undo', 'Undo', 'Ctrl+Z');
     redo.title = title('redo', 'Redo', 'Shift+Ctrl+Z');
@@ -181,8 +181,8 @@ function arrow(title: string, open: (anchor: HTMLElement) => void) {
   return button;
 }
 
-/** Whose step of the history it is, where it is another's. */
-function byOther(store: Page['store'], which: 'undo'|'redo', at: number) {
+/** ` by NAME` if another user made this step of the history, else ''. */
+function authorSuffix(store: Page['store'], which: 'undo'|'redo', at: number) {
   const author = store.authorOf(which, at);
   return author ? ` by ${author}` : '';
 }
@@ -203,7 +203,7 @@ function historyList({store, actions}: Page, which: 'undo'|'redo', anchor: HTMLE
         },
       },
       h('span', {class: 'menu-title', text: label}),
-      h('span', {class: 'soft', text: byOther(store, which, at)}),
+      h('span', {class: 'soft', text: authorSuffix(store, which, at)}),
     ),
   );
   const list = h(

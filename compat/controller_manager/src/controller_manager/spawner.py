@@ -112,7 +112,7 @@ def _before_clock() -> bool:
     return bool(rospy.get_param("/use_sim_time", False)) and rospy.get_rostime().is_zero()
 
 
-def _heard(topic: str) -> bool:
+def _wait_for_true(topic: str) -> bool:
     """Wait until a topic says true."""
     said = threading.Event()
     subscriber = rospy.Subscriber(topic, Bool, lambda message: said.set() if message.data else None)
@@ -151,7 +151,7 @@ def main() -> int:
                      rospy.resolve_name(options.namespace) if options.namespace
                      else rospy.get_namespace(), HINT)
         return 1
-    if options.wait_for and not _heard(options.wait_for):
+    if options.wait_for and not _wait_for_true(options.wait_for):
         return 0
     rospy.on_shutdown(spawner.end)
     if not spawner.load(_names(options.controllers), start=not options.stopped):

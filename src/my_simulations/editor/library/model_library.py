@@ -61,9 +61,9 @@ class Library:
         self._added = self._read_added()
         self._database = ModelDatabase.from_environment(progress)
         if self._database is not None:
-            self._database.give(_DOWNLOAD_S)
+            self._database.set_seconds(_DOWNLOAD_S)
         self._fuel = FuelModels.from_environment(progress)
-        self._fuel.give(_DOWNLOAD_S)
+        self._fuel.set_seconds(_DOWNLOAD_S)
         self._remote: Optional[List[str]] = None
         self._remote_problem = "the list of the database is being fetched"
         for folder in self._added:

@@ -19,7 +19,7 @@ class Materials:
 
     def document(self, material: Optional[Material]) -> Optional[Dict[str, Any]]:
         """A material as the protocol's `Material`; None for none."""
-        look = self._looks.look(material)
+        look = self._looks.resolve(material)
         if look is None:
             return None
         return {"ambient": _plain(look.ambient), "diffuse": _plain(look.diffuse),

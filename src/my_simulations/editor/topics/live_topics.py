@@ -42,7 +42,7 @@ class LiveTopic:
         self.task: "Optional[asyncio.Future[None]]" = None
         self.hz, self.bytes_per_s = 0.0, 0.0
         self._counted = (0.0, 0, 0)
-        self._rung = False
+        self._on_message = False
         self._notify = notify
 
     def receive(self, message: Any) -> None:
@@ -51,13 +51,13 @@ class LiveTopic:
             return
         self.viewer.receive(message)
         self.received += 1
-        if not self._rung:
-            self._rung = True
+        if not self._on_message:
+            self._on_message = True
             self._notify(self)
 
     def clear_notification(self) -> None:
         """Allow the next notification."""
-        self._rung = False
+        self._on_message = False
 
     def count(self, now: float) -> None:
         """Measure rate and bandwidth since the last call."""
@@ -169,7 +169,7 @@ class LiveTopics:
     def _topic(self, name: str) -> LiveTopic:
         topic = self._topics.get(name)
         if topic is None:
-            topic = self._topics[name] = LiveTopic(name, self._rung)
+            topic = self._topics[name] = LiveTopic(name, self._on_message)
             asyncio.ensure_future(self._subscribe(topic))
         return topic
 
@@ -222,7 +222,7 @@ class LiveTopics:
 
     # -- sending ---------------------------------------------------------------------------------
 
-    def _rung(self, topic: LiveTopic) -> None:
+    def _on_message(self, topic: LiveTopic) -> None:
         with contextlib.suppress(RuntimeError):  # the server has ended
             self._loop.call_soon_threadsafe(self._serve_message, topic)
 

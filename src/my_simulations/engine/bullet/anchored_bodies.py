@@ -35,10 +35,15 @@ _SAME = 1e-12
 _STEP = 0.1   # rad or m, to see which way an axis goes
 
 
-def turned(body: Body, way: Pose) -> bool:
-    """Move a body whose base is fixed by `way`, a motion in the world, with its first joints.
+def move_by_joints(body: Body, way: Pose) -> bool:
+    """Move a body with a fixed base by a rigid motion, by setting the joints next to the base.
 
-    True if they allow it; else nothing has changed. Rates are left at zero.
+    Args:
+        body: the body.
+        way: the motion: it maps old world poses to new ones.
+
+    Returns:
+        True if the joints allow the motion; else nothing has changed. Joint rates become zero.
     """
     done: List[Tuple[Axis, float]] = []
     for index in _first_joints(body):

@@ -72,7 +72,7 @@ class BulletBackend:
             LoadModel: self._load, RemoveModel: self._remove, Clear: self._clear,
             Restart: self._restart,
             PrepareModel: self._preparation.begin,
-            ContinuePreparation: self._preparation.go_on,
+            ContinuePreparation: self._preparation.advance,
             SetModelState: self._set_model, SetLinkState: self._set_link,
             SetJoints: self._set_joints,
             SetAxes: self._set_axes, PinModels: self._hold,
@@ -98,13 +98,13 @@ class BulletBackend:
 
     def apply(self, command: Command) -> object:
         if not isinstance(command, (Restart, Clear)):
-            self._settle()
+            self._build_deferred()
         self._helpers.loop.changed()
         return self._appliers[type(command)](command)
 
     def configure(self, settings: PhysicsSettings) -> None:
         """Use other settings from the next step on; a changed gravity wakes everything."""
-        self._settle()
+        self._build_deferred()
         self._helpers.loop.changed()
         before = self._helpers.settings
         if settings.gravity != before.gravity:
@@ -116,7 +116,7 @@ class BulletBackend:
                     self._helpers.use_step_size(body, entry.model)
 
     def step(self, first: int, count: int) -> None:
-        self._settle()
+        self._build_deferred()
         self._is_fresh = False
         self._readout.stepped()
         self._helpers.restored_sleep.stepped()
@@ -140,16 +140,16 @@ class BulletBackend:
         return self._put_off is not None or self._readout.read_poses()
 
     def read_rows(self, link_rows: Tuple[int, ...]) -> bytes:
-        self._settle()
+        self._build_deferred()
         return self._row_reader.read_links(link_rows)
 
     def read_world(self) -> memoryview:
-        self._settle()
+        self._build_deferred()
         self._readout.update()
         return self._readout.tables()[0]
 
     def read_axes(self, joint_rows: Tuple[int, ...]) -> List[float]:
-        self._settle()
+        self._build_deferred()
         return self._row_reader.read_axes(joint_rows)
 
     def tables(self) -> Tuple[memoryview, memoryview]:
@@ -216,7 +216,7 @@ class BulletBackend:
             self._build_again(starts)
             self._starts.keep(starts)
 
-    def _settle(self) -> None:
+    def _build_deferred(self) -> None:
         """Build the bodies of a reset whose build was deferred."""
         if self._put_off is not None:
             self._build_again(self._put_off)

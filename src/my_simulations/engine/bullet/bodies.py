@@ -234,7 +234,7 @@ def set_sleep(body: Body) -> None:
             else pybullet.ACTIVATION_STATE_DISABLE_SLEEPING)
 
 
-def let_rest(uid: int) -> None:
+def mark_asleep(uid: int) -> None:
     """Mark a rigid static body as asleep, as Bullet does; PyBullet's settings have woken it.
 
     Otherwise each step processes its pairs with sleeping bodies: a world of 100 sleeping boxes

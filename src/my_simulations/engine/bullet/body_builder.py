@@ -22,7 +22,7 @@ from .bodies import (
     Ball,
     Body,
     Part,
-    let_rest,
+    mark_asleep,
     piece_pose,
     radius_of,
     remove,
@@ -103,7 +103,7 @@ class Builder:
                                command.first_link_row + len(command.model.links))
         self.joint_rows = slice(command.first_joint_row,
                                 command.first_joint_row + len(self._axis_rows))
-        self._eases: Dict[int, float] = {}
+        self._mobilities: Dict[int, float] = {}
         self.plans = [plan if self._is_rigid(plan) else in_pieces(plan, command.model)
                       for plan in plan_bodies(command.model)]
         self._prints = [self._rigid(plan, command.meshes) if self._is_rigid(plan)
@@ -163,7 +163,7 @@ class Builder:
         for uid, piece, carrier in zip(uids, rigid.pieces, rigid.carriers):
             (collision_groups.static(carrier, piece.role) if rigid.static
              else collision_groups.moving(carrier)).set(uid, BASE)
-            _fit(uid, BASE, piece)
+            _remove_margin(uid, BASE, piece)
         part = self._part(rigid.number, BASE, masses, link)
         carriers = tuple(self._part(rigid.number, BASE, masses, carrier)
                          for carrier in rigid.carriers) if rigid.static else ()
@@ -175,7 +175,7 @@ class Builder:
             set_dynamics(uid, BASE, surface_coefficients.of_link(own.link), masses.mass,
                          masses.moments, body.may_sleep and not rigid.static)
             if body.rigid and rigid.static:
-                let_rest(uid)
+                mark_asleep(uid)
         body.radius = radius_of(uids[0])
         if body.rigid and body.moves and rigid.pieces:
             body.swept = sweep(uids[0])
@@ -308,7 +308,7 @@ class Builder:
             if shape is not None:
                 (collision_groups.static(link) if link.kinematic
                  else collision_groups.moving(link)).set(uid, index)
-                _fit(uid, index, shape)
+                _remove_margin(uid, index, shape)
             if node.index != NO_LINK:
                 parts.append(self._part(node.index, index, masses, link))
             elif node.of is not None:
@@ -320,18 +320,18 @@ class Builder:
                 balls.append(self._ball(tree.plan, node, index, parts))
         if tree.plan.fixed_base:
             pybullet.changeDynamics(uid, BASE, linearDamping=0.0, angularDamping=0.0)
-        self._ease(uid, axes)
+        self._store_mobility(uid, axes)
         return Body(uid, self.model_id, parts, axes, rigid=False, may_sleep=False,
                     balls=tuple(balls), pieces=tuple(pieces))
 
-    def _ease(self, uid: int, axes: Sequence[Axis]) -> None:
+    def _store_mobility(self, uid: int, axes: Sequence[Axis]) -> None:
         """Store the mobility of each axis of a tree, 1/kg or 1/(kg m^2); computed once."""
-        if axes and axes[0].row not in self._eases:
+        if axes and axes[0].row not in self._mobilities:
             found: Any = mobility(
                 MassMatrix(uid), [axis.index for axis in axes]).diagonal().tolist()
-            self._eases.update((axis.row, ease) for axis, ease in zip(axes, found))
+            self._mobilities.update((axis.row, ease) for axis, ease in zip(axes, found))
         for axis in axes:
-            axis.ease = self._eases[axis.row]
+            axis.ease = self._mobilities[axis.row]
 
     def _ball(self, plan: BodyPlan, node: TreeLink, index: int, parts: Sequence[Part]) -> Ball:
         child, parent, above = parts[-1], None, IDENTITY
@@ -349,7 +349,7 @@ class Builder:
         self._ignore_each_other(built, False)
         for body in built:
             remove(body)
-            self._shapes.give(body.shapes)
+            self._shapes.store(body.shapes)
 
     def _ignore_each_other(self, built: Sequence[Body], ignored: bool = True) -> None:
         """Disable collisions of links of one model, except where `self_collide` enables them."""
@@ -373,7 +373,7 @@ def _colliders(body: Body) -> List[_Collider]:
             if part.link.collisions]
 
 
-def _fit(uid: int, index: int, shape: Recipe) -> None:
+def _remove_margin(uid: int, index: int, shape: Recipe) -> None:
     """Remove the margin of 1 mm that Bullet adds to a convex hull; hulls in compounds keep it."""
     if shape.is_hull:
         pybullet.changeDynamics(uid, index, collisionMargin=0.0)

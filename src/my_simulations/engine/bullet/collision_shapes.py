@@ -150,7 +150,7 @@ class ShapeFactory:
         unused = self._unused.get(recipe.key)
         return unused.pop() if unused else recipe.make()
 
-    def give(self, taken: Sequence[Tuple[Recipe, int]]) -> None:
+    def store(self, taken: Sequence[Tuple[Recipe, int]]) -> None:
         """Store the shapes of a removed body, so that `take` can return them again."""
         for recipe, number in taken:
             self._unused.setdefault(recipe.key, []).append(number)
@@ -225,7 +225,7 @@ class ShapeFactory:
                 yield
             for carrier in by_surface(link):
                 for recipe in self.static_recipes(carrier.collisions, meshes, IDENTITY):
-                    self.give([(recipe, recipe.make())])
+                    self.store([(recipe, recipe.make())])
                     yield
 
     def _floor(self, plane: Collision, meshes: MeshTable, frame: Pose) -> Recipe:

@@ -154,9 +154,9 @@ class Forces(StepHelper):
                 if not body.loads:
                     set_sleep(body)
         if any(ended):
-            self._tell_loops()
+            self._update_loop_rows()
 
-    def _tell_loops(self) -> None:
+    def _update_loop_rows(self) -> None:
         rows = {self._acting[number].row for number in self._loops if number in self._acting}
         self.servos.yield_to(rows)
         self._loops_changed(rows)
@@ -225,13 +225,13 @@ class Forces(StepHelper):
         for implicit in self._implicit.values():
             implicit.add_to(efforts, self._motor_of)
         if efforts:
-            self._give(efforts)
+            self._apply_efforts(efforts)
         for body, part in self._weightless.values():
             at = place(body.uid, part.index)[0]
             pybullet.applyExternalForce(body.uid, part.index, scale(gravity, -part.mass), at,
                                         pybullet.WORLD_FRAME)
 
-    def _give(self, efforts: Dict[int, float]) -> None:
+    def _apply_efforts(self, efforts: Dict[int, float]) -> None:
         """Apply efforts by row, one call per body; a call per axis takes four times as long."""
         bodies: Dict[int, Tuple[List[int], List[float]]] = {}
         for row, effort in efforts.items():
@@ -276,7 +276,7 @@ class Forces(StepHelper):
                         self._loops[force_id].resume(self._resumed.pop(force_id))
                 beginning.append(force)
         if len(self._loops) != loops:
-            self._tell_loops()
+            self._update_loop_rows()
         if beginning:
             targets = [self._target(force) for force in beginning]
             self._wake(targets)

@@ -123,7 +123,7 @@ class GyroscopicRigid(StepHelper):
                          self._bodies[uid].turn_kept)
         turn, parts = flight.turn, ceil(span * norm(flight.angular) / _ANGLE)
         for _ in range(parts):
-            turn = _turned(turn, momentum, moments, span / parts)
+            turn = _integrate_attitude(turn, momentum, moments, span / parts)
         linear = pybullet.getBaseVelocity(uid)[0]  # read first: setting the pose resets it
         pybullet.resetBasePositionAndOrientation(
             uid, pybullet.getBasePositionAndOrientation(uid)[0], turn)
@@ -156,7 +156,7 @@ def _velocity(turn: Quat, momentum: Vec3, moments: Vec3) -> Vec3:
     return (a1 * a + b1 * b + c1 * c, a2 * a + b2 * b + c2 * c, a3 * a + b3 * b + c3 * c)
 
 
-def _turned(turn: Quat, momentum: Vec3, moments: Vec3, dt: float) -> Quat:
+def _integrate_attitude(turn: Quat, momentum: Vec3, moments: Vec3, dt: float) -> Quat:
     """The attitude `dt` s later: Runge-Kutta 4 of q' = w(q) q / 2."""
     x, y, z, w = turn
     at, total = turn, (0.0, 0.0, 0.0, 0.0)

@@ -95,8 +95,8 @@ class HelperSet:
                              lambda body, axis: self.motors.restore(body, axis),
                              lambda row: self.motors.driven(row),
                              self.row_reader.read_links, self.row_reader.read_axes)
-        self._friction = FrictionBalance(self.notices.misfit)
-        self._bounces = PairRestitution(self._parameters, self.notices.odd_bounce)
+        self._friction = FrictionBalance(self.notices.report_friction_misfit)
+        self._bounces = PairRestitution(self._parameters, self.notices.report_restitution_misfit)
         self._spin = GyroscopicRigid(lambda: self.forces.wrenched_links)
         self.holds = PinnedBodies(self.waker.around)
         self.book = ConstraintBook()

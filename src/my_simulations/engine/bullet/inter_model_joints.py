@@ -17,7 +17,7 @@ from ..commands import ConnectModels
 from .bodies import Body, Part, set_sleep
 from .body_events import BodyObserver
 from .constraint_book import ConstraintBook, Number
-from .joint_constraints import End, tie
+from .joint_constraints import End, connect_links
 
 
 @dataclass
@@ -63,11 +63,11 @@ class InterModelJoints(BodyObserver):
             raise CommandRefusedError(
                 f"joint '{joint.name}' slides between bodies that are not articulated"
             )
-        made = tie(self._book, joint, one, ends[0][1], other, ends[1][1])
+        made = connect_links(self._book, joint, one, ends[0][1], other, ends[1][1])
         found = _Tie(joint.name, tuple(end for end in (one, other) if end is not self._anchor),
                      made)
         self._ties.append(found)
-        _let_collide(found, False)
+        _restore_collisions(found, False)
         for body in found.bodies:
             body.ties += 1
             if body.ties == 1:
@@ -86,20 +86,20 @@ class InterModelJoints(BodyObserver):
         if not body.ties:
             return
         for one in [one for one in self._ties if body.uid in one.uids]:
-            self._untie(one)
+            self._disconnect(one)
             # Bullet keeps pairs that do not collide by numbers, which the next body gets.
-            _let_collide(one, True)
+            _restore_collisions(one, True)
 
     def disconnect(self, names: Sequence[str]) -> List[Body]:
         """Untie joints by name; returns the bodies that are free, which collide again."""
         found = [one for one in self._ties if one.name in names]
         for one in found:
-            self._untie(one)
+            self._disconnect(one)
             if not any(other.uids == one.uids for other in self._ties):
-                _let_collide(one, True)
+                _restore_collisions(one, True)
         return [body for one in found for body in one.bodies]
 
-    def _untie(self, one: _Tie) -> None:
+    def _disconnect(self, one: _Tie) -> None:
         self._ties.remove(one)
         self._book.remove(one.constraints)
         for tied in one.bodies:
@@ -108,7 +108,7 @@ class InterModelJoints(BodyObserver):
                 set_sleep(tied)
 
 
-def _let_collide(one: _Tie, collide: bool) -> None:
+def _restore_collisions(one: _Tie, collide: bool) -> None:
     if len(one.ends) < 2:
         return
     (body, part), (other, its) = one.ends

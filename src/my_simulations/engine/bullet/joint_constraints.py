@@ -21,8 +21,8 @@ End = Tuple[Body, Part]
 """A link as the end of a joint."""
 
 
-def tie(book: ConstraintBook, joint: Joint, child: End, child_from_joint: Pose,
-        parent: Optional[End], parent_from_joint: Pose) -> List[Number]:
+def connect_links(book: ConstraintBook, joint: Joint, child: End, child_from_joint: Pose,
+                  parent: Optional[End], parent_from_joint: Pose) -> List[Number]:
     """Connect two links like a joint, without limits and other properties of its axes.
 
     PyBullet has no hinge between bodies; two point-to-point constraints represent one. Universal
@@ -39,8 +39,8 @@ def tie(book: ConstraintBook, joint: Joint, child: End, child_from_joint: Pose,
     elif joint.type == "fixed" and (child[0].rigid or (parent is not None and parent[0].rigid)):
         kind = pybullet.JOINT_POINT2POINT  # "fixed" constrains rotations of rigid bodies wrongly
         points = _about_the_centre(child[1], child_from_joint)
-    return [_tie(book, child, compose(child_from_joint, Pose(at)), parent,
-                 compose(parent_from_joint, Pose(at)), kind, axis) for at in points]
+    return [_add_constraint(book, child, compose(child_from_joint, Pose(at)), parent,
+                            compose(parent_from_joint, Pose(at)), kind, axis) for at in points]
 
 
 def _about_the_centre(part: Part, link_from_joint: Pose) -> List[Vec3]:
@@ -55,8 +55,8 @@ def _about_the_centre(part: Part, link_from_joint: Pose) -> List[Vec3]:
             for turn in turns]
 
 
-def _tie(book: ConstraintBook, one: End, mine: Pose, other: Optional[End], theirs: Pose, kind: int,
-         axis: Vec3) -> Number:
+def _add_constraint(book: ConstraintBook, one: End, mine: Pose, other: Optional[End], theirs: Pose,
+                    kind: int, axis: Vec3) -> Number:
     (body, part), uid, index = one, -1, -1
     mine = compose(inverse(part.link_from_com), mine)
     if other is not None:
@@ -116,12 +116,12 @@ class Constraints:
         at = self._model_from_joint(joint)
         made: List[int] = []
         if child is not None:
-            made = tie(self._book, joint, child, self._seen_from(child, at), parent,
-                       compose(self._pose, at) if parent is None
-                       else self._seen_from(parent, at))
+            made = connect_links(self._book, joint, child, self._seen_from(child, at), parent,
+                                 compose(self._pose, at) if parent is None
+                                 else self._seen_from(parent, at))
         elif parent is not None:
-            made = tie(self._book, joint, parent, self._seen_from(parent, at), None,
-                       compose(self._pose, at))
+            made = connect_links(self._book, joint, parent, self._seen_from(parent, at), None,
+                                 compose(self._pose, at))
         self._made += made
         self.closing[joint.name] = made
 

@@ -79,7 +79,7 @@ class JointServos:
             self._laws[row].reset_after_jump()
             self._release(body, axis)
             self._drive(body, axis)
-        self._sort()
+        self._collect_busy()
 
     def drives(self, body: Body) -> bool:
         """Whether a servo of a body must be computed in each step."""
@@ -129,7 +129,7 @@ class JointServos:
                 self._release(body, axis)
             self._drive(body, axis)
             woken[body.uid] = body
-        self._sort()
+        self._collect_busy()
         if woken:
             self._wake(list(woken.values()))
 
@@ -142,7 +142,7 @@ class JointServos:
         for row, memory in memories:
             self._laws[row].resume(memory)
             self._drive(*self._axes[row])
-        self._sort()
+        self._collect_busy()
 
     def set_up(self, body: Body, model: Model, dt: float) -> None:
         """Restart the servos of axes whose limits and friction were set (again)."""
@@ -153,7 +153,7 @@ class JointServos:
                     self._laws[axis.row] = ServoLaw(law.servo, dt)
                 self._drive(body, axis)
         self._dt = dt
-        self._sort()
+        self._collect_busy()
 
     def reset_after_jump(self, body: Body) -> None:
         """Reset the servos of a body whose joints were set."""
@@ -207,7 +207,7 @@ class JointServos:
                 found.append(float(pybullet.getJointState(body.uid, axis.index)[3]))
         return tuple(found)
 
-    def _sort(self) -> None:
+    def _collect_busy(self) -> None:
         """Collect the servos that must be computed in each step, by body."""
         self._busy = {}
         for row, law in self._laws.items():

@@ -184,7 +184,7 @@ class LandingContacts(StepHelper):
         for uid in self._agenda.take(step):
             flight = self._flights.get(uid) or self._find_flight(uid, step)
             if flight is not None:
-                touches += self._look(flight, step, dt, gravity)
+                touches += self._check_flight(flight, step, dt, gravity)
         if touches:
             self._parameters.request_step_accuracy(_FOR_IMPACTS)
             self._parameters.restore_spacing()
@@ -219,17 +219,17 @@ class LandingContacts(StepHelper):
             self._flights[uid] = _Flight(flight.body, on_ground=flight.on_ground + 1)
             self._agenda.plan(uid, step + _BOUNCE)
         if flight.seen is not None:
-            self._look_at_those_beside(uid, step)
+            self._recheck_neighbours(uid, step)
         return True
 
-    def _look_at_those_beside(self, uid: int, step: int) -> None:
+    def _recheck_neighbours(self, uid: int, step: int) -> None:
         """Check the bodies that flew beside a landed one: they may hit it."""
         for other, flight in self._flights.items():
             if uid in flight.beside:
                 self._agenda.plan(other, min(self._agenda.at(other), step + 1))
                 flight.pairs.pop(uid, None)
 
-    def _look(self, flight: _Flight, step: int, dt: float, gravity: Vec3) -> List[Touch]:
+    def _check_flight(self, flight: _Flight, step: int, dt: float, gravity: Vec3) -> List[Touch]:
         """Return the deepest contact of a body in this step, if any, and plan its next check."""
         body, uid = flight.body, flight.body.uid
         here = self._motions.of(uid)
@@ -256,19 +256,19 @@ class LandingContacts(StepHelper):
             elif flight.pairs.get(other, (0, 0))[0] > step:
                 pairs[other] = flight.pairs[other]
             else:
-                pairs[other] = self._look_at(flight, other, path, touches) or (later, later)
+                pairs[other] = self._check_pair(flight, other, path, touches) or (later, later)
         flight.pairs = pairs
         self._agenda.plan(uid, min([look for look, _ in pairs.values()], default=later))
         flight.arrives = min([free for _, free in pairs.values()], default=later)
         if touches:
             touch = min(touches, key=attrgetter("gap"))
             self._landed(uid, touch.normal)
-            self._look_at_those_beside(uid, step)
+            self._recheck_neighbours(uid, step)
             return [touch]
         return []
 
-    def _look_at(self, flight: _Flight, other: int, path: _Path, touches: List[Touch],
-                 ) -> Optional[Tuple[int, int]]:
+    def _check_pair(self, flight: _Flight, other: int, path: _Path, touches: List[Touch],
+                    ) -> Optional[Tuple[int, int]]:
         """Return an entry of `_Flight.pairs`, or None; add a contact in this step to `touches`."""
         uid, (step, dt, here, low, high, fall, spin, speed) = flight.body.uid, path
         there = self._motions.of(other)

@@ -84,7 +84,7 @@ class LevelSeams(StepHelper):
     def before(self, step: int, dt: float, gravity: Vec3) -> None:
         """Find sliding bodies periodically; record the velocities of bodies near a seam."""
         if step % EVERY == 0:
-            self._look(dt, gravity)
+            self._find_sliding(dt, gravity)
         self._before = {uid: pybullet.getBaseVelocity(uid) for uid in self._level}
         for uid in self._level:
             contacts = pybullet.getContactPoints(bodyA=uid)
@@ -96,7 +96,7 @@ class LevelSeams(StepHelper):
             if self._is_caught(uid, self._level[uid]):
                 pybullet.resetBaseVelocity(uid, (x, y, max(0.0, z)), (0.0, 0.0, turn))
 
-    def _look(self, dt: float, gravity: Vec3) -> None:
+    def _find_sliding(self, dt: float, gravity: Vec3) -> None:
         """Find the bodies that slide, and those that can reach a seam before the next check."""
         self._level.clear()
         fast = self._fast()

@@ -36,14 +36,14 @@ class Notices:
         """Allow another report about each model."""
         self._lost.clear()
 
-    def misfit(self, uid: int, share: float) -> None:
+    def report_friction_misfit(self, uid: int, share: float) -> None:
         """Report that no coefficient fits all contacts of a body; `share`: relative error."""
         body = self._bodies[uid]
         self._events.append(Event(
             "log", f"model '{self._models[body.model_id].model.name}' touches others in a ring, "
             f"for which no friction fits all pairs: it is {100 * share:.0f} % off", body.model_id))
 
-    def odd_bounce(self, uid: int, share: float) -> None:
+    def report_restitution_misfit(self, uid: int, share: float) -> None:
         """Report that no restitution fits all contacts of a body; `share`: relative error."""
         body = self._bodies[uid]
         self._events.append(Event(
@@ -53,20 +53,21 @@ class Notices:
 
     def diverged(self, body: Body) -> None:
         """Report that the state of a body became infinite."""
-        self._tell_lost(body, "the state of model '{}' became infinite; it was put back where it "
-                              "was, at rest")
+        self._report_divergence(
+            body, "the state of model '{}' became infinite; it was put back where it was, at rest")
 
     def raced(self, body: Body, step_size: float) -> None:
         """Report that a joint has reached the largest rate of the engine."""
-        self._tell_lost(body, f"a joint of model '{{}}' turns or moves with {bodies.FASTEST_RATE:g}"
-                              " rad/s or m/s, the fastest that is computed: what drives it is too "
-                              f"strong for steps of {step_size:g} s")
+        self._report_divergence(
+            body, f"a joint of model '{{}}' turns or moves with {bodies.FASTEST_RATE:g} rad/s or"
+            " m/s, the fastest that is computed: what drives it is too strong for steps of"
+            f" {step_size:g} s")
 
     def stopped(self, body: Body, text: str) -> None:
         """Report that a body was stopped; `text` is a clause with the manner and the reason."""
-        self._tell_lost(body, "model '{}' {}", text)
+        self._report_divergence(body, "model '{}' {}", text)
 
-    def _tell_lost(self, body: Body, text: str, *values: str) -> None:
+    def _report_divergence(self, body: Body, text: str, *values: str) -> None:
         """Report a divergence once per model, until a command moves the model."""
         if body.model_id not in self._lost:
             self._lost.add(body.model_id)

@@ -53,7 +53,7 @@ class FrictionBalance(StepHelper):
 
     def __init__(self, misfit: Callable[[int, float], None]) -> None:
         self._misfit = misfit
-        self._told = False
+        self._is_reported = False
         self._mu: Dict[LinkKey, float] = {}
         self._fixed: Dict[LinkKey, float] = {}
         self._free: Dict[LinkKey, float] = {}
@@ -97,7 +97,7 @@ class FrictionBalance(StepHelper):
         """
         if step % EVERY:
             return
-        if not self._ask_due(step) and step < self._ring:
+        if not self._read_due(step) and step < self._ring:
             return
         self._ring = FAR
         nodes = sorted({node for pair in self._pairs for node in pair if node in self._free})
@@ -108,13 +108,13 @@ class FrictionBalance(StepHelper):
         """The step of the next check at which a surface is due."""
         return next_multiple(max(step, min(self._agenda.next, self._ring)), EVERY)
 
-    def _ask_due(self, step: int) -> bool:
+    def _read_due(self, step: int) -> bool:
         """Read the contacts of the surfaces that are due. Returns whether a pair has changed."""
         changed = False
         for node in self._agenda.take(step):
             if node[0] in self._rigid and pybullet.getBaseVelocity(node[0]) == _NO_VELOCITY:
                 looks = _AT_REST
-            elif self._ask(node):
+            elif self._read_surface(node):
                 changed, looks = True, 1
             else:
                 looks = min(2 * self._wait.get(node, 1), _MOST_LOOKS)
@@ -138,20 +138,20 @@ class FrictionBalance(StepHelper):
         off = np.abs(np.expm1(rows @ solution - targets))
         if float(off.max()) > 1e-6:
             self._ring = step + _RING_EVERY * EVERY
-        self._tell(pairs, off * (weights > _COUNTS))
+        self._report_misfit(pairs, off * (weights > _COUNTS))
         for node, value in zip(nodes, np.exp(solution).tolist()):
             if abs(value - self._free[node]) > 1e-9:
                 self._free[node] = value
                 pybullet.changeDynamics(*node, lateralFriction=value)
 
-    def _tell(self, pairs: List[Pair], off: np.ndarray) -> None:
+    def _report_misfit(self, pairs: List[Pair], off: np.ndarray) -> None:
         worst = int(off.argmax())
-        if off[worst] > _TOLERATED and not self._told:
-            self._told = True
+        if off[worst] > _TOLERATED and not self._is_reported:
+            self._is_reported = True
             node = next(node for node in sorted(pairs[worst]) if node in self._free)
             self._misfit(node[0], float(off[worst]))
 
-    def _ask(self, node: LinkKey) -> bool:
+    def _read_surface(self, node: LinkKey) -> bool:
         """Store the pairs and normal forces, N, of a surface. Returns whether pairs changed."""
         found: Dict[Pair, float] = {}
         uid, index = node

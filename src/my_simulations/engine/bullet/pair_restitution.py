@@ -53,7 +53,7 @@ class PairRestitution(StepHelper):
     def __init__(self, parameters: WorldParameters,
                  misfit: Callable[[int, float], None]) -> None:
         self._parameters, self._misfit = parameters, misfit
-        self._told = False
+        self._is_reported = False
         self._changed = False
         self._kinds: Dict[LinkKey, _Kind] = {}
         self._stored: Dict[LinkKey, float] = {}
@@ -118,7 +118,7 @@ class PairRestitution(StepHelper):
         weights = np.array([_AMONG_MOVING if one.moves and other.moves else 1.0
                             for one, other in pairs])
         solution = np.linalg.lstsq(rows * weights[:, None], targets * weights, rcond=None)[0]
-        self._tell(pairs, np.abs(np.expm1(rows @ solution - targets)))
+        self._report_misfit(pairs, np.abs(np.expm1(rows @ solution - targets)))
         met = rows.any(axis=0)
         return {kind: math.exp(solution[n]) if met[n] else kind.restitution
                 for n, kind in enumerate(kinds)}
@@ -132,10 +132,10 @@ class PairRestitution(StepHelper):
                 and (few or not (one.moves and other.moves))
                 and (one is not other or len(members[one]) > 1)]
 
-    def _tell(self, pairs: List[Tuple[_Kind, _Kind]], off: np.ndarray) -> None:
+    def _report_misfit(self, pairs: List[Tuple[_Kind, _Kind]], off: np.ndarray) -> None:
         worst = int(off.argmax())
-        if off[worst] > _TOLERATED and not self._told:
-            self._told = True
+        if off[worst] > _TOLERATED and not self._is_reported:
+            self._is_reported = True
             moving = next(kind for kind in pairs[worst] if kind.moves)
             uid = min(node for node, kind in self._kinds.items() if kind == moving)[0]
             self._misfit(uid, float(off[worst]))

@@ -129,22 +129,22 @@ class ResidualFriction(StepHelper):
             elif found != _SLIDES or uid not in self._new and self._rolls(uid):
                 del self._each_step[uid]
                 if found == _FLIES:
-                    self._look_ahead(uid, step, dt, gravity)
+                    self._check_path(uid, step, dt, gravity)
                     continue
                 self._fast.pop(uid, None)
                 if found == _SLIDES:
                     self._agenda.plan(uid, next_multiple(step + _FAST_EVERY, _EVERY))
         for uid in self._agenda.take(step):
-            wait = self._look(uid, seen, dt, gravity)
+            wait = self._check_interval(uid, seen, dt, gravity)
             if wait:
                 self._agenda.plan(uid, next_multiple(step + wait, _EVERY))
             else:
-                self._look_ahead(uid, step, dt, gravity)
+                self._check_path(uid, step, dt, gravity)
         self._new.clear()
 
     # -- selection -------------------------------------------------------------------------------
 
-    def _look(self, uid: int, seen: Set[int], dt: float, gravity: Vec3) -> int:
+    def _check_interval(self, uid: int, seen: Set[int], dt: float, gravity: Vec3) -> int:
         """Decide how often to check a body. Returns the steps until the next check; 0 if it flies.
 
         Bodies that slide slowly, or were corrected since the last check, are checked in each step.
@@ -172,7 +172,7 @@ class ResidualFriction(StepHelper):
             del self._fast[uid]
         return {_FLIES: 0, _SLIDES: _FAST_EVERY}.get(found, _SLOW_EVERY)
 
-    def _look_ahead(self, uid: int, step: int, dt: float, gravity: Vec3) -> None:
+    def _check_path(self, uid: int, step: int, dt: float, gravity: Vec3) -> None:
         """Skip a flying body while no other body is near its path; otherwise check it often."""
         centre = pybullet.getBasePositionAndOrientation(uid)[0]
         linear = pybullet.getBaseVelocity(uid)[0]
@@ -235,11 +235,11 @@ class ResidualFriction(StepHelper):
                     collision_groups.moving(self._bodies[uid].parts[0].link).set(uid, BASE)
                     return _MENDED
         for contact in left:
-            self._take_back(contact, dt)
+            self._undo_friction(contact, dt)
         seen.add(uid)
         return _MENDED if left else _SLIDES
 
-    def _take_back(self, contact: ContactPoint, dt: float) -> None:
+    def _undo_friction(self, contact: ContactPoint, dt: float) -> None:
         """Undo the friction impulses of one contact; the first direction opposes the slip."""
         uid, other = contact[BODY], contact[OTHER_BODY]
         along: Vec3 = contact[DIRECTION]

@@ -195,14 +195,17 @@ class RollingContacts(StepHelper):
             if (linear != _NONE or angular != _NONE) and _slow(linear, angular):
                 pybullet.resetBaseVelocity(uid, _NONE, _NONE)
         self._landing.see_rolling(self._rolling.keys(), step)
-        self._drop(False, step)
+        self._clear_contacts(False, step)
         if self.on_seams:
             if not self._moving.issubset({uid for uid, _ in self.on_seams}):
                 self._find_pairs()
-            self._drop(True, step)
+            self._clear_contacts(True, step)
 
-    def _drop(self, on_seams: bool, step: int) -> None:
-        """Drop the contact points of links that roll on triangles, or of all others."""
+    def _clear_contacts(self, on_seams: bool, step: int) -> None:
+        """Discard the contact points of links that roll on triangles, or of all others.
+
+        Bullet does so when a filter group is set, and finds new ones in the next step.
+        """
         for key, meets in self._rolling.items():
             if (key in self.on_seams) is on_seams and not self._landing.flies(key[0], step):
                 pybullet.setCollisionFilterGroupMask(*key, meets.group, meets.mask)
@@ -257,7 +260,7 @@ class RollingContacts(StepHelper):
                 *_mean(seen, at, EVERY * dt))
             if ((rocks or _slow(linear, angular)) and not loaded and not roller.body.ties
                     and not on_moving and _is_level(contacts, gravity)):
-                self._stand(uid, before)
+                self._keep_at_rest(uid, before)
                 return False
         else:
             roller.wait = _HINGED
@@ -278,7 +281,7 @@ class RollingContacts(StepHelper):
             pybullet.changeDynamics(*key, contactStiffness=_HARD,
                                     contactDamping=dt * _HARD * (1.0 / share - 1.0))
 
-    def _stand(self, uid: int, before: Optional[Pose]) -> None:
+    def _keep_at_rest(self, uid: int, before: Optional[Pose]) -> None:
         """Keep a body at rest; set it back to its pose at the last check if it only drifted."""
         at = Pose(*pybullet.getBasePositionAndOrientation(uid))
         if before is not None and dist(at.position, before.position) < _SHIFT:

@@ -26,7 +26,7 @@ class ShapePreparation:
         self._under_way[command.number] = self._shapes.prepare(command.model, command.meshes)
         return True
 
-    def go_on(self, command: ContinuePreparation) -> bool:
+    def advance(self, command: ContinuePreparation) -> bool:
         """Make shapes for a while; returns whether there is more to do."""
         steps = self._under_way.get(command.number)
         if steps is None:

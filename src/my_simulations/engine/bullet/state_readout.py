@@ -170,7 +170,7 @@ class StateReadout(BodyObserver):
         for body in list(trees.values()):
             self._read_tree(body, offset_rows)
         if self._resting and self._stepped:
-            self._look_around(offset_rows)
+            self._read_touched(offset_rows)
         if offset_rows:
             self._to_link_frames(offset_rows)
 
@@ -275,7 +275,7 @@ class StateReadout(BodyObserver):
                 woken.append(body)
         return woken
 
-    def _look_around(self, offset_rows: List[int]) -> None:
+    def _read_touched(self, offset_rows: List[int]) -> None:
         """Read bodies that trees may have touched, and a few resting bodies in any case."""
         woken: List[Body] = []
         for uid, tree in self._trees.items():

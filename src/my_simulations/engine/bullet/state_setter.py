@@ -153,7 +153,7 @@ class StateSetter:
         before = {axis.index: pybullet.getJointState(body.uid, axis.index)[1] for axis in body.axes}
         if is_anchored:
             way = compose(wanted, inverse(current))
-            if not anchored_bodies.turned(body, way):
+            if not anchored_bodies.move_by_joints(body, way):
                 base = compose(way, Pose(*pybullet.getBasePositionAndOrientation(body.uid)))
                 pybullet.resetBasePositionAndOrientation(body.uid, base.position,
                                                          base.orientation)

@@ -83,9 +83,9 @@ class SurfaceStop(StepHelper):
         """Check the bodies that are due; move back those that would go deep in this step."""
         self._motions.clear()
         for uid in self._agenda.take(step):
-            self._agenda.plan(uid, step + self._look(self._bodies[uid], dt, gravity))
+            self._agenda.plan(uid, step + self._check_body(self._bodies[uid], dt, gravity))
 
-    def _look(self, body: Body, dt: float, gravity: Vec3) -> int:
+    def _check_body(self, body: Body, dt: float, gravity: Vec3) -> int:
         """Move a body back if it would go deep. Returns the steps until its next check."""
         here = self._motions.of(body.uid)
         linear, angular = here.linear, here.angular
@@ -96,7 +96,7 @@ class SurfaceStop(StepHelper):
         ahead = max(1, min(_AHEAD, round(_AHEAD_S / dt)))
         if speed + fall < fast:
             return min(_SELDOM, max(ahead, int((fast - speed) / max(fall, 1e-9))))
-        ahead, late = self._way(body, here, ahead, deep, dt, gravity)
+        ahead, late = self._steps_to_contact(body, here, ahead, deep, dt, gravity)
         if late > 0.0 or bounces and late > -1.0:
             end = add(here.position, scale(add(linear, scale(gravity, dt)), (1.0 - late) * dt))
             if bounces:
@@ -108,8 +108,8 @@ class SurfaceStop(StepHelper):
             self._motions.forget(body.uid)
         return ahead
 
-    def _way(self, body: Body, here: Motion, ahead: int, deep: float, dt: float, gravity: Vec3,
-             ) -> Tuple[int, float]:
+    def _steps_to_contact(self, body: Body, here: Motion, ahead: int, deep: float, dt: float,
+                          gravity: Vec3) -> Tuple[int, float]:
         """Return the steps (at most `ahead`) until contact, and the share of this step to undo.
 
         `deep`: the allowed penetration, m. The share is below 0 if the body penetrates less, and

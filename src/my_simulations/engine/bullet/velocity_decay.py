@@ -56,7 +56,7 @@ class VelocityDecay(StepHelper):
             if body.rigid:
                 _slow_down(body.uid, linear_share, angular_share)
             else:
-                _hold_back(body.uid, part, linear_share / dt, angular_share / dt)
+                _apply_damping(body.uid, part, linear_share / dt, angular_share / dt)
 
 
 def _damp(body: Body, linear: float, angular: float, dt: float) -> Tuple[float, float]:
@@ -77,7 +77,7 @@ def _slow_down(uid: int, linear_share: float, angular_share: float) -> None:
                                    scale(angular, 1.0 - angular_share))
 
 
-def _hold_back(uid: int, part: Part, linear_rate: float, angular_rate: float) -> None:
+def _apply_damping(uid: int, part: Part, linear_rate: float, angular_rate: float) -> None:
     """Let a force and a torque act against the velocities of a link, by rates in 1/s."""
     at, turn, linear, angular = motion(uid, part.index)
     if linear_rate:

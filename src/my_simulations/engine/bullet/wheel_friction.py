@@ -124,7 +124,7 @@ class WheelFriction(StepHelper):
         self._cone = cone
         if not cone:
             for key in self._slides.keys() - self._slipping:
-                self._give_back(key)
+                self._restore_friction(key)
 
     def add(self, body: Body) -> None:
         self._axes.update((axis.row, (body, axis)) for axis in body.axes)
@@ -172,7 +172,7 @@ class WheelFriction(StepHelper):
             if key in self._slipping:
                 self._slides[key] = _Slide()
             else:
-                self._give_back(key)
+                self._restore_friction(key)
 
     # -- readings ----------------------------------------------------------------------------------
 
@@ -225,7 +225,7 @@ class WheelFriction(StepHelper):
         weight = norm(gravity)
         for key, (moves, loads) in self._loads().items():
             self._go_on(key, moves, *loads, dt, weight)
-        self._give_back_quiet()
+        self._restore_quiet()
 
     def _find_slides(self, uid: int, wheels: Dict[int, SurfaceLink]) -> None:
         """Take the links of a body that slide on static bodies."""
@@ -288,7 +288,7 @@ class WheelFriction(StepHelper):
         """Compute the friction on a link in the next step."""
         slide, slips = self._slides[key], key in self._slipping
         if not slips and self._touches_others(contacts):
-            self._give_back(key)
+            self._restore_friction(key)
             return
         slide.acting = []
         slide.quiet += 1
@@ -374,12 +374,12 @@ class WheelFriction(StepHelper):
         pybullet.changeDynamics(*key, anisotropicFriction=anisotropy(
             link.mus, link.first or ZERO3, _LEFT))
 
-    def _give_back(self, key: LinkKey) -> None:
+    def _restore_friction(self, key: LinkKey) -> None:
         link = self._links[key]
         del self._slides[key]
         pybullet.changeDynamics(*key, anisotropicFriction=anisotropy(link.mus, link.first or ZERO3))
 
-    def _give_back_quiet(self) -> None:
+    def _restore_quiet(self) -> None:
         """Restore Bullet's friction for the links of a body together, once all are at rest.
 
         Bullet stops a slip sooner: a base with different friction on its wheels would turn.
@@ -387,7 +387,7 @@ class WheelFriction(StepHelper):
         slides = {uid for (uid, _), slide in self._slides.items() if slide.quiet < _QUIET}
         for key in [key for key in self._slides if key[0] not in slides]:
             if key not in self._slipping:
-                self._give_back(key)
+                self._restore_friction(key)
 
     def _set_slip(self, wheel: WheelSlip) -> None:
         """Set the slips of a wheel from its rate."""

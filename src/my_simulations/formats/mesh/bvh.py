@@ -41,14 +41,14 @@ def read_bvh(data: bytes) -> Tuple[Bones, Clip]:
             if axis >= 0 and kind == "position":
                 places[:, n, axis] = frames[:, column]
             elif axis >= 0 and kind == "rotation":
-                turns[:, n] = _turned(turns[:, n], axis, np.radians(frames[:, column]))
+                turns[:, n] = _rotate_about_axis(turns[:, n], axis, np.radians(frames[:, column]))
             column += 1
     keys = Keys(np.arange(len(frames)) * step, np.arange(len(joints)), places, turns,
                 np.ones_like(places))
     return reader.bones, Clip([keys], float(keys.times[-1]))
 
 
-def _turned(turns: Array, axis: int, angles: Array) -> Array:
+def _rotate_about_axis(turns: Array, axis: int, angles: Array) -> Array:
     """Quaternions (k, 4), turned on about one of their own axes."""
     other = [(axis + 1) % 3, (axis + 2) % 3]
     sine, cosine = np.sin(angles / 2.0), np.cos(angles / 2.0)

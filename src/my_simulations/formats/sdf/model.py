@@ -105,7 +105,7 @@ class _ModelReader:
         ends = [(one, self._place_joint(one, model, names)) for one in (*joints, *waiting)]
         model.joints = [one.joint for one, end in ends if end is _End.HERE] + model.joints
         placement.unresolved_joints = [one for one, end in ends if end is _End.ELSEWHERE]
-        self._put_by(element.get("placement_frame") or "", model)
+        self._apply_placement_frame(element.get("placement_frame") or "", model)
         self._check(model)
         return placement
 
@@ -356,7 +356,7 @@ class _ModelReader:
 
         return pose
 
-    def _put_by(self, frame: str, model: Model) -> None:
+    def _apply_placement_frame(self, frame: str, model: Model) -> None:
         """Set the model pose from the pose of its placement frame. Source: SDF spec 1.8."""
         frame = self._changes.placement_frame or frame
         if frame:

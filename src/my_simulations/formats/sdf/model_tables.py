@@ -53,7 +53,7 @@ def _kept(*names: str, since: str = "") -> Dict[str, Entry]:
     return {name: Kept(since) for name in names}
 
 
-def _told(*names: str, since: str = "") -> Dict[str, Entry]:
+def _kept_with_note(*names: str, since: str = "") -> Dict[str, Entry]:
     """Elements that are kept with a note, because their authors expect an effect."""
     return {name: Kept(since, reported=True) for name in names}
 
@@ -163,7 +163,7 @@ VISUAL = Table("visual", Visual, {
     "transparency": Value("transparency", FLOAT),
     "laser_retro": Value("laser_retro", FLOAT, use=PLUGINS),
     "meta": Group({"layer": Value("layer", INT)}),
-    **_kept("frame", "visibility_flags"), **_told("plugin"),
+    **_kept("frame", "visibility_flags"), **_kept_with_note("plugin"),
 }, level=WARNING, known_attributes=("name",), use=SHOWN)
 
 MATERIAL = Table("material", Material, {
@@ -198,7 +198,8 @@ LINK = Table("link", Link, {
     }),
     **_kept("frame", "light", "must_be_base_link"), "enable_wind": Kept(use=PLUGINS),
     "sensor": Part(use=PLUGINS, kept=True),
-    **_told("projector", "audio_source", "audio_sink", "battery", "particle_emitter", "plugin"),
+    **_kept_with_note("projector", "audio_source", "audio_sink", "battery", "particle_emitter",
+                      "plugin"),
 }, known_attributes=("name",))
 
 _AXIS_CHILDREN: Mapping[str, Entry] = {
@@ -243,7 +244,7 @@ MODEL = Table("model", Model, {
     "link": Part(), "joint": Part(), "model": Part("1.5"), "include": Part("1.4"),
     "frame": Part("1.5", kept=True), "plugin": Part(use=PLUGINS),
     "enable_wind": Value("enable_wind", BOOL, use=PLUGINS),
-    **_told("gripper"),
+    **_kept_with_note("gripper"),
 }, attributes={"canonical_link": Value("canonical_link", TEXT, since="1.7")},
    known_attributes=("name", "placement_frame"))
 
@@ -268,7 +269,7 @@ LIGHT = Table("light", Light, {
         "inner_angle": Value("inner_angle", FLOAT), "outer_angle": Value("outer_angle", FLOAT),
         "falloff": Value("falloff", FLOAT),
     }),
-    **_kept("frame", "intensity", "light_on", "visualize"), **_told("plugin"),
+    **_kept("frame", "intensity", "light_on", "visualize"), **_kept_with_note("plugin"),
 }, attributes={"type": Value("type", TEXT)}, level=WARNING, known_attributes=("name",), use=SHOWN)
 
 PHYSICS = Table("physics", Physics, {
@@ -304,5 +305,5 @@ WORLD = Table("world", World, {
     "state": Part(), "joint": Part("1.10"),
     "magnetic_field": Value("magnetic_field", VECTOR3, since="1.6", use=PLUGINS),
     **SURROUNDINGS,
-    **_told("audio"),
+    **_kept_with_note("audio"),
 }, known_attributes=("name",))

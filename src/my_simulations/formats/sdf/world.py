@@ -11,7 +11,7 @@ from ...description.model import Link, Model
 from ...description.validate import link_names
 from ...description.world import Physics, World
 from ...geometry import is_finite
-from ...xml_characters import hidden_in, without_hidden
+from ...xml_characters import hidden_character, without_hidden
 from ..xml.binding import Found, fill, to_xml
 from ..xml.source import FaultLevel, Source
 from ..xml.values import BOOL
@@ -57,8 +57,9 @@ def _shown_name(element: Any, source: Source) -> str:
     name = element.get("name") or "default"
     shown: str = without_hidden(name)
     if shown != name:
-        source.tolerate("name-characters", f"the name of the world contains {hidden_in(name)},"
-                        f" which is not shown; read as {shown!r}", element)
+        source.tolerate(
+            "name-characters", f"the name of the world contains {hidden_character(name)},"
+            f" which is not shown; read as {shown!r}", element)
     return shown
 
 

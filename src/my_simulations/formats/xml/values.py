@@ -66,7 +66,7 @@ def _formatted(*values: float) -> str:
     return " ".join(repr(int(v)) if v == int(v) and abs(v) < 1e15 else repr(v) for v in values)
 
 
-def _whole(text: str, count: int) -> Tuple[float, ...]:
+def _all_numbers_or_zeros(text: str, count: int) -> Tuple[float, ...]:
     """All numbers of a vector, or zeros: Gazebo reads vectors completely or not at all."""
     return _all_or_zeros(stream_numbers(text, count))
 
@@ -204,7 +204,7 @@ class Vector2:
 
 
     def parse_leniently(self, text: str) -> Tuple[float, float]:
-        x, y = _whole(text, 2)
+        x, y = _all_numbers_or_zeros(text, 2)
         return (x, y)
 
 
@@ -228,7 +228,7 @@ class Vector3:
 
 
     def parse_leniently(self, text: str) -> Vec3:
-        x, y, z = _whole(text, 3)
+        x, y, z = _all_numbers_or_zeros(text, 3)
         return (x, y, z)
 
 
@@ -279,7 +279,7 @@ class Rpy:
         return _formatted(*rpy_from_quat(value))
 
     def parse_leniently(self, text: str) -> Quat:
-        roll, pitch, yaw = _whole(text, 3)
+        roll, pitch, yaw = _all_numbers_or_zeros(text, 3)
         return quat_from_rpy(roll, pitch, yaw)
 
 

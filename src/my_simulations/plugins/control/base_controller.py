@@ -130,9 +130,10 @@ class BaseController(Controller):
         self.observe(self._count_hz, self._count, topics, transforms=self.broadcasts,
                      remembers=True)
         if self._limited is not None:
-            self.observe(self.hertz, self._tell_command, [self._limited])
+            self.observe(self.hertz, self._publish_command, [self._limited])
         if self.publish_hz > 0.0:
-            self.observe(self.publish_hz, self._tell, topics, transforms=self.broadcasts)
+            self.observe(self.publish_hz, self._publish_odometry, topics,
+                         transforms=self.broadcasts)
 
     def stop(self) -> None:
         """Stop the base."""
@@ -177,7 +178,7 @@ class BaseController(Controller):
         self.drive(limited)
         return done
 
-    def _tell_command(self) -> None:
+    def _publish_command(self) -> None:
         """Publish the velocity command of the last update."""
         assert self._limited is not None
         message = stamped(self.context, "geometry_msgs/TwistStamped")
@@ -203,7 +204,7 @@ class BaseController(Controller):
                                    for axis in range(3))
         return forward, sideways, turn
 
-    def _tell(self) -> None:
+    def _publish_odometry(self) -> None:
         pose = planar(*self._pose)
         if self.broadcasts:
             self.context.transform(*self._frames, pose)

@@ -101,7 +101,7 @@ class FourWheelSteeringController(BaseController):
         self._odom_steer = None
         try:
             self.subscribe("cmd_four_wheel_steering", f"{_MESSAGES}/FourWheelSteering",
-                           self._hear_angles)
+                           self._receive_angles)
             self._odom_steer = self.publish("odom_steer", f"{_MESSAGES}/FourWheelSteeringStamped",
                                             100)
         except PluginError as missing:
@@ -117,7 +117,7 @@ class FourWheelSteeringController(BaseController):
             found += [self.claim_joint(interface, name) for name in names]
         return found
 
-    def _hear_angles(self, message: Any) -> None:
+    def _receive_angles(self, message: Any) -> None:
         if self.follow_command((float(message.speed), float(message.front_steering_angle),
                       float(message.rear_steering_angle))):
             self._by_angles = True

@@ -52,7 +52,7 @@ class GazeboRosControl(Plugin):
         self._stopped = False
         topic = p.text("eStopTopic")
         if topic:
-            context.subscribe(topic, "std_msgs/Bool", self._hear_stop)
+            context.subscribe(topic, "std_msgs/Bool", self._receive_stop)
         self._hold.begin()
 
     def controllable(self, transmissions: List[Transmission]) -> List[Transmission]:
@@ -76,7 +76,7 @@ class GazeboRosControl(Plugin):
         """End all controllers; the robot is deleted."""
         self._manager.close()
 
-    def _hear_stop(self, message: Any) -> None:
+    def _receive_stop(self, message: Any) -> None:
         """Apply a message of `<eStopTopic>`: true begins the emergency stop, false ends it."""
         self.set_stopped(bool(message.data))
 

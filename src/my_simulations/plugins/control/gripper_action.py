@@ -35,7 +35,7 @@ class Gripper(Controller):
         self._goal: Optional[Goal] = None
         self._watch = StepwiseChange(
             self.context, min(_LOOK_HZ, 1.0 / self.period) if self.period else _LOOK_HZ,
-            self._look)
+            self._check_goal)
         self._wanted, self._most = 0.0, self._default_effort
         self._action = ActionServer(self.context, f"{self.name}/gripper_cmd",
                                     "control_msgs/GripperCommand", self._asked, self._cancelled)
@@ -66,7 +66,7 @@ class Gripper(Controller):
         self._goal = goal
         self._stall.begin()
         self._watch.begin()
-        self._go(float(command.position), float(command.max_effort))
+        self._move_to(float(command.position), float(command.max_effort))
 
     def _cancelled(self, goal: Goal) -> None:
         if self._goal is goal:
@@ -80,9 +80,9 @@ class Gripper(Controller):
             goal.cancel(self._result(False, False), why)
 
     def _hold(self) -> None:
-        self._go(self._joint.position, self._default_effort)
+        self._move_to(self._joint.position, self._default_effort)
 
-    def _go(self, wanted: float, most: float) -> None:
+    def _move_to(self, wanted: float, most: float) -> None:
         """Move to a position; limit 0 of an effort joint is no effort (as in the original)."""
         self._wanted, self._most = wanted, abs(most)
         if self._gains is None:
@@ -90,7 +90,7 @@ class Gripper(Controller):
         else:
             self._joint.follow(wanted, gains=self._gains, by_rates=True, most_effort=self._most)
 
-    def _look(self, dt: float) -> bool:
+    def _check_goal(self, dt: float) -> bool:
         """End a goal that is reached or holds something; return whether there is no goal left."""
         goal = self._goal
         if goal is None or not goal.active:

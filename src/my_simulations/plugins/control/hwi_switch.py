@@ -23,7 +23,7 @@ class HwiSwitchGazeboRosControl(GazeboRosControl):
         super().load()
         topic = self.context.parameters.text("stateValidTopic")
         if topic:
-            self.context.subscribe(topic, "std_msgs/Bool", self._hear_valid)
+            self.context.subscribe(topic, "std_msgs/Bool", self._receive_valid)
 
     def controllable(self, transmissions: List[Transmission]) -> List[Transmission]:
         """Return the transmissions whose joints the parameter lists; all without a filter.
@@ -40,10 +40,10 @@ class HwiSwitchGazeboRosControl(GazeboRosControl):
                               " on the parameter server, in the namespace of the plugin?")
         return [one for one in transmissions if any(joint.name in names for joint in one.joints)]
 
-    def _hear_stop(self, message: Any) -> None:
+    def _receive_stop(self, message: Any) -> None:
         self.set_stopped(bool(message.data) or not self._valid)
 
-    def _hear_valid(self, message: Any) -> None:
+    def _receive_valid(self, message: Any) -> None:
         """An invalid state stops the joints until the emergency stop is released, as in Gazebo."""
         self._valid = bool(message.data)
         if not self._valid:

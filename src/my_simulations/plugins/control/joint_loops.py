@@ -28,7 +28,8 @@ class JointLoop(Controller):
         self._joint = self.claim_joint(self.interface, self.settings.text("joint"))
         self._wanted = 0.0
         self._state = self.publish("state", "control_msgs/JointControllerState")
-        self.subscribe("command", "std_msgs/Float64", lambda message: self._go(message.data))
+        self.subscribe("command", "std_msgs/Float64",
+                       lambda message: self._set_target(message.data))
         self.offer_gains("pid", self._joint, self._gains, self._take_gains)
 
     def _take_gains(self, gains: PidGains) -> None:
@@ -36,15 +37,15 @@ class JointLoop(Controller):
 
     def start(self) -> None:
         """Hold the position, or command 0."""
-        self._go(0.0 if self.of_rate else self._joint.position)
-        self.observe(min(_STATE_HZ, 1.0 / self.period) if self.period else _STATE_HZ, self._tell,
-                     [self._state], efforts=[self._joint.name])
+        self._set_target(0.0 if self.of_rate else self._joint.position)
+        self.observe(min(_STATE_HZ, 1.0 / self.period) if self.period else _STATE_HZ,
+                     self._publish_state, [self._state], efforts=[self._joint.name])
 
-    def _go(self, wanted: float) -> None:
+    def _set_target(self, wanted: float) -> None:
         self._wanted = wanted if self.of_rate else clamped_to_limits(self._joint, wanted)
         self._joint.follow(self._wanted, gains=self._gains, of_rate=self.of_rate)
 
-    def _tell(self) -> None:
+    def _publish_state(self) -> None:
         joint, gains = self._joint, self._gains
         message = stamped(self.context, "control_msgs/JointControllerState")
         message.set_point = self._wanted

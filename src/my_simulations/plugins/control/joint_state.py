@@ -42,7 +42,7 @@ class JointStateController(Controller):
 
     def start(self) -> None:
         if self._rate > 0.0:
-            self.observe(self._rate, self._tell, [self._topic],
+            self.observe(self._rate, self._publish_states, [self._topic],
                          efforts=[joint.name for joint in self._joints])
 
     def _extras(self, known: List[str]) -> List[Tuple[str, float, float, float]]:
@@ -58,7 +58,7 @@ class JointStateController(Controller):
                                   " left out")
         return found
 
-    def _tell(self) -> None:
+    def _publish_states(self) -> None:
         message = measured_joints(self.context, self.hardware, self._joints)
         for name, position, velocity, effort in self._extra:
             message.name.append(name)
@@ -81,9 +81,10 @@ class JointReadCommandController(Controller):
         self.keep(self._topic)
 
     def start(self) -> None:
-        self.observe(self._rate if self._rate > 0.0 else _UPDATE_HZ, self._tell, [self._topic])
+        self.observe(self._rate if self._rate > 0.0 else _UPDATE_HZ, self._publish_states,
+                     [self._topic])
 
-    def _tell(self) -> None:
+    def _publish_states(self) -> None:
         context, joints = self.context, sorted(
             self.hardware.joints, key=lambda joint: (_ORDER.index(joint.interface), joint.name))
         message = stamped(context, "sensor_msgs/JointState")

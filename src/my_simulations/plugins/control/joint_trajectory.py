@@ -77,7 +77,7 @@ class JointTrajectory(Controller):
                          for joint in self._joints]
         self._send()
         if self._state_hz > 0.0:
-            self.observe(self._state_hz, self._tell, [self._state])
+            self.observe(self._state_hz, self._publish_state, [self._state])
 
     def stop(self) -> None:
         """End the goal."""
@@ -115,7 +115,7 @@ class JointTrajectory(Controller):
             _of_joints(followed, updated(self._end, self._names, wanted.goal_tolerance)),
             self._late if late == 0.0 else max(0.0, late))
         goal.accept()
-        self._look()
+        self._check_goal()
 
     def _cancelled(self, goal: Goal) -> None:
         if self._goal is not None and self._goal.goal is goal:
@@ -169,7 +169,7 @@ class JointTrajectory(Controller):
             _follow(joint, spline, gains, ahead, self._time(spline))
         if self._watch is None and self._moves():
             self._watch = self.context.every(
-                min(_LOOK_HZ, 1.0 / self.period) if self.period else _LOOK_HZ, self._look)
+                min(_LOOK_HZ, 1.0 / self.period) if self.period else _LOOK_HZ, self._check_goal)
 
     # -- while it moves ----------------------------------------------------------------------------
 
@@ -185,7 +185,7 @@ class JointTrajectory(Controller):
         return self._goal is not None or any(
             self._time(spline) <= spline.segments[-1].end for spline in self._splines)
 
-    def _look(self) -> None:
+    def _check_goal(self) -> None:
         """Check tolerances; when all is done, let the engine stop computing."""
         following = self._goal
         if following is not None:
@@ -249,7 +249,7 @@ class JointTrajectory(Controller):
             following.told_ns = now
             following.goal.feedback(self._filled(self.context.message(f"{_ACTION}Feedback")))
 
-    def _tell(self) -> None:
+    def _publish_state(self) -> None:
         self._state.publish(self._filled(
             self.context.message("control_msgs/JointTrajectoryControllerState")))
 

@@ -97,8 +97,8 @@ class PositionController(_OfQuadrotor):
         self._yaw_pid = self.pid("yaw")
         self._limits = VectorLimits(self.settings)
         self._most: Optional[TwistCommand] = None
-        self.listen("command/pose", "geometry_msgs/PoseStamped", self._hear_pose)
-        self.listen("command/twist_limit", "geometry_msgs/Twist", self._hear_limit)
+        self.listen("command/pose", "geometry_msgs/PoseStamped", self._receive_pose)
+        self.listen("command/twist_limit", "geometry_msgs/Twist", self._receive_limit)
 
     def begin(self) -> None:
         """Clear the commanded pose."""
@@ -111,7 +111,7 @@ class PositionController(_OfQuadrotor):
         self.begin()
         super().stop()
 
-    def _hear_pose(self, message: Any) -> None:
+    def _receive_pose(self, message: Any) -> None:
         if self.frame_of(message) != self._world:
             self.context.warn(f"poses must be given in the frame {self._world}; one in"
                               f" '{message.header.frame_id}' is ignored")
@@ -121,7 +121,7 @@ class PositionController(_OfQuadrotor):
         self._wanted, self._wanted_yaw = (at.x, at.y, at.z), rpy_from_quat(quat)[2]
         self.hardware.preempted = False
 
-    def _hear_limit(self, message: Any) -> None:
+    def _receive_limit(self, message: Any) -> None:
         linear = message.linear
         self._most = TwistCommand((linear.x, linear.y, linear.z), message.angular.z)
 
@@ -165,7 +165,7 @@ class VelocityController(_OfQuadrotor):
         self._yaw_limits = read_limits(self.settings, "yawrate/z")
         self._most_load = self.settings.number("limits/load_factor", 1.5)
         self.listen("cmd_vel", "geometry_msgs/Twist", self._receive)
-        self.listen("command/twist", "geometry_msgs/TwistStamped", self._hear_stamped)
+        self.listen("command/twist", "geometry_msgs/TwistStamped", self._receive_stamped)
 
     def begin(self) -> None:
         """Hover."""
@@ -180,7 +180,7 @@ class VelocityController(_OfQuadrotor):
     def _receive(self, message: Any) -> None:
         self._take(message, self.context.now_ns, False)
 
-    def _hear_stamped(self, message: Any) -> None:
+    def _receive_stamped(self, message: Any) -> None:
         frame = self.frame_of(message)
         if frame not in (self._world, self._stabilized):
             self.context.warn(f"velocities must be given in the frame {self._stabilized} or"
@@ -241,11 +241,11 @@ class AttitudeController(_OfQuadrotor):
         self._time_out_ns = round(float(context.parameter("command_timeout", 0.0)) * 1e9)
         self._deceleration = float(context.parameter("estop_deceleration", 1.0))
         self._stopped = False
-        self.listen("estop", "std_msgs/Bool", self._hear_stop)
+        self.listen("estop", "std_msgs/Bool", self._receive_stop)
         try:
             for name in ("Attitude", "Yawrate", "Thrust"):
                 self.listen(f"command/{name.lower()}", f"hector_uav_msgs/{name}Command",
-                            getattr(self, f"_hear_{name.lower()}"))
+                            getattr(self, f"_receive_{name.lower()}"))
         except PluginError as missing:
             context.info(f"no commands of attitude by topics: {missing}")
 
@@ -261,18 +261,18 @@ class AttitudeController(_OfQuadrotor):
         self.hardware.command(((0.0, 0.0, 0.0), (0.0, 0.0, 0.0)))
         super().stop()
 
-    def _hear_stop(self, message: Any) -> None:
+    def _receive_stop(self, message: Any) -> None:
         self._stopped = bool(message.data)
 
-    def _hear_attitude(self, message: Any) -> None:
+    def _receive_attitude(self, message: Any) -> None:
         self._command = self._command._replace(roll=message.roll, pitch=message.pitch)
         self._stamps[0] = self.stamp_of(message)
 
-    def _hear_yawrate(self, message: Any) -> None:
+    def _receive_yawrate(self, message: Any) -> None:
         self._command = self._command._replace(yaw_rate=message.turnrate)
         self._stamps[1] = self.stamp_of(message)
 
-    def _hear_thrust(self, message: Any) -> None:
+    def _receive_thrust(self, message: Any) -> None:
         self._command = self._command._replace(thrust=message.thrust)
         self._stamps[2] = self.stamp_of(message)
 

@@ -50,14 +50,14 @@ class ImuSensorController(_SensorController):
     def start(self) -> None:
         self._before: Dict[str, Any] = {}
         if self._hertz > 0.0:
-            self.observe(self._hertz, self._tell, [topic for _, _, topic in self._sensors],
+            self.observe(self._hertz, self._publish_all, [topic for _, _, topic in self._sensors],
                          resume=self._resume)
 
     def _resume(self) -> None:
         self._before = {}
-        self._tell()
+        self._publish_all()
 
-    def _tell(self) -> None:
+    def _publish_all(self) -> None:
         for sensor, link, topic in self._sensors:
             now_ns, now = self.context.now_ns, velocity_at(link.pose, link.twist, sensor.pose)
             then_ns, then = self._before.get(sensor.name, (now_ns, now))
@@ -80,17 +80,17 @@ class ForceTorqueSensorController(_SensorController):
 
     def load(self) -> None:
         self._hertz = self._rate()
-        self._looks: List[Callable[[], None]] = []
+        self._measurements: List[Callable[[], None]] = []
         self._topics: List[Publication] = []
         for joint in self.context.description.joints:
             for sensor in joint.sensors:
                 if sensor.type == "force_torque":
-                    self._looks.append(self._look(joint, sensor))
-        if not self._looks:
+                    self._measurements.append(self._advertise_wrench(joint, sensor))
+        if not self._measurements:
             raise PluginError(f"controller '{self.name}': no joint of the robot has a"
                               " <sensor type=\"force_torque\">")
 
-    def _look(self, joint: Joint, sensor: Sensor) -> Callable[[], None]:
+    def _advertise_wrench(self, joint: Joint, sensor: Sensor) -> Callable[[], None]:
         topic = self._offer(sensor.name, "geometry_msgs/WrenchStamped")
         self._topics.append(topic)
         block: Optional[ForceTorque] = sensor.force_torque
@@ -99,7 +99,7 @@ class ForceTorqueSensorController(_SensorController):
         named = {"parent": joint.parent, "sensor": sensor.name}.get(frame, joint.child)
         self.context.joint_wrench(joint.name)   # have the engine measure from now on
 
-        def tell() -> None:
+        def publish() -> None:
             wrench = self.context.joint_wrench(joint.name) if topic.wanted else None
             if wrench is None:
                 return
@@ -110,14 +110,14 @@ class ForceTorqueSensorController(_SensorController):
             torque.x, torque.y, torque.z = sample.torque
             topic.publish(message)
 
-        return tell
+        return publish
 
     def start(self) -> None:
         if self._hertz > 0.0:
-            self.observe(self._hertz, self._tell, self._topics, wrenches=[
+            self.observe(self._hertz, self._publish_all, self._topics, wrenches=[
                 joint.name for joint in self.context.description.joints
                 if any(sensor.type == "force_torque" for sensor in joint.sensors)])
 
-    def _tell(self) -> None:
-        for look in self._looks:
-            look()
+    def _publish_all(self) -> None:
+        for publish in self._measurements:
+            publish()

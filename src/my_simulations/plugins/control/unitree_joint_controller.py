@@ -35,7 +35,7 @@ class UnitreeJointController(Controller):
         """Brake until a command comes."""
         self._brake()
         self.observe(min(self._hertz, 1.0 / self.period) if self.period else self._hertz,
-                     self._tell, [self._state], efforts=[self._joint.name])
+                     self._publish_state, [self._state], efforts=[self._joint.name])
 
     def _receive(self, message: Any) -> None:
         """A command in another mode leaves the motor as it is."""
@@ -48,16 +48,16 @@ class UnitreeJointController(Controller):
             position, rate = float(message.q), float(message.dq)
             stiffness = 0.0 if abs(position - _NO_POSITION) < _NO_POSITION * 1e-6 else message.Kp
             damping = 0.0 if abs(rate - _NO_RATE) < _SAME else message.Kd
-            self._go(clamped(position, limits.lower, limits.upper), float(stiffness),
-                     clamped(rate, -limits.rate, limits.rate), float(damping),
-                     clamped(float(message.tau), -limits.effort, limits.effort))
+            self._set_target(clamped(position, limits.lower, limits.upper), float(stiffness),
+                             clamped(rate, -limits.rate, limits.rate), float(damping),
+                             clamped(float(message.tau), -limits.effort, limits.effort))
 
     def _brake(self) -> None:
         self._mode = _BRAKE
-        self._go(0.0, 0.0, 0.0, _BRAKING, 0.0)
+        self._set_target(0.0, 0.0, 0.0, _BRAKING, 0.0)
 
-    def _go(self, position: float, stiffness: float, rate: float, damping: float,
-            effort: float) -> None:
+    def _set_target(self, position: float, stiffness: float, rate: float, damping: float,
+                    effort: float) -> None:
         """The effort is given to the loop as a target that is shifted by as much."""
         if damping > 0.0:
             rate += effort / damping
@@ -69,7 +69,7 @@ class UnitreeJointController(Controller):
         self._joint.follow(position, gains=PidGains(stiffness, 0.0, damping, 0.0, 0.0, False),
                            target_rate=rate, by_rates=True)
 
-    def _tell(self) -> None:
+    def _publish_state(self) -> None:
         message = self.context.message("unitree_legged_msgs/MotorState")
         message.mode = self._mode
         message.q, message.dq = self._joint.position, self._joint.velocity

@@ -169,7 +169,7 @@ class KobukiEvents:
         self._over: Dict[str, bool] = dict.fromkeys(_SIDES, False)
         self._dropped: Dict[str, bool] = dict.fromkeys(self._drops, False)
         self._bottoms = dict.fromkeys(_SIDES, 0)
-        self._look_again_ns = 0
+        self._next_cast_ns = 0
         self._topics: Dict[str, Publication] = {}
         try:
             context.subscribe(f"{prefix}/commands/motor_power", "kobuki_msgs/MotorPower",
@@ -183,7 +183,7 @@ class KobukiEvents:
 
     def clock_set(self) -> None:
         """What was asked belongs to another time."""
-        self._look_again_ns = 0
+        self._next_cast_ns = 0
 
     def follow(self, hertz: float) -> None:
         """Publish at a rate in Hz while there are subscribers."""
@@ -217,9 +217,9 @@ class KobukiEvents:
     def _update_cliffs(self) -> None:
         """Cast the rays again, once those before have been answered."""
         now = self._context.now_ns
-        if now >= self._look_again_ns:
-            self._look_again_ns = now + _PATIENCE_NS
-            self._look(list(_SIDES), {})
+        if now >= self._next_cast_ns:
+            self._next_cast_ns = now + _PATIENCE_NS
+            self._cast_cliff_rays(list(_SIDES), {})
 
     def _publish_state(self) -> None:
         core = self._topics["sensors/core"]
@@ -245,10 +245,10 @@ class KobukiEvents:
                 found["left" if angle > 0.0 else "right"] = True
         return found
 
-    def _look(self, sides: List[str], found: Dict[str, bool]) -> None:
+    def _cast_cliff_rays(self, sides: List[str], found: Dict[str, bool]) -> None:
         """Cast the rays of one cliff sensor after the other."""
         if not sides:
-            self._look_again_ns = 0
+            self._next_cast_ns = 0
             self._change("events/cliff", "sensor", "CliffEvent", self._over, found)
             return
         link, sensor = self._cliffs[sides[0]]
@@ -259,7 +259,7 @@ class KobukiEvents:
             first = float(returns.ranges.flat[0])
             found[sides[0]] = not first < self._edge   # nothing below is a cliff
             self._bottoms[sides[0]] = _reading(first)
-            self._look(sides[1:], found)
+            self._cast_cliff_rays(sides[1:], found)
 
         self._context.scan(fan_of(sensor.ray), False, seen, (link, sensor.pose))
 

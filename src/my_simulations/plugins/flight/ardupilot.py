@@ -131,14 +131,14 @@ class ArduPilot(Plugin):
 
     def _wait_for_first(self) -> None:
         self._misses = 0
-        self._begin(_LOOK_HZ, self._look)
+        self._begin(_LOOK_HZ, self._await_packet)
 
     def _begin(self, hertz: float, call: Callable[[], None]) -> None:
         if self._timer is not None:
             self._timer.end()
         self._timer = self.context.every(hertz, call)
 
-    def _look(self) -> None:
+    def _await_packet(self) -> None:
         """Follow ArduPilot from its first packet on."""
         floats = self._received(0.0)
         if floats is not None:

@@ -138,7 +138,7 @@ class PluginProcess:
         """Have the process end; it is killed with all that it has started if it does not."""
         if not self._ended:
             self._ended = True
-            self._wire.hang_up()
+            self._wire.shut_down()
             self._reaper.start()
 
     def join(self) -> None:

@@ -87,11 +87,11 @@ class ImagerRate:
         self._timer = context.observe(rate, call, topics, world=True)
         self._listened = False
         if rate < _LOOK_HZ:
-            context.every(_LOOK_HZ, self._look)
+            context.every(_LOOK_HZ, self._check_subscribers)
         self._offers = [Reconfigure(context, name, (_RATE,), {_RATE.name: rate}, self._change)
                         for name in names if name]
 
-    def _look(self) -> None:
+    def _check_subscribers(self) -> None:
         """Take a picture at once when a first subscriber comes, as in Gazebo."""
         before, self._listened = self._listened, self._wanted()
         if self._listened and not before and not self._context.is_stepped_manually:

@@ -130,12 +130,12 @@ class DepthCamera(Plugin):
         if outputs:
             self.context.photograph([self._colors.view(*outputs)], self._taken)
         else:
-            self._tell(None, None, self.context.now_ns)
+            self._publish_pictures(None, None, self.context.now_ns)
 
     def _taken(self, pictures: List[Any], ns: int) -> None:
-        self._tell(pictures[0].rgb, pictures[0].depth, ns)
+        self._publish_pictures(pictures[0].rgb, pictures[0].depth, ns)
 
-    def _tell(self, rgb: Optional[Any], depth: Optional[Any], ns: int) -> None:
+    def _publish_pictures(self, rgb: Optional[Any], depth: Optional[Any], ns: int) -> None:
         self._colors.publish(rgb, ns)
         self._depth.publish(depth, rgb, ns)
 

@@ -48,7 +48,7 @@ class Elevator(Plugin):
         """On the ground, with a closed door."""
         self._change.end()
         self._stages: List[Stage] = []
-        self._go(0)
+        self._move_to_floor(0)
         self._move_door(_CLOSED)
 
     def _receive(self, message: Any) -> None:
@@ -69,7 +69,7 @@ class Elevator(Plugin):
             self._stages.pop(0)
         return not self._stages
 
-    def _go(self, floor: int) -> None:
+    def _move_to_floor(self, floor: int) -> None:
         self._level = floor * self._height
         self._lift.set_servo(_servo(self._lift, _LIFT_GAINS, self._level))
 
@@ -85,7 +85,7 @@ class Elevator(Plugin):
 
     def _lift_stage(self, floor: int) -> Stage:
         def go_on() -> bool:
-            self._go(floor)
+            self._move_to_floor(floor)
             return abs(self._lift.position - self._level) < _LIFT_NEAR
 
         return go_on

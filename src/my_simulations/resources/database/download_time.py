@@ -32,7 +32,7 @@ class DownloadTime:
         self._deadline = None
         self._failed.clear()
 
-    def give(self, seconds: float) -> None:
+    def set_seconds(self, seconds: float) -> None:
         """Set the total time of downloads (s) from the next `begin` on."""
         self._seconds = seconds
 

@@ -76,11 +76,11 @@ class FuelModels:
         if self._time is not None:
             self._time.begin()
 
-    def give(self, seconds: float) -> None:
+    def set_seconds(self, seconds: float) -> None:
         """Set the total time of downloads (s) from the next `begin` on."""
         self._seconds = seconds
         if self._time is not None:
-            self._time.give(seconds)
+            self._time.set_seconds(seconds)
 
     def folders(self) -> List[str]:
         return [cache for cache in self.caches if os.path.isdir(cache)]
@@ -166,7 +166,7 @@ class _Downloads:
 
         self._cache = cache
         self._time = DownloadTime(progress, WORLD_SECONDS if seconds is None else seconds)
-        self.begin, self.give = self._time.begin, self._time.give
+        self.begin, self.set_seconds = self._time.begin, self._time.set_seconds
 
     def download(self, uri: FuelUri) -> None:
         """Download a model into the cache. Raises ModelNotProvidedError."""
@@ -186,7 +186,7 @@ class _Downloads:
             headers = fetch(uri.archive, stream, limits.archive_bytes, until,
                             self._time.report(uri.name))
             stream.flush()
-            exact = replace(uri, version=uri.version or _told_version(headers))
+            exact = replace(uri, version=uri.version or _version_of(headers))
 
             def make(work: str) -> str:
                 return _with_own_addresses(
@@ -196,7 +196,7 @@ class _Downloads:
             install(os.path.join(above, str(exact.version)), make)
 
 
-def _told_version(headers: "Message[str, str]") -> int:
+def _version_of(headers: "Message[str, str]") -> int:
     """The version in the response headers; 1 if there is none (Gazebo behaviour)."""
     for name in ("X-Ign-Resource-Version", "X-Gz-Resource-Version"):
         text = headers.get(name) or ""

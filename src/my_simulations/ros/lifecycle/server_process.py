@@ -184,7 +184,7 @@ class Server:
                 return OK if self._ended.is_set() else FAILED
             self._init_node()
             # Opened early: loading a world may take long and logs its progress.
-            self._open_log()
+            self._start_logging()
             launcher = self._make_editor_launcher()
             loader.wait(self._ended, lambda: self._open_page_early(launcher, loader))
             if self._ended.is_set():
@@ -274,7 +274,8 @@ class Server:
         if not rospy.core.is_initialized():
             rospy.signal_shutdown("shutdown requested")
 
-    def _open_log(self) -> None:
+    def _start_logging(self) -> None:
+        """Log the notices on the options and all issues so far; later issues at once."""
         import rospy
 
         from ..issue_logging import log_issue

@@ -30,7 +30,7 @@ class ReconfigureServer:
         self._descriptions = publisher("parameter_descriptions", queue_size=10, latch=True)
         self._updates = publisher("parameter_updates", queue_size=10, latch=True)
         self._descriptions.publish(self._messages.description())
-        self._tell()
+        self._publish_changes()
 
     def set(self, request: Any, response: Any) -> str:
         """Set the parameters of the request, clamped to their ranges.
@@ -43,7 +43,7 @@ class ReconfigureServer:
         except OptionError as fault:
             raise CommandError(str(fault)) from fault
         change_parameters(self._simulator, wanted)
-        self._tell()
+        self._publish_changes()
         response.config = self._messages.config(current_parameters(self._simulator))
         return ""
 
@@ -53,7 +53,7 @@ class ReconfigureServer:
         Raises:
             OSError: the master does not respond; the next call tries again.
         """
-        self._tell()
+        self._publish_changes()
         with self._lock:
             values, before = self._told, self._stored or {}
             for name, value in values.items():
@@ -66,7 +66,7 @@ class ReconfigureServer:
         with self._lock:
             self._stored = None
 
-    def _tell(self) -> None:
+    def _publish_changes(self) -> None:
         with self._lock:
             values = current_parameters(self._simulator)
             if values != self._told:

@@ -39,10 +39,10 @@ class Metrics(WorkerThread):
         while not self._stop.wait(PERIOD_SECONDS) and self._publisher.get_num_connections():
             sim_now, real_now = self._simulator.clock.sim_ns, time.monotonic()
             if sim_now > sim:
-                self._tell(sim_now, (sim_now - sim) * 1e-9 / (real_now - real))
+                self._publish_factor(sim_now, (sim_now - sim) * 1e-9 / (real_now - real))
             sim, real = sim_now, real_now
 
-    def _tell(self, sim_ns: int, factor: float) -> None:
+    def _publish_factor(self, sim_ns: int, factor: float) -> None:
         stamp = self._message.header.stamp
         stamp.secs, stamp.nsecs = seconds_and_nanoseconds(sim_ns)
         self._message.real_time_factor = factor

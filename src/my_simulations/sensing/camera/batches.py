@@ -55,7 +55,7 @@ class Batch:
         self.rows, self.local = self.rows[kept], self.local[kept]
 
     def reshape(self, rows: np.ndarray) -> None:
-        """Give the vertices other places and normals; `rows` as in `Piece`."""
+        """Replace positions and normals of the vertices; `rows` as in `Piece`."""
         self.center, self.radius = _bounds(rows)
         self.shape += 1
         self._vertices.write(rows.tobytes())

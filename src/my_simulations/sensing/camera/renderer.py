@@ -175,20 +175,23 @@ class Renderer:
         if RGB in outputs:
             lights = chosen_lights(self._lights, view, spec)
             shadows = self._shadows(spec, lights, links, frame[:3, 3])
-            self._place(view, links, spec)
+            self._upload_instances(view, links, spec)
             rgb = self._draw_rgb(spec, view, self._lit.lighting(
                 view, clip, lights, shadows, self._scene))
         if DEPTH in outputs or LABELS in outputs:
             if RGB not in outputs:
-                self._place(view, links, spec)
+                self._upload_instances(view, links, spec)
             depth, labels = self._draw_ranges(spec, clip)
         if spec.distortion is not None:
             rgb, depth, labels = self._distort(spec, rgb, depth, labels)
         return (rgb, depth if DEPTH in outputs else None, labels if LABELS in outputs else None)
 
-    def _place(self, view: np.ndarray, links: np.ndarray, spec: Optional[CameraSpec],
-               casters: bool = False) -> None:
-        """Say to all batches where they are, leaving out what the camera cannot see."""
+    def _upload_instances(self, view: np.ndarray, links: np.ndarray, spec: Optional[CameraSpec],
+                          casters: bool = False) -> None:
+        """Upload to each batch the poses of its instances that the camera can see.
+
+        Transparent ones are sorted, the farthest first; `casters`: only those that cast shadows.
+        """
         for batch in self._all():
             here = self._here(batch, links)
             frames = view @ links[batch.rows[here]] @ batch.local[here]
@@ -301,7 +304,7 @@ class Renderer:
 
     def _draw_map(self, n: int, one: ShadowView, links: np.ndarray) -> None:
         context, target = self._context, self._map_targets[n]
-        self._place(one.view, links, None, casters=True)
+        self._upload_instances(one.view, links, None, casters=True)
         target.use()
         target.clear(depth=1.0)
         context.enable_only(context.DEPTH_TEST)

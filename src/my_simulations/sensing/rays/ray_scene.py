@@ -286,7 +286,7 @@ class RayScene:
         ranges, body, shape = self._nearest(origins, directions, near, far)
         rows, retro = self._row_of[body], self._retro[shape]
         for plane in self._planes:
-            self._meet(plane, origins, directions, near, far, (ranges, retro, rows))
+            self._intersect_plane(plane, origins, directions, near, far, (ranges, retro, rows))
         return ranges, retro, rows
 
     def _nearest(self, origins: np.ndarray, directions: np.ndarray, near: float, far: float,
@@ -351,8 +351,9 @@ class RayScene:
         normals = buffer[:, NORMAL:NORMAL + 3].transpose(0, 2, 1).reshape(-1, 3)[:count]
         return ranges, body, shape, normals
 
-    def _meet(self, plane: _PlaneOnLink, origins: np.ndarray, directions: np.ndarray, near: float,
-              far: float, found: Tuple[np.ndarray, np.ndarray, np.ndarray]) -> None:
+    def _intersect_plane(self, plane: _PlaneOnLink, origins: np.ndarray, directions: np.ndarray,
+                         near: float, far: float,
+                         found: Tuple[np.ndarray, np.ndarray, np.ndarray]) -> None:
         """An endless plane, from both sides (Gazebo's ODE), to the last digit."""
         if plane.row >= len(self._poses):
             return

@@ -391,11 +391,11 @@ export async function mayDiscard({store, request}: FileDialogPage): Promise<bool
   ]);
   if (choice === 'discard') return true;
   if (choice !== 'save') return false;
-  return saved({store, request});
+  return saveWorld({store, request});
 }
 
-/** Saves to the world's own file, or asks for a name where it has none that may be replaced. */
-async function saved(page: FileDialogPage) {
+/** Saves to the world's own file, or asks for a name if it has no file that may be replaced. @returns whether it was saved */
+async function saveWorld(page: FileDialogPage) {
   try {
     if (page.store.history.file) {
       await page.request('save', {});
