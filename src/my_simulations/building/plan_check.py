@@ -41,7 +41,8 @@ def _walls(level: Level, path: str) -> Iterator[Issue]:
         if how:
             yield warning("walls-" + how, f"Wall_{first.id} and Wall_{second.id} on {level.name!r}"
                           f" {how}", xpath=f"{path}.walls[{sound[b]}]",
-                          hint="end them where they meet, so that rooms and openings stay clear")
+                          hint="end both walls at the point where they meet, so that rooms and"
+                          " openings are unambiguous")
 
 
 def _touching(walls: List[Wall]) -> List[Tuple[int, int]]:

@@ -125,7 +125,7 @@ def _thin(collision: Collision, link: str) -> Iterator[Fault]:
     half = half_extents(collision.geometry)
     if half is not None and 2 * min(half) < THINNEST_M:
         yield Fault("shape-thin", f"collision {collision.name!r} of {link!r} is"
-                    f" {2 * min(half):g} m thin; what moves passes through it", collision,
+                    f" {2 * min(half):g} m thin; moving bodies can pass through it", collision,
                     Severity.WARNING, "give it a thickness of a millimetre or more")
 
 
@@ -133,7 +133,7 @@ def thin_mesh(collision: Collision, link: str, extents: Sequence[float]) -> Iter
     """Warning about a flat collision mesh; `extents`: edge lengths of its bounding box, m."""
     if min(extents) < THINNEST_M:
         yield Fault("shape-thin", f"the mesh of collision {collision.name!r} of {link!r} is"
-                    f" {min(extents):g} m thin; what moves passes through it", collision,
+                    f" {min(extents):g} m thin; moving bodies can pass through it", collision,
                     Severity.WARNING, "use a box of a millimetre or more, or a mesh with two sides")
 
 

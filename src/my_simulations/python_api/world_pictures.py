@@ -47,7 +47,7 @@ def camera_pose(position: Vec3, target: Vec3) -> Pose:
     """
     line = subtract(target, position)
     if norm(line) < 1e-12:
-        raise CommandError("a camera cannot look at the point where it is")
+        raise CommandError("a camera cannot look at its own position")
     yaw = math.atan2(line[1], line[0])
     pitch = math.atan2(-line[2], math.hypot(line[0], line[1]))
     return Pose(position, quat_from_rpy(0.0, pitch, yaw))

@@ -269,5 +269,5 @@ class Drives:
 
 def _finite(first: float, second: float) -> Tuple[float, float]:
     if not is_finite(first, second):
-        raise CommandError("a joint's motor needs finite numbers")
+        raise CommandError("rate and effort of a motor must be finite")
     return first, second

@@ -93,7 +93,7 @@ def _configuration(world: World, entities: Sequence[Entity],
                    snapshot: Snapshot) -> Optional[SavedState]:
     """State of the models whose links or joints have moved, at rest at time 0; None if none have.
 
-    A model without an entry is at its own `<pose>`, which users can edit in the file.
+    A model without an entry is at the `<pose>` of its element, which users can edit in the file.
     """
     models = [_at_rest(_model_state(entity, snapshot)) for entity in entities
               if not entity.model.static and _is_displaced(entity, snapshot)]

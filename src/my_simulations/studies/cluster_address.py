@@ -38,7 +38,7 @@ def scheduler_address(where: str) -> str:
         return path
     if kind in ("tcp", "ws") and colon:
         raise CommandError(
-            f"--on {where}: {kind}:// is neither encrypted nor asks for a certificate, and whoever"
-            " reaches such a scheduler can run programs as you, on every worker; start it with TLS"
-            " and name it with dask:// (doc/scale.md)")
+            f"--on {where}: {kind}:// is neither encrypted nor asks for a certificate, and anyone"
+            " who can connect to such a scheduler can run programs as you, on every worker; start"
+            " it with TLS and name it with dask:// (doc/scale.md)")
     raise CommandError(f"--on {where}: known are slurm, dask://HOST:PORT and dask:FILE")

@@ -118,7 +118,8 @@ def _on_slurm(options: argparse.Namespace, folder: StudyFolder, plan: CasePlan) 
         _print(json.dumps({"script": path, "shards": shards, "submitted": bool(told)}))
     else:
         _print(path)
-        _print_error(told or f"sbatch is not on this machine: submit it where it is, sbatch {path}")
+        _print_error(told or "this machine has no sbatch; run on a machine that has it:"
+                     f" sbatch {path}")
     return 0
 
 

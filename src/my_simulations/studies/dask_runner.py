@@ -108,8 +108,8 @@ class StudyWorker(WorkerPlugin):
                           " was started" for name, version in plan.versions.items()
                           if version != self._versions.get(name)]
                 raise CommandError(f"case {index} has another id on a worker: "
-                                   + ("; ".join(differ) or "a file of the study is not there, or is"
-                                      " not the same"))
+                                   + ("; ".join(differ) or "a file of the study is missing"
+                                      " or differs"))
             yield case
 
 

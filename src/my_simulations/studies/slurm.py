@@ -39,7 +39,8 @@ def job_script(name: str, study_file: str, folder: str, shards: int, slots: int,
         if not _OPTION.match(option):
             raise CommandError(f"'{option}' is no option of sbatch; write it as time=01:00:00")
         if option.partition("=")[0] in _OURS:
-            raise CommandError(f"'{option}' is set by --shards, --slots and --out")
+            raise CommandError(f"'{option}' cannot be given: it follows from --shards, --slots and"
+                               " --out")
     # %A and %a are job and task; a % of the folder is written %% (sbatch(1), FILENAME PATTERN).
     logs = os.path.join(folder.replace("%", "%%"), "slurm", "%A_%a.txt")
     lines: List[str] = [

@@ -197,7 +197,7 @@ class KinematicBackend:
     def _check(self, model_ids: Iterable[int]) -> None:
         for model_id in model_ids:
             if model_id not in self.models:
-                raise RemovedError("the model is not there any more")
+                raise RemovedError("the model no longer exists")
 
     def _set_joints(self, command: SetJoints) -> None:
         self._check(command.of)

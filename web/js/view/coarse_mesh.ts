@@ -26,7 +26,7 @@ export const limitFor = (files: number, {moving = false}: {moving?: boolean} = {
 export type Shape = {position: Float32Array, normal: Float32Array, index: Uint32Array, closed: boolean};
 
 /**
- * A mesh of about `limit` triangles at most; null for one that has no more.
+ * A mesh of about `limit` triangles at most; null if the mesh has at most `limit`.
  * @param position  three numbers for each corner
  * @param normal  as many
  * @param index  of the corners of the triangles; null: three corners each

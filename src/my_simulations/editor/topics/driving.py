@@ -101,8 +101,8 @@ class Driving:
         try:
             name = velocity_topic(self._source.topics(), model)
             if not name:
-                raise CommandError(f"{model} cannot be driven: nobody listens to velocities"
-                                   f" ({KIND}) for it")
+                raise CommandError(f"{model} cannot be driven: no node subscribes to its"
+                                   f" velocity commands ({KIND})")
             return Drive(name, self._source.publish(name, KIND, 1, False))
         except OSError as fault:
             raise CommandError(f"the ROS master does not respond: {fault}") from fault

@@ -297,7 +297,7 @@ class BulletBackend:
 
     def _entry(self, model_id: int) -> Entry:
         if model_id not in self._models:
-            raise RemovedError("the model is not there any more")
+            raise RemovedError("the model no longer exists")
         return self._models[model_id]
 
     # -- states ----------------------------------------------------------------------------------

@@ -56,7 +56,7 @@ class InterModelJoints(BodyObserver):
                 (command.parent_row, command.parent_from_joint)]
         ends.sort(key=lambda end: end[0] < 0)  # the world last
         if ends[0][0] not in rows or not (ends[1][0] < 0 or ends[1][0] in rows):
-            raise RemovedError(f"a link of joint '{joint.name}' is not there any more")
+            raise RemovedError(f"a link of joint '{joint.name}' no longer exists")
         one = rows[ends[0][0]]
         other = rows[ends[1][0]] if ends[1][0] >= 0 else self._world()
         if joint.type == "prismatic" and (one[0].rigid or other[0].rigid):

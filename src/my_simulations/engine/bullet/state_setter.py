@@ -83,7 +83,7 @@ class StateSetter:
     def set_link(self, command: SetLinkState) -> None:
         """Move the body of a link. Raises CommandRefusedError."""
         if command.row not in self._rows:
-            raise RemovedError("the link is not there any more")
+            raise RemovedError("the link no longer exists")
         self._readout.read()
         body, part = self._rows[command.row]
         held = part.link is not None and part.link.kinematic
@@ -102,7 +102,7 @@ class StateSetter:
         """
         for row, position, rate in command.joints:
             if row not in self._axes and not self._readout.closes(row):
-                raise RemovedError("the joint is not there any more")
+                raise RemovedError("the joint no longer exists")
             if not (abs(position) < 1e12 and abs(rate) < 1e12):
                 raise CommandRefusedError("the joint position is not finite")
         for row, position, rate in command.joints:
@@ -133,7 +133,7 @@ class StateSetter:
         if frame is None:
             return pose, twist
         if frame.row not in self._rows:
-            raise RemovedError("the reference frame is not there any more")
+            raise RemovedError("the reference frame no longer exists")
         at = compose(self.link_state(frame.row).pose, frame.offset)
         if twist is not None:
             twist = Twist(rotate(at.orientation, twist.linear),

@@ -124,7 +124,7 @@ class PartsCache:
         except FileNotFoundError:
             return None
         except (OSError, ValueError) as fault:
-            _log.warning("%s is made anew: %s", path, fault)
+            _log.warning("%s is invalid and is created again: %s", path, fault)
             with contextlib.suppress(OSError):  # it will be replaced
                 os.remove(path)
             return None

@@ -42,7 +42,7 @@ def _read(data: bytes, kind: str, **options: Any) -> List[MeshPart]:
     try:
         scene = trimesh.load_scene(io.BytesIO(data), file_type=kind, process=False, **options)
     except ImportError as fault:
-        raise MeshError(f"reading .{kind} needs a library that is not there: {fault}") from None
+        raise MeshError(f"reading .{kind} needs a library that is not installed: {fault}") from None
     except Exception as fault:  # the formats of trimesh raise various exceptions
         raise MeshError(str(fault) or type(fault).__name__) from None
     return bounded(_scene_parts(scene))

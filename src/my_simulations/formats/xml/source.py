@@ -120,7 +120,7 @@ class Source:
         """Warn of a URI in the home folder of another machine; see `Resolver.replaced_home`."""
         here = self.resolver.replaced_home(uri)
         if here:
-            self.tolerate("home-path", f"{uri!r} is a path of another machine; {here} is used",
+            self.tolerate("home-path", f"{uri!r} is a path on another machine; {here} is used",
                           element, f"write {here}")
 
     def tolerate(

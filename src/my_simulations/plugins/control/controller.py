@@ -76,7 +76,7 @@ class Controller:
                 call(message)
             elif self._told != topic:
                 self._told = topic
-                self.context.warn(f"controller '{self.name}' does not run, and ignores what comes"
+                self.context.warn(f"controller '{self.name}' is not running, and ignores messages"
                                   f" on {topic}")
 
         self._handles.append(self.context.subscribe(f"{self.name}/{topic}", kind, heard))

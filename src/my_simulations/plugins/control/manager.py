@@ -254,7 +254,8 @@ class ControllerManager:
 
     def _reload(self, request: Any, response: Any) -> None:
         if self._loaded and not request.force_kill:
-            self._context.warn("could not reload the controllers: some are loaded")
+            self._context.warn("could not reload the controller libraries: controllers are loaded;"
+                               " unload them, or set force_kill")
             response.ok = False
             return
         self.close()

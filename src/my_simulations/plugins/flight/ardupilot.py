@@ -153,7 +153,7 @@ class ArduPilot(Plugin):
         if floats is None:
             self._misses += 1
             if self._misses > self._most_misses:
-                self.context.warn("ArduPilot sends no more packets; the motors stop")
+                self.context.warn("ArduPilot has stopped sending packets; the motors stop")
                 self._drive([0.0] * (1 + max(one.number for one in self._channels)))
                 self._wait_for_first()
             return

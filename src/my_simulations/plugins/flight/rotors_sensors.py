@@ -163,7 +163,7 @@ class RotorsGps(Plugin):
     def load(self) -> None:
         context, p = self.context, self.context.parameters
         if context.sensor is None:
-            raise PluginError("it belongs into a <sensor> of type gps")
+            raise PluginError("it must be in a <sensor> of type gps")
         context.use_namespace(namespace_or(p, ""))
         self._link, self._mount = context.link(context.sensor_link), context.sensor.pose
         self._frame = p.text("linkName", self._link.name)

@@ -80,7 +80,7 @@ class GraspFix(Plugin):
             self._most = max(self._most, 2 * self._threshold)
         self._release = p.number("release_tolerance", 0.005)
         if p.flag("disable_collisions_on_attach", False):
-            context.warn("<disable_collisions_on_attach> is not heeded: what is held collides")
+            context.warn("<disable_collisions_on_attach> has no effect: held objects still collide")
         hertz = p.number("update_rate", 5.0)
         self._rare = 0.0 < hertz < _SAMPLE_HZ
         self._samples: Optional[CallHandle] = None

@@ -22,7 +22,7 @@ class Bumper(Plugin):
     def load(self) -> None:
         context, p = self.context, self.context.parameters
         if context.sensor is None:
-            raise PluginError("it belongs into a <sensor> of type contact")
+            raise PluginError("it must be in a <sensor> of type contact")
         context.use_namespace(namespace_or(p, ""))
         self._frame = prefixed(context, p.text("frameName", "world"))
         self._link = context.link(context.sensor_link)

@@ -33,7 +33,7 @@ class _SensorPlugin(Plugin):
     def _begin(self, kind: str) -> None:
         context, p = self.context, self.context.parameters
         if context.sensor is None:
-            raise PluginError(f"it belongs into a <sensor> of type {kind}")
+            raise PluginError(f"it must be in a <sensor> of type {kind}")
         context.use_namespace(namespace_or(p, context.model))
         self._link, self._mount = context.link(context.sensor_link), context.sensor.pose
         self._frame = prefixed(context, p.text("frameName") or context.sensor_link)

@@ -17,7 +17,7 @@ class FootContact(Plugin):
     def load(self) -> None:
         context = self.context
         if context.sensor is None:
-            raise PluginError("it belongs into a <sensor> of type contact")
+            raise PluginError("it must be in a <sensor> of type contact")
         self._link = context.link(context.sensor_link)
         self._topic = context.publish(f"/visual/{context.sensor.name}/the_force",
                                       "geometry_msgs/WrenchStamped", 100)

@@ -117,7 +117,7 @@ class SensorImu(Imu):
         """Read parameters."""
         context, p = self.context, self.context.parameters
         if context.sensor is None:
-            raise PluginError("it belongs into a <sensor> of type imu")
+            raise PluginError("it must be in a <sensor> of type imu")
         # An empty element, such as xacro leaves, is the root (GazeboRosImuSensor::LoadParameters).
         context.use_namespace(p.text("robotNamespace", f"/{context.model}") or "/")
         frame = p.text("frameName")

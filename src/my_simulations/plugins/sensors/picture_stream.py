@@ -18,7 +18,7 @@ _QUALITY = 80  # of jpeg, as compressed_image_transport
 def blocks_of(context: Context, kinds: str) -> List[CameraBlock]:
     """The cameras of the plugin's sensor. Raises PluginError where there is none."""
     if context.sensor is None or not context.sensor.cameras:
-        raise PluginError(f"it belongs into a <sensor> of type {kinds} with a <camera>")
+        raise PluginError(f"it must be in a <sensor> of type {kinds} with a <camera>")
     return context.sensor.cameras
 
 

@@ -32,7 +32,7 @@ def ray_of(context: Context) -> Tuple[Ray, bool]:
     """Return the sensor's `<ray>`, and whether its rays hit visuals. Raises PluginError."""
     sensor = context.sensor
     if sensor is None or sensor.ray is None:
-        raise PluginError("it belongs into a <sensor> of type ray or gpu_ray with a <ray>")
+        raise PluginError("it must be in a <sensor> of type ray or gpu_ray with a <ray>")
     return sensor.ray, sensor.type in ("gpu_ray", "gpu_lidar")
 
 

@@ -136,6 +136,6 @@ class RosGraph:
             try:
                 self._types[kind] = getattr(importlib.import_module(f"{package}.{sort}"), name)
             except (ImportError, AttributeError) as fault:
-                raise MissingTypeError(f"{kind} is not there; install the package ros-{package}"
+                raise MissingTypeError(f"{kind} is not installed; install the package ros-{package}"
                                        f" ({fault})") from fault
         return self._types[kind]

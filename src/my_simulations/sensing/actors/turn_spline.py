@@ -1,6 +1,6 @@
 """Turning from waypoint to waypoint: the rules of the editor's page (web/js/turn_spline.ts).
 
-A spline of Shoemake's (1985) joins orientations, which does not heed how long segments take
+A spline of Shoemake's (1985) joins orientations, which does not depend on how long segments take
 (ignition::math::RotationSpline): turns swing by some degrees about straight parts of a path, and
 widely where the yaw passes from pi to -pi, whose quaternions are far from each other.
 """

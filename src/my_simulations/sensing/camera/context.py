@@ -25,7 +25,7 @@ def new_context() -> Any:
         context = moderngl.create_context(standalone=True, require=330, **_EGL)
     except Exception as fault:  # each of its back ends fails in its own way
         raise SensingUnavailableError(
-            f"cameras need OpenGL 3.3 on EGL, which is not to be had ({fault}): "
+            f"cameras need OpenGL 3.3 on EGL, which is not available ({fault}): "
             f"apt install {_PACKAGES}") from None
     return context
 
