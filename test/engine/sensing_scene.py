@@ -1,7 +1,6 @@
 """Short ways to build what sensors look at."""
 from __future__ import annotations
 
-import time
 from typing import Dict, List, Optional, Sequence, Tuple
 
 import numpy as np
@@ -35,11 +34,3 @@ def rows(poses: Sequence[Pose]) -> bytes:
 def table(poses: Sequence[Pose]) -> np.ndarray:
     """Poses as the scenes want them."""
     return np.array([[*pose.position, *pose.orientation] for pose in poses]).reshape(-1, 7)
-
-
-def until(condition, failure: str) -> None:
-    """Wait for a condition."""
-    deadline = time.monotonic() + DEADLINE_S
-    while not condition():
-        assert time.monotonic() < deadline, failure
-        time.sleep(0.01)

@@ -4,7 +4,7 @@ from __future__ import annotations
 import math
 
 import pytest
-from autopilot import Autopilot
+from autopilot import autopilot  # noqa: F401
 from plugin_case import PluginCase, kept
 from wheeled_robots import plugin
 
@@ -20,13 +20,6 @@ RADIUS, AREA, LIFT_SLOPE, ANGLE, DENSITY = 0.084, 0.002, 4.25, 0.3, 1.2041
 # Lift of four blades, each 1/2 rho (omega r)^2 A c, divided by the square of the rate.
 LIFT = 4 * 0.5 * DENSITY * RADIUS ** 2 * AREA * LIFT_SLOPE * ANGLE
 DOWN = quat_from_rpy(math.pi, 0.0, 0.0)
-
-
-@pytest.fixture
-def autopilot():
-    made = Autopilot()
-    yield made
-    made.close()
 
 
 @pytest.fixture

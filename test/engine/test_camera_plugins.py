@@ -8,7 +8,8 @@ import signal
 import numpy as np
 import pytest
 from kinematic_backend import KinematicBackend
-from plugin_case import PluginCase, kept, until
+from plugin_case import PluginCase, kept
+from waiting import until
 from walking_figures import rod
 
 from my_simulations.description.world import World

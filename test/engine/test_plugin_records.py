@@ -7,7 +7,8 @@ from dataclasses import replace
 
 import pytest
 from conftest import ground
-from plugin_case import PluginCase, until
+from plugin_case import PluginCase
+from waiting import until
 
 from my_simulations.description.plugin import PluginSpec
 from my_simulations.description.world import World

@@ -6,7 +6,8 @@ from dataclasses import replace
 
 import pytest
 from conftest import ground
-from plugin_case import PluginCase, until
+from plugin_case import PluginCase
+from waiting import until
 from wheeled_robots import axle, base, plugin, tricycle, wheel
 
 from my_simulations.description.model import Inertial, Joint, JointAxis, Link, Model

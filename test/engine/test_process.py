@@ -13,6 +13,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from conftest import arm, ball, box, ground
+from waiting import until
 
 from my_simulations.description.model import Inertial, Joint, JointAxis, Link, Model
 from my_simulations.description.saved_state import InitialState
@@ -56,13 +57,6 @@ def kill(sim: Simulator) -> int:
     until(lambda: sim.engine_pid != pid and sim._session.supervisor._ready.is_set(),
           "no new engine came")
     return pid
-
-
-def until(condition, failure: str, seconds: float = 60.0) -> None:
-    deadline = time.monotonic() + seconds
-    while not condition():
-        assert time.monotonic() < deadline, failure
-        time.sleep(0.005)
 
 
 def whole_state(sim: Simulator):

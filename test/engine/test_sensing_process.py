@@ -13,7 +13,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from conftest import ball, ground
-from sensing_scene import DEADLINE_S, body, rows, until
+from sensing_scene import DEADLINE_S, body, rows
+from waiting import until
 
 from my_simulations.description.light import Light
 from my_simulations.description.model import Model

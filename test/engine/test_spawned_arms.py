@@ -4,8 +4,9 @@ from __future__ import annotations
 import pytest
 from conftest import ground
 from inline_engine import InlineEngine
-from plugin_case import kept, until
+from plugin_case import kept
 from plugin_graph import Graph
+from waiting import until
 
 from my_simulations.description.model import Inertial, Joint, JointAxis, Link, Model
 from my_simulations.description.plugin import PluginSpec

@@ -4,7 +4,6 @@ from __future__ import annotations
 import os
 import random
 import threading
-import time
 from typing import Callable, Dict, List
 
 from editor_case import box
@@ -245,11 +244,3 @@ def descriptors(pid: int) -> int:
 def threads(pid: int) -> int:
     """Threads of a process."""
     return len(os.listdir(f"/proc/{pid}/task"))
-
-
-def until(condition: Callable[[], bool], what: str, seconds: float = 60.0) -> None:
-    """Wait for a condition."""
-    end = time.monotonic() + seconds
-    while not condition():
-        assert time.monotonic() < end, what
-        time.sleep(0.01)

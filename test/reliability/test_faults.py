@@ -6,8 +6,9 @@ import random
 import signal
 import time
 
-from ledger import Crew, until
+from ledger import Crew
 from proofs import scaled
+from waiting import until
 
 from my_simulations.simulator import supervisor
 

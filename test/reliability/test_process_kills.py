@@ -21,9 +21,9 @@ from free_ports import free_port
 from gazebo_msgs import srv
 from geometry_msgs.msg import Point, Quaternion
 from geometry_msgs.msg import Pose as PoseMessage
-from ledger import until
 from my_simulations_msgs.srv import SaveWorld
 from proofs import scaled
+from waiting import until
 
 from my_simulations.description.model import Link, Model
 from my_simulations.description.shapes import Box, Collision

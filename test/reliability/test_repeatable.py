@@ -8,8 +8,8 @@ import struct
 from typing import List
 
 from editor_case import arm, box
-from ledger import until
 from proofs import scaled
+from waiting import until
 
 from my_simulations.description.model import Inertial, Link, Model
 from my_simulations.description.shapes import Collision, Cylinder, Plane, Sphere

@@ -12,9 +12,10 @@ from pathlib import Path
 
 import pytest
 from editor_case import Case, Refused, box
-from ledger import Client, agree, floating, until
+from ledger import Client, agree, floating
 from proofs import scaled
 from scarce import Disk, starved
+from waiting import until
 
 import my_simulations
 from my_simulations.errors import CommandError

@@ -62,6 +62,14 @@ def plain_words(argv: Optional[Sequence[str]]) -> Tuple[List[str], List[str]]:
             [word for word in words if ":=" in word])
 
 
+def run_tool(name: str, parser: argparse.ArgumentParser, argv: Optional[Sequence[str]],
+             work: Callable[[argparse.Namespace, Sequence[str]], int]) -> int:
+    """Read a command line, program name first, and `run` the tool with options and remappings."""
+    words, remappings = plain_words(argv)
+    options = parser.parse_args(words)
+    return run(name, lambda: work(options, remappings))
+
+
 def run(name: str, work: Callable[[], int]) -> int:
     """Run a tool; a ToolError or InputError is printed and gives exit code 1."""
     try:

@@ -41,9 +41,7 @@ def main(argv: Optional[Sequence[str]] = None) -> int:
         0 if every name was known and none of the objects is left, 1 if not, 2 for an invalid
         command line.
     """
-    words, remappings = client.plain_words(argv)
-    options = parser().parse_args(words)
-    return client.run(NAME, lambda: _remove_all(options, remappings))
+    return client.run_tool(NAME, parser(), argv, _remove_all)
 
 
 def chosen_models(words: Sequence[str], world: Sequence[str], listing: ObjectList,

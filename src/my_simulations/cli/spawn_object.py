@@ -46,12 +46,10 @@ def main(argv: Optional[Sequence[str]] = None) -> int:
     Returns:
         0 if all objects were spawned, 1 if not, 2 for an invalid command line.
     """
-    words, remappings = client.plain_words(argv)
-    options = parser().parse_args(words)
-    return client.run(NAME, lambda: _spawn_all(options, remappings, Launch.of(remappings)))
+    return client.run_tool(NAME, parser(), argv, _spawn_all)
 
 
-def _spawn_all(options: argparse.Namespace, remappings: Sequence[str], launch: Launch) -> int:
+def _spawn_all(options: argparse.Namespace, remappings: Sequence[str]) -> int:
     parameters = client.Parameters(remappings)
     simulator = client.SimulatorClient(
         parameters, client.full_name(options.gazebo_namespace, remappings), options.timeout)
@@ -71,7 +69,8 @@ def _spawn_all(options: argparse.Namespace, remappings: Sequence[str], launch: L
         if not failed:
             print(f"{NAME}: nothing to spawn")
         return client.FAILED if failed else client.OK
-    wrong = _spawn_each(selection.objects, simulator, options.timeout, launch)
+    wrong = _spawn_each(selection.objects, simulator, options.timeout,
+                        Launch.of(remappings))
     return client.FAILED if failed or wrong else client.OK
 
 

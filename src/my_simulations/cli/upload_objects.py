@@ -45,9 +45,7 @@ def main(argv: Optional[Sequence[str]] = None) -> int:
         0 if the whole list was loaded or there is none, 1 otherwise, 2 for an invalid command
         line.
     """
-    words, remappings = client.plain_words(argv)
-    options = parser().parse_args(words)
-    return client.run(NAME, lambda: _upload(options, remappings))
+    return client.run_tool(NAME, parser(), argv, _upload)
 
 
 def _upload(options: argparse.Namespace, remappings: Sequence[str]) -> int:

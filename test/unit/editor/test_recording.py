@@ -7,12 +7,12 @@ import re
 import resource
 import subprocess
 import sys
-import time
 
 import numpy as np
 import pytest
 from editor_case import Case, box
 from inline_engine import InlineEngine
+from waiting import until
 
 from my_simulations.cli.front_ends import FrontEnds
 from my_simulations.description.world import World
@@ -26,13 +26,6 @@ from my_simulations.ros.lifecycle.server_options import parse
 from my_simulations.simulator.simulator import Simulator
 
 DEADLINE = 60.0
-
-
-def wait_for(condition):
-    until = time.monotonic() + DEADLINE
-    while not condition():
-        assert time.monotonic() < until, "it did not happen"
-        time.sleep(0.005)
 
 
 def document(log, number):
@@ -55,7 +48,7 @@ class Running:
 
     def run_until(self, seconds):
         self.sim.clock.unpause()
-        wait_for(lambda: self.sim.clock.sim_ns >= seconds * 1e9)
+        until(lambda: self.sim.clock.sim_ns >= seconds * 1e9)
 
 
 @pytest.fixture
@@ -154,7 +147,7 @@ def test_a_log_can_be_read_while_it_grows_and_after_a_kill(running):
         log.close()
         return log.end > 0.5
 
-    wait_for(grown)
+    until(grown)
 
 
 def test_a_world_that_stands_still_after_its_steps_is_recorded_to_the_last(running):
@@ -184,11 +177,11 @@ def test_a_full_disk_is_one_error_and_the_world_goes_on(running):
     world.recorder._writer._file.close()
     world.recorder._writer._file = open("/dev/full", "wb", buffering=0)
     world.run_until(0.3)
-    wait_for(lambda: world.issues)
+    until(lambda: world.issues)
     (issue,) = world.issues
     assert issue.severity is Severity.ERROR and "No space left" in issue.message
     now = world.sim.clock.sim_ns
-    wait_for(lambda: world.sim.clock.sim_ns > now)
+    until(lambda: world.sim.clock.sim_ns > now)
     world.recorder.stop()
     assert world.issues == [issue]
     log = LogReader(world.path)  # the records before the fault are valid

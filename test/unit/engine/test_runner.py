@@ -7,6 +7,7 @@ import time
 import pytest
 from inline_engine import InlineEngine
 from kinematic_backend import KinematicBackend
+from waiting import until
 
 from my_simulations.description.model import Inertial, Link, Model
 from my_simulations.engine.commands import (
@@ -50,13 +51,6 @@ def engine():
 
 def ask(engine, command):
     return engine.submit(command).result(WAIT)
-
-
-def until(condition):
-    deadline = time.monotonic() + WAIT
-    while not condition():
-        assert time.monotonic() < deadline, "the condition never came true"
-        time.sleep(0.001)
 
 
 def probe(name="m"):
@@ -162,14 +156,14 @@ def test_a_batch_that_is_refused_halfway_is_reported_as_partial_and_never_shown(
     load(engine)
     reply = ask(engine, Batch((SetModelState(1, Pose((1, 0, 0)), Twist()), RemoveModel(77),
                                SetModelState(1, Pose((2, 0, 0)), Twist()))))
-    assert "not there" in reply.error and reply.is_partial
+    assert "no longer exists" in reply.error and reply.is_partial
     assert engine.ring.link(0)[0].position == (0, 0, 0)
 
 
 def test_a_batch_that_is_refused_at_its_first_command_has_changed_nothing(engine):
     load(engine)
     reply = ask(engine, Batch((RemoveModel(77), SetModelState(1, Pose((1, 0, 0)), Twist()))))
-    assert "not there" in reply.error and not reply.is_partial
+    assert "no longer exists" in reply.error and not reply.is_partial
     assert ask(engine, Advance(1)).step == 1
     assert engine.ring.link(0)[0].position == (0, 0, 0)
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 import math
 
 import pytest
-from autopilot import Autopilot
+from autopilot import autopilot  # noqa: F401
 
 from my_simulations.description.sensor import Sensor
 from my_simulations.geometry import Pose, Twist, quat_from_rpy
@@ -15,13 +15,6 @@ from my_simulations.plugins.testing import FakeContext
 CONTROL = ('<control channel="{}"><jointName>{}</jointName><type>{}</type><multiplier>{}'
            "</multiplier><offset>{}</offset>{}</control>")
 DOWN = quat_from_rpy(math.pi, 0.0, 0.0)
-
-
-@pytest.fixture
-def autopilot():
-    made = Autopilot()
-    yield made
-    made.close()
 
 
 @pytest.fixture
@@ -98,7 +91,7 @@ def test_a_vehicle_whose_autopilot_is_gone_stops(vehicle, autopilot):
     context.advance(0.02)
     context.advance(0.001)   # no packet comes
     assert context.joints["rotor"].servo.target == 0.0
-    assert any("no more packets" in text for text in context.log_messages)
+    assert any("stopped sending packets" in text for text in context.log_messages)
     autopilot.send(0.5)      # a new one flies it again
     for _ in range(21):
         if context.joints["rotor"].servo.target == 0.0:

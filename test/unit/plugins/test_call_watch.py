@@ -7,7 +7,7 @@ import threading
 import time
 
 import pytest
-from plugin_case import until
+from waiting import until
 
 from my_simulations.plugins.call_watch import (
     CallLimits,

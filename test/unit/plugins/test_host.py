@@ -7,8 +7,9 @@ from dataclasses import replace
 
 import pytest
 from kinematic_backend import KinematicBackend
-from plugin_case import PluginCase, kept, until
+from plugin_case import PluginCase, kept
 from plugin_graph import Graph
+from waiting import until
 
 from my_simulations.description.model import Inertial, Joint, JointAxis, Link, Model
 from my_simulations.description.plugin import PluginSpec

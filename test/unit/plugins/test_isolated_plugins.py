@@ -8,8 +8,9 @@ from concurrent.futures import Future
 
 import numpy as np
 import pytest
-from plugin_case import kept, until
+from plugin_case import kept
 from test_plugin_faults import GOOD, HEAD, LOAD, Case, model
+from waiting import until
 
 from my_simulations.plugins.call_watch import CallLimits
 from my_simulations.plugins.context import Context

@@ -6,7 +6,8 @@ from dataclasses import replace
 
 import pytest
 from kinematic_backend import KinematicBackend
-from plugin_case import PluginCase, kept, until
+from plugin_case import PluginCase, kept
+from waiting import until
 
 from my_simulations.description.model import Inertial, Joint, JointAxis, Link, Model
 from my_simulations.description.plugin import PluginSpec

@@ -3,10 +3,10 @@ from __future__ import annotations
 
 import struct
 import threading
-import time
 
 import pytest
 from inline_engine import InlineEngine
+from waiting import until
 
 from my_simulations.description.model import Inertial, Joint, JointAxis, Link, Model
 from my_simulations.description.world import World
@@ -168,13 +168,6 @@ def turning(simulator, rules, hertz=1.0):
 
 def axis_of(raw):
     return struct.unpack("=3d", raw)
-
-
-def until(condition):
-    deadline = time.monotonic() + WAIT
-    while not condition():
-        assert time.monotonic() < deadline
-        time.sleep(0.001)
 
 
 def test_records_are_of_the_exact_steps_of_their_rules(simulator):

@@ -4,6 +4,8 @@ from __future__ import annotations
 import socket
 import struct
 
+import pytest
+
 
 class Autopilot:
     """Sends packets to a plugin, and reads its states.
@@ -34,3 +36,10 @@ class Autopilot:
 
     def close(self):
         self._socket.close()
+
+
+@pytest.fixture
+def autopilot():
+    made = Autopilot()
+    yield made
+    made.close()

@@ -1,24 +1,15 @@
 """A world with plugins: a simulator that is stepped by a test, a host, and a graph that keeps."""
 from __future__ import annotations
 
-import time
-
 from inline_engine import InlineEngine
 from plugin_graph import Graph
+from waiting import until
 
 from my_simulations.plugins.call_watch import CALL_LIMITS
 from my_simulations.plugins.host import PluginHost
 from my_simulations.plugins.registry import PluginRegistry
 from my_simulations.plugins.testing import Message
 from my_simulations.simulator.simulator import Simulator
-
-
-def until(condition, what="the condition never came true"):
-    """Wait for a condition, with a deadline."""
-    deadline = time.monotonic() + 60.0
-    while not condition():
-        assert time.monotonic() < deadline, what
-        time.sleep(0.001)
 
 
 class PluginCase:

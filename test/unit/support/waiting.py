@@ -6,6 +6,7 @@ from typing import Callable, TypeVar
 
 T = TypeVar("T")
 
+
 def wait_for(condition: Callable[[], T], what: str, seconds: float) -> T:
     """Return the first true value of a condition.
 
@@ -19,3 +20,12 @@ def wait_for(condition: Callable[[], T], what: str, seconds: float) -> T:
             return found
         assert time.monotonic() < until, f"{what} did not come"
         time.sleep(0.05)
+
+
+def until(condition: Callable[[], object], failure: str = "the condition never came true",
+          seconds: float = 60.0) -> None:
+    """Wait until a condition is true. Raises AssertionError after some seconds of wall time."""
+    deadline = time.monotonic() + seconds
+    while not condition():
+        assert time.monotonic() < deadline, failure
+        time.sleep(0.001)
