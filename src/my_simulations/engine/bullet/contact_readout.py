@@ -44,7 +44,8 @@ def read_contacts(bodies: Dict[int, Body], limit: int,
         if len(rows) == 2:
             # Bullet does not solve points of separated surfaces: their forces are of an older step.
             force = contact[LOAD] if contact[DISTANCE] <= 0.0 else 0.0
-            acting = [wheel_friction.acting_at(*place) for place in places]
+            acting = [wheel_friction.acting_at(*mine, (theirs[0], theirs[1]))
+                      for mine, theirs in zip(places, reversed(places))]
             force = next((each.load for each in acting if each is not None), force)
             if force <= 0.0 and contact[DISTANCE] > 0.0:
                 continue

@@ -18,6 +18,9 @@ Without slip that holds a wheel on a slope. If mu applies along a direction and 
 the tensor of both, and the limit is |M^-1 F| = N. A fast wheel then meets -N M (M v) / |M v|: of
 all forces within this ellipse, the one that dissipates the most power.
 
+While all links of a body without slip are held, or slide with all friction, it is computed every
+few steps only: a step with it takes twice as long as one without.
+
 Once all links of a body that have no slip have stopped sliding, they get Bullet's friction back.
 """
 from __future__ import annotations
@@ -28,7 +31,7 @@ from typing import Callable, Dict, Iterable, Iterator, List, NamedTuple, Optiona
 
 import pybullet
 
-from ...geometry import ZERO3, Vec3, cross, dot, norm, scale
+from ...geometry import ZERO3, Vec3, cross, dot, norm, scale, subtract
 from ..body_plan import BASE
 from ..drive_commands import WheelSlip
 from .bodies import Axis, Body
@@ -47,7 +50,7 @@ from .contact_points import (
 from .contact_slip import direction_across, isotropic, limited, mean_slip, slips_along
 from .edge_loads import Loads, carrying, shared
 from .extra_surfaces import anisotropy
-from .link_states import AT_REST, Motion, motion, motions
+from .link_states import AT_REST, Motion, hung_states, motion, motions
 from .step_helper import FAR, StepHelper, next_multiple
 from .surface_links import SurfaceLink, surface_links
 
@@ -58,6 +61,7 @@ _SELDOM = 4          # checks until a body with a fixed base is checked again
 _SLIDES = 2e-3       # m/s of slip: links at rest stay below it
 _HELD = 5e-4         # m/s of slip: a link below it is at rest
 _QUIET = 32          # steps at rest until Bullet's friction holds a body again
+_PERIOD = 4e-3       # s between two computations of the friction on a link that goes on sliding
 _SOFT = 1.5          # steps of braking: a slip that would end sooner is reduced in proportion
 _GROWS = 1.0 / 16.0  # share of the missing force by which B grows in a step
 _LEFT = (1e-3, 1e-3) # shares of Bullet's friction that stay
@@ -82,11 +86,13 @@ class _Slide:
         biases: B by the other link, N, world axes.
         acting: fields of `ActingFriction`, by contact.
         quiet: steps for which it has not slid.
+        steady: whether its friction needs no update for some steps.
     """
 
     biases: Dict[LinkKey, Vec3] = field(default_factory=dict)
     acting: List[Tuple[Vec3, Vec3, float, LinkKey]] = field(default_factory=list)
     quiet: int = 0
+    steady: bool = False
 
 
 class WheelFriction(StepHelper):
@@ -108,13 +114,14 @@ class WheelFriction(StepHelper):
         self._rigs: Dict[int, Dict[int, SurfaceLink]] = {}     # links on no joint, by body
         self._floors: Set[int] = set()                   # static bodies with one coefficient
         self._slides: Dict[LinkKey, _Slide] = {}
+        self._next: Dict[int, int] = {}                  # next computation, step count, by body
         self._slipping: Set[LinkKey] = set()
         self._fixed: Set[int] = set()                    # bodies with a fixed base
         self._rows: Dict[int, List[LinkKey]] = {}
         self._axes: Dict[int, Tuple[Body, Axis]] = {}
         self._slip_commands: Dict[int, WheelSlip] = {}
         self.body_tables = (self._links, self._wheels, self._rigs, self._floors, self._slides,
-                            self._slipping, self._fixed, self._commanded)
+                            self._next, self._slipping, self._fixed, self._commanded)
         self._cone = True
 
     # -- bodies ------------------------------------------------------------------------------------
@@ -167,19 +174,29 @@ class WheelFriction(StepHelper):
         if event is BodyEvent.MOTOR_TARGET_CHANGED:
             if self._cone and body.uid in self._wheels:
                 self._commanded.add(body.uid)
+            for key in self._slides:
+                if key[0] == body.uid:
+                    self._slides[key].steady = False
+                    self._next.pop(body.uid, None)
             return
         for key in [key for key in self._slides if key[0] == body.uid]:
             if key in self._slipping:
                 self._slides[key] = _Slide()
+                self._next.pop(body.uid, None)
             else:
                 self._restore_friction(key)
 
     # -- readings ----------------------------------------------------------------------------------
 
-    def acting_at(self, uid: int, index: int, at: Vec3) -> Optional[ActingFriction]:
-        """Return the friction on a link at a contact besides Bullet's; None for other contacts."""
+    def acting_at(self, uid: int, index: int, at: Vec3, other: LinkKey,
+                  ) -> Optional[ActingFriction]:
+        """Return the friction besides Bullet's by another link near a place; None for none.
+
+        Both links have moved on if it was not computed in the last step.
+        """
         slide = self._slides.get((uid, index), _Slide())
-        return next((ActingFriction(*each) for each in slide.acting if each[0] == at), None)
+        near = [ActingFriction(*each) for each in slide.acting if each[3] == other]
+        return min(near, key=lambda each: norm(subtract(each.at, at))) if near else None
 
     def forces_on(self, uid: int) -> Iterator[Tuple[int, Vec3, Vec3]]:
         """Yield the friction on a body in the next step: link index, force, point; world axes."""
@@ -203,6 +220,10 @@ class WheelFriction(StepHelper):
         for uid in sorted(self._commanded):
             self._begin(uid, norm(gravity) * dt)
         self._commanded.clear()
+        # Bullet takes the arm of a force from the link poses of the last forward kinematics. Other
+        # readers request these at any time, so they are requested here in each step.
+        for uid, index in {uid: index for uid, index in self._slides if index != BASE}.items():
+            hung_states(uid, (index,), 0)
         for key, slide in self._slides.items():
             slips = key in self._slipping
             for at, force, _, other in slide.acting:
@@ -218,13 +239,18 @@ class WheelFriction(StepHelper):
             for uid, wheels in self._wheels.items():
                 if seldom or uid not in self._fixed:
                     self._find_slides(uid, wheels)
-        if not self._slides:
+        due = {uid for uid, _ in self._slides if self._next.get(uid, step) <= step}
+        if not due:
             return
         for wheel in self._slip_commands.values():
             self._set_slip(wheel)
-        weight = norm(gravity)
-        for key, (moves, loads) in self._loads().items():
-            self._go_on(key, moves, *loads, dt, weight)
+        weight, later = norm(gravity), next_multiple(step + 1, max(1, int(_PERIOD / dt)))
+        found = self._loads(due)
+        unsteady = {uid for uid, index in found if not self._slides[uid, index].steady}
+        for uid in due:
+            self._next[uid] = step + 1 if uid in unsteady else later
+        for key, (moves, loads) in found.items():
+            self._go_on(key, moves, *loads, self._next[key[0]] - step, dt, weight)
         self._restore_quiet()
 
     def _find_slides(self, uid: int, wheels: Dict[int, SurfaceLink]) -> None:
@@ -258,11 +284,12 @@ class WheelFriction(StepHelper):
     def _touches_others(self, contacts: Contacts) -> bool:
         return any(contact[OTHER_BODY] not in self._floors for contact in contacts)
 
-    def _loads(self) -> Dict[LinkKey, Tuple[Motion, Loads]]:
+    def _loads(self, due: Set[int]) -> Dict[LinkKey, Tuple[Motion, Loads]]:
         """Return motion and loads of each sliding link; wheels of a body share their load."""
         bodies: Dict[int, List[int]] = {}
         for uid, index in self._slides:
-            bodies.setdefault(uid, []).append(index)
+            if uid in due:
+                bodies.setdefault(uid, []).append(index)
         found: Dict[LinkKey, Tuple[Motion, Loads]] = {}
         for uid, indices in bodies.items():
             rows: List[Tuple[Motion, Optional[Vec3], Contacts]] = []
@@ -284,14 +311,16 @@ class WheelFriction(StepHelper):
         return found
 
     def _go_on(self, key: LinkKey, moves: Motion, contacts: Contacts, loads: List[float],
-               dt: float, weight: float) -> None:
-        """Compute the friction on a link in the next step."""
+               steps: int, dt: float, weight: float) -> None:
+        """Compute the friction on a link in the next `steps`."""
         slide, slips = self._slides[key], key in self._slipping
         if not slips and self._touches_others(contacts):
             self._restore_friction(key)
             return
         slide.acting = []
-        slide.quiet += 1
+        # A wheel without contacts can land in the next step; rollers of Mecanum wheels do.
+        slide.steady = not slips and (bool(contacts) or self._links[key].joint < 0)
+        slide.quiet += steps
         groups: Dict[LinkKey, Tuple[Contacts, List[float]]] = {}
         others = [(contact[OTHER_BODY], contact[OTHER_LINK]) for contact in contacts]
         for other in dict.fromkeys(others):
@@ -302,7 +331,7 @@ class WheelFriction(StepHelper):
         biases, slide.biases = slide.biases, {}
         for other, (points, carried) in groups.items():
             slide.biases[other] = biases.get(other, ZERO3)
-            forces = self._forces(key, other, moves, points, carried, dt, weight)
+            forces = self._forces(key, other, moves, points, carried, steps * dt, weight)
             slide.acting += [(contact[PLACE], force, load, other)
                              for contact, force, load in zip(points, forces, carried)]
 
@@ -325,6 +354,7 @@ class WheelFriction(StepHelper):
                 contacts, loads, mine, bias, mus[0], soft[0], _GROWS)
             if one.joint >= 0 and size > _HELD:
                 slide.quiet = 0
+            slide.steady &= size <= _SLIDES or slide.biases[other] == ZERO3
             return forces
         normal = contacts[0][NORMAL]
         along = one.direction(mine, normal) or two.direction(theirs, normal) or (
@@ -344,6 +374,7 @@ class WheelFriction(StepHelper):
             within = within or parts is wanted
             forces.append(_combined(axes, parts))
             total = total[0] + parts[0], total[1] + parts[1]
+        slide.steady &= not within or hypot(*slip) <= _SLIDES
         slide.biases[other] = ZERO3 if not within else _combined(axes, limited(
             (holds[0] - _GROWS * (slip[0] + slow[0] * total[0]) / soft[0],
              holds[1] - _GROWS * (slip[1] + slow[1] * total[1]) / soft[1]), mus, soft, carried))
@@ -371,6 +402,7 @@ class WheelFriction(StepHelper):
         """Replace Bullet's friction on a link from the next step on."""
         link = self._links[key]
         self._slides.setdefault(key, _Slide())
+        self._next.pop(key[0], None)
         pybullet.changeDynamics(*key, anisotropicFriction=anisotropy(
             link.mus, link.first or ZERO3, _LEFT))
 
