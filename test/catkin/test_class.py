@@ -117,6 +117,36 @@ def test_each_student_has_a_world_and_an_editor_of_its_own(tmp_path):
     assert call("status", file)[0] == 1
 
 
+def test_a_running_class_receives_files_and_its_tutor_sees_the_error_of_each_student(tmp_path):
+    assert isolation() == ""
+    world = REPOSITORY / "test" / "data" / "invalid" / "include_unknown.world"
+    file = written(tmp_path / "course", f"args: {{world: '{world}'}}\n")
+    plan = read_class(str(file))[0]
+    anna, ben = (Path(make_home(plan, student)) for student in plan.students)
+    model = ben / ".gazebo" / "models" / "no_such_model"
+    model.mkdir(parents=True)
+    (model / "model.config").write_text(
+        '<model><name>no_such_model</name><sdf version="1.6">model.sdf</sdf></model>')
+    (model / "model.sdf").write_text(
+        '<sdf version="1.6"><model name="no_such_model"><link name="link"/></model></sdf>')
+    sheet = tmp_path / "sheet.txt"
+    sheet.write_text("task 1")
+    with running(file):
+        found = wait_for(lambda: (lambda now: now if now and all(
+            one["state"] == "running" and one["world"] for one in now.values())
+            and now["anna"]["error"] else None)(shown(file)),
+            "two running worlds and the error of one", SECONDS)
+        assert "no_such_model" in found["anna"]["error"] and found["ben"]["error"] == ""
+        assert call("broadcast", file, sheet)[:2] == (
+            0, "anna: received/sheet.txt\nben: received/sheet.txt\n")
+        for student, home in zip(plan.students, (anna, ben)):
+            received = home / "received" / "sheet.txt"
+            assert received.read_text() == "task 1"
+            owner = student.user if os.getuid() == 0 else os.getuid()
+            assert received.stat().st_uid == received.parent.stat().st_uid == owner
+        assert {one["state"] for one in tiles(file).values()} == {"running"}
+
+
 def test_a_world_without_browsers_sleeps_and_a_browser_wakes_it(tmp_path):
     file = written(tmp_path / "course", "idle_minutes: 0.1\n")
     with running(file) as (_, links):
