@@ -15,6 +15,7 @@ export function cameraActions({store, note, view}: ActionParts) {
     viewFrom: (side: 'top'|'bottom'|'front'|'back'|'left'|'right'|'home') => view()?.viewFrom(side),
     resetView: () => view()?.viewFrom('home'),
     moveTo: (name = store.selection.at(-1)) => name && view()?.moveTo(name),
+    lookInto: (name: string) => view()?.lookInto(name),
     /** The whole selection; without one all models. */
     frameSelection: () => view()?.frame(store.selection),
     frameAll: () => view()?.frame(),

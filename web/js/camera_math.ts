@@ -131,6 +131,8 @@ export const originScale = (distance: number) => Math.min(Math.max(distance * 0.
 
 /** How steeply the first view of a world looks down, rad; steeper where walls would hide what is in it. */
 export const FIRST_PITCHES = [-0.42, -0.6, -0.78, -0.96];
+/** How steeply a view looks into a room, rad. */
+export const STEEP = -1.2;
 /** Things smaller than this, m, are not looked at from nearer. */
 const SMALLEST = 0.75;
 /** Of the picture's width and height that all there is takes. */

@@ -135,16 +135,16 @@ export async function mount(element: HTMLElement, {store, request, actions}: {st
     return true;
   }
 
-  /** Shows the new house as soon as it is there. */
+  /** Shows the inside of the new house as soon as it is there. */
   function lookAt(name: string) {
     if (store.model(name)) {
-      actions.moveTo(name);
+      actions.lookInto(name);
       return;
     }
     const end = store.listen('entity', ({detail}) => {
       if (detail.name !== name) return;
       end();
-      actions.moveTo(name);
+      actions.lookInto(name);
     });
   }
 

@@ -1,4 +1,4 @@
-/** The robot templates at the top of the Insert tab. */
+/** The building editor and the robot templates, at the top of the Insert tab. */
 import {templateDialog} from './dialogs/template_dialog.js';
 import {fill, h, onActivate} from '../ui/dom.js';
 import {icon} from '../ui/icons.js';
@@ -14,7 +14,7 @@ export class TemplateCards {
   constructor(page: Page) {
     this.#page = page;
     this.element = h('details', {class: 'section templates', open: true},
-      h('summary', {}, icon('right', 13), h('span', {text: 'Robots and sensors'})), this.#grid);
+      h('summary', {}, icon('right', 13), h('span', {text: 'Buildings, robots and sensors'})), this.#grid);
   }
 
   #page;
@@ -24,17 +24,30 @@ export class TemplateCards {
   async load() {
     try {
       const {templates} = await this.#page.request('templates');
-      fill(this.#grid, ...templates.map((template) => this.#card(template)));
+      fill(this.#grid, this.#building(), ...templates.map((template) => this.#card(template)));
     } catch (fault) {
       this.#page.notices.fault(fault);
     }
   }
 
-  #card(template: Template) {
-    const card = h('div', {class: 'template-card', role: 'button', tabindex: 0, title: template.description,
-      'aria-label': `Template: ${template.title}`},
-    h('span', {class: 'thumb'}, icon(ICONS[template.name] ?? 'model', 26)), h('span', {class: 'label', text: template.title}));
-    onActivate(card, () => templateDialog(this.#page, template));
-    return card;
+  #building() {
+    return card({icon: 'building', title: 'Draw a building', label: 'Draw a building',
+      hint: 'Draw walls, doors and windows in the building editor (Ctrl+B).',
+      run: () => this.#page.store.emit('dialog', {name: 'building'})});
   }
+
+  #card(template: Template) {
+    return card({icon: ICONS[template.name] ?? 'model', title: template.title,
+      label: `Template: ${template.title}`, hint: template.description,
+      run: () => templateDialog(this.#page, template)});
+  }
+}
+
+function card({icon: shown, title, label, hint, run}: {icon: string, title: string, label: string,
+    hint: string, run: () => void}) {
+  const element = h('div', {class: 'template-card', role: 'button', tabindex: 0, title: hint,
+    'aria-label': label},
+  h('span', {class: 'thumb'}, icon(shown, 26)), h('span', {class: 'label', text: title}));
+  onActivate(element, run);
+  return element;
 }

@@ -181,6 +181,14 @@ export class CameraRig {
     else if (!names.length) this.fly(this.#home);
   }
 
+  /** Flies to where the inside of a model without a roof is seen: its walls hide little of it. */
+  lookInto(name: string) {
+    const box = this.#models.bounds(name);
+    if (!box) return;
+    this.fly(views.first({min: box.min.toArray(), max: box.max.toArray()}, this.fov,
+      this.#stage.aspect, views.STEEP));
+  }
+
   /** Gives what is looked at its present size in an orthographic view. */
   keepScale() {
     const whole = new Box3();

@@ -263,6 +263,11 @@ export class View {
     else if (pose) this.#rig.flyTowards(pose.slice(0, 3));
   }
 
+  /** Shows the inside of a model from above. */
+  lookInto(name: string) {
+    this.#rig.lookInto(name);
+  }
+
   /** Shows models or links as a whole; all models where none is given. */
   frame(names?: string[]) {
     this.#rig.frame(names);
