@@ -127,6 +127,10 @@ for top in (os.getcwd(), os.environ['HOME'], os.environ['TMPDIR'], '/tmp', '/dev
         except OSError as fault: faults.add(fault.strerror)
 raise RuntimeError(str(sorted(faults)))
 """, "No space left on device"),
+    "empty_files": ("""
+for number in range(200000):
+    open(os.path.join(os.environ['TMPDIR'], str(number)), 'w').close()
+""", "No space left on device"),
     "open_files": ("""
 kept = []
 while True: kept.append(open('/dev/null'))

@@ -41,6 +41,7 @@ from typing import Any, BinaryIO, Dict, List, Optional
 
 TIMED_OUT = 124
 _LOOK_S = 0.05
+_MOST_FILES = 50000   # in a file system in memory
 _PR_SET_PDEATHSIG, _PR_SET_CHILD_SUBREAPER = 1, 36
 _NEWNS, _NEWIPC, _NEWUSER, _NEWPID, _NEWNET = (
     0x00020000, 0x08000000, 0x10000000, 0x20000000, 0x40000000)
@@ -231,7 +232,9 @@ def _is_below(path: str, folder: str) -> bool:
 
 
 def tmpfs(path: str, size: int) -> None:
-    mount("none", path, "tmpfs", MS_NOSUID | MS_NODEV, f"size={size},mode=1777")
+    # Without a number, empty files may fill half of the kernel's memory.
+    mount("none", path, "tmpfs", MS_NOSUID | MS_NODEV,
+          f"size={size},nr_inodes={_MOST_FILES},mode=1777")
 
 
 def mount(source: str, target: str, kind: str, flags: int, data: str = "") -> None:
