@@ -124,7 +124,7 @@ def test_memory_is_limited_and_the_next_file_is_read(kept, tmp_path, monkeypatch
 
 def test_the_limit_of_processor_time_grows_with_the_file(kept, tmp_path, monkeypatch):
     asked = []
-    monkeypatch.setattr(kept, "ask",
+    monkeypatch.setattr(kept, "send_request",
                         lambda request, *_: asked.append(request) or ({"value": 0}, []))
     for megabytes in (0, 10, 50):
         with open(tmp_path / "mesh.ply", "wb") as stream:

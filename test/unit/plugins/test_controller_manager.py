@@ -296,7 +296,7 @@ def test_what_comes_while_a_controller_does_not_run_is_told_once():
     assert arm.load("forward")
     for _ in range(3):
         arm.deliver("forward/command", data=2.0)
-    assert sum("does not run" in text for text in arm.context.log_messages) == 1
+    assert sum("is not running" in text for text in arm.context.log_messages) == 1
 
 
 @pytest.mark.parametrize(("inside", "place"), [
