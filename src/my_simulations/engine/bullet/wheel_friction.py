@@ -171,18 +171,17 @@ class WheelFriction(StepHelper):
 
     def handle_event(self, event: BodyEvent, body: Body) -> None:
         """Restore Bullet's friction for the links of a body, except those with slip."""
+        self._next.pop(body.uid, None)
         if event is BodyEvent.MOTOR_TARGET_CHANGED:
             if self._cone and body.uid in self._wheels:
                 self._commanded.add(body.uid)
-            for key in self._slides:
+            for key, slide in self._slides.items():
                 if key[0] == body.uid:
-                    self._slides[key].steady = False
-                    self._next.pop(body.uid, None)
+                    slide.steady = False
             return
         for key in [key for key in self._slides if key[0] == body.uid]:
             if key in self._slipping:
                 self._slides[key] = _Slide()
-                self._next.pop(body.uid, None)
             else:
                 self._restore_friction(key)
 
