@@ -3,6 +3,7 @@ import {Box3, Matrix4, Vector3} from 'three';
 import * as views from '../camera_math.js';
 import {remembered} from '../ui/dom.js';
 import {add, length, scale, subtract} from '../pose.js';
+import {cornersOf} from './three_convert.js';
 import {readLink} from '../view_link.js';
 import type {GuiCamera, Model} from '../protocol.js';
 import type {Vec3} from '../pose.js';
@@ -139,8 +140,7 @@ export class CameraRig {
       const size = Math.max(length(subtract(box.max.toArray(), box.min.toArray())), 0.2);
       this.zoomLevel = Math.min(this.#stage.width, this.#stage.height) / size / 1.1;
     }
-    this.fly(views.framing(this.view, {min: box.min.toArray(), max: box.max.toArray()}, this.fov,
-      this.#stage.aspect));
+    this.fly(views.framing(this.view, cornersOf(box), this.fov, this.#stage.aspect));
   }
 
   /** Flies most of the way to a point. */
@@ -184,9 +184,7 @@ export class CameraRig {
   /** Flies to where the inside of a model without a roof is seen: its walls hide little of it. */
   lookInto(name: string) {
     const box = this.#models.bounds(name);
-    if (!box) return;
-    this.fly(views.first({min: box.min.toArray(), max: box.max.toArray()}, this.fov,
-      this.#stage.aspect, views.STEEP));
+    if (box) this.fly(views.first(cornersOf(box), this.fov, this.#stage.aspect, views.STEEP));
   }
 
   /** Gives what is looked at its present size in an orthographic view. */
@@ -345,7 +343,7 @@ export class CameraRig {
     }
     if (whole.isEmpty() || whole.equals(this.#whole)) return;
     this.#whole.copy(whole);
-    this.#home = this.#firstLook({min: whole.min.toArray(), max: whole.max.toArray()});
+    this.#home = this.#firstLook(cornersOf(whole));
     this.set(this.#home);
     this.#framed = this.view;
   }

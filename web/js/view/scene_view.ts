@@ -2,6 +2,7 @@
 import {Vector3} from 'three';
 import {hullOf} from '../convex_hull.js';
 import {remembered} from '../ui/dom.js';
+import {cornersOf} from './three_convert.js';
 import {subtract, transform} from '../pose.js';
 import {Actors} from './actors.js';
 import {Batches} from './batches.js';
@@ -287,7 +288,7 @@ export class View {
   /** @returns in world axes, m */
   bounds(name: string): {min: number[], max: number[]}|null {
     const box = this.#models.bounds(name);
-    return box && {min: box.min.toArray(), max: box.max.toArray()};
+    return box && cornersOf(box);
   }
 
   /** The outline of a model on the ground, m; null for planes and for what is not drawn. */

@@ -1,7 +1,7 @@
 /** From the document's numbers to three's objects. */
 import {Color, LinearSRGBColorSpace, Matrix4, Quaternion, SRGBColorSpace, Vector3} from 'three';
 import type {Numbers} from '../pose.js';
-import type {Object3D} from 'three';
+import type {Box3, Object3D} from 'three';
 
 const position = new Vector3();
 const turn = new Quaternion();
@@ -23,6 +23,9 @@ export const colorOf = (rgba: Numbers|null|undefined, fallback = [1, 1, 1]): Col
 /** A colour of light: a part of full strength in each channel. */
 export const lightColorOf = ([r, g, b]: number[]): Color => new Color().setRGB(r, g, b,
     LinearSRGBColorSpace);
+
+/** Opposite corners of a box, m. */
+export const cornersOf = ({min, max}: Box3) => ({min: min.toArray(), max: max.toArray()});
 
 /** Puts a three object where a pose says. */
 export function place(object: Object3D, pose: Numbers) {
