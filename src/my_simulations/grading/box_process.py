@@ -17,6 +17,7 @@ from ..errors import SimulationError
 from . import box
 from .assignment import Assignment
 from .mark import FAILED, GRADED, TIMED_OUT, CheckResult, Mark, without_result
+from .permitted_variables import OF_ONE_PROCESS
 from .result_stream import ResultReader
 from .submission import Submission
 from .submission_files import Content, content_of
@@ -63,7 +64,7 @@ def _specification(assignment: Assignment, submission: Submission, slot: int,
     task = {"assignment": assignment.file, "scratch": scratch, "slot": slot,
             "descriptor": sending, "unreadable": content.unreadable}
     environment = {**child_environment(), "PYTHONDONTWRITEBYTECODE": "1"}
-    for name in ("MY_SIMULATIONS_PARENT", "MY_SIMULATIONS_RECORD"):
+    for name in OF_ONE_PROCESS:
         environment.pop(name, None)
     return {"parent": os.getpid(), "seconds": assignment.limits.seconds,
             "command": child_command("grading.judge", json.dumps(task)),

@@ -17,6 +17,7 @@ _SHOWN_FILES = 5
 ARCHIVES = {".zip": "zip", ".tar.gz": "tar", ".tgz": "tar"}
 """Endings of archives that are unpacked, and their kinds."""
 
+
 @dataclass(frozen=True)
 class Submission:
     """What a student handed in.
