@@ -11,6 +11,7 @@ import sys
 from pathlib import Path
 
 import pytest
+from box_program import box_program
 
 from my_simulations.grading.box_support import isolation
 
@@ -29,25 +30,7 @@ checks:
   - {{points: 4, name: moved, require: pose.box.x > 0.1, within: 0.3}}
   - {{points: 2, name: talks, topic: /chat, rate: 20, within: 0.3}}
 """
-RIGHT = """import rospy
-from gazebo_msgs.msg import ModelState
-from gazebo_msgs.srv import SetModelState
-from std_msgs.msg import String
-
-SECRET = "of the neighbour"
-rospy.init_node("go")
-chat = rospy.Publisher("/chat", String, queue_size=10)
-rospy.wait_for_service("/gazebo/set_model_state")
-move = rospy.ServiceProxy("/gazebo/set_model_state", SetModelState)
-state = ModelState(model_name="box")
-state.pose.position.z, state.pose.orientation.w = 0.1, 1.0
-rate = rospy.Rate(25)
-while not rospy.is_shutdown():
-    chat.publish("here")
-    state.pose.position.x += 0.05
-    move(state)
-    rate.sleep()
-"""
+RIGHT = box_program("state.pose.position.x + 0.05", 'SECRET = "of the neighbour"')
 
 BEGIN = """import glob, json, os, shutil, signal, socket, sys, time
 given = json.load(open('given.json'))
@@ -139,8 +122,8 @@ while True: kept.append(open('/dev/null'))
 import ctypes
 libc = ctypes.CDLL(None)
 while libc.inotify_init() >= 0: pass
-raise RuntimeError('no more')
-""", "RuntimeError: no more"),
+raise RuntimeError('none is left')
+""", "RuntimeError: none is left"),
     "files_of_others": ("""
 def read(path):
     with open(path, 'rb') as stream: return stream.read(1000)

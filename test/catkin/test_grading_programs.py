@@ -12,6 +12,7 @@ import sys
 from pathlib import Path
 
 import pytest
+from box_program import box_program
 from replay_content import replay_content
 from waiting import wait_for
 
@@ -34,27 +35,9 @@ world: worlds/empty.world
   - {{points: 1, name: type, topic: /chat, type: std_msgs/Int32, within: 2}}
   - {{points: 1, name: answers, service: /go, type: std_srvs/Empty, within: 2}}
 """
-GO = """#!/usr/bin/env python3
-import rospy
-from gazebo_msgs.msg import ModelState
-from gazebo_msgs.srv import SetModelState
-from std_msgs.msg import String
-from std_srvs.srv import Empty, EmptyResponse
-
-rospy.init_node("go")
-chat = rospy.Publisher("/chat", String, queue_size=10)
-rospy.Service("/go", Empty, lambda _: EmptyResponse())
-rospy.wait_for_service("/gazebo/set_model_state")
-move = rospy.ServiceProxy("/gazebo/set_model_state", SetModelState)
-state = ModelState(model_name="box")
-state.pose.position.z, state.pose.orientation.w = 0.1, 1.0
-rate = rospy.Rate(25)
-while not rospy.is_shutdown():
-    chat.publish("here")
-    state.pose.position.x = min({goal}, state.pose.position.x + 0.05)
-    move(state)
-    rate.sleep()
-"""
+SERVICE = 'rospy.Service("/go", Empty, lambda _: EmptyResponse())'
+GO, HALF = (box_program(f"min({goal}, state.pose.position.x + 0.05)", SERVICE)
+            for goal in (1.0, 0.5))
 ROBOT = f"""submission: {{run: go.py}}
 world: worlds/empty.world
 models: {{robo: {{file: {REPOSITORY / "urdf" / "robo.urdf"}}}}}
@@ -163,8 +146,7 @@ def points(row, *names):
 
 @pytest.mark.parametrize("words", [(), ("--no-isolation",)], ids=["isolated", "ordinary"])
 def test_a_program_is_marked_for_what_it_does_in_sim_time(tmp_path, words):
-    rows, students = grade(tmp_path, DRIVE, {"good": GO.format(goal=1.0),
-                                             "half": GO.format(goal=0.5)}, *words)
+    rows, students = grade(tmp_path, DRIVE, {"good": GO, "half": HALF}, *words)
     names = ("goal", "talks", "type", "answers")
     assert points(rows["good"], *names) == [4, 2, 0, 1], students
     assert points(rows["half"], *names) == [2, 2, 0, 1]
