@@ -174,16 +174,17 @@ class PluginProcess:
         before = os.fstat(self._trace.fileno()).st_size
         os.kill(self.pid, TRACE_SIGNAL)
         deadline = time.monotonic() + _TRACE_S
-        while time.monotonic() < deadline:
-            found = self._traced(before)
-            if found:
-                return found
+        found = previous = ""   # the process writes line by line: wait until its place stays
+        while time.monotonic() < deadline and not (found and found == previous):
             time.sleep(0.01)
-        return ""
+            previous, found = found, self._traced(before)
+        return found
 
     def _traced(self, since: int) -> str:
-        self._trace.seek(since)
-        text = self._trace.read().decode("utf-8", "replace")
+        """As `_where`, of the trace that begins at `since`, bytes."""
+        descriptor = self._trace.fileno()   # its offset is the process's, too: it is not moved
+        size = os.fstat(descriptor).st_size
+        text = os.pread(descriptor, max(size - since, 0), since).decode("utf-8", "replace")
         frames = [traceback.FrameSummary(file, int(line), function)
                   for file, line, function in reversed(_FRAME.findall(text))]
         if not frames or not text.endswith("\n"):
