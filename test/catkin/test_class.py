@@ -277,6 +277,18 @@ for folder in ('/tmp', os.path.expanduser('~')):
     except OSError: sizes.append(os.path.getsize(folder + '/big'))
 print('full', len(sizes), max(sizes) <= 5000000)
 """, "the processes ended with status 0", "full 2 True"),
+    "home": ("""
+for number in range(1000):
+    with open(os.path.expanduser(f'~/{number}'), 'wb') as one: one.write(bytes(100000))
+print('written', flush=True)
+time.sleep(1000)
+""", "MB, more than 90 MB: delete some", "written"),
+    "empty files": ("""
+os.mkdir(os.path.expanduser('~/many'))
+for number in range(22000): open(os.path.expanduser(f'~/many/{number}'), 'wb').close()
+print('made', flush=True)
+time.sleep(1000)
+""", "MB, more than 90 MB: delete some", "made"),
     "priority": ("""
 print('score', open('/proc/self/oom_score_adj').read().strip())
 try: os.nice(-1)
@@ -292,7 +304,7 @@ def test_a_student_who_exceeds_a_limit_ends_alone(tmp_path, name):
     assert isolation() == "", "excesses need isolation"
     program, reason, logged = EXCESSES[name]
     plan = read_class(str(written(tmp_path / "course", "limits: {memory_mb: 200, processes: 40,"
-                                                       " file_mb: 5}\n")))[0]
+                                                       " file_mb: 5, home_mb: 90}\n")))[0]
     tokens = ClassState(plan).tokens(plan)
     with contextlib.ExitStack() as held:
         worlds = []

@@ -12,7 +12,7 @@ from .containers import PROGRAMS
 
 _KEYS = ("class", "students", "folder", "host", "port", "launch", "args", "limits",
          "idle_minutes", "submission", "image", "containers")
-_LIMITS = ("memory_mb", "processors", "processes", "file_mb")
+_LIMITS = ("memory_mb", "processors", "processes", "file_mb", "home_mb")
 _NAME = re.compile(r"[a-z][a-z0-9_-]{0,31}\Z")
 _MOST_STUDENTS = 500
 _FIRST_PORT = 11400
@@ -106,11 +106,12 @@ class _ClassReader(ValueReader):
     def _limits(self, value: Any) -> ClassLimits:
         inside = self.mapping(value, ("limits",), _LIMITS)
         default = vars(ClassLimits())
-        memory, size = (self.number(inside.get(name, default[name]), ("limits", name), above=0.0)
-                        for name in ("memory_mb", "file_mb"))
+        memory, size, home = (self.number(inside.get(name, default[name]), ("limits", name),
+                                          above=0.0)
+                              for name in ("memory_mb", "file_mb", "home_mb"))
         processors, processes = (self.integer(inside.get(name, default[name]), ("limits", name), 1,
                                             100000) for name in ("processors", "processes"))
-        return ClassLimits(memory, processors, processes, size)
+        return ClassLimits(memory, processors, processes, size, home)
 
     def _containers(self, value: Any) -> str:
         """Return the name of the container program; "" for processes without containers."""

@@ -19,12 +19,14 @@ class ClassLimits:
         processors: number of processors.
         processes: number of processes and threads.
         file_mb: size of a file, of /tmp, and of a collected submission.
+        home_mb: size of all files of the home, of processes of this machine.
     """
 
     memory_mb: float = 2000.0
     processors: int = 1
     processes: int = 512
     file_mb: float = 500.0
+    home_mb: float = 2000.0
 
 
 @dataclass(frozen=True)

@@ -19,6 +19,7 @@ from ..grading.program import workspace_paths
 from ..simulator.watchdog import process_time
 from . import relay, student_box
 from .class_plan import ClassPlan, Student, launch_text
+from .disk_use import DiskUse
 from .world_states import ENDED, STARTING, STOPPED
 
 _RELAY_USER = 62999
@@ -58,6 +59,7 @@ class LocalWorld:
         self._plan = plan
         self._process: "subprocess.Popen[bytes] | None" = None
         self._activity = -1
+        self._disk = DiskUse(plan.home(student))
 
     def start(self) -> None:
         """Start the processes. Raises OSError."""
@@ -108,15 +110,19 @@ class LocalWorld:
         return self._process is not None and self._process.poll() is None
 
     def poll(self) -> None:
-        """Check whether browsers are active; stop the processes if they use too much memory."""
+        """Check whether browsers are active; stop processes that exceed the memory or the disk."""
         if self._process is None:
             return
         with contextlib.suppress(BlockingIOError):
             if os.read(self._activity, 65536):
                 self.active = time.monotonic()
         self._measure(self._process.pid)
+        self._disk.poll()
         if self.memory_mb > self._plan.limits.memory_mb:
             self._end(STOPPED, f"more memory than {self._plan.limits.memory_mb:g} MB", 0.0)
+        elif self._disk.used_mb > self._plan.limits.home_mb:
+            self._end(STOPPED, f"the files of the home take {self._disk.used_mb:.0f} MB, more than"
+                               f" {self._plan.limits.home_mb:g} MB: delete some", 0.0)
         elif not self.is_alive:
             code = self._process.returncode
             self._end(ENDED, f"the processes ended with status {code}", 0.0)
@@ -137,6 +143,8 @@ class LocalWorld:
             process.kill()   # the namespaces end with it
         wait_or_kill(process, _END_S)
         os.close(self._activity)
+        self._disk.close()
+        self._disk = DiskUse(self._plan.home(self.student))
         self.state, self.reason, self.monitor = state, reason, 0
         self.memory_mb = self.processor_s = 0.0
         self._measured = float("-inf")

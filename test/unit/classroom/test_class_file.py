@@ -19,7 +19,7 @@ students: [anna, ben_2]
 port: 12000
 launch: my_simulations lab_room.launch
 args: {robot: true, x: 1.5}
-limits: {memory_mb: 1500, processors: 2, processes: 300, file_mb: 200}
+limits: {memory_mb: 1500, processors: 2, processes: 300, file_mb: 200, home_mb: 900}
 """
 
 
