@@ -52,17 +52,14 @@ STILL = Twist()
 
 
 def add(a: Vec3, b: Vec3) -> Vec3:
-    """a + b."""
     return (a[0] + b[0], a[1] + b[1], a[2] + b[2])
 
 
 def subtract(a: Vec3, b: Vec3) -> Vec3:
-    """a - b."""
     return (a[0] - b[0], a[1] - b[1], a[2] - b[2])
 
 
 def scale(a: Vec3, factor: float) -> Vec3:
-    """factor * a."""
     return (a[0] * factor, a[1] * factor, a[2] * factor)
 
 

@@ -85,7 +85,6 @@ class ClassPlan:
     containers: str = ""
 
     def home(self, student: Student) -> str:
-        """Home folder of a student."""
         return os.path.join(self.folder, "students", student.name)
 
     @property

@@ -32,7 +32,6 @@ Loaded = Union[World, Model, Light, Actor]
 
 
 def parser() -> argparse.ArgumentParser:
-    """The command line."""
     made = Parser(
         prog=NAME, description="Check worlds, models and robots as the simulator reads them. Needs"
         " no ROS master.",

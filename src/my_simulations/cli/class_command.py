@@ -31,7 +31,6 @@ _CALL_S = 60.0
 
 
 def parser() -> argparse.ArgumentParser:
-    """The command line."""
     made = Parser(
         prog=NAME, description="Run a world with an editor for each student of a class, and a page"
         " for the tutor (doc/classroom.md).",

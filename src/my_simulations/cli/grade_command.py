@@ -21,7 +21,6 @@ OK, NOT_ALL, INVALID = 0, 1, 2
 
 
 def parser() -> argparse.ArgumentParser:
-    """The command line."""
     made = Parser(
         prog=NAME, description="Grade submissions by an assignment file (doc/grading.md). Each one"
         " runs isolated from the others and from this system.",

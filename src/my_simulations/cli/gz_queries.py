@@ -37,7 +37,6 @@ class Running:
 
 
 def world(options: argparse.Namespace, running: Running) -> int:
-    """`gz world`."""
     done = 0
     if options.pause is not None:
         running.call_service("pause_physics" if options.pause else "unpause_physics", "Empty")
@@ -56,7 +55,6 @@ def world(options: argparse.Namespace, running: Running) -> int:
 
 
 def model(options: argparse.Namespace, running: Running) -> int:
-    """`gz model`."""
     if options.list:
         for name in running.simulator.model_names():
             print(name)
@@ -87,7 +85,6 @@ def model(options: argparse.Namespace, running: Running) -> int:
 
 
 def physics(options: argparse.Namespace, running: Running) -> int:
-    """`gz physics`."""
     now = running.call_service("get_physics_properties", "GetPhysicsProperties")
     fields = {"time_step": now.time_step, "max_update_rate": now.max_update_rate,
               "gravity": now.gravity, "ode_config": now.ode_config}
@@ -125,7 +122,6 @@ def stats(options: argparse.Namespace, running: Running) -> int:
 
 
 def topic(options: argparse.Namespace, running: Running) -> int:
-    """`gz topic`."""
     for word in ("echo", "info", "hz", "bw"):
         name = getattr(options, word)
         if name:

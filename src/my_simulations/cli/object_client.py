@@ -90,7 +90,6 @@ def show(issues: Sequence[Issue]) -> None:
 
 
 def has_errors(issues: Sequence[Issue]) -> bool:
-    """Whether any of them is an error."""
     return any(issue.severity is Severity.ERROR for issue in issues)
 
 
@@ -180,7 +179,6 @@ class SimulatorClient:
                             f"service {offered}", "is the simulator still starting?")
 
     def model_names(self) -> List[str]:
-        """Names of the models in the world."""
         answer = self._call("get_world_properties", "GetWorldProperties")
         return list(answer.model_names)
 

@@ -18,7 +18,6 @@ NAME = "replay"
 
 
 def parser() -> argparse.ArgumentParser:
-    """The command line."""
     made = Parser(
         prog=NAME, description="Write a recorded run as one HTML file with time bar and 3D view,"
         " which a browser plays without a server and without a network. Needs no ROS master.",

@@ -103,7 +103,6 @@ class Opening:
         self._timer.start()
 
     def now(self) -> None:
-        """Open it unless it is open."""
         with self._lock:
             opened, self._opened = self._opened, True
         self._timer.cancel()
@@ -111,7 +110,6 @@ class Opening:
             show(*self._page)
 
     def cancel(self) -> None:
-        """Do not open it any longer."""
         with self._lock:
             self._opened = True
         self._timer.cancel()

@@ -57,7 +57,6 @@ class WorldRequests:
         self._disk = ThreadPoolExecutor(1, "editor folders")
 
     def routes(self) -> Dict[str, Route]:
-        """By type of request."""
         changes: Dict[str, Handler] = {
             "edit": self._edit, "undo": self._undo, "redo": self._redo, "step": self._step,
             "save": self._save, "open": self._open, "new": self._new,
@@ -101,7 +100,6 @@ class WorldRequests:
         self.thread.submit(self._end_drags, client.number)
 
     def history_push(self) -> Dict[str, Any]:
-        """The push `history`."""
         names = self._users.names
         undo = self._history.undo_labels
         return {"type": "history", "undo": undo[:_LISTED], "undoable": len(undo),

@@ -43,7 +43,6 @@ class Rate:
                 return found
 
     def is_at(self, step: int, clock: Clock) -> bool:
-        """Whether `step` is a step of the rate."""
         return self.after(step - 1, clock) == step
 
     def __eq__(self, other: object) -> bool:

@@ -165,7 +165,6 @@ class ServoLaw:
         return self.last
 
     def limited(self, effort: float, position: float, rate: float) -> float:
-        """An effort within the limits."""
         servo = self.servo
         most = servo.most_effort
         least = -most

@@ -134,5 +134,4 @@ def segment_between(start: float, before: State, end: float, after: State) -> Se
 
 
 def constant_segment(position: float) -> Segment:
-    """Return a segment that stays at a position."""
     return Segment(0.0, 0.0, (position, 0.0, 0.0, 0.0, 0.0, 0.0))

@@ -75,7 +75,6 @@ class VelocityForce:
     yaw: float
 
     def wrench(self, pose: Pose, twist: Twist, com: Vec3, joint: AxisState = AT_REST) -> Wrench:
-        """See `WrenchLaw`."""
         vx, vy, _ = rotate(conjugate(pose.orientation), twist.linear)
         along = (self.gains[0] * (self.x - vx), self.gains[1] * (self.y - vy), 0.0)
         return (rotate(pose.orientation, along),
@@ -95,7 +94,6 @@ class ForceAtPoint:
     point: Vec3
 
     def wrench(self, pose: Pose, twist: Twist, com: Vec3, joint: AxisState = AT_REST) -> Wrench:
-        """See `WrenchLaw`."""
         arm = subtract(transform(pose, self.point), transform(pose, com))
         return self.force, cross(arm, self.force)
 
@@ -113,7 +111,6 @@ class BodyWrench:
     torque: Vec3
 
     def wrench(self, pose: Pose, twist: Twist, com: Vec3, joint: AxisState = AT_REST) -> Wrench:
-        """See `WrenchLaw`."""
         torque = subtract(self.torque, cross(com, self.force))
         return rotate(pose.orientation, self.force), rotate(pose.orientation, torque)
 
@@ -139,7 +136,6 @@ class BodyDrag:
     most: float
 
     def wrench(self, pose: Pose, twist: Twist, com: Vec3, joint: AxisState = AT_REST) -> Wrench:
-        """See `WrenchLaw`."""
         return BodyWrench(*self.in_body_axes(pose, twist)).wrench(pose, twist, com)
 
     def in_body_axes(self, pose: Pose, twist: Twist) -> Wrench:
@@ -184,7 +180,6 @@ class Wing:
     rudder: float = 0.0
 
     def wrench(self, pose: Pose, twist: Twist, com: Vec3, joint: AxisState = AT_REST) -> Wrench:
-        """See `WrenchLaw`."""
         lever = rotate(pose.orientation, self.centre)
         force = self._force(pose, twist_at(twist, lever).linear, self.rudder * joint[0])
         arm = subtract(add(pose.position, lever), transform(pose, com))
@@ -245,7 +240,6 @@ class Rotor:
     wind: Vec3
 
     def wrench(self, pose: Pose, twist: Twist, com: Vec3, joint: AxisState = AT_REST) -> Wrench:
-        """See `WrenchLaw`."""
         rate = joint[1]
         speed = abs(rate)
         axis = rotate(pose.orientation, (0.0, 0.0, 1.0))

@@ -183,7 +183,6 @@ class ReaderProcess:
 
 @functools.lru_cache(maxsize=1)
 def kept() -> ReaderProcess:
-    """The one of this process."""
     return ReaderProcess()
 
 

@@ -216,7 +216,6 @@ class Assignment:
 
     @property
     def recorded_topics(self) -> Tuple[str, ...]:
-        """Names of the recorded topics."""
         return tuple(dict.fromkeys(name.partition(".")[0] for name in self.recorded))
 
     @property
@@ -226,7 +225,6 @@ class Assignment:
 
     @property
     def points(self) -> float:
-        """The most that a submission can get."""
         return sum(check.points for check in self.checks)
 
     def of(self, *kinds: type) -> "Tuple[Any, ...]":

@@ -80,16 +80,13 @@ class Mark:
 
     @property
     def points(self) -> float:
-        """Sum of all points."""
         return round(sum(one.points for one in self.results), 2)
 
     @property
     def most(self) -> float:
-        """The most points."""
         return round(sum(one.most for one in self.results), 2)
 
     def to_json(self) -> str:
-        """JSON text."""
         return json.dumps(asdict(self), indent=1, sort_keys=True) + "\n"
 
 

@@ -136,7 +136,6 @@ class Program:
 
     @property
     def running(self) -> bool:
-        """Whether the program runs."""
         return self._process.poll() is None
 
     @property

@@ -81,7 +81,6 @@ class RosGraph:
 
     @property
     def topics(self) -> TopicSource:
-        """All topics by name."""
         found: TopicSource = self._node.topics
         return found
 

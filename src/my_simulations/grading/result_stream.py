@@ -28,7 +28,6 @@ class ResultWriter:
         self._stream = os.fdopen(descriptor, "wb")
 
     def result(self, found: CheckResult) -> None:
-        """Send a result."""
         self._line({"result": asdict(found)})
 
     def note(self, text: str) -> None:
@@ -40,7 +39,6 @@ class ResultWriter:
         self._line({"isolation": text})
 
     def file(self, name: str, content: bytes) -> None:
-        """Send a file."""
         self._line({"file": name, "size": len(content)})
         self._stream.write(content)
         self._stream.flush()

@@ -8,12 +8,10 @@ from ..resources.package_files import own_directory
 
 
 def folder() -> str:
-    """The folder of the shipped assignments."""
     return os.path.join(own_directory(), "config", "assignments")
 
 
 def names() -> List[str]:
-    """Names of the shipped assignments."""
     return sorted(os.path.splitext(name)[0] for name in os.listdir(folder())
                   if name.endswith(".yaml"))
 

@@ -48,7 +48,6 @@ class ThreadStates:
         return False
 
     def close(self) -> None:
-        """Close all files."""
         for file in self._files.values():
             os.close(file)
         self._files.clear()

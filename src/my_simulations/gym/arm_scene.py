@@ -43,7 +43,6 @@ class ArmState:
 
 
 def read_arm(world: OpenWorld) -> ArmState:
-    """Return the state of the arm of a world."""
     joints = world.joints()
     first = joints.position.names.index("arm::turn")
     axes, fingers = slice(first, first + 6), slice(first + 6, first + 8)
@@ -59,13 +58,11 @@ def drive_axes(world: OpenWorld, rates: np.ndarray) -> None:
 
 
 def drive_fingers(world: OpenWorld, close: bool) -> None:
-    """Close or open the fingers, until another call."""
     rate = _OPENING if close else -_OPENING
     world.robot("arm").drive({finger: rate for finger in FINGERS}, effort=_GRIP)
 
 
 def observation_space(numbers: gymnasium.spaces.Box, camera: bool) -> "gymnasium.Space[Any]":
-    """The space of `observation`."""
     if not camera:
         return numbers
     return gymnasium.spaces.Dict({

@@ -72,7 +72,6 @@ class WorldVectorEnv(VectorEnv[Any, Any, Any]):
                 self._infos([one[4] for one in found]))
 
     def render(self) -> Optional[Tuple[Any, ...]]:
-        """A picture of each."""
         return tuple(self._threads.map(lambda env: env.render(), self.envs))
 
     def close_extras(self, **kwargs: Any) -> None:

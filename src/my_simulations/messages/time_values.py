@@ -14,11 +14,9 @@ class _Seconds:
     nsecs: int = 0
 
     def to_sec(self) -> float:
-        """In s."""
         return self.secs + self.nsecs * 1e-9
 
     def to_nsec(self) -> int:
-        """In ns."""
         return self.secs * _NS + self.nsecs
 
 
@@ -28,7 +26,6 @@ class Time(_Seconds):
 
     @classmethod
     def of_ns(cls, ns: int) -> Time:
-        """Of a number of ns."""
         return cls(*divmod(ns, _NS))
 
 
@@ -38,5 +35,4 @@ class Duration(_Seconds):
 
     @classmethod
     def of_ns(cls, ns: int) -> Duration:
-        """Of a number of ns."""
         return cls(*divmod(ns, _NS))

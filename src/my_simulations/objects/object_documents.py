@@ -54,7 +54,6 @@ class Document:
 
 
 def package_names() -> List[str]:
-    """Names of all ROS packages."""
     return sorted(os.path.basename(folder) for folder in PackageIndex().folders())
 
 

@@ -32,12 +32,10 @@ class Goal:
         return self.status in (ACTIVE, PREEMPTING)
 
     def accept(self, text: str = "") -> None:
-        """Accept the goal."""
         self.status = PREEMPTING if self.status == RECALLING else ACTIVE
         self._server.status_changed(self, text)
 
     def reject(self, result: Any, text: str = "") -> None:
-        """Reject the goal."""
         self._end(REJECTED, result, text)
 
     def succeed(self, result: Any, text: str = "") -> None:
@@ -45,7 +43,6 @@ class Goal:
         self._end(SUCCEEDED, result, text)
 
     def abort(self, result: Any, text: str = "") -> None:
-        """End the goal as aborted."""
         self._end(ABORTED, result, text)
 
     def cancel(self, result: Any, text: str = "") -> None:

@@ -107,7 +107,6 @@ class CallWatch:
         self._watcher: Optional[threading.Thread] = None
 
     def stop(self) -> None:
-        """Stop watching calls."""
         self._stop.set()
 
     def run(self, subject: Any, limits: CallLimits, call: Callable[..., Any],

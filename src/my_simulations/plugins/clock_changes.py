@@ -37,7 +37,6 @@ class ClockChanges:
         self._time_step: Optional[SimTimeStep] = None
 
     def since_last(self, time_step: SimTimeStep) -> ClockChange:
-        """Return what changed since the last call; `time_step` is the present one."""
         before, self._time_step = self._time_step, time_step
         is_clock_set = before is not None and time_step.clock_sets != before.clock_sets
         is_set_back = before is not None and is_clock_set and time_step.sim_ns < before.sim_ns

@@ -149,7 +149,6 @@ class PluginHost:
         self.wake()
 
     def stop(self) -> None:
-        """End all plugins."""
         self._stop.set()
         self.wake()
         if self._thread.is_alive():

@@ -89,7 +89,6 @@ class HostStarter:
         return self._host.states() if self._host is not None else []
 
     def stop(self) -> None:
-        """End all plugins."""
         with self._lock:
             self._ended = True
         if self._host is not None:

@@ -43,7 +43,6 @@ class _Topic:
 
     @property
     def has_plugin_subscriber(self) -> bool:
-        """Whether a plugin subscribes to the topic."""
         return any(one.plugin for one in self.listening)
 
 
@@ -263,7 +262,6 @@ class LocalGraph:
         return self._topics.setdefault(name, _Topic())
 
     def has_listener(self, name: str) -> bool:
-        """Whether a topic has a listener."""
         topic = self._topics.get(name)
         return topic is not None and bool(self._listening(topic))
 
@@ -303,7 +301,6 @@ class LocalGraph:
         listening.call(converter.convert(message, kind))
 
     def end_publisher(self, publisher: LocalTopic) -> None:
-        """Remove a publisher from the graph."""
         with self._lock:
             publishers = self._topic(publisher.name).publishers
             if publisher in publishers:

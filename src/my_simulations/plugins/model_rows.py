@@ -25,7 +25,6 @@ class ModelRows:
         self.entity, self._scope = entity, scope
 
     def has_link(self, name: str) -> bool:
-        """Whether a link of the model has this name."""
         return self._full(name, self.entity.link_names) is not None
 
     def link(self, name: str) -> int:

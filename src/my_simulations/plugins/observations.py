@@ -89,7 +89,6 @@ class Observation:
         self._axes: Dict[int, int] = {}
 
     def end(self) -> None:
-        """End the calls."""
         self.ended = True
         self.owner.observations.changed = True
 
@@ -162,7 +161,6 @@ class Observations:
     def add(self, owner: Any, rate: Rate, call: Callable[[], None],
             resume: Optional[Callable[[], None]], topics: Sequence[Publication], transforms: bool,
             remembers: bool, reads: Reads) -> Observation:
-        """Add an observation."""
         self._made += 1
         made = Observation(owner, self._made, rate, call, resume, topics, transforms, remembers,
                            reads)
@@ -176,7 +174,6 @@ class Observations:
             one.begin(time_step)
 
     def end_all(self, owner: Any) -> None:
-        """End all observations of a plugin."""
         for one in self._all.values():
             if one.owner is owner:
                 one.end()
@@ -232,7 +229,6 @@ class StepView:
 
     @property
     def is_record(self) -> bool:
-        """Whether a record is shown."""
         return self._part is not None
 
     def link_at(self, row: int) -> Tuple[Pose, Twist]:

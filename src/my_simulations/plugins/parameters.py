@@ -54,11 +54,9 @@ class Parameters:
         return default if found is None else (found.text or "").strip()
 
     def texts(self, name: str) -> List[str]:
-        """Return the texts of all children of a name."""
         return [(child.text or "").strip() for child in self._root.findall(name)]
 
     def children(self, name: str) -> "List[Parameters]":
-        """Return the children of a name, as parameters with children."""
         found = []
         for child in self._root.findall(name):
             made = Parameters("", self._warn)
@@ -67,7 +65,6 @@ class Parameters:
         return found
 
     def attribute(self, name: str, default: str = "") -> str:
-        """Return an attribute of the element."""
         return str(self._root.get(name, default))
 
     def number(self, name: str, default: float) -> float:
@@ -81,7 +78,6 @@ class Parameters:
             name, "number", _written(default)))
 
     def integer(self, name: str, default: int) -> int:
-        """Return an integer."""
         return self._read(name, default, lambda text: int(_number(text)), "a whole number",
                           PluginParameter(name, "integer", str(default)))
 

@@ -77,7 +77,6 @@ class PluginLoader:
                               lambda waited: self._take_turn(running, waited))
 
     def stop(self) -> None:
-        """End the processes of all plugins."""
         if self._processes is not None:
             self._processes.stop()
 

@@ -62,7 +62,6 @@ class OptionMessages:
         self._options = {option.name: option for option in options}
 
     def config(self, values: Mapping[str, Value]) -> Any:
-        """A Config of values."""
         config = self._message(f"{_PACKAGE}/Config")
         found: Dict[str, List[Any]] = {"bools": [], "ints": [], "strs": [], "doubles": []}
         for name, value in values.items():

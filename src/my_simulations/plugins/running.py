@@ -51,7 +51,6 @@ class RunningPlugin:
 
     @property
     def is_callable(self) -> bool:
-        """Whether the plugin can be called now."""
         return self.plugin is not None and not self.is_busy
 
 
@@ -109,7 +108,6 @@ class ModelPlugins:
         return (*self._models[name], found)
 
     def end_all(self) -> None:
-        """End the plugins of all models."""
         for name in list(self._models):
             self._end(name)
 

@@ -33,7 +33,6 @@ class ScheduledCall:
         return max(time_step.step + 1, first_step(time_step.clock, self._ns))
 
     def end(self) -> None:
-        """End the calls."""
         self.ended = True
 
 
@@ -52,7 +51,6 @@ class Schedule:
         self._made = 0
 
     def set_time_step(self, time_step: SimTimeStep) -> None:
-        """Set the present step and sim time."""
         self.time_step, self.sim_ns = time_step, time_step.sim_ns
 
     def every(self, owner: Any, hertz: float, call: Callable[[], None]) -> ScheduledCall:
@@ -102,7 +100,6 @@ class Schedule:
                 self._put(number, scheduled)
 
     def end_all(self, owner: Any) -> None:
-        """End the calls of one owner."""
         for _, _, scheduled in self._heap:
             if scheduled.owner is owner:
                 scheduled.end()

@@ -25,7 +25,6 @@ class PluginTopic:
         return self._topic.wanted
 
     def publish(self, message: Any) -> None:
-        """Publish a message."""
         self._owner.outbox.append((self._topic, message))
 
     def publish_later(self, make: Callable[[], Any]) -> None:

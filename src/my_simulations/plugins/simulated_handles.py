@@ -79,7 +79,6 @@ class SimulatedJoint:
         return self._view.set_count(self.row)
 
     def drive(self, rate: float, effort: float) -> None:
-        """Drive the motor."""
         self.motor = JointMotor(self.row, finite(rate, "the rate of a motor"),
                                 number(effort, "the effort of a motor"))
         self._commands.motors[self.row] = self.motor

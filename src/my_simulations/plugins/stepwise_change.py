@@ -47,7 +47,6 @@ class StepwiseChange:
         return self._context.once(due, self._begin_here)
 
     def end(self) -> None:
-        """Stop the calls."""
         if self._timer is not None:
             self._timer.end()
             self._timer = None

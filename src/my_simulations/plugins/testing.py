@@ -239,7 +239,6 @@ class FakeContext(FakeGraph):
         self.world_lights[light.name] = light
 
     def set_material(self, link: str, visual: str, material: Material) -> None:
-        """Record the call, by link and visual."""
         self.link(link)
         self.materials[link, visual] = material
 

@@ -184,5 +184,4 @@ class FakeGraph:
         return self.ros_parameters.get(name, default)
 
     def transform(self, parent: str, child: str, pose: Pose) -> None:
-        """Record the call."""
         self.transforms.append((parent, child, pose))

@@ -49,7 +49,6 @@ class FakeJoint:
             self.set_servo(self.servo)
 
     def drive(self, rate: float, effort: float) -> None:
-        """Drive the motor."""
         self.motor = (rate, effort)
 
     def set_servo(self, servo: JointServo) -> None:

@@ -24,7 +24,6 @@ class TimeOut:
         self.begin()
 
     def begin(self) -> None:
-        """Start the time-out now."""
         self._since_ns = self._context.now_ns
 
     @property

@@ -79,11 +79,9 @@ class Controllers:
         self._call_manager(namespace, "load_controller", {"name": name})
 
     def start(self, *names: str, robot: str = "") -> None:
-        """Start loaded controllers."""
         self.switch(names, (), robot)
 
     def stop(self, *names: str, robot: str = "") -> None:
-        """Stop running controllers."""
         self.switch((), names, robot)
 
     def switch(self, start: Sequence[str], stop: Sequence[str], robot: str = "") -> None:

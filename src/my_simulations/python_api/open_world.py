@@ -367,7 +367,6 @@ class OpenWorld(WorldChanges):
     # -- helpers -----------------------------------------------------------------------------------
 
     def _start(self, loaded: LoadedWorld) -> None:
-        """Start an engine with a world."""
         self.simulator = Simulator(loaded.world, engine_factory=self._new_engine, paused=True,
                                    log=self._log, meshes=loaded.meshes)
         self._scene = SceneSensing(self.simulator, self._log)

@@ -73,7 +73,6 @@ class Robots:
 
     @property
     def topics(self) -> Topics:
-        """The topics by name."""
         if self._topics is None:
             from .topics import Topics
 

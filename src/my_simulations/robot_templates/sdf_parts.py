@@ -88,7 +88,6 @@ def link(name: str, at: str, *content: str) -> str:
 
 
 def fixed(name: str, parent: str, child: str) -> str:
-    """A fixed joint."""
     return (f'<joint name="{name}" type="fixed"><parent>{parent}</parent><child>{child}</child>'
             "</joint>")
 

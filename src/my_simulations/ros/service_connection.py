@@ -100,7 +100,6 @@ class ServiceConnection:
             raise ServiceCallError(f"unable to read the response: {fault}") from fault
 
     def close(self) -> None:
-        """End the connection."""
         self._socket.close()
 
     def _shake_hands(self, header: Dict[str, str]) -> None:

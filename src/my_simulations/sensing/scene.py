@@ -73,7 +73,6 @@ class SceneState:
         self.scenery = SetScenery()
 
     def apply(self, change: Change) -> None:
-        """Take a change in."""
         if isinstance(change, AddBody):
             self.bodies[change.body.name] = change.body
         elif isinstance(change, RemoveBody):

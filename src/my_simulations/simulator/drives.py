@@ -191,7 +191,6 @@ class Drives:
 
     @property
     def settings(self) -> DriveSettings:
-        """All drives as they are now."""
         return DriveSettings(tuple(self._motors.values()), tuple(self._planar.values()),
                              tuple(self._servos.values()), tuple(self._slips.values()))
 
@@ -203,7 +202,6 @@ class Drives:
         self._slips = {wheel.row: wheel for wheel in settings.slips}
 
     def restore_commands(self) -> List[Command]:
-        """Commands that set the drives in a new engine."""
         return self.settings.commands()
 
     def forget_entity(self, entity: Entity) -> None:

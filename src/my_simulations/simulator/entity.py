@@ -91,7 +91,6 @@ class Entity:
             yield (axis.joint.name, axis.number, *snapshot.joint(self.first_joint_row + n))
 
     def has_link_row(self, row: int) -> bool:
-        """Whether a row of the link table is one of its links."""
         return 0 <= row - self.first_link_row < len(self.link_names)
 
     def has_joint_row(self, row: int) -> bool:

@@ -42,7 +42,6 @@ class InterModelJoints:
                    for one in self._all)
 
     def without(self, model: str) -> "InterModelJoints":
-        """These joints without those that connect a model."""
         return self._of([one for one in self._all if not _touches(one.joint, model)])
 
     def of(self, model: str) -> "InterModelJoints":
@@ -50,7 +49,6 @@ class InterModelJoints:
         return self._of([one for one in self._all if _touches(one.joint, model)])
 
     def joined(self, others: "InterModelJoints") -> "InterModelJoints":
-        """The union of these joints and others."""
         return self._of(self._all + others._all)
 
     def renamed(self, old: str, new: str, kept: Sequence[str]) -> "InterModelJoints":
@@ -92,11 +90,9 @@ class InterModelJoints:
                         + [_Connection(joint, parent_from_joint)])
 
     def named(self, name: str) -> "InterModelJoints":
-        """The joint of this name."""
         return self._of([one for one in self._all if one.joint.name == name])
 
     def removed(self, names: Sequence[str]) -> "InterModelJoints":
-        """Without the joints of these names."""
         return self._of([one for one in self._all if one.joint.name not in names])
 
     def commands(self, registry: Registry, model: str = "",

@@ -21,7 +21,6 @@ class KnownModels:
             return self._session.registry.names()
 
     def has(self, name: str) -> bool:
-        """Whether a model of that name exists."""
         with self._session.registry_lock:
             return name in self._session.registry
 

@@ -32,7 +32,6 @@ class ModelConnections:
         return self.between.removed(self.attached)
 
     def without(self, model: str) -> "ModelConnections":
-        """After a model was deleted."""
         return replace(self, between=self.between.without(model),
                        pinned=_others(self.pinned, model), held=_others(self.held, model))
 
@@ -48,7 +47,6 @@ class ModelConnections:
         return replace(self, between=joints, attached=(*_others(self.attached, name), name))
 
     def without_joint(self, name: str) -> "ModelConnections":
-        """After the joint `name` was removed."""
         return replace(self, between=self.between.removed((name,)),
                        attached=_others(self.attached, name))
 
@@ -57,7 +55,6 @@ class ModelConnections:
         return replace(self, between=self.lasting_joints, attached=())
 
     def joint(self, name: str) -> List[Joint]:
-        """The joint of this name, if there is one."""
         return self.between.named(name).joints
 
     def detach_commands(self) -> List[Command]:

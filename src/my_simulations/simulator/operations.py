@@ -74,7 +74,6 @@ class AddModel:
     deleted: Optional[DeletedModel] = None
 
     def apply(self, world: Simulator) -> Operation:
-        """Spawn the model."""
         world.models.spawn(self.model, self.pose, meshes=self.meshes, state=self.state,
                            deleted=self.deleted)
         return RemoveModel(self.model.name)
@@ -210,7 +209,6 @@ class AddLight:
     slot: Optional[OrderSlot] = None
 
     def apply(self, world: Simulator) -> Operation:
-        """Add the light."""
         world.lights.add(self.light, slot=self.slot)
         return RemoveLight(self.light.name)
 
@@ -235,7 +233,6 @@ class EditLight:
     light: Light
 
     def apply(self, world: Simulator) -> Operation:
-        """Edit the light."""
         old = world.lights.get(self.name)
         world.lights.set(self.name, self.light)
         return EditLight(self.light.name, old)
@@ -249,7 +246,6 @@ class SetPhysics:
     gravity: Vec3
 
     def apply(self, world: Simulator) -> Operation:
-        """Set physics and gravity."""
         back = SetPhysics(world.physics.settings, world.physics.gravity)
         world.physics.set(self.physics, self.gravity)
         return back
@@ -272,7 +268,6 @@ class SetWorldField:
     value: Any
 
     def apply(self, world: Simulator) -> Operation:
-        """Set the field."""
         back = SetWorldField(self.name, getattr(world.world, self.name))
         SETTERS[self.name](world.scene, self.value)
         return back
@@ -361,7 +356,6 @@ class _RestoreModel:
     wrench: ApplyWrench
 
     def apply(self, world: Simulator) -> Operation:
-        """Restore the states of the model."""
         world.states.restore(self.moment, clock=False)
         return self.wrench
 

@@ -21,7 +21,6 @@ class OrderSlot:
 
     @classmethod
     def of(cls, names: Sequence[str], name: str) -> "OrderSlot":
-        """The slot of a name in `names`."""
         index = names.index(name)
         return cls(index, names[index - 1] if index else "")
 

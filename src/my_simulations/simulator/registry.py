@@ -61,7 +61,6 @@ class ReferenceFrame:
     offset: Pose = IDENTITY
 
     def state(self, snapshot: Snapshot) -> Tuple[Pose, Twist]:
-        """World pose and twist of the frame."""
         if self.row < 0:
             return self.offset, STILL
         pose, twist = snapshot.link(self.row)
@@ -163,14 +162,12 @@ class Registry:
                 key=lambda pair: places[pair[1][0].model.name]))
 
     def replace_all(self, entities: Iterable[Entity]) -> None:
-        """Replace all models."""
         for name in self.names():
             self.remove(name)
         for entity in entities:
             self.add(entity)
 
     def remove(self, name: str) -> Entity:
-        """Remove a model."""
         entity = self._entities.pop(name)
         self._forget_parts(entity)
         self.revision += 1

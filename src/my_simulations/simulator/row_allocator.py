@@ -35,7 +35,6 @@ class RowAllocator:
                 return
 
     def free(self, start: int, count: int) -> None:
-        """Free `count` rows from `start` on."""
         if count == 0:
             return
         free = self._free

@@ -29,7 +29,6 @@ class RowLayout:
 
 
 def layout_of(entities: List[Entity], revision: int) -> RowLayout:
-    """The layout of these entities."""
     layout = RowLayout(revision, [], [], [], [])
     for entity in entities:
         name = entity.model.name

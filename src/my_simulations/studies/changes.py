@@ -42,7 +42,6 @@ class CaseChanges:
                        models=[self.model(model) for model in world.models])
 
     def model(self, model: Model) -> Model:
-        """The model as set."""
         for target, value in self._changes:
             name, _, link = target.name.partition("::")
             if target.kind not in _ON_MODELS or name != model.name:

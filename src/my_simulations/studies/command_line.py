@@ -13,7 +13,6 @@ _REPLAYS = 3
 
 
 def parser() -> argparse.ArgumentParser:
-    """The command line."""
     made = ArgumentParser(
         prog="study", description="Run worlds many times with varied parameters, and measure them."
         " Needs no ROS.", epilog="Exit code: 0 if all cases are ok, 1 if some are not or are"

@@ -20,7 +20,6 @@ REPORT = "report.html"
 
 
 def shard_of(journal: str) -> Shard:
-    """Which shard a journal is of, by its name."""
     found = re.search(r"-(\d+)-of-(\d+)\.jsonl$", journal)
     return Shard(int(found[1]), int(found[2])) if found else ALL_CASES
 
@@ -36,7 +35,6 @@ class StudyFolder:
         self.path = os.path.abspath(path)
 
     def journal_of(self, shard: Shard) -> str:
-        """The path of the journal of a shard."""
         return os.path.join(self.path, self.stem("journal", shard) + ".jsonl")
 
     @staticmethod
@@ -104,7 +102,6 @@ class StudyFolder:
         return header_of(self.journals()[0])
 
     def create(self) -> None:
-        """Make the folder."""
         try:
             os.makedirs(self.path, exist_ok=True)
         except OSError as fault:

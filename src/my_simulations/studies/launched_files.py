@@ -42,7 +42,6 @@ class LaunchedFiles:
         self._known: Dict[str, Tuple[str, List[str]]] = {}   # digest and named files, by path
 
     def digest(self, scenario: str) -> str:
-        """The digest of a scenario, by its path."""
         digests: Dict[str, str] = {}
         waiting = [scenario]
         while waiting:
@@ -61,7 +60,6 @@ class LaunchedFiles:
         return self._known[path]
 
     def _named_in(self, path: str) -> List[str]:
-        """The files that a file names."""
         if (not path.endswith(_SCANNED) or not os.path.isfile(path)
                 or os.path.getsize(path) > _LARGEST):
             return []

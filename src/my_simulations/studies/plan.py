@@ -72,12 +72,10 @@ class CasePlan:
         return self.study.count
 
     def cases(self, shard: Shard = ALL_CASES) -> Iterator[Case]:
-        """The cases of a shard, in order."""
         for index in range(shard.index - 1, len(self), shard.of):
             yield self.case(index)
 
     def case(self, index: int) -> Case:
-        """The case of a number."""
         study = self.study
         if study.plan.cases:
             settings = {parameter.name: parameter.at_random(index, study.plan.seed)
@@ -100,7 +98,6 @@ class CasePlan:
         return next((case for case in self.cases() if case.id.startswith(start_of_id)), None)
 
     def world_and_objects(self, settings: Dict[str, Setting]) -> Tuple[str, Tuple[str, ...]]:
-        """The world and the objects of a case."""
         world, objects = self.study.world, self.study.objects
         for parameter in self.study.parameters:
             value = settings[parameter.name]

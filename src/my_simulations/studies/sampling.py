@@ -67,7 +67,6 @@ class SignalReader:
                 values.append(_between(signal, contacts))
 
     def samples(self) -> Samples:
-        """All samples so far."""
         return {signal: np.array(values, bool if signal.kind == "contact" else float)
                 for signal, values in self._values.items()}
 

@@ -62,7 +62,6 @@ class OneLifeEngine(ProcessEngine):
         super().restart()
 
     def on_death(self, listener: Callable[[str, List[Command]], bool]) -> None:
-        """Set the listener of the death."""
         def note(reason: str, unanswered: List[Command]) -> bool:
             self.death = reason
             return listener(reason, unanswered)

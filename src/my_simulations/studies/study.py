@@ -36,7 +36,6 @@ class Seeds:
         return len(self.listed) or self.count
 
     def at(self, index: int) -> int:
-        """The seed number `index`."""
         return self.listed[index] if self.listed else self.first + index
 
 

@@ -29,7 +29,6 @@ class Progress:
         self._told = time.monotonic()
 
     def count_case(self, row: Row) -> None:
-        """A case has finished."""
         self._rate.add(row)
         now = time.monotonic()
         if now - self._told >= (_EVERY_S if self._live else _EVERY_LOG_S):
@@ -57,7 +56,6 @@ class Progress:
 
 
 def bar(done: int, total: int, width: int = 24) -> str:
-    """A bar of text."""
     full = width * done // total if total else width
     return "[" + "#" * full + "." * (width - full) + "]"
 

@@ -94,12 +94,10 @@ class Users:
             return [self._names.get(key, "") for key in keys]
 
     def clients_of(self, key: str) -> List[int]:
-        """The clients of one author."""
         with self._lock:
             return [client for client, person in self._connected.items() if person.key == key]
 
     def push(self) -> Dict[str, Any]:
-        """The push `people`."""
         with self._lock:
             return {"type": "people", "people": [
                 {"number": client, "name": person.name, "selected": person.selected,

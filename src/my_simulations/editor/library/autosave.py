@@ -80,7 +80,6 @@ class Autosave:
         self.found: Optional[AutosaveEntry] = self._newest_recoverable()
 
     def push(self) -> Dict[str, Any]:
-        """The push `autosave`."""
         found = self.found
         return {"type": "autosave", "found": found is not None,
                 "file": found.file if found else "", "time": found.saved_at if found else 0.0,

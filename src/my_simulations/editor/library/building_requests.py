@@ -26,7 +26,6 @@ class BuildingRequests:
         self._files = files
 
     def routes(self) -> Dict[str, Route]:
-        """By type of request."""
         handlers: Dict[str, Callable[[Client, Dict[str, Any]], Any]] = {
             "building_sdf": self._sdf, "building_save": self._save, "building_load": self._load,
             "building_list": self._list,

@@ -44,7 +44,6 @@ class LibraryRequests:
         self._signature: Optional[Any] = None
 
     def routes(self) -> Dict[str, Route]:
-        """By type of request."""
         handlers: Dict[str, Callable[[Client, Dict[str, Any]], Any]] = {
             "library": self._list, "library_add": self._add, "library_remove": self._remove,
             "library_get": self._get, "preview": self._preview,

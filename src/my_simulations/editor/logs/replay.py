@@ -32,7 +32,6 @@ class Replay:
         self.task: "Optional[asyncio.Task[None]]" = None
 
     def push(self) -> Dict[str, Any]:
-        """The push `log`."""
         return {"type": "log", "state": "playing" if self.rate else "open", "name": self.name,
                 "begin": self.reader.begin, "end": self.reader.end, "time": self.time,
                 "rate": self.rate}
@@ -87,7 +86,6 @@ class Logs:
             raise CommandError(f"log {name!r} does not exist") from fault
 
     def leave(self, client: Client) -> None:
-        """A client has gone."""
         replay: Optional[Replay] = client.replay
         if replay is not None:
             self._end(replay)

@@ -55,13 +55,11 @@ class LogWriter:
             raise CommandError(f"{path} cannot be written: {fault.strerror}") from fault
 
     def document(self, time: float, world: Dict[str, Any]) -> None:
-        """The description from now on."""
         self._write(DOCUMENT, time, json.dumps(world, separators=(",", ":")).encode())
         self._sent.forget()
         self._whole_at = float("-inf")
 
     def poses(self, poses: Poses) -> None:
-        """Where everything is."""
         time = poses.sim_time
         whole = not self._whole_at <= time < self._whole_at + _WHOLE_EVERY_S
         if whole:

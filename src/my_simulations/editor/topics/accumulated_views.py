@@ -35,7 +35,6 @@ class Transforms:
                     one.header.frame_id.lstrip("/"), one.transform)
 
     def fields(self) -> Dict[str, Any]:
-        """The view."""
         with self._lock:
             known = list(self._known.items())
         return {"type": "transforms", "transforms": [
@@ -86,7 +85,6 @@ class Markers:
         self._known = {name: one for name, one in self._known.items() if not one.is_expired(now)}
 
     def fields(self) -> Dict[str, Any]:
-        """The view."""
         with self._lock:
             now = self._now()
             self._drop_expired(now)

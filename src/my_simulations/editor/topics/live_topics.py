@@ -56,7 +56,6 @@ class LiveTopic:
             self._notify(self)
 
     def clear_notification(self) -> None:
-        """Allow the next notification."""
         self._on_message = False
 
     def count(self, now: float) -> None:

@@ -39,7 +39,6 @@ class Viewer:
         self.newest: Any = None
 
     def receive(self, message: Any) -> None:
-        """A message has come."""
         if self._kept is not None:
             self._kept.receive(message)
         self.newest = message

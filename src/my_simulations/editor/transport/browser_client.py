@@ -17,7 +17,6 @@ _FULL = 1 << 20
 
 
 def encoded(message: Dict[str, Any]) -> str:
-    """A message as text."""
     return json.dumps(message, separators=(",", ":"), allow_nan=False)
 
 
@@ -61,7 +60,6 @@ class Client:
         return self._waiting > _MOST_WAITING
 
     def post(self, message: Dict[str, Any]) -> None:
-        """Queue a message."""
         self.append(encoded(message))
 
     def append(self, data: Union[str, bytes]) -> None:

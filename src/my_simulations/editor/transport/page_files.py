@@ -48,11 +48,9 @@ class PageFiles:
 
     @staticmethod
     def own_folder() -> str:
-        """The page of this package."""
         return os.path.join(own_directory(), "web")
 
     def routes(self) -> List[web.RouteDef]:
-        """For the application."""
         return [
             web.get("/", self._index), web.get("/protocol.json", self._protocol),
             web.get("/{part:js|css|img}/{inside:.+}", self._part),

@@ -169,17 +169,14 @@ class Protocol:
 
     @property
     def requests(self) -> List[str]:
-        """All types of requests."""
         return list(self._data["requests"])
 
     @property
     def notices(self) -> List[str]:
-        """All types of notices."""
         return list(self._data["notices"])
 
     @property
     def operations(self) -> List[str]:
-        """All kinds of operations."""
         return list(self._data["operations"])
 
     @staticmethod

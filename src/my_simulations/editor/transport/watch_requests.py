@@ -43,7 +43,6 @@ class WatchRequests:
         hub.on_tick.append(self._tick)
 
     def routes(self) -> Dict[str, Route]:
-        """By type of request."""
         return {"watch": Route(self._watch, None)}
 
     async def _watch(self, client: Client, message: Dict[str, Any]) -> Dict[str, Any]:

@@ -63,7 +63,6 @@ class WatchedValues:
         self._gains: Optional[Tuple[Entity, float, List[Dict[str, Dict[str, float]]]]] = None
 
     def pushes(self, topics: Iterable[str]) -> Dict[str, Dict[str, Any]]:
-        """The push of each topic, now."""
         # The clock first: a snapshot of a later time is harmless, one of an earlier time is not.
         self._step, clock = self._world.clock.now()
         entities, snapshot = self._world.states.latest()

@@ -264,7 +264,6 @@ class ContactSettling(StepHelper):
 
 
 def _states(tree: _Tree) -> JointStates:
-    """Return the states of the axes of a tree."""
     found: JointStates = pybullet.getJointStates(tree.body.uid, tree.indices) or ()
     return found
 

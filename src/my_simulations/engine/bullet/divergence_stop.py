@@ -67,7 +67,6 @@ class DivergenceStop(StepHelper):
         self._period = max(1, round(_PERIOD_S / step_size))
 
     def add(self, body: Body) -> None:
-        """Check a new body."""
         if body.moves:
             self._bodies[body.uid] = body
             self._new[body.uid] = body
@@ -80,7 +79,6 @@ class DivergenceStop(StepHelper):
 
     @property
     def stopped(self) -> List[Body]:
-        """The stopped bodies."""
         return [self._bodies[uid] for uid in self._stops]
 
     def stop(self, bodies: Iterable[Body]) -> None:

@@ -140,7 +140,6 @@ class HelperSet:
         self.divergence.configure(settings.step_size)
 
     def add(self, body: Body, model: Model) -> None:
-        """Register a new body of a model."""
         extra_surfaces.store(body, self.settings.step_size)
         for observer in self._observers:
             observer.add(body)

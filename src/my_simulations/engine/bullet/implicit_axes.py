@@ -75,7 +75,6 @@ class ImplicitAxes:
 
     @property
     def first_row(self) -> int:
-        """The first joint row."""
         return self._rows[0]
 
     @property

@@ -28,7 +28,6 @@ class _Tie:
 
     @property
     def bodies(self) -> Tuple[Body, ...]:
-        """Those that are tied."""
         return tuple(end[0] for end in self.ends)
 
     @property

@@ -104,7 +104,6 @@ class Constraints:
         return self._end(name)
 
     def remove(self) -> None:
-        """Remove all constraints of the model."""
         self._book.remove(self._made)
         self._made.clear()
 

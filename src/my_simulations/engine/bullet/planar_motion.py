@@ -49,7 +49,6 @@ class PlanarMotion(StepHelper):
         return step if self._velocities else FAR
 
     def before(self, step: int, dt: float, gravity: Vec3) -> None:
-        """Set the velocities for the next step."""
         for number, wanted in self._velocities.items():
             entry = self._models[number]
             at, turn = self._model_pose(entry)

@@ -24,7 +24,6 @@ class RunStates:
         self._rows = rows
 
     def read(self, _: ReadRunState) -> RunState:
-        """The run state now."""
         helpers = self._helpers
         resting = dict(helpers.settling.held)
         for body in self._bodies.values():
@@ -38,7 +37,6 @@ class RunStates:
             tuple(body.lead_row for body in helpers.divergence.stopped))
 
     def set(self, command: SetRunState) -> None:
-        """Continue from a run state."""
         state, forces = command.state, self._helpers.forces
         forces.servos.resume(state.servos)
         forces.resume_loops(state.loops)

@@ -76,7 +76,6 @@ class SurfaceStop(StepHelper):
             self._agenda.plan(body.uid, 0)
 
     def due(self, step: int) -> int:
-        """The step of the next check."""
         return max(step, self._agenda.next)
 
     def before(self, step: int, dt: float, gravity: Vec3) -> None:

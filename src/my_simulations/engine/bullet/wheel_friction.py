@@ -215,7 +215,6 @@ class WheelFriction(StepHelper):
         return next_multiple(step, EVERY) if self._cone and self._wheels else FAR
 
     def before(self, step: int, dt: float, gravity: Vec3) -> None:
-        """Apply the friction of the next step."""
         for uid in sorted(self._commanded):
             self._begin(uid, norm(gravity) * dt)
         self._commanded.clear()
@@ -421,7 +420,6 @@ class WheelFriction(StepHelper):
                 self._restore_friction(key)
 
     def _set_slip(self, wheel: WheelSlip) -> None:
-        """Set the slips of a wheel from its rate."""
         body, axis = self._axes[wheel.joint_row]
         rate = pybullet.getJointState(body.uid, axis.index)[1]
         share = wheel.radius * abs(rate) / wheel.normal_force

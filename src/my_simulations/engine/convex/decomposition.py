@@ -165,7 +165,6 @@ def divided(mesh: MeshData, *, cache_dir: Optional[str] = None, deadline: float 
 
 
 def hull_only(mesh: MeshData) -> Decomposition:
-    """Return a decomposition whose only part is the hull of the mesh."""
     return Decomposition([mesh], NOT_DIVIDED)
 
 
@@ -178,7 +177,6 @@ def notices(made: Decomposition) -> List[Issue]:
 
 
 def cache_folder_of(cache_dir: Optional[str] = None) -> str:
-    """The folder of the cache."""
     return default_folder() if cache_dir is None else cache_dir
 
 

@@ -103,7 +103,6 @@ def elevations(path: str, widest: int) -> Optional[Elevations]:
 
 
 def elevations_of(path: str, widest: int) -> Optional[Elevations]:
-    """As `elevations`, in this process."""
     import numpy as np
 
     with _opened(path) as image:

@@ -110,7 +110,6 @@ class _Channel:
         self.times, self.values = times[order], values[order]
 
     def at(self, time: float) -> Array:
-        """Its numbers at a time."""
         return np.array([np.interp(time, self.times, column) for column in self.values.T])
 
 

@@ -18,7 +18,6 @@ Placing = Tuple[str, str, Array]
 
 
 def floats(element: Any) -> Array:
-    """The numbers in an element."""
     return np.array("".join(element.itertext()).split(), dtype=np.float64)
 
 

@@ -97,7 +97,6 @@ class Source:
         self, level: FaultLevel, code: str, message: str, element: Optional[Any] = None,
         hint: str = ""
     ) -> None:
-        """Add a fault of `element`."""
         severity = Severity.WARNING if level is FaultLevel.WARNING else Severity.ERROR
         issue = Issue(severity, code, message, hint=hint, **self.where(element))
         self.log.add(issue, fatal=level is FaultLevel.FATAL)

@@ -85,7 +85,6 @@ class BaseController(Controller):
         """Publish further messages with the odometry."""
 
     def more_topics(self) -> List[Publication]:
-        """Return the topics of `publish_more`."""
         return []
 
     # -- Controller --------------------------------------------------------------------------------
@@ -136,7 +135,6 @@ class BaseController(Controller):
                          transforms=self.broadcasts)
 
     def stop(self) -> None:
-        """Stop the base."""
         self._end_command()
         self._change.end()
         self.drive(STANDING)

@@ -108,7 +108,6 @@ class Controller:
         self._timers.append(self.context.observe(hertz, call, topics, **reads))
 
     def end_calls(self) -> None:
-        """End the calls of `every` and `observe`."""
         for timer in self._timers:
             timer.end()
         self._timers = []
@@ -116,7 +115,6 @@ class Controller:
     # -- for the manager ---------------------------------------------------------------------------
 
     def switch_on(self) -> None:
-        """Start the controller."""
         self.state, self._told = RUNNING, ""
         for interface, names in self.claimed.items():
             for name in names:

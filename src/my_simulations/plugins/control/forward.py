@@ -48,7 +48,6 @@ class ForwardGroupController(Controller):
             self.command(joint, float(value))
 
     def command(self, joint: HardwareJoint, value: float) -> None:
-        """Command one joint."""
         joint.command(value)
 
 

@@ -101,7 +101,6 @@ class FrankaGripper(Controller):
                      efforts=[finger.name for finger in self._fingers])
 
     def stop(self) -> None:
-        """End the goal."""
         self._watch.end()
         self._preempt("the controller was stopped")
 

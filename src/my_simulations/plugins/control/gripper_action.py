@@ -49,7 +49,6 @@ class Gripper(Controller):
         self._hold()
 
     def stop(self) -> None:
-        """End the goal."""
         self._watch.end()
         self._preempt("the controller was stopped")
 

@@ -184,7 +184,6 @@ class Hardware:
         return found
 
     def has(self, interface: str, name: str) -> bool:
-        """Whether a joint has an interface."""
         return (interface, name) in self._all
 
     @property

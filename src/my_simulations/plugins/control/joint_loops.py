@@ -95,7 +95,6 @@ class EffortPositionGroup(ForwardGroupController):
             self.command(joint, joint.position)
 
     def command(self, joint: HardwareJoint, value: float) -> None:
-        """Follow a position."""
         joint.follow(clamped_to_limits(joint, value), gains=self._gains[joint.name])
 
 

@@ -80,7 +80,6 @@ class JointTrajectory(Controller):
             self.observe(self._state_hz, self._publish_state, [self._state])
 
     def stop(self) -> None:
-        """End the goal."""
         self._unwatch()
         self._preempt("the controller was stopped")
 

@@ -164,7 +164,6 @@ class ControllerManager:
             self._start(one)
 
     def close(self) -> None:
-        """Unload all controllers."""
         for one in self._loaded.values():
             if one.state == RUNNING:
                 one.switch_off()

@@ -67,7 +67,6 @@ class WheelController(Controller):
             self.observe(self._hertz, self._publish, [self._commands])
 
     def stop(self) -> None:
-        """Stop the base."""
         self._change.end()
         for joint in (*self._steers, *self._drives):
             joint.command(0.0)

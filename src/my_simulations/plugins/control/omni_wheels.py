@@ -97,7 +97,6 @@ class OmniWheel:
 
     @property
     def corner(self) -> Corner:
-        """The wheel for the odometry."""
         return Corner(self.x, self.y, -self.offset)
 
     @property

@@ -47,7 +47,6 @@ class _OfQuadrotor(Controller):
         return prefixed(self.context, str(self.context.parameter(parameter, default)))
 
     def pid(self, path: str) -> Pid:
-        """Read a PID controller."""
         made = Pid(self.settings.gains(path) or PidGains(0.0))
         self._pids.append(made)
         return made
@@ -168,7 +167,6 @@ class VelocityController(_OfQuadrotor):
         self.listen("command/twist", "geometry_msgs/TwistStamped", self._receive_stamped)
 
     def begin(self) -> None:
-        """Hover."""
         super().begin()
         self._command = TwistCommand()
 

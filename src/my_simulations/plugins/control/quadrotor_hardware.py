@@ -47,7 +47,6 @@ class ScalarLimits(NamedTuple):
     most: float
 
     def clamped(self, value: float) -> float:
-        """Return the value, or the nearest limit."""
         return max(self.least, min(self.most, value))
 
 
@@ -67,7 +66,6 @@ class VectorLimits:
         self._most_across = s.number(f"{below}max_xy", math.inf)
 
     def clamped(self, vector: Vec3) -> Vec3:
-        """Return the vector within the limits."""
         x, y, z = (limits.clamped(value) for limits, value in zip(self._axes, vector))
         across = math.hypot(x, y)
         found: Vec3 = (x, y, z)

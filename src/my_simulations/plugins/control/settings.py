@@ -32,7 +32,6 @@ class Settings:
         return found
 
     def number(self, path: str, default: float) -> float:
-        """Return a number."""
         value = self.get(path)
         if value is None:
             return default
@@ -41,7 +40,6 @@ class Settings:
         return float(value)
 
     def flag(self, path: str, default: bool) -> bool:
-        """Return a boolean."""
         value = self.get(path)
         if value is None:
             return default
@@ -74,7 +72,6 @@ class Settings:
         return found
 
     def numbers(self, path: str, count: int, default: List[float]) -> List[float]:
-        """Return a list of `count` numbers."""
         value = self.get(path)
         if value is None:
             return default

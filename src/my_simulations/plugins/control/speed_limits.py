@@ -53,5 +53,4 @@ def speed_limits(settings: Settings, path: str) -> SpeedLimits:
 
 
 def clamped(value: float, least: float, most: float) -> float:
-    """Return the value, or the nearest limit."""
     return max(least, min(most, value))

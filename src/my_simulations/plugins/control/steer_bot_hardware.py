@@ -60,7 +60,6 @@ class JointGroup(HardwareJoint):
         return self._value
 
     def hold(self) -> None:
-        """Hold all joints at their positions."""
         for joint, _ in self._parts:
             joint.hold()
         self.is_held = True

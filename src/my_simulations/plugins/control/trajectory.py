@@ -115,7 +115,6 @@ class Tolerance(NamedTuple):
     acceleration: float = 0.0
 
     def holds(self, position_error: float, velocity_error: float) -> bool:
-        """Whether errors are within the tolerance."""
         return not (0.0 < self.position < abs(position_error)
                     or 0.0 < self.velocity < abs(velocity_error))
 

@@ -246,7 +246,6 @@ class KobukiEvents:
         return found
 
     def _cast_cliff_rays(self, sides: List[str], found: Dict[str, bool]) -> None:
-        """Cast the rays of one cliff sensor after the other."""
         if not sides:
             self._next_cast_ns = 0
             self._change("events/cliff", "sensor", "CliffEvent", self._over, found)

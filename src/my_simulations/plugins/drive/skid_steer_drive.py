@@ -43,7 +43,6 @@ class SkidSteerDrive(Plugin):
         self._drive()
 
     def publish(self) -> None:
-        """Publish odometry."""
         pose = self.context.pose
         if self._broadcasts:
             self._odometer.transform(pose)

@@ -93,7 +93,6 @@ class RosWheelSlip(WheelSlip):
     """The same, with dynamic_reconfigure in the namespace MODEL/wheel_slip or MODEL/NAMESPACE."""
 
     def load(self) -> None:
-        """Read parameters."""
         super().load()
         below = self.context.parameters.text("robotNamespace").strip("/") or "wheel_slip"
         self.context.use_namespace(f"{self.context.model}/{below}")

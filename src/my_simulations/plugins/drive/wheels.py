@@ -32,7 +32,6 @@ class VelocityCommand:
         context.subscribe(topic, "geometry_msgs/Twist", finite_only(context, topic, self._receive))
 
     def stop(self) -> None:
-        """Discard the last command."""
         self.x = self.y = self.yaw = 0.0
         self._end_expiry()
 
@@ -50,7 +49,6 @@ class VelocityCommand:
             self._change.begin()
 
     def discard_if_expired(self) -> None:
-        """Discard a command that has expired."""
         if self._time_out is not None and self._time_out.is_over:
             self.stop()
 
@@ -92,7 +90,6 @@ class WheelStates:
         self.topics: List[Publication] = [self._topic]
 
     def send(self) -> None:
-        """Publish the present state."""
         if not self._topic.wanted:
             return
         message = stamped(self._context, "sensor_msgs/JointState", self._frame)

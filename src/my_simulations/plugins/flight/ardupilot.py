@@ -117,7 +117,6 @@ class ArduPilot(Plugin):
         self._socket = opened
 
     def close(self) -> None:
-        """Close the socket."""
         if self._socket is not None:
             self._socket.close()
 

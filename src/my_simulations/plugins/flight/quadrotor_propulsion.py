@@ -183,7 +183,6 @@ class QuadrotorPropulsion(Plugin):
     # -- motors ----------------------------------------------------------------------------------
 
     def update(self) -> None:
-        """Before each step."""
         dt = (self.context.now_ns - self._last_ns) * 1e-9
         self._last_ns = self.context.now_ns
         self._take_commands()

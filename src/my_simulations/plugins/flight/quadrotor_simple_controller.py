@@ -106,7 +106,6 @@ class QuadrotorSimpleController(Plugin):
             self._publish()
 
     def update(self) -> None:
-        """At the rate of the controller."""
         elapsed_ns = self.context.now_ns - self._last_ns
         if elapsed_ns <= 0:
             return

@@ -38,7 +38,6 @@ class RotorsImu(Imu):
     """sensor_msgs/Imu of `<linkName>`, with white noise and biases that wander."""
 
     def load(self) -> None:
-        """Read parameters."""
         context, p = self.context, self.context.parameters
         context.use_namespace(namespace_or(p, ""))
         if not p.text("linkName"):
@@ -68,7 +67,6 @@ class RotorsImu(Imu):
                          dynamic_bias_correlation_time=time)
 
     def reset(self) -> None:
-        """Reset the biases."""
         for errors in self._errors:
             errors.reset(self.context.now_ns)
         super().reset()

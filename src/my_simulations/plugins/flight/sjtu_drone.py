@@ -62,7 +62,6 @@ class SjtuDrone(Plugin):
         context.every(0.0, self.update)
 
     def reset(self) -> None:
-        """The drone has landed."""
         for pid in self._pids:
             pid.reset()
         self._linear: Vec3 = (0.0, 0.0, 0.0)
@@ -109,7 +108,6 @@ class SjtuDrone(Plugin):
         self._state, self._since_ns = state, self.context.now_ns
 
     def update(self) -> None:
-        """In each step."""
         elapsed_ns = self.context.now_ns - self._last_ns
         if elapsed_ns <= 0:
             return

@@ -49,7 +49,6 @@ class Pid:
     before: Optional[float] = None
 
     def reset(self) -> None:
-        """As at the beginning."""
         self.integral, self.before = 0.0, None
 
     def update(self, error: float, dt: float) -> float:
@@ -152,7 +151,6 @@ class Harness(Plugin):
         return dot(self._axis, subtract(self._link.pose.position, self._anchor.position))
 
     def update(self) -> None:
-        """Before each step."""
         dt = (self.context.now_ns - self._last_ns) * 1e-9
         self._last_ns = self.context.now_ns
         if not self._hangs or dt <= 0.0:

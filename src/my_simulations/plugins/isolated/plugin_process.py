@@ -63,7 +63,6 @@ class PluginProcesses:
         return process
 
     def stop(self) -> None:
-        """End all processes; returns when they have ended."""
         if self._ready is not None and self._ready.exception() is None:
             self._started.append(self._ready.result())
         for process in self._started:

@@ -68,7 +68,6 @@ class RemoteJoint(RemoteHandle):
         return float(self._connection.state(self.number)[2])
 
     def drive(self, rate: float, effort: float) -> None:
-        """Drive the motor."""
         self._call_handle("drive", finite(rate, "the rate of a motor"),
                     number(effort, "the effort of a motor"))
 
@@ -85,7 +84,6 @@ class RemoteTopic(RemoteHandle):
         return bool(self._connection.state(self.number))
 
     def publish(self, message: Any) -> None:
-        """Publish a message."""
         self._call_handle("publish", message)
 
     def publish_later(self, make: Callable[[], Any]) -> None:
@@ -100,11 +98,9 @@ class RemoteCallHandle(RemoteHandle):
     """A scheduled call, an observation, a subscription or a service."""
 
     def end(self) -> None:
-        """End it."""
         self._call_handle("end")
 
     def close(self) -> None:
-        """End it."""
         self._call_handle("close")
 
 

@@ -121,7 +121,6 @@ class _Triggered(Plugin):
             trigger.reset()
 
     def update(self) -> None:
-        """Update all triggers."""
         for trigger in self._triggers:
             trigger.update()
 

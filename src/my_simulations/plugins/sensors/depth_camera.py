@@ -52,7 +52,6 @@ class DepthStream:
 
     @property
     def publications(self) -> List[Publication]:
-        """All that it publishes."""
         return [self._image, self._info, *([self._points] if self._points is not None else [])]
 
     @property

@@ -57,7 +57,6 @@ class SensorErrors:
 
     @property
     def has_drift(self) -> bool:
-        """Whether the drift is not 0."""
         return any(self.drift)
 
     def _stepped(self, number: int, before: Sequence[float]) -> List[float]:

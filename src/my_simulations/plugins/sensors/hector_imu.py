@@ -19,7 +19,6 @@ class HectorImu(Imu):
     """On the link `<bodyName>`, or the model's own."""
 
     def load(self) -> None:
-        """Read parameters."""
         context, p = self.context, self.context.parameters
         context.use_namespace(namespace_or(p, ""))
         self._link = context.link(p.text("bodyName"))

@@ -29,7 +29,6 @@ class LazyValue:
         self._make, self._value = make, None
 
     def get(self) -> Any:
-        """The value."""
         if self._value is None:
             self._value = self._make()
         return self._value

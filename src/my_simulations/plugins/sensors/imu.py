@@ -93,7 +93,6 @@ class ModelImu(Imu):
     """On the link `<bodyName>`."""
 
     def load(self) -> None:
-        """Read parameters."""
         context, p = self.context, self.context.parameters
         context.use_namespace(namespace_or(p, ""))
         body = p.text("bodyName")
@@ -114,7 +113,6 @@ class SensorImu(Imu):
     """
 
     def load(self) -> None:
-        """Read parameters."""
         context, p = self.context, self.context.parameters
         if context.sensor is None:
             raise PluginError("it must be in a <sensor> of type imu")

@@ -81,7 +81,6 @@ class PictureStream:
 
     @property
     def publications(self) -> List[Publication]:
-        """All that it publishes."""
         return [self._image, self._compressed, self._info]
 
     def view(self, *outputs: str) -> View:

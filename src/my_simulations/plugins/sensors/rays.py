@@ -51,7 +51,6 @@ class RayPlugin(Plugin):
         self.context.observe(hertz, self.update, [self._topic], world=True)
 
     def update(self) -> None:
-        """Cast the rays."""
         self.context.scan(self._fan, self._visuals, self._publish)
 
     def _publish(self, returns: RayReturns, ns: int) -> None:

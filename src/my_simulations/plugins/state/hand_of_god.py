@@ -45,7 +45,6 @@ class HandOfGod(Plugin):
         context.every(0.0, self.update)
 
     def update(self) -> None:
-        """Before each step."""
         lift = scale(self.context.gravity, -self._link.inertial.mass)
         wanted = self._transforms.look_up("world", f"{self._frame}_desired")
         if wanted is None:

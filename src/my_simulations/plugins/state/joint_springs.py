@@ -25,7 +25,6 @@ class Differential(Plugin):
         self.context.every(0.0, self.update)
 
     def update(self) -> None:
-        """Before each step."""
         effort = self._constant * (self._one.position - self._other.position)
         self._one.set_servo(JointServo(0, "effort", target=-effort))
         self._other.set_servo(JointServo(0, "effort", target=effort))
@@ -41,5 +40,4 @@ class WarthogSuspension(Plugin):
             self.context.joint(name).set_servo(JointServo(0, "effort", gains=gains, by_rates=True))
 
     def reset(self) -> None:
-        """The springs act again."""
         self.load()

@@ -29,7 +29,6 @@ class JointStatePublisher(Plugin):
         context.observe(p.number("updateRate", 100.0), self.update, [self._topic])
 
     def update(self) -> None:
-        """Publish the joint states."""
         message = stamped(self.context, "sensor_msgs/JointState")
         message.name = [joint.name for joint in self._joints]
         message.position = [joint.position for joint in self._joints]

@@ -39,7 +39,6 @@ class P3d(Plugin):
         context.observe(p.number("updateRate", 0.0), self.update, [self._topic])
 
     def update(self) -> None:
-        """Publish."""
         pose, twist = self._link.pose, self._link.twist
         if self._frame is not None:
             at, motion = self._frame.pose, self._frame.twist

@@ -56,7 +56,6 @@ class PalWorldOdometry(Plugin):
         self._error = (0.0, 0.0, 0.0)
 
     def update(self) -> None:
-        """Publish."""
         context, pose, twist = self.context, self._link.pose, self._link.twist
         x, y, yaw = self._noise.draw(3, context.now_ns)
         self._error = add(self._error, (x, y, yaw))
@@ -93,7 +92,6 @@ class RobotnikGroundTruthOdometry(Plugin):
                             transforms=self._broadcasts)
 
     def update(self) -> None:
-        """Publish."""
         context, pose, twist = self.context, self._link.pose, self._link.twist
         back = conjugate(pose.orientation)
         linear, angular = twist.linear, twist.angular

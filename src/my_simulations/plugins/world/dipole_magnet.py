@@ -52,7 +52,6 @@ class Magnet(NamedTuple):
 
 
 def magnet_of(link: str, p: Parameters) -> Magnet:
-    """Read a magnet."""
     return Magnet(link, p.vector("xyzOffset"), p.turn("rpyOffset"), p.vector("dipole_moment"))
 
 
@@ -104,7 +103,6 @@ class DipoleMagnet(Plugin):
     reset = clock_set
 
     def update(self) -> None:
-        """Before each step."""
         self._find_others()
         pose = self._link.pose
         at, moment = self._magnet.placed(pose)

@@ -61,7 +61,6 @@ class Wind(Plugin):
                     noise.number("mean", 0.0))
 
     def reset(self) -> None:
-        """It is calm."""
         self._means = [0.0, 0.0, 0.0]
         self._pushed = []
         self.clock_set()

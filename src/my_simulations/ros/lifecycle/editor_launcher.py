@@ -135,7 +135,6 @@ class EditorLauncher:
                 rospy.set_param(URL, self._editor.public_url)
 
     def close(self) -> None:
-        """Stop it."""
         with self._lock:
             if self._loading is not None:
                 self._loading.stop()

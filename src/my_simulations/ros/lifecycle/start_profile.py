@@ -18,7 +18,6 @@ class StartProfile:
         self.phases: List[Tuple[str, float]] = []
 
     def mark(self, phase: str) -> None:
-        """Mark the end of a phase."""
         if self.wanted:
             self.phases.append((phase, time.clock_gettime(time.CLOCK_BOOTTIME) - self._zero))
 

@@ -48,14 +48,12 @@ class TopicSubscription:
 
     @property
     def received_bytes(self) -> int:
-        """Bytes received from all publishers."""
         implementation = self._subscriber.impl
         if implementation is None:
             return 0
         return sum(int(one.stat_bytes) for one in list(implementation.connections or ()))
 
     def close(self) -> None:
-        """End the subscription."""
         with contextlib.suppress(OSError):  # the master has gone
             self._subscriber.unregister()
 

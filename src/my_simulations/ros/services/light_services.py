@@ -58,7 +58,6 @@ class LightServices:
         return "properties set"
 
     def delete(self, request: Any, _response: Any) -> str:
-        """Delete a light."""
         name = self._light(request.light_name).name
         self._simulator.lights.delete(name)
         return f"{name} successfully deleted"

@@ -64,7 +64,6 @@ class WorldServices:
         return ""
 
     def unpause(self, _request: Any, _response: Any) -> str:
-        """Resume."""
         self._simulator.clock.unpause()
         return ""
 

@@ -24,7 +24,6 @@ _STILL = bytes(TWIST_BYTES)
 
 
 def packed_strings(names: Sequence[str]) -> bytes:
-    """A `string[]` field."""
     parts: List[bytes] = [_COUNT.pack(len(names))]
     for name in names:
         data = name.encode("utf-8")

@@ -89,7 +89,6 @@ class StateTopic:
 
     @property
     def wanted(self) -> bool:
-        """Whether there are subscribers."""
         return self.publisher.get_num_connections() > 0
 
     def is_due(self, step: int, sim_ns: int,

@@ -118,7 +118,6 @@ class Renderer:
                     del self._batches[key]
 
     def set_lights(self, lights: List[Light], scene: Scene) -> None:
-        """Light and surroundings."""
         self._kept.forget()
         self._lights, self._scene = lights, scene
 

@@ -175,7 +175,6 @@ def _bumps(layers: Tuple[bool, ...]) -> str:
 
 
 def _light(k: int, kind: str, shadow: int, shiny: bool) -> str:
-    """What a light adds."""
     lines = []
     if kind == "directional":
         lines += [f"vec3 way = light_at[{k}].xyz;", "float strength = 1.0;"]

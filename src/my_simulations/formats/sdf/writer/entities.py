@@ -138,7 +138,6 @@ class _Writer:
                                "real_time_update_rate"))
 
     def light(self, parent: Any, light: Light) -> None:
-        """`<light>`."""
         with _naming(f"light {light.name!r}"):
             element = _element(parent, "light", light)
             fill_element(element, light, LIGHT, {}, light.extra, required=("@type",))
@@ -159,7 +158,6 @@ class _Writer:
             leave_out=() if model.static != bare.static else ("static",))
 
     def model(self, parent: Any, model: Model) -> None:
-        """`<model>`, in full."""
         with _naming(f"model {model.name!r}"):
             element = _element(parent, "model", model)
             fill_element(element, model, MODEL, {
@@ -170,7 +168,6 @@ class _Writer:
             }, model.extra)
 
     def link(self, parent: Any, link: Link) -> None:
-        """`<link>`."""
         element = _element(parent, "link", link)
         fill_element(element, link, LINK, {
             "inertial": lambda at: self.inertial(at, link),
@@ -186,14 +183,12 @@ class _Writer:
             parent.remove(element)
 
     def collision(self, parent: Any, collision: Collision) -> None:
-        """`<collision>`."""
         element = _element(parent, "collision", collision)
         fill_element(element, collision, COLLISION, {
             "geometry": lambda at: write_geometry(at, collision.geometry),
         }, collision.extra)
 
     def visual(self, parent: Any, visual: Visual) -> None:
-        """`<visual>`."""
         element = _element(parent, "visual", visual)
         fill_element(element, visual, VISUAL, {
             "geometry": lambda at: write_geometry(at, visual.geometry),
@@ -201,7 +196,6 @@ class _Writer:
         }, visual.extra)
 
     def joint(self, parent: Any, joint: Joint) -> None:
-        """`<joint>`."""
         element = _element(parent, "joint", joint)
         element.set("type", joint.type)
         fill_element(element, joint, JOINT, {

@@ -33,7 +33,6 @@ def fill_element(element: Any, source: Any, table: Table, parts: WriteParts,
 
 
 def write_each(write: Callable[[Any, Any], None], parent: Any, items: Iterable[Any]) -> None:
-    """Call `write(parent, item)` for every item."""
     for item in items:
         write(parent, item)
 

@@ -37,7 +37,6 @@ _ALWAYS = ("size", "radius", "length", "normal", "radii")
 
 
 def tables_by_shape() -> Dict[Any, Table]:
-    """The table of each class of shape."""
     return {table.of: table for table in GEOMETRIES.values()}
 
 

@@ -29,7 +29,6 @@ def write_gui(parent: Any, gui: Gui, camera: Optional[GuiCamera]) -> None:
 
 
 def write_road(parent: Any, road: Road) -> None:
-    """`<road>`."""
     fill_element(_element(parent, "road", road.name), road, ROAD, {
         "material": lambda at: write_material(at, road.material),
     }, road.extra, required=("width",))
