@@ -142,6 +142,9 @@ _TABLE: Tuple[Tuple[str, Tuple[Tuple[str, str, str, str], ...]], ...] = (
         ("include-flag", NOTE, "A flag of an included model applies to the whole model.", "None."),
         ("model-not-found", EITHER, "An included model was not found.",
          "Add its folder to GAZEBO_MODEL_PATH, or correct the URI."),
+        ("model-folder-unlisted", WARNING, "A model or mesh is in a folder near the file or in a"
+         " package that is not in the model path; the folder is added.",
+         "Set GAZEBO_MODEL_PATH, which Gazebo needs."),
         ("model-missing", ERROR, "The folder or file contains no model.",
          "Add model.config and model.sdf."),
         ("model-download", NOTE, "A model is being downloaded.", "Wait."),

@@ -16,7 +16,7 @@ from .model_config import description_in
 from .model_provider import DATABASE, ModelNotProvidedError, Progress
 from .package_files import PACKAGE, package_directories
 from .ros_packages import ExportedPaths, FindPackage, PackageIndex, package_name
-from .suggestions import NO_PACKAGE, same_file_elsewhere, suggestion
+from .suggestions import NO_PACKAGE, same_file_elsewhere, suggestion, unlisted_model_folder
 
 _MEDIA_SUFFIXES = ("", "models", "media/models", "Media/models")
 _HOME_MODELS = "/.gazebo/models/"
@@ -255,6 +255,17 @@ class Resolver:
             return ""
         there = (os.path.join(folder, inside) for folder in self._all("models"))
         return f"model://{inside}" if any(map(os.path.exists, there)) else ""
+
+    def add_unlisted_folder(self, uri: str, base_dir: str) -> str:
+        """Add the folder of a missing model that is near the file or in a package; "" for none.
+
+        See `suggestions.unlisted_model_folder`. Returns the folder.
+        """
+        folder = unlisted_model_folder(uri, os.path.abspath(base_dir) if base_dir else "",
+                                       self._packages)
+        if folder:
+            self.add_model_folder(folder)
+        return folder
 
     def model_file(self, uri: str, base_dir: str = "") -> str:
         """The description file of a URI: the file itself, or that of a model folder.

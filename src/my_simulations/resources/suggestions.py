@@ -4,13 +4,15 @@ from __future__ import annotations
 import difflib
 import os
 import re
-from typing import Callable, List, Sequence
+from typing import Callable, Iterator, List, Sequence
 
 from .package_files import PACKAGE
 
 _SCHEME = re.compile(r"([A-Za-z]+):/*")
 _SCHEMES = ("model", "package", "file")
 _LIKE = 0.7
+_MOST_ABOVE = 6
+"""Folders above a file in which models are looked for, if it is in no package."""
 NO_PACKAGE = "ROS package "
 """Prefix of `ResourceNotFoundError.tried` for an unknown package."""
 
@@ -73,6 +75,39 @@ def same_file_elsewhere(uri: str, model_folders: Sequence[str], own_folders: Seq
         if name in known and os.path.exists(os.path.join(known[name], tail)):
             return f"package://{tail}"
     return ""
+
+
+def unlisted_model_folder(uri: str, base_dir: str, packages: Callable[[], List[str]]) -> str:
+    """The folder whose child a `model://` URI names, near the file or in a package; "" for none.
+
+    Folders of models are often listed in GAZEBO_MODEL_PATH on the machine of their authors only.
+    Searched are the folders above the file up to its package, then all packages, each with its
+    `models` folder.
+
+    Args:
+        uri: the missing URI.
+        base_dir: folder of the file that contains it; "" for none.
+        packages: returns the folders of all ROS packages.
+    """
+    scheme, separator, rest = uri.strip().partition("://")
+    name = rest.strip("/").partition("/")[0]
+    if scheme != "model" or not separator or name in ("", ".", ".."):
+        return ""
+    for above in (*_above(base_dir), *packages()):
+        for folder in (above, os.path.join(above, "models")):
+            if os.path.isdir(os.path.join(folder, name)) and os.path.exists(
+                    os.path.join(folder, rest.strip("/"))):
+                return folder
+    return ""
+
+
+def _above(folder: str) -> Iterator[str]:
+    """A folder and those above it, up to its package."""
+    for _ in range(_MOST_ABOVE if folder else 0):
+        yield folder
+        if os.path.exists(os.path.join(folder, "package.xml")) or folder == os.path.dirname(folder):
+            return
+        folder = os.path.dirname(folder)
 
 
 def _first_missing(path: str) -> "tuple[str, str]":

@@ -18,6 +18,7 @@ from reading import (
 from my_simulations.description.flatten import flattened
 from my_simulations.description.model import Inertial
 from my_simulations.description.unflatten import unflattened
+from my_simulations.formats.reading import read_world
 from my_simulations.formats.xml.values import BOOL, COLOR, FLOAT, INT, LIMIT, POSE, VECTOR2, VECTOR3
 from my_simulations.geometry import IDENTITY, pose_from_xyzrpy
 from my_simulations.resources.resolver import Resolver
@@ -343,3 +344,24 @@ def test_a_population_may_include_its_model(tmp_path):
     assert [(model.name, model.static) for model in world.models] == [
         ("oak_clone_0", True), ("oak_clone_1", True)]
     assert errors(issues) == []
+
+
+def test_models_beside_a_world_need_no_model_path(tmp_path):
+    """Many repositories have `models` beside `worlds` and say in their README to export a path."""
+    rock = tmp_path / "course" / "models" / "rock"
+    rock.parent.mkdir(parents=True)
+    shelf(rock.parent, rock=LINK)
+    (rock / "a.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
+    (tmp_path / "course" / "package.xml").write_text("<package/>")
+    world = tmp_path / "course" / "worlds" / "a.world"
+    world.parent.mkdir()
+    world.write_text(
+        '<sdf version="1.6"><world name="w"><include><uri>model://rock</uri></include>'
+        '<model name="m"><link name="l"><visual name="v"><geometry><mesh>'
+        "<uri>model://rock/a.obj</uri></mesh></geometry></visual></link></model></world></sdf>")
+    loaded = read_world(str(world), Resolver())
+    assert [model.name for model in loaded.world.models] == ["rock", "m"]
+    assert loaded.world.models[1].links[0].visuals[0].geometry.path == str(rock / "a.obj")
+    (told,) = [issue for issue in loaded.issues if issue.code == "model-folder-unlisted"]
+    assert (told.file, told.line) == (str(world), 1) and "GAZEBO_MODEL_PATH=" in told.hint
+    assert errors(loaded.issues) == []

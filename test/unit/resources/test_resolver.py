@@ -143,6 +143,30 @@ def test_a_model_in_the_home_folder_of_another_machine_is_taken_from_the_model_f
         resolver.resolve(f"{home}/nowhere/b.dae")
 
 
+@pytest.mark.parametrize(("there", "base"), [
+    ("ws/course/models", "ws/course/worlds/deep"), ("ws/course/models", "ws/course/models/sofa"),
+    ("ws/course", "ws/course/worlds"), ("ws/other/models", ""), ("ws/other/models", "elsewhere")])
+def test_a_folder_of_models_that_is_not_listed_is_found_near_the_file_or_in_a_package(
+        tmp_path, there, base):
+    (tmp_path / there / "desk").mkdir(parents=True)
+    (tmp_path / there / "desk" / "a.dae").write_text("")
+    (tmp_path / "ws" / "course").mkdir(exist_ok=True)
+    (tmp_path / "ws" / "course" / "package.xml").write_text("<package/>")
+    resolver = Resolver(packages=lambda: [str(tmp_path / "ws" / "other")])
+    base = str(tmp_path / base) if base else ""
+    assert resolver.add_unlisted_folder("model://desk/a.dae", base) == str(tmp_path / there)
+    assert found(resolver, "model://desk/a.dae", tmp_path) == f"{there}/desk/a.dae"
+
+
+@pytest.mark.parametrize("uri", ["model://chair/a.dae", "model://desk/other.dae", "model://",
+                                 "model://../desk/a.dae", "package://desk/a.dae", "desk/a.dae"])
+def test_models_above_the_package_of_a_file_are_not_looked_for(tmp_path, uri):
+    for path in ("models/chair/a.dae", "course/models/desk/a.dae", "course/package.xml"):
+        (tmp_path / path).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / path).write_text("")
+    assert Resolver().add_unlisted_folder(uri, str(tmp_path / "course" / "worlds")) == ""
+
+
 def test_a_home_folder_that_is_there_is_used(resolver, tree):
     path = tree / "home" / ".gazebo" / "models" / "lamp" / "b.dae"
     path.parent.mkdir(parents=True)

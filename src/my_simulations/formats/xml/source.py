@@ -7,7 +7,7 @@ from typing import Any, Callable, Dict, List, Optional, Set, Tuple
 
 from ...description.model import Model
 from ...errors import Issue, Severity
-from ...resources.resolver import Resolver
+from ...resources.resolver import Resolver, ResourceNotFoundError
 from ..include_overrides import IncludeOverrides
 
 _MOST_PATHS = 1000
@@ -107,13 +107,24 @@ class Source:
 
     def resolve(self, uri: str, element: Any) -> str:
         """The path of a URI that `element` names. Raises ResourceNotFoundError."""
-        self.report_home_path(uri, element)
-        return self.resolver.resolve(uri, self.base_dir)
+        return self._located(self.resolver.resolve, uri, element)
 
     def model_file(self, uri: str, element: Any) -> str:
         """The description file of a model's URI. Raises ResourceNotFoundError."""
+        return self._located(self.resolver.model_file, uri, element)
+
+    def _located(self, locate: Callable[[str, str], str], uri: str, element: Any) -> str:
         self.report_home_path(uri, element)
-        return self.resolver.model_file(uri, self.base_dir)
+        try:
+            return locate(uri, self.base_dir)
+        except ResourceNotFoundError:
+            folder = self.resolver.add_unlisted_folder(uri, self.base_dir)
+            if not folder:
+                raise
+            self.tolerate("model-folder-unlisted", f"{uri!r} is in {folder}, which is not in the"
+                          " model path; it is added", element,
+                          f"Gazebo needs GAZEBO_MODEL_PATH={folder}")
+            return locate(uri, self.base_dir)
 
     def report_home_path(self, uri: str, element: Any) -> None:
         """Warn of a URI in the home folder of another machine; see `Resolver.replaced_home`."""
