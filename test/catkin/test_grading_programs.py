@@ -151,7 +151,7 @@ def test_a_program_is_marked_for_what_it_does_in_sim_time(tmp_path, words):
     assert points(rows["good"], *names) == [4, 2, 0, 1], students
     assert points(rows["half"], *names) == [2, 2, 0, 1]
     said = json.loads((students / "half" / "results.json").read_text())["tests"]
-    assert "partial points" in said[0]["output"] and "std_msgs/String" in said[2]["output"]
+    assert "% of the points" in said[0]["output"] and "std_msgs/String" in said[2]["output"]
     assert 'id="data"' in (students / "good" / "replay.html").read_text(encoding="utf-8")
 
 

@@ -85,10 +85,17 @@ class Place(Timed):
 
 @dataclass(frozen=True)
 class Requirement(Timed):
-    """A condition holds; else `partial`, a number from 0 to 1, gives a share of the points."""
+    """A condition holds.
+
+    Attributes:
+        require: the condition.
+        partial: a number from 0 to 1, the share of the points if it does not hold.
+        message: what the student reads then; "" for the condition itself.
+    """
 
     require: Optional[Expression] = None
     partial: Optional[Expression] = None
+    message: str = ""
 
 
 @dataclass(frozen=True)

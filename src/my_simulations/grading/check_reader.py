@@ -39,7 +39,7 @@ class CheckReader:
             "count": (("not", "shape", "at_least", "at_most", "exactly", "partial"),
                       self._count),
             "place": (("at", "tolerance", "within", "partial"), self._place),
-            "require": (("within", "partial"), self._require),
+            "require": (("within", "partial", "message"), self._require),
             "no_contact": (("within",), self._no_contact),
             "topic": (("type", "rate", "within"), self._topic),
             "service": (("type", "within"), self._service),
@@ -108,7 +108,9 @@ class CheckReader:
             **common, within=self._within(inside, path, needed=True),
             require=self._expression(inside["require"], (*path, "require"), True),
             partial=self._expression(inside["partial"], (*path, "partial"), False)
-            if "partial" in inside else None)
+            if "partial" in inside else None,
+            message=self._values.text(inside["message"], (*path, "message"))
+            if "message" in inside else "")
 
     def _no_contact(self, inside: Fields, path: KeyPath, common: Fields) -> Check:
         names = self._values.names(inside["no_contact"], (*path, "no_contact"))

@@ -3,6 +3,7 @@ from __future__ import annotations
 
 import os
 from html import escape
+from itertools import groupby
 from typing import List, Sequence
 from urllib.parse import quote
 
@@ -46,17 +47,12 @@ def _colour(points: float, most: float) -> str:
 
 
 def _student(assignment: Assignment, mark: Mark) -> str:
-    rows = []
-    for one in mark.results:
-        place = f"{one.file}:{one.line}" if one.line else one.file
-        rows.append(f'<tr class="{_colour(one.points, one.most)}"><td>{escape(one.name)}</td>'
-                    f'<td class="number">{one.points:g} of {one.most:g}</td>'
-                    f'<td>{escape(one.reason)}</td><td><code>{escape(place)}</code></td></tr>')
     body = [f"<h1>{escape(assignment.lab)}: {escape(mark.student)}</h1>",
             f"<p><b>{mark.points:g} of {mark.most:g} points</b>"
             + ("" if mark.status == GRADED else f" ({escape(mark.status)})") + "</p>",
+            *(f"<p>{escape(note)}</p>" for note in mark.notes),
             "<table><tr><th>check</th><th>points</th><th>reason</th><th>place</th></tr>",
-            *rows, "</table>", *(f"<p>{escape(note)}</p>" for note in mark.notes)]
+            *_rows(mark), "</table>"]
     if PICTURE in mark.files:
         body.append(f'<p><img src="{PICTURE}" alt="The world at the end of the run"></p>')
     if REPLAY in mark.files:
@@ -65,6 +61,30 @@ def _student(assignment: Assignment, mark: Mark) -> str:
     body += [f'<p><a href="{quote(name)}">{escape(name)}</a></p>' for name in mark.files
              if name not in (PICTURE, REPLAY)]
     return _page(f"{assignment.lab}: {mark.student}", body)
+
+
+def _rows(mark: Mark) -> List[str]:
+    """A row for each check; a cause that several checks share is shown once."""
+    rows: List[str] = []
+    for (reason, place), group in groupby(mark.results, lambda one: (
+            _without_notes(one.reason, mark.notes),
+            f"{one.file}:{one.line}" if one.line else one.file)):
+        results = list(group)
+        shared = (f'<td rowspan="{len(results)}">{escape(reason)}</td>'
+                  f'<td rowspan="{len(results)}"><code>{escape(place)}</code></td>')
+        for one in results:
+            rows.append(f'<tr class="{_colour(one.points, one.most)}"><td>{escape(one.name)}</td>'
+                        f'<td class="number">{one.points:g} of {one.most:g}</td>{shared}</tr>')
+            shared = ""
+    return rows
+
+
+def _without_notes(reason: str, notes: Sequence[str]) -> str:
+    """A reason without the notes at its end, which the page shows above."""
+    for note in notes:
+        if note and reason.endswith(f"; {note}"):
+            reason = reason[:-len(note) - 2]
+    return reason
 
 
 def _overview(assignment: Assignment, marks: Sequence[Mark]) -> str:

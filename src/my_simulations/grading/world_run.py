@@ -155,7 +155,8 @@ def _required(check: Requirement, samples: Samples, name: str) -> CheckResult:
         return result(check, 0.0, "there is no condition")
     if check.require.value(samples):
         return result(check, 1.0)
-    reason = f"not true within {check.within:g} s of sim time: {check.require.text}"
+    reason = (check.message
+              or f"not true within {check.within:g} s of sim time: {check.require.text}")
     measured = check.require.measured(samples)[:_MOST_MEASURED]
     if measured:
         reason += f"; {', '.join(measured)}"
@@ -163,7 +164,7 @@ def _required(check: Requirement, samples: Samples, name: str) -> CheckResult:
     if check.partial is not None:
         share = float(check.partial.value(samples))
         share = 0.0 if math.isnan(share) else min(max(share, 0.0), 1.0)
-        reason += f"; partial points by {check.partial.text}: {100.0 * share:.0f} %"
+        reason += f"; {100.0 * share:.0f} % of the points"
     return result(check, share, reason, name)
 
 

@@ -80,6 +80,19 @@ def test_pages_show_reasons_and_lead_to_replays(assignment, marks, tmp_path):
     assert "a &lt;b&gt;" in page and "<code>a.world:7</code>" in page and "a note" in page
 
 
+def test_a_page_shows_a_cause_once_that_several_checks_share(assignment, tmp_path):
+    checks = assignment.checks
+    cause = "it ended with exit status 1"
+    for name, reasons in (("equal", [cause, cause]), ("noted", [f"no answer; {cause}", "too few"])):
+        mark = Mark(name, GRADED, [result(check, 0.0, reason, "go.py", 3)
+                                   for check, reason in zip(checks, reasons)],
+                    [cause] if name == "noted" else [])
+        write_pages(assignment, [mark], str(tmp_path))
+        page = (tmp_path / "students" / name / "index.html").read_text()
+        assert page.count(cause) == 1 and page.count("number\">0 of ") == 2
+        assert ('rowspan="2"' in page) == (name == "equal")
+
+
 def test_results_and_files_come_through_in_pieces(assignment, tmp_path):
     receiving, sending = os.pipe()
     writer = ResultWriter(sending)
