@@ -71,12 +71,24 @@ def pytest_make_parametrize_id(val: object, argname: str) -> Optional[str]:
 def pytest_addoption(parser: pytest.Parser) -> None:
     parser.addoption("--processor-time", type=int, default=0, metavar="N",
                      help="list the N tests that used the most processor time, children included")
+    parser.addoption("--leave-out", default="", metavar="FILE",
+                     help="leave out the tests in a file: lines of seconds and the id of a test")
 
 
 def pytest_configure(config: pytest.Config) -> None:
     shown = config.getoption("--processor-time")
     if shown:
         config.pluginmanager.register(ProcessorTimes(shown), "processor-times")
+
+
+def pytest_collection_modifyitems(config: pytest.Config, items: List[pytest.Item]) -> None:
+    file = config.getoption("--leave-out")
+    if not file:
+        return
+    with open(file, encoding="utf-8") as stream:
+        costly = {line.rstrip("\n").partition(" ")[2] for line in stream}
+    config.hook.pytest_deselected(items=[one for one in items if one.nodeid in costly])
+    items[:] = [one for one in items if one.nodeid not in costly]
 
 
 @pytest.fixture

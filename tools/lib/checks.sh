@@ -6,6 +6,7 @@ FAILED=0
 FAULTS=()         # the names of what failed, for the end
 MARK="$$.$(date +%s)."   # every lane adds its number (lanes.sh)
 ADOPT="$(dirname -- "$(realpath -- "${BASH_SOURCE[0]}")")/adopt.py"
+COSTLY=test/costly_tests.txt   # tests that only complete runs make, with their processor time
 RESULTS=          # folder of the result files, set once the workspace is known
 
 # marked: the processes that a check started, told by a variable in their environment.
@@ -110,11 +111,18 @@ check_and_report() {
   if [ "$status" -eq 0 ]; then finish "$(tail -n 1 "$LOG")"; else judge "$1" 0 0 "$status"; fi
 }
 
-# pytest_files NAME SECONDS FILE...: the tests of the given files, long ones where LONG is 1.
+# is_left_out NAME: whether this run leaves out a test because it is costly.
+is_left_out() {
+  [ "${COMPLETE:-1}" = 0 ] && sed 's/^[0-9.]* *//' "$CLONE/$COSTLY" | grep -q -x -F "$1"
+}
+
+# pytest_files NAME SECONDS FILE...: the tests of the given files, long ones where LONG is 1, and
+# costly ones unless COMPLETE is 0.
 pytest_files() {
   local title="$1" limit="$2" status=0 head name results options=()
   [ "${LONG:-0}" = 1 ] || options=(-m "not long")
   [ "${PROCESSOR_TIME:-0}" = 0 ] || options+=(--processor-time 60)
+  [ "${COMPLETE:-1}" = 1 ] || options+=(--leave-out "$CLONE/$COSTLY")
   name=${title//[\/ ]/-}
   results="$RESULTS/$name.xml"
   shift 2
@@ -123,6 +131,8 @@ pytest_files() {
     MY_SIMULATIONS_LONG="${LONG:-0}" MY_SIMULATIONS_RELIABILITY="$RESULTS/reliability.jsonl" \
     "${TEST_PYTHON:-$VENV/bin/python3}" -m pytest -p no:cacheprovider --junitxml="$results" \
     "${options[@]}" "$@" || status=$?
+  # All tests of the files are costly (ExitCode.NO_TESTS_COLLECTED).
+  [ "$status" -ne 5 ] || [ "${COMPLETE:-1}" = 1 ] || status=0
   head=$(grep -o '<testsuite [^>]*>' "$results" 2>/dev/null | head -n 1 || true)
   judge "$title" $(($(attribute tests "$head") - $(attribute skipped "$head"))) \
     $(($(attribute errors "$head") + $(attribute failures "$head"))) "$status"

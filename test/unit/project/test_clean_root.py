@@ -149,7 +149,7 @@ def test_ci_says_why_it_runs_without_a_root(tmp_path):
     assert process.returncode == 5, text
     first, second, last = text.splitlines()
     assert first == "The tests run on this system, not in a clean root: this user is not root."
-    assert second.startswith("tested sdf in ") and last == "4 passed, 0 failed"
+    assert second.startswith("tested --complete sdf in ") and last == "4 passed, 0 failed"
     assert not Path(second.split()[-1]).exists()
 
 
@@ -160,7 +160,7 @@ def test_ci_uses_a_clean_root_of_debian_12(tmp_path):
     if not can_mount():
         return
     assert process.returncode == 3, text
-    assert "words: sdf" in text and " bookworm " in (tmp_path / "calls").read_text()
+    assert "words: --complete sdf" in text and " bookworm " in (tmp_path / "calls").read_text()
 
 
 def test_option_without_root_says_what_it_takes(tmp_path):

@@ -2,8 +2,10 @@
 from __future__ import annotations
 
 import os
+import shutil
 import signal
 import subprocess
+import sys
 import time
 from pathlib import Path
 
@@ -52,6 +54,59 @@ def test_every_check_is_told_of_in_one_line_and_counted(tmp_path, lanes):
     assert "the reason" in lines
     assert lines[-2:] == [f"FAILED broken: 1 failed, see {tmp_path}/logs/broken.log",
                           "0 passed, 1 failed, 5 steps"]
+
+
+LEFT_OUT = """
+CLONE="$HOME"; RESULTS="$HOME"; TEST_PYTHON={python}; COMPLETE={complete}
+for name in cheap dear; do queue pytest_files $name 50 "$HOME/test/test_$name.py"; done
+is_left_out "rostest world" && say "world is left out"
+is_left_out "rostest worlds" || say "worlds is run"
+"""
+
+
+@pytest.mark.parametrize(("complete", "told"), [
+    (0, ["world is left out", "worlds is run", "cheap ... 1 ok", "dear ... ok"]),
+    (1, ["worlds is run", "cheap ... 2 ok", "dear ... 1 ok"])])
+def test_costly_tests_are_left_out_unless_a_run_is_complete(tmp_path, complete, told):
+    folder = tmp_path / "test"
+    folder.mkdir()
+    (folder / "conftest.py").write_text((REPOSITORY / "test" / "conftest.py").read_text())
+    (folder / "test_cheap.py").write_text("def test_a(): pass\ndef test_ab(): pass\n")
+    (folder / "test_dear.py").write_text("def test_a(): pass\n")
+    (folder / "costly_tests.txt").write_text(
+        "9.0 rostest world\n5.5 test/test_cheap.py::test_a\n7.0 test/test_dear.py::test_a\n")
+    (tmp_path / "pyproject.toml").write_text("[tool.pytest.ini_options]\n")
+    lines = output(tmp_path, LEFT_OUT.format(python=sys.executable, complete=complete), 1)
+    assert [line.partition("] ")[2].partition(" (")[0] or line for line in lines][:-1] == told
+
+
+def test_costly_tests_are_read_from_the_output_of_a_complete_run(tmp_path):
+    generate = tmp_path / "tools" / "generate"
+    generate.mkdir(parents=True)
+    (tmp_path / "test").mkdir()
+    shutil.copy(REPOSITORY / "tools" / "generate" / "costly_tests.py", generate)
+    (tmp_path / "output").write_text(
+        "[5/9] rostest world ... 3 ok (20 s, processor 9.0 s)\n"
+        "[6/9] rostest many ... 30 ok (20 s, processor 9.0 s)\n"
+        "[7/9] test/unit 1/2 ... 30 ok (20 s, processor 90.0 s)\n"
+        "    3.00 test/a/test_b.py::test_c[no token]\n   2.99 test/a/test_b.py::test_d\n")
+    subprocess.run([sys.executable, str(generate / "costly_tests.py"), "output"], cwd=tmp_path,
+                   check=True, stdout=subprocess.DEVNULL)
+    lines = (tmp_path / "test" / "costly_tests.txt").read_text().splitlines()
+    assert lines[2:] == ["9.0 rostest world", "3.0 test/a/test_b.py::test_c[no token]"]
+
+
+def test_the_list_of_costly_tests_names_tests_that_exist():
+    lines = (REPOSITORY / "test" / "costly_tests.txt").read_text().splitlines()
+    names = [line.partition(" ")[2] for line in lines if not line.startswith("#")]
+    assert len(names) > 50
+    for name in names:
+        if name.startswith("rostest "):
+            assert (REPOSITORY / "test" / "rostest" / f"{name.split()[1]}.test").is_file(), name
+        else:
+            file, _, test = name.partition("::")
+            function = test.partition("[")[0].rpartition("::")[2]
+            assert f"def {function}(" in (REPOSITORY / file).read_text(), name
 
 
 def shown(tmp_path, log):
