@@ -266,6 +266,20 @@ def test_an_overlap_of_a_soft_contact_does_not_throw(lab: Lab, laws: Laws):
     laws.at_most("kp 1e5, 5 cm in the floor: how far it leaves it, m", highest - 0.5, 1e-3)
 
 
+@pytest.mark.parametrize("max_vel", [0.01, 0.1, 0.3])
+def test_a_soft_contact_parts_at_most_at_max_vel(lab: Lab, laws: Laws, max_vel: float):
+    # 5e5 N/m and 10 N s/m are the wheels of many robots; as a spring alone 1 kg would jump 0.3 m.
+    lab.load(slab("floor", (60, 60, 1)), (0, 0, -0.5))
+    body = lab.load(_jointed(ball(radius=0.1, surface=Surface(kp=5e5, kd=10.0, max_vel=max_vel))),
+                    (0, 0, 0.6))
+    lab.steps(300)
+    fastest = -1.0
+    for _ in range(500):
+        lab.steps(1)
+        fastest = max(fastest, lab.twist(body).linear[2])
+    laws.at_most(f"max_vel {max_vel}: speed after a fall of 0.5 m, m/s", fastest, max_vel)
+
+
 @pytest.mark.parametrize("one, other, meet", [
     (0x01, 0x01, True), (0x01, 0x02, False), (0x03, 0x02, True), (0x00, 65535, False),
     (65535, 65535, True)])

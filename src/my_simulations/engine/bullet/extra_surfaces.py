@@ -17,8 +17,8 @@ from .surface_coefficients import is_direction_dependent
 SOFT = 1e6
 """N/m; a stiffer contact is a hard one: 1 kg goes less than 0.01 mm deep."""
 
-_SPRINGS = 0.1         # m/s; a max_vel below it lets nothing spring out of an overlap
 _PUSHED_OUT = 5.0      # 1/s: overlaps of damped contacts shrink at this rate, as those of hard ones
+_DEEP = 0.002          # m: an overlap of this depth parts at max_vel
 _LEAST_SHARE = 1e-3    # of the larger coefficient, along the slippery direction
 _TORSION = 3.0 * math.pi / 16.0
 _ROLLING = 1e-9        # m
@@ -87,7 +87,6 @@ def anisotropy(mus: Tuple[float, float], first: Vec3, left: Tuple[float, float] 
 
 
 def _damping(surface: Surface, dt: float) -> float:
-    """kd, N s/m, or what keeps an overlap from springing out faster than max_vel lets it."""
-    if surface.max_vel >= _SPRINGS:
-        return max(surface.kd, 1e-9)
-    return max(surface.kd, dt * surface.kp * (1.0 / min(0.2, _PUSHED_OUT * dt) - 1.0))
+    """kd, N s/m, or what keeps an overlap from springing out faster than max_vel."""
+    rate = max(_PUSHED_OUT, surface.max_vel / _DEEP)
+    return max(surface.kd, surface.kp * (1.0 / rate - dt), 1e-9)
