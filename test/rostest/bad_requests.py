@@ -1,7 +1,6 @@
 """Requests that cannot be carried out: a clear answer, nothing half done, and the node goes on."""
 import socket
 import struct
-import unittest
 from urllib.parse import urlparse
 
 import rosgraph
@@ -18,11 +17,7 @@ MESH = ('<robot name="r"><link name="l"><inertial><mass value="1"/><inertia ixx=
         "</collision></link></robot>")
 
 
-class BadRequests(unittest.TestCase):
-    @classmethod
-    def setUpClass(cls):
-        cls.gazebo = support.Gazebo()
-
+class BadRequests(support.GazeboCase):
     def setUp(self):
         self.gazebo.clear()
         self.gazebo.unpause_physics()
@@ -52,8 +47,7 @@ class BadRequests(unittest.TestCase):
     def spawn_warned(self, xml, *words):
         """Spawned as Gazebo does, with a warning in the log that holds each of these words."""
         warned = [support.heard_on_rosout(word) for word in words]
-        answer = self.gazebo.spawn_urdf_model("odd", xml, "", pose(), "")
-        self.assertTrue(answer.success, answer.status_message)
+        self.done(self.gazebo.spawn_urdf_model("odd", xml, "", pose(), ""))
         self.assertIn("odd", self.gazebo.names())
         for heard in warned:
             heard()

@@ -4,7 +4,6 @@ import os
 import signal
 import sys
 import threading
-import unittest
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 
@@ -29,11 +28,7 @@ def values(state):
     return (*support.numbers(state.pose), v.x, v.y, v.z, w.x, w.y, w.z)
 
 
-class EngineLoss(unittest.TestCase):
-    @classmethod
-    def setUpClass(cls):
-        cls.gazebo = support.Gazebo()
-
+class EngineLoss(support.GazeboCase):
     def setUp(self):
         self.gazebo.unpause_physics()
         self.gazebo.clear()
@@ -65,8 +60,7 @@ class EngineLoss(unittest.TestCase):
                 self.assertAlmostEqual(one, other, delta=1e-9, msg=name)
 
     def test_a_swinging_joint_comes_back_where_it_was_and_as_fast(self):
-        answer = self.gazebo.spawn("arm", xml=PENDULUM, where=pose(0.0, 0.0, 3.0))
-        self.assertTrue(answer.success, answer.status_message)
+        self.done(self.gazebo.spawn("arm", xml=PENDULUM, where=pose(0.0, 0.0, 3.0)))
         support.wait_for(lambda: self.bob().twist.angular.y > 1.0, "a swing")
         self.gazebo.pause_physics()
         before = self.bob()

@@ -2,7 +2,6 @@
 """The lab sheet as printed: its launch file with its defaults, but for the place of the robot."""
 import os
 import sys
-import unittest
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 
@@ -12,11 +11,7 @@ import support
 from rosgraph_msgs.msg import Clock
 
 
-class LabSheet(unittest.TestCase):
-    @classmethod
-    def setUpClass(cls):
-        cls.gazebo = support.Gazebo()
-
+class LabSheet(support.GazeboCase):
     def test_the_clock_ticks(self):
         self.assertIs(rospy.get_param("/use_sim_time"), True)
         clock = support.Collected("/clock", Clock)

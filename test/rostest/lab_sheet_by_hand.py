@@ -2,7 +2,6 @@
 """A launch file typed from the lab sheet by hand, with nothing of ours in it."""
 import os
 import sys
-import unittest
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 
@@ -10,11 +9,7 @@ import rospy
 import support
 
 
-class TypedByHand(unittest.TestCase):
-    @classmethod
-    def setUpClass(cls):
-        cls.gazebo = support.Gazebo()
-
+class TypedByHand(support.GazeboCase):
     def test_1_the_world_runs_without_a_robot(self):
         support.wait_for(lambda: self.gazebo.sim_time() > 0.5, "the world to run")
         self.assertEqual(self.gazebo.names(), ["ground_plane"])

@@ -2,7 +2,6 @@
 """The launch file with pause:=true and the room."""
 import os
 import sys
-import unittest
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 
@@ -12,11 +11,7 @@ import support
 ROOM = ["ground_plane", "room", "table", "box", "sphere", "cylinder"]
 
 
-class PausedRoom(unittest.TestCase):
-    @classmethod
-    def setUpClass(cls):
-        cls.gazebo = support.Gazebo()
-
+class PausedRoom(support.GazeboCase):
     def test_1_the_room_and_the_robot_are_there_while_time_stands_still(self):
         support.wait_for(lambda: "robo" in self.gazebo.names(), "the robot")
         self.assertEqual(sorted(self.gazebo.names()), sorted([*ROOM, "robo"]))

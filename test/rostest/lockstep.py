@@ -2,7 +2,6 @@
 """In lockstep time goes on by request, and the topics follow."""
 import os
 import sys
-import unittest
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 
@@ -12,11 +11,7 @@ from rosgraph_msgs.msg import Clock
 from support import Collected, pose
 
 
-class Lockstep(unittest.TestCase):
-    @classmethod
-    def setUpClass(cls):
-        cls.gazebo = support.Gazebo()
-
+class Lockstep(support.GazeboCase):
     def setUp(self):
         self.gazebo.clear()
 

@@ -1,6 +1,5 @@
 """Spawning, deleting, reading and moving models, in a running and in a paused world."""
 import math
-import unittest
 
 import rospy
 import support
@@ -30,10 +29,6 @@ class Base:
 
     paused = False
 
-    @classmethod
-    def setUpClass(cls):
-        cls.gazebo = support.Gazebo()
-
     def setUp(self):
         self.gazebo.unpause_physics()
         self.gazebo.clear()
@@ -41,8 +36,7 @@ class Base:
             self.gazebo.pause_physics()
 
     def spawned(self, name, **more):
-        answer = self.gazebo.spawn(name, **more)
-        self.assertTrue(answer.success, answer.status_message)
+        answer = self.done(self.gazebo.spawn(name, **more))
         return answer
 
     def assert_near(self, found, wanted, delta=1e-6):
@@ -97,8 +91,7 @@ class Base:
     def test_world_frames_have_four_names(self):
         self.spawned("one", where=pose(1.0, 2.0, 0.1))
         for literal in ("", "world", "map", "/map"):
-            state = self.gazebo.get_model_state("one", literal)
-            self.assertTrue(state.success, state.status_message)
+            state = self.done(self.gazebo.get_model_state("one", literal))
             self.assertEqual(state.header.frame_id, literal)
             self.assert_near(numbers(state.pose)[:2], (1.0, 2.0), 1e-3)
         refused = self.gazebo.get_model_state("one", "/world")
@@ -162,8 +155,7 @@ class Base:
     def test_links_are_found_by_scoped_and_by_plain_name(self):
         self.spawned("one", where=pose(1.0, 2.0, 0.1))
         for name in ("one::body", "body"):
-            state = self.gazebo.get_link_state(name, "world")
-            self.assertTrue(state.success, state.status_message)
+            state = self.done(self.gazebo.get_link_state(name, "world"))
             self.assertEqual(state.link_state.link_name, name)
             self.assertEqual(state.link_state.reference_frame, "world")
             self.assert_near(numbers(state.link_state.pose)[:2], (1.0, 2.0), 1e-3)
@@ -175,8 +167,7 @@ class Base:
         self.spawned("one", xml=xml, where=pose(1.0, 2.0, 0.1))
         self.spawned("two", xml=xml, where=pose(3.0, 2.0, 0.1))
         for _ in range(3):
-            state = self.gazebo.get_link_state(link, "world")
-            self.assertTrue(state.success, state.status_message)
+            state = self.done(self.gazebo.get_link_state(link, "world"))
             self.assert_near(numbers(state.link_state.pose)[:2], (1.0, 2.0), 1e-3)
         (line,) = told()
         self.assertIn("using that of 'one'", line.msg)
@@ -275,7 +266,7 @@ class Base:
         self.assertEqual(self.gazebo.is_paused(), self.paused)
 
 
-class Running(Base, unittest.TestCase):
+class Running(Base, support.GazeboCase):
     def test_a_dropped_box_comes_to_rest_on_the_ground(self):
         self.spawned("one", where=pose(0.0, 0.0, 1.0))
         support.wait_for(lambda: abs(self.gazebo.z("one") - 0.1) < 0.005, "the box on the ground")
@@ -289,7 +280,7 @@ class Running(Base, unittest.TestCase):
         support.wait_for(lambda: self.gazebo.sim_time() > stopped, "a step")
 
 
-class Paused(Base, unittest.TestCase):
+class Paused(Base, support.GazeboCase):
     paused = True
 
     def test_nothing_moves_and_no_time_passes(self):

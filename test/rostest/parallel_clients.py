@@ -3,7 +3,6 @@ import io
 import struct
 import threading
 import time
-import unittest
 
 import rosgraph
 import rospy
@@ -19,11 +18,7 @@ FLOOD = 20000
 """Requests that are sent without waiting for an answer."""
 
 
-class ParallelClients(unittest.TestCase):
-    @classmethod
-    def setUpClass(cls):
-        cls.gazebo = support.Gazebo()
-
+class ParallelClients(support.GazeboCase):
     def tearDown(self):
         self.gazebo.clear()
 

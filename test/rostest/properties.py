@@ -1,6 +1,5 @@
 """Properties of lights, links, joints and physics: set values are read back and take effect."""
 import math
-import unittest
 
 import rospy
 import support
@@ -29,18 +28,10 @@ ARM = ('<robot name="arm"><link name="world"/>'
          '</robot>')
 
 
-class Properties(unittest.TestCase):
-    @classmethod
-    def setUpClass(cls):
-        cls.gazebo = support.Gazebo()
-
+class Properties(support.GazeboCase):
     def setUp(self):
         self.gazebo.clear()
         self.gazebo.pause_physics()
-
-    def done(self, answer):
-        self.assertTrue(answer.success, answer.status_message)
-        return answer
 
     def near(self, found, wanted, delta=1e-6):
         self.assertEqual(len(found), len(wanted))

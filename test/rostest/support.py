@@ -286,6 +286,19 @@ class Program:
             self.process.wait()
 
 
+class GazeboCase(unittest.TestCase):
+    """Tests of one running server; `gazebo` has its services."""
+
+    @classmethod
+    def setUpClass(cls):
+        cls.gazebo = Gazebo()
+
+    def done(self, answer):
+        """Return the answer of a service, which succeeded."""
+        self.assertTrue(answer.success, answer.status_message)
+        return answer
+
+
 class Launched:
     """A roslaunch on a master of its own; use it in a `with`."""
 

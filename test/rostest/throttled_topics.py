@@ -3,7 +3,6 @@
 import os
 import statistics
 import sys
-import unittest
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 
@@ -23,11 +22,7 @@ def runs(clock):
     return found
 
 
-class ThrottledTopics(unittest.TestCase):
-    @classmethod
-    def setUpClass(cls):
-        cls.gazebo = support.Gazebo()
-
+class ThrottledTopics(support.GazeboCase):
     def test_the_clock_ticks_at_its_frequency_also_after_a_reset(self):
         clock = support.Collected("/clock", Clock)
         for resets, prepare in enumerate((lambda: None, self.gazebo.reset_simulation)):

@@ -1,6 +1,5 @@
 """/clock, model_states and link_states."""
 import time
-import unittest
 
 import rospy
 import support
@@ -32,11 +31,7 @@ def longest_row(steps):
     return longest
 
 
-class Topics(unittest.TestCase):
-    @classmethod
-    def setUpClass(cls):
-        cls.gazebo = support.Gazebo()
-
+class Topics(support.GazeboCase):
     def setUp(self):
         self.gazebo.unpause_physics()
         self.gazebo.clear()
