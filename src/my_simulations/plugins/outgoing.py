@@ -35,14 +35,14 @@ class Outgoing:
         """
         transforms: Dict[int, List[TransformOf]] = {}
         for context in plugins:
-            for ns, transform in context.graph.transforms:
+            for ns, transform in context.transforms:
                 transforms.setdefault(ns, []).append(transform)
-            context.graph.transforms = []
+            context.transforms = []
         for ns in sorted(transforms):
             self._graph.send_transforms(transforms[ns], ns)
         for context, running in plugins.items():
-            if context.graph.outbox:
-                outbox, context.graph.outbox = context.graph.outbox, []
+            if context.outbox:
+                outbox, context.outbox = context.outbox, []
                 guarded(running, self._send, outbox, failing(running))
 
     def _send(self, messages: Sequence[Tuple[Topic, Any]],

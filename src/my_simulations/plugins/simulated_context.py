@@ -1,7 +1,6 @@
 """The context of a plugin in a running simulator."""
 from __future__ import annotations
 
-from collections import deque
 from dataclasses import replace
 from typing import Any, Callable, Deque, Dict, List, NamedTuple, Optional, Sequence, Tuple
 
@@ -32,7 +31,7 @@ from .parameters import Parameters
 from .plugin_state import PluginParameter
 from .schedule import Schedule, ScheduledCall
 from .sensing_requests import SensingRequests
-from .simulated_graph import GraphUser, PluginGraph
+from .simulated_graph import GraphUser
 from .simulated_handles import PendingCommands, SimulatedJoint, SimulatedLink
 from .step_readings import StepReadings
 
@@ -63,12 +62,12 @@ class SimulatedContext(GraphUser):
     Attributes:
         commands: those for its model since they were last sent.
         wrench_ids: the wrenches that act now, by link.
-        graph: what it has on the graph; `inbox`: functions to be called for what has come.
         sensing: what it has asked of the sensing process.
     """
 
     def __init__(self, shared: SharedServices, entity: Entity, found: FoundPlugin,
                  wake: Callable[[], None]) -> None:
+        super().__init__(shared.graph, wake, shared.subscribers_changed)
         self.simulator, self._report, self._schedule, self._readings = (
             shared.simulator, shared.report, shared.schedule, shared.readings)
         self.observations, self._view = shared.observations, shared.view
@@ -80,7 +79,6 @@ class SimulatedContext(GraphUser):
         self._rows = ModelRows(entity, found.scope)
         self.commands = PendingCommands()
         self._level: Optional[PlanarVelocity] = None
-        self.inbox: Deque[Callable[[], None]] = deque()
         self._links: Dict[str, SimulatedLink] = {}
         self._joints: Dict[str, SimulatedJoint] = {}
         self.wrench_ids: Dict[str, int] = {}
@@ -88,8 +86,6 @@ class SimulatedContext(GraphUser):
         self._held = False
         self.sensing = SensingRequests(shared.scene, self.inbox, wake, self.warn,
                                        lambda: self.observations.request_step(self))
-        self.graph = PluginGraph(shared.graph, self.inbox, wake, lambda: self.sensing.unsent,
-                                 shared.subscribers_changed)
 
     # -- for the host ----------------------------------------------------------------------------
 
@@ -112,7 +108,7 @@ class SimulatedContext(GraphUser):
 
     def close(self) -> None:
         """Remove the plugin from the ROS graph, and end its calls."""
-        self.graph.close()
+        self.close_graph()
         self._schedule.end_all(self)
         self.observations.end_all(self)
 
@@ -134,6 +130,9 @@ class SimulatedContext(GraphUser):
         self.wrench_ids = {}
         for name in list(self._attached):
             self.detach(name)
+
+    def unsent(self) -> Deque[None]:
+        return self.sensing.unsent
 
     # -- time ------------------------------------------------------------------------------------
 
@@ -164,7 +163,7 @@ class SimulatedContext(GraphUser):
                 contacts: bool = False, efforts: Sequence[str] = (),
                 wrenches: Sequence[str] = (), world: bool = False) -> Observation:
         if transforms:
-            self.graph.offer_transforms()
+            self.offer_transforms()
         made = self.observations.add(
             self, Rate(hertz, lead), call, resume, topics, transforms, remembers,
             Reads(contacts, tuple(efforts), tuple(wrenches), world))
@@ -384,7 +383,7 @@ class SimulatedContext(GraphUser):
                 link = self.sensor_link
         kind = self.sensor.type if self.sensor is not None else ""
         return [TopicUse(name, message, is_subscription, self.model, link, kind, pose)
-                for name, message, is_subscription in self.graph.uses()]
+                for name, message, is_subscription in self.uses()]
 
     def declare_parameters(self, parameters: Sequence[PluginParameter]) -> None:
         """Add parameters that the plugin has read in its own process."""

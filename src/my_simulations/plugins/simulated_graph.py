@@ -17,7 +17,7 @@ _LOOK_S = 0.2   # interval of checks whether the plugin of a service call still 
 class PluginTopic:
     """A topic of a plugin; its messages are sent after the engine has resumed."""
 
-    def __init__(self, owner: "PluginGraph", topic: Topic) -> None:
+    def __init__(self, owner: "GraphUser", topic: Topic) -> None:
         self._owner, self._topic = owner, topic
 
     @property
@@ -55,7 +55,7 @@ class _UnnamedTopic:
 class PluginGraphHandle:
     """A subscription or service of a plugin."""
 
-    def __init__(self, owner: "PluginGraph", end: GraphHandle) -> None:
+    def __init__(self, owner: "GraphUser", end: GraphHandle) -> None:
         self._owner, self._end = owner, end
 
     def close(self) -> None:
@@ -63,24 +63,25 @@ class PluginGraphHandle:
         self._owner.close_one(self._end)
 
 
-class PluginGraph:
-    """What a plugin has on the graph. For the thread of the host.
+class GraphUser:
+    """The part of a context that is about topics, services and parameters.
+
+    For the thread of the host.
 
     Attributes:
-        outbox, transforms: what it has published since they were last taken.
-        inbox: what has come for it: functions to be called.
+        outbox, transforms: what the plugin has published since they were last taken.
+        inbox: functions to be called for what has come for it.
 
     Args:
         graph: ROS.
-        inbox: as above; `wake` has the host look at it.
-        unsent: gives the list that a message which is being made leaves a mark in.
+        wake: has the host look at `inbox`.
         changed: called, in any thread, when subscribers of a topic come or go.
     """
 
-    def __init__(self, graph: Graph, inbox: Deque[Callable[[], None]], wake: Callable[[], None],
-                 unsent: Callable[[], Deque[None]], changed: Callable[[], None]) -> None:
+    def __init__(self, graph: Graph, wake: Callable[[], None],
+                 changed: Callable[[], None]) -> None:
         self._graph, self._wake, self._changed = graph, wake, changed
-        self.inbox, self.unsent = inbox, unsent
+        self.inbox: Deque[Callable[[], None]] = deque()
         self.outbox: List[Tuple[Topic, Any]] = []
         self.transforms: List[Tuple[int, TransformOf]] = []
         self._opened: List[GraphHandle] = []
@@ -88,7 +89,20 @@ class PluginGraph:
         self._namespace = ""
         self._closed = threading.Event()
 
-    def close(self) -> None:
+    @property
+    def now_ns(self) -> int:
+        """Sim time of this step."""
+        raise NotImplementedError
+
+    def warn(self, text: str) -> None:
+        """Report a warning to the user."""
+        raise NotImplementedError
+
+    def unsent(self) -> Deque[None]:
+        """Return the list in which a message that is being made leaves a mark."""
+        raise NotImplementedError
+
+    def close_graph(self) -> None:
         """Remove everything from the ROS graph."""
         for one in self._opened:
             one.close()
@@ -136,10 +150,10 @@ class PluginGraph:
         except MissingTypeError as missing:
             raise PluginError(str(missing)) from missing
 
-    def stamp(self, ns: int) -> Any:
-        return self._graph.stamp(ns)
+    def stamp(self, ns: Optional[int] = None) -> Any:
+        return self._graph.stamp(self.now_ns if ns is None else ns)
 
-    def publish(self, name: str, kind: str, queue: int, latch: bool) -> PluginTopic:
+    def publish(self, name: str, kind: str, queue: int = 1, latch: bool = False) -> PluginTopic:
         if not name:
             return PluginTopic(self, _UnnamedTopic())
         return PluginTopic(self, self._open(
@@ -147,7 +161,7 @@ class PluginGraph:
             False))
 
     def subscribe(self, name: str, kind: str, call: Callable[[Any], None],
-                  queue: int) -> PluginGraphHandle:
+                  queue: int = 1) -> PluginGraphHandle:
         waiting: Deque[Any] = deque(maxlen=max(1, queue))
 
         def deliver() -> None:
@@ -162,8 +176,7 @@ class PluginGraph:
         return PluginGraphHandle(self, self._open(
             lambda full: self._graph.subscribe(full, kind, arrived, queue), name, kind, True))
 
-    def serve(self, name: str, kind: str, call: Callable[[Any, Any], None],
-              warn: Callable[[str], None]) -> PluginGraphHandle:
+    def serve(self, name: str, kind: str, call: Callable[[Any, Any], None]) -> PluginGraphHandle:
         """Offer a service; one that another plugin offers stays with that one, with a warning."""
         def asked(request: Any, response: Any) -> None:
             done = threading.Event()
@@ -193,7 +206,7 @@ class PluginGraph:
         try:
             end = self._open(lambda full: self._graph.serve(full, kind, asked), name, kind)
         except ServiceTakenError as taken:  # roscpp reports it, and Gazebo's plugins continue
-            warn(str(taken))
+            self.warn(str(taken))
             end = _UnnamedTopic()
         return PluginGraphHandle(self, end)
 
@@ -206,55 +219,7 @@ class PluginGraph:
     def offer_transforms(self) -> None:
         self._graph.offer_transforms(self._changed)
 
-    def transform(self, parent: str, child: str, pose: Pose, ns: int) -> None:
-        """Broadcast a transform to tf, stamped with a sim time."""
-        self.transforms.append((ns, (str(parent), str(child), pose_of(pose, "a transform"))))
-
-
-class GraphUser:
-    """The part of a context that is about topics, services and parameters.
-
-    Attributes:
-        graph: what the plugin has on the graph.
-    """
-
-    graph: PluginGraph
-
-    @property
-    def now_ns(self) -> int:
-        """Sim time of this step."""
-        raise NotImplementedError
-
-    def warn(self, text: str) -> None:
-        """Report a warning to the user."""
-        raise NotImplementedError
-
-    def use_namespace(self, namespace: str) -> None:
-        """Set the namespace of relative names."""
-        self.graph.use_namespace(namespace)
-
-    def message(self, kind: str) -> Any:
-        return self.graph.message(kind)
-
-    def stamp(self, ns: Optional[int] = None) -> Any:
-        return self.graph.stamp(self.now_ns if ns is None else ns)
-
-    def publish(self, name: str, kind: str, queue: int = 1, latch: bool = False) -> PluginTopic:
-        return self.graph.publish(name, kind, queue, latch)
-
-    def subscribe(self, name: str, kind: str, call: Callable[[Any], None],
-                  queue: int = 1) -> PluginGraphHandle:
-        return self.graph.subscribe(name, kind, call, queue)
-
-    def serve(self, name: str, kind: str, call: Callable[[Any, Any], None]) -> PluginGraphHandle:
-        return self.graph.serve(name, kind, call, self.warn)
-
-    def parameter(self, name: str, default: Any) -> Any:
-        return self.graph.parameter(name, default)
-
-    def search_parameter(self, name: str, default: Any) -> Any:
-        return self.graph.search_parameter(name, default)
-
     def transform(self, parent: str, child: str, pose: Pose) -> None:
         """Broadcast a transform to tf."""
-        self.graph.transform(parent, child, pose, self.now_ns)
+        self.transforms.append(
+            (self.now_ns, (str(parent), str(child), pose_of(pose, "a transform"))))
