@@ -8,9 +8,8 @@ imported here: neither NumPy, Embree nor OpenGL.
 """
 from __future__ import annotations
 
-from concurrent.futures import Future
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Callable, Dict, List, Optional, Protocol, Tuple, Union
+from typing import TYPE_CHECKING, Dict, List, Optional, Tuple, Union
 
 from ..appearance.looks import Look
 from ..description.actor import Actor
@@ -355,30 +354,3 @@ class SetLights:
 
 Change = Union[LoadScene, AddBody, RemoveBody, SetLights, SetScenery]
 Request = Union[CastRays, CastBatch, RenderCamera]
-
-
-class Sensing(Protocol):
-    """The interface that sensors use; `process.SensingProcess` implements it.
-
-    All calls return at once and are safe from any thread. Changes and requests take effect in the
-    order of the calls.
-    """
-
-    def change(self, change: Change) -> None:
-        """Change the scene. Costs little before the first request, as there is no process yet."""
-
-    def cast(self, request: CastRays) -> "Future[RayReturns]":
-        """Rays; the first request starts the process. The future fails with a `SensingError`."""
-
-    def cast_all(self, request: CastBatch) -> "Future[List[Union[RayReturns, SensingError]]]":
-        """Rays of several sensors, in one message each way."""
-
-    def render(self, request: RenderCamera) -> "Future[Pictures]":
-        """Pictures; rays do not wait for them. The future fails with a `SensingError`."""
-
-    def on_problem(self, listener: Callable[[str], None]) -> None:
-        """Set who hears one sentence of each death and of each shape or texture left out."""
-
-    def close(self) -> None:
-        """End the process, if there is one, and wait for the end."""
-

@@ -58,7 +58,10 @@ class _Waiting:
 
 
 class SensingProcess:
-    """A child that casts rays and draws. Satisfies `api.Sensing`.
+    """A child that casts rays and draws.
+
+    All calls return at once and are safe from any thread. Changes and requests take effect in the
+    order of the calls. A future of a request fails with a `SensingError`.
 
     The child process starts with the first request. Separate threads do everything that could
     block, so a child that hangs blocks no caller: it is ended after `patience` s. After a death
@@ -95,6 +98,7 @@ class SensingProcess:
         return child.pid if child is not None and child.poll() is None else 0
 
     def on_problem(self, listener: Callable[[str], None]) -> None:
+        """Set who gets one sentence of each death and of each shape or texture left out."""
         self._listener = listener
 
     def change(self, change: Change) -> None:
@@ -110,9 +114,11 @@ class SensingProcess:
         return self._submit(request)
 
     def cast_all(self, request: CastBatch) -> "Future[List[Union[RayReturns, SensingError]]]":
+        """Rays of several sensors, in one message each way."""
         return self._submit(request)
 
     def render(self, request: RenderCamera) -> "Future[Pictures]":
+        """Pictures; rays do not wait for them."""
         return self._submit(request)
 
     def _submit(self, request: Request) -> "Future[Any]":
