@@ -8,6 +8,7 @@ from typing import Callable, List, Optional, Sequence, Tuple
 
 from ..errors import Issue
 from ..plugins.plugin_state import PluginState
+from ..resources.private_folder import user_folder
 from .topic_source import TopicSource
 
 DEFAULT_PORT = 11346
@@ -54,7 +55,7 @@ class EditorOptions:
     caller: str = ""
     log: Callable[[Issue], None] = _ignore
     web: str = ""
-    config_dir: str = field(default_factory=lambda: _xdg("XDG_CONFIG_HOME", "~/.config"))
+    config_dir: str = field(default_factory=lambda: user_folder("XDG_CONFIG_HOME", "~/.config"))
     cache_dir: str = field(default_factory=lambda: cache_folder())
     data_dir: str = field(default_factory=lambda: os.path.expanduser("~/.gazebo/log"))
     more_logs: Tuple[str, ...] = ()
@@ -76,11 +77,4 @@ def is_loopback(host: str) -> bool:
 
 def cache_folder() -> str:
     """The folder for files of this user's editors that can be made again."""
-    return _xdg("XDG_CACHE_HOME", "~/.cache")
-
-
-def _xdg(variable: str, default: str) -> str:
-    """A user's folder of ours (XDG Base Directory Specification)."""
-    base = os.environ.get(variable, "")
-    return os.path.join(base if os.path.isabs(base) else os.path.expanduser(default),
-                        "my_simulations")
+    return user_folder("XDG_CACHE_HOME", "~/.cache")

@@ -126,7 +126,7 @@ class ReaderProcess:
                 raise _GoneError
             data = self._read(count * np.dtype(kind).itemsize, until)
             arrays.append(np.frombuffer(data, dtype=kind).reshape(shape))
-        self._keep()
+        self._schedule_end()
         return header, arrays
 
     def _read(self, size: int, until: float) -> bytearray:
@@ -164,7 +164,7 @@ class ReaderProcess:
         child.stdout.close()
         return int(child.returncode)
 
-    def _keep(self) -> None:
+    def _schedule_end(self) -> None:
         """Have the child ended when it has had nothing to do for a while."""
         self._last = time.monotonic()
         if self._keeper is None:

@@ -9,6 +9,7 @@ from ..description.actor import Actor
 from ..description.light import Light
 from ..description.model import Model
 from ..description.shapes import MeshTable
+from ..description.validate import closest
 from ..description.world import World
 from ..errors import InputError, Issue, error, errors_of
 from ..resources.resolver import Resolver
@@ -24,7 +25,6 @@ from .sdf.state_applied import apply_state
 from .sdf.upgrade import upgrade
 from .sdf.world import read_world_element
 from .sdf.world_scene import read_actor
-from .xml.binding import closest
 from .xml.parsing import content, parse
 from .xml.source import FaultLevel, IssueCollector, Source
 

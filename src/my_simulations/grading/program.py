@@ -13,6 +13,7 @@ from dataclasses import dataclass
 from typing import Dict, Iterable, Iterator, List, Optional, Sequence, Set, Tuple
 
 from ..resources.package_files import own_directory
+from ..simulator.watchdog import resident_bytes
 from . import box, cell
 from .assignment import GradeLimits
 from .permitted_variables import permitted_variables
@@ -124,7 +125,7 @@ class Program:
                 "bytes": self._most_bytes, "processes": limits.processes,
                 "memory_bytes": int(limits.memory_mb * 1e6),
                 "processor_seconds": int(limits.processor_seconds) + 1}
-        _give(account)
+        _set_owner(account)
         with open(self._output, "ab") as output:
             self._process = subprocess.Popen(
                 [sys.executable, "-I", cell.__file__, json.dumps(spec)], cwd=folder,
@@ -228,7 +229,7 @@ class Program:
         self.watcher = threading.get_native_id()
         most = self._limits.memory_mb * 1e6
         while self.running and not self._ended.wait(_LOOK_S):
-            used = sum(map(_resident, box.descendants(self.pid)))
+            used = sum(map(resident_bytes, box.descendants(self.pid)))
             if used > most:
                 self.excess = f"the program used more memory than {self._limits.memory_mb:g} MB"
                 self._process.kill()
@@ -283,7 +284,7 @@ def workspace_paths() -> List[str]:
     return found
 
 
-def _give(account: Account) -> None:
+def _set_owner(account: Account) -> None:
     """Let the program's user own the folders that it writes, where there is such a user."""
     user = account.user
     with contextlib.suppress(OSError):
@@ -292,11 +293,3 @@ def _give(account: Account) -> None:
             for folder, folders, names in os.walk(top):
                 for name in (*folders, *names):
                     os.lchown(os.path.join(folder, name), user, user)
-
-
-def _resident(pid: int) -> int:
-    try:
-        with open(f"/proc/{pid}/statm", encoding="ascii") as statm:
-            return int(statm.read().split()[1]) * os.sysconf("SC_PAGE_SIZE")
-    except (OSError, IndexError):
-        return 0

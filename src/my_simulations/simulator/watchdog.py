@@ -27,6 +27,15 @@ def process_time(pid: int) -> Optional[Tuple[float, str]]:
     return ticks / os.sysconf("SC_CLK_TCK"), fields[0]
 
 
+def resident_bytes(pid: int) -> int:
+    """Memory of a process that is in use (proc(5), statm); 0 if it does not exist."""
+    try:
+        with open(f"/proc/{pid}/statm", encoding="ascii") as statm:
+            return int(statm.read().split()[1]) * os.sysconf("SC_PAGE_SIZE")
+    except (OSError, IndexError):
+        return 0
+
+
 class Watchdog:
     """Checks an engine periodically.
 

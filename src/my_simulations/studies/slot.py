@@ -3,7 +3,6 @@ from __future__ import annotations
 
 import hashlib
 import math
-import os
 import threading
 from dataclasses import dataclass
 from typing import Callable, List, Optional, Tuple
@@ -18,7 +17,7 @@ from ..errors import CommandError, InputError, Severity, SimulationError
 from ..python_api import OpenWorld
 from ..python_api.kept_files import FileCache
 from ..python_api.world_choice import WorldChoice
-from ..simulator.watchdog import process_time
+from ..simulator.watchdog import process_time, resident_bytes
 from .attempts import repeat_after_crash
 from .case_world import world_choice_of
 from .kept import CaseTrajectory
@@ -316,15 +315,6 @@ def _divergence(world: OpenWorld) -> str:
 
 def _interval(seconds: float, world: OpenWorld) -> int:
     return max(1, int(math.floor(seconds / world.step_size + 0.5)))
-
-
-def resident_bytes(pid: int) -> int:
-    """Memory of a process that is in use (proc(5), statm); 0 if it does not exist."""
-    try:
-        with open(f"/proc/{pid}/statm", encoding="ascii") as statm:
-            return int(statm.read().split()[1]) * os.sysconf("SC_PAGE_SIZE")
-    except OSError:
-        return 0
 
 
 def _used(engine: ProcessEngine) -> float:

@@ -28,6 +28,7 @@ from ...formats.reading import parse_world, read_entity, read_file
 from ...geometry import Pose, Vec3
 from ...resources.resolver import Resolver, ResourceNotFoundError
 from ...simulator.simulator import Simulator
+from .model_parts import free_name
 
 Entity = Union[Model, Light]
 
@@ -109,16 +110,6 @@ def checked(model: Model) -> Tuple[MeshTable, List[Issue]]:
 def used_names(simulator: Simulator) -> Collection[str]:
     """Names of all models and lights."""
     return {*simulator.models.names(), *(light.name for light in simulator.lights.all())}
-
-
-def free_name(wanted: str, taken: Collection[str]) -> str:
-    """`wanted`, or with the first free number: name_0, name_1, … (Gazebo behaviour)."""
-    if wanted not in taken:
-        return wanted
-    number = 0
-    while f"{wanted}_{number}" in taken:
-        number += 1
-    return f"{wanted}_{number}"
 
 
 def regrouped(entities: Sequence[Entity], taken: Collection[str]) -> List[Entity]:

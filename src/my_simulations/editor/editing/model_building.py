@@ -25,7 +25,8 @@ from ...simulator.operations import AddModel, EditModel, Operation
 from ...simulator.simulator import Simulator
 from ..scene.plain_json import pose_of as pose_from
 from . import model_parts as parts
-from .inserts import checked, entity_of_text, entity_of_uri, free_name, used_names
+from .inserts import checked, entity_of_text, entity_of_uri, used_names
+from .model_parts import free_name
 from .part_inertia import inertial_of
 from .property_path import made
 from .property_target import split_target
@@ -167,7 +168,7 @@ class ModelBuilding:
         if not isinstance(nested, Model):
             raise CommandError(f"{op['uri']} is no model")
         taken = parts.part_names(model)
-        name = nested.name if nested.name not in taken else parts.numbered(nested.name, taken)
+        name = free_name(nested.name, taken)
         pose = _pose(op) or nested.pose
         changed = parts.with_nested(model, replace(nested, name=name,
                                                    pose=self._in_model(model, pose)))

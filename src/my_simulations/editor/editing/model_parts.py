@@ -35,6 +35,11 @@ def numbered(wanted: str, taken: Collection[str]) -> str:
     return f"{wanted}_{number}"
 
 
+def free_name(wanted: str, taken: Collection[str]) -> str:
+    """`wanted`, or with the first free number: name_0, name_1, … (Gazebo behaviour)."""
+    return wanted if wanted not in taken else numbered(wanted, taken)
+
+
 def part_names(model: Model) -> List[str]:
     """Names that links, joints and nested models share."""
     return [*(link.name for link in model.links), *(joint.name for joint in model.joints),
@@ -59,8 +64,7 @@ def with_shape(link: Link, geometry: Geometry, material: Optional[Material],
 
 
 def _free(wanted: str, parts: Union[List[Collision], List[Visual]]) -> str:
-    names = [part.name for part in parts]
-    return wanted if wanted not in names else numbered(wanted, names)
+    return free_name(wanted, [part.name for part in parts])
 
 
 def with_joint(model: Model, joint: Joint) -> Model:
@@ -68,7 +72,7 @@ def with_joint(model: Model, joint: Joint) -> Model:
     name = joint.name
     if not name:
         name = f"{joint.child}_joint".replace(SCOPE, "_")
-        name = name if name not in part_names(model) else numbered(name, part_names(model))
+        name = free_name(name, part_names(model))
     return replace(model, joints=[*model.joints, complete(model, replace(joint, name=name))])
 
 

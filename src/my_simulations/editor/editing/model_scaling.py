@@ -3,10 +3,11 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from ...description.model import Inertial, Link, Model
+from ...description.model import Inertial, Model
 from ...errors import CommandError
+from ...formats.combined_inertia import combined_inertia
 from ...formats.sdf.state_scale import scaled
-from ...geometry import IDENTITY_QUAT, Pose, Vec3, is_finite, rotate
+from ...geometry import IDENTITY, Pose, Vec3, is_finite
 from ..scene.scene_json import is_scalable
 
 SMALLEST = 1e-4
@@ -24,11 +25,8 @@ def resized(model: Model, factor: Vec3) -> Model:
         raise CommandError(f"{model.name!r} cannot be scaled: it has several links, or a shape"
                            " without a size of its own")
     made = scaled(model, factor)
-    return replace(made, links=[_with_inertia(link, factor) for link in made.links])
-
-
-def _with_inertia(link: Link, factor: Vec3) -> Link:
-    return replace(link, inertial=scaled_inertial(link.inertial, factor))
+    return replace(made, links=[
+        replace(link, inertial=scaled_inertial(link.inertial, factor)) for link in made.links])
 
 
 def scaled_inertial(inertial: Inertial, factor: Vec3) -> Inertial:
@@ -37,7 +35,7 @@ def scaled_inertial(inertial: Inertial, factor: Vec3) -> Inertial:
     The integrals of x x, x y, … over the mass scale with the product of two factors, and the
     tensor is made of them; exact for any body.
     """
-    i = _in_link_axes(inertial)
+    i = combined_inertia(None, inertial, IDENTITY) or inertial   # along the link's axes
     fx, fy, fz = factor
     xx = (i.iyy + i.izz - i.ixx) / 2 * fx * fx
     yy = (i.ixx + i.izz - i.iyy) / 2 * fy * fy
@@ -45,19 +43,3 @@ def scaled_inertial(inertial: Inertial, factor: Vec3) -> Inertial:
     x, y, z = i.pose.position
     return replace(i, pose=Pose((x * fx, y * fy, z * fz)), ixx=yy + zz, iyy=xx + zz, izz=xx + yy,
                    ixy=i.ixy * fx * fy, ixz=i.ixz * fx * fz, iyz=i.iyz * fy * fz)
-
-
-def _in_link_axes(i: Inertial) -> Inertial:
-    """The same inertia with a tensor along the link's axes: R I R^T."""
-    q = i.pose.orientation
-    if q == IDENTITY_QUAT:
-        return i
-    columns = [rotate(q, axis) for axis in ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))]
-    tensor = ((i.ixx, i.ixy, i.ixz), (i.ixy, i.iyy, i.iyz), (i.ixz, i.iyz, i.izz))
-
-    def entry(a: int, b: int) -> float:
-        return sum(columns[m][a] * tensor[m][n] * columns[n][b]
-                   for m in range(3) for n in range(3))
-
-    return replace(i, pose=Pose(i.pose.position), ixx=entry(0, 0), iyy=entry(1, 1),
-                   izz=entry(2, 2), ixy=entry(0, 1), ixz=entry(0, 2), iyz=entry(1, 2))

@@ -12,7 +12,7 @@ from ...formats.sdf.sensor_parameters import with_parameter
 from ...resources.resolver import Resolver
 from ...robot_templates.sensor_links import sensor_alone
 from .inserts import entity_of_text
-from .model_parts import numbered
+from .model_parts import free_name
 
 _SENSOR = re.compile(r"(.+)::sensor:(.+)\Z", re.DOTALL)
 
@@ -68,7 +68,7 @@ def with_new_sensor(model: Model, link_name: str, kind: str,
     if link is None:
         raise CommandError(f"model {model.name!r} has no link {link_name!r}")
     taken = {sensor.name for one in _holders(model) for sensor in one.sensors}
-    name = kind if kind not in taken else numbered(kind, taken)
+    name = free_name(kind, taken)
     xml = sensor_alone(kind, name, link_name.replace("::", "_"))
     return _with_holder(model, link, replace(
         link, sensors=[*link.sensors, _read(xml, resolver)], extra=[*link.extra, xml])), name

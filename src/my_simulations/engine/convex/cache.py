@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from typing import Any, List, Optional
 
 from ...description.shapes import MeshData
-from ...resources.private_folder import make_private
+from ...resources.private_folder import make_private, user_folder
 
 _log = logging.getLogger(__name__)
 _SUFFIX = ".parts"
@@ -36,10 +36,7 @@ class Decomposition:
 
 def default_folder() -> str:
     """The default cache folder (XDG base directory specification)."""
-    base = os.environ.get("XDG_CACHE_HOME") or ""
-    if not os.path.isabs(base):  # by the specification, relative paths count as unset
-        base = os.path.join(os.path.expanduser("~"), ".cache")
-    return os.path.join(base, "my_simulations", "decompositions")
+    return os.path.join(user_folder("XDG_CACHE_HOME", "~/.cache"), "decompositions")
 
 
 def content_key(mesh: MeshData, parameters: str) -> str:

@@ -96,10 +96,10 @@ def is_costly(path: str) -> bool:
     if os.path.getsize(path) > _PLAIN_BYTES:
         return True
     with open(path, "rb") as stream:
-        return _takes_much(at_most(stream, _PLAIN_BYTES))
+        return _is_large(at_most(stream, _PLAIN_BYTES))
 
 
-def _takes_much(content: bytes) -> bool:
+def _is_large(content: bytes) -> bool:
     if len(content) > _PLAIN_BYTES or float64_tiff.pixels_in(content) > _PLAIN_PIXELS:
         return True
     with opened(io.BytesIO(content)) as image:
@@ -115,7 +115,7 @@ def checked_format(content: bytes) -> str:
         OSError, ValueError, SyntaxError, EOFError: as `opened`.
         InputError: the child process that decodes large images failed.
     """
-    if not _takes_much(content):
+    if not _is_large(content):
         return format_of(io.BytesIO(content))
     with tempfile.NamedTemporaryFile(prefix="my_simulations_") as file:
         file.write(content)

@@ -10,11 +10,11 @@ from typing import Any, Callable, Iterator, List, Optional, Tuple
 from ...description.cost_budget import Cost, budget_faults
 from ...description.model import Link, Model
 from ...description.shapes import SOLIDS, Collision, Mesh, MeshData, MeshTable, Solid, mesh_key
+from ...description.validate import closest
 from ...errors import InputError, Issue, Severity, error
 from ...resources.lfs_pointer import LFS_HINT, LFS_POINTER, is_lfs_pointer
 from ..loading_advice import UNKNOWN, Written, located_issue
 from ..reader_process import read_elsewhere
-from ..xml.binding import closest
 from .collada_encoding import encoding_issues
 from .declared_size import check_declared_size
 from .part import MeshError, MeshPart

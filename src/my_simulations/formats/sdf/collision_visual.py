@@ -15,9 +15,9 @@ from ...description.shapes import (
     Polyline,
     Visual,
 )
-from ...description.validate import geometry_fault, has_zero_size
+from ...description.validate import closest, geometry_fault, has_zero_size
 from ...resources.resolver import ResourceNotFoundError
-from ..xml.binding import BAD, REFUSED, Found, closest, fill, read_text, to_xml
+from ..xml.binding import BAD, REFUSED, Found, fill, read_text, to_xml
 from ..xml.source import FaultLevel, Source
 from ..xml.values import VECTOR2
 from .material_files import check_script

@@ -6,9 +6,9 @@ from dataclasses import dataclass
 from typing import Any, Callable, List, Optional, Tuple
 
 from ...description.model import INFINITE, Joint, JointAxis, Mimic
-from ...description.validate import JOINT_TYPES
+from ...description.validate import JOINT_TYPES, closest
 from ...geometry import Pose, Quat, Vec3, conjugate, norm, rotate, scale
-from ..xml.binding import REFUSED, Found, closest, fill, read_text
+from ..xml.binding import REFUSED, Found, fill, read_text
 from ..xml.source import FaultLevel, Source
 from ..xml.tables import Table, Value
 from ..xml.values import FLOAT, TEXT, VECTOR3

@@ -11,9 +11,9 @@ from ...appearance.script_files import materials_of, scripts_of
 from ...appearance.textures import TextureFiles
 from ...description.compare import BUILT_IN as BUILT_IN_SCRIPT
 from ...description.shapes import Material
+from ...description.validate import closest
 from ...errors import warning
 from ...resources.resolver import ResourceNotFoundError
-from ..xml.binding import closest
 from ..xml.source import Source
 
 

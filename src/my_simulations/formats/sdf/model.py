@@ -7,11 +7,11 @@ from typing import Any, List, Optional, Sequence, Set, Tuple
 
 from ...description.cost_budget import MODEL_BUDGET, budget_faults, cost_of
 from ...description.model import WORLD, Link, Model
-from ...description.validate import link_names, name_and_pose_faults, own_faults
+from ...description.validate import closest, link_names, name_and_pose_faults, own_faults
 from ...errors import Issue, Severity
 from ...geometry import IDENTITY, Pose, compose, inverse
 from ..include_overrides import IncludeOverrides
-from ..xml.binding import closest, fill
+from ..xml.binding import fill
 from ..xml.source import FaultLevel, Source
 from .frame_graph import FrameError, FrameTree
 from .include import read_include

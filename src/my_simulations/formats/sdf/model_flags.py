@@ -66,12 +66,12 @@ def apply_include_flags(model: Model, element: Any, included: Iterable[Tuple[Any
                 continue
             result = replace(result, **{flag: value})
             if child.tag != flag:
-                _take_over(model, flag, value, child, source)
+                _apply_flag(model, flag, value, child, source)
             break
     return result
 
 
-def _take_over(model: Model, flag: str, value: bool, element: Any, source: Source) -> None:
+def _apply_flag(model: Model, flag: str, value: bool, element: Any, source: Source) -> None:
     if getattr(model, flag) == value:
         return
     setattr(model, flag, value)

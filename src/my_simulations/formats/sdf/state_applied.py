@@ -90,7 +90,7 @@ def _restored(model: Model, state: ModelState, initial: Dict[str, InitialState])
         positions: Dict[str, float] = {}
     else:
         positions = _positions(flat.joints, flat.links, poses, state)
-        held = _held(flat, poses)
+        held = _world_joint_positions(flat, poses)
         positions.update(held or {})
         if held is None:
             model = replace(model, pose=_base_pose(flat, poses, state) or model.pose)
@@ -100,7 +100,7 @@ def _restored(model: Model, state: ModelState, initial: Dict[str, InitialState])
     return model
 
 
-def _held(flat: Model, poses: Dict[str, Pose]) -> Optional[Dict[str, float]]:
+def _world_joint_positions(flat: Model, poses: Dict[str, Pose]) -> Optional[Dict[str, float]]:
     """Positions of the joints to the world, if these say where their links are; else None.
 
     A joint's anchor stays where the model was; a model that was moved with its anchors is another.

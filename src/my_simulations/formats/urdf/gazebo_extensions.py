@@ -7,13 +7,14 @@ from typing import Any, DefaultDict, List, Sequence, Set
 
 from ...description.model import Model
 from ...description.shapes import Material
+from ...description.validate import closest
 from ...geometry import Pose, compose
 from ..sdf.collision_visual import fill_material
 from ..sdf.material_files import check_script
 from ..sdf.model_tables import COLLISION as SDF_COLLISION
 from ..sdf.model_tables import VISUAL as SDF_VISUAL
 from ..sdf.plugin import read_plugin
-from ..xml.binding import closest, fill, set_value, to_xml
+from ..xml.binding import fill, set_value, to_xml
 from ..xml.source import FaultLevel, Source
 from ..xml.tables import Value
 from ..xml.values import BOOL, FLOAT, POSE
@@ -84,7 +85,7 @@ class Extensions:
 
     def _to_link(self, child: Any, body: Body) -> None:
         if not self._set_values(child, body) and not self._merge(child, body):
-            self._keep(child, body)
+            self._add_extra(child, body)
 
     def _set_values(self, child: Any, body: Body) -> bool:
         """Apply tags with a single value."""
@@ -128,7 +129,7 @@ class Extensions:
             return False
         return True
 
-    def _keep(self, child: Any, body: Body) -> None:
+    def _add_extra(self, child: Any, body: Body) -> None:
         tag = child.tag
         if _is_joint_tag(tag):
             return  # a link and a joint may share their name

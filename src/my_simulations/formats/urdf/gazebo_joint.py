@@ -4,10 +4,10 @@ from __future__ import annotations
 from typing import Any, Dict, Optional
 
 from ...description.model import WORLD, Joint
+from ...description.validate import closest
 from ...geometry import IDENTITY, Pose, compose, inverse
 from ..sdf.frame_graph import FrameError
 from ..sdf.joint import UnresolvedJoint, is_complete, place_axes, read_joint, reverse_axes
-from ..xml.binding import closest
 from ..xml.source import Source
 from .fixed_joint_lumping import lumped_into
 from .kinematic_tree import Body

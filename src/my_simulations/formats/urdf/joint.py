@@ -4,8 +4,9 @@ from __future__ import annotations
 from typing import Any, Dict, Optional
 
 from ...description.model import INFINITE, Joint, JointAxis, Mimic, SoftLimits
+from ...description.validate import closest
 from ...geometry import Quat, conjugate, norm, rotate, scale
-from ..xml.binding import Found, closest, fill
+from ..xml.binding import Found, fill
 from ..xml.source import FaultLevel, Source
 from .kinematic_tree import Body, Connection
 from .link import read_origin

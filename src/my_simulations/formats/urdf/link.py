@@ -6,10 +6,11 @@ from typing import Any, Dict, Optional, Sequence
 
 from ...description.model import Inertial, Link
 from ...description.shapes import Collision, Empty, Geometry, Material, Visual
+from ...description.validate import closest
 from ...geometry import IDENTITY, Pose
 from ..sdf.collision_visual import checked, unknown_shape
 from ..sdf.material_files import check_texture_uri
-from ..xml.binding import BAD, closest, fill
+from ..xml.binding import BAD, fill
 from ..xml.source import FaultLevel, Source
 from .kinematic_tree import Body
 from .urdf_tables import (

@@ -59,30 +59,31 @@ def _in_element(element: Any, names: Renamed) -> bool:
     parent = element.getparent()
     inside = parent.tag if parent is not None else ""
     if element.tag == "collision" and inside == "contact":
-        return _put(element, names.collisions, text)
+        return _rename_text(element, names.collisions, text)
     own = inside == "plugin" and parent.getparent() is None
     if own and element.tag in _PLACED and text.lstrip("/") in names.links:
         body = names.links[text.lstrip("/")]
-        element.text = _standing(body)
+        element.text = _new_link_name(body)
         _move_offset(parent, body.offset)
         return True
     if element.tag in _LINKS or (element.tag in ("parent", "child") and inside == "joint"):
-        return _put(element, {name: _standing(body) for name, body in names.links.items()}, text)
+        now = {name: _new_link_name(body) for name, body in names.links.items()}
+        return _rename_text(element, now, text)
     if element.tag == "projector" and "/" in text and text.split("/", 1)[0] in names.links:
         link, rest = text.split("/", 1)
-        element.text = f"{_standing(names.links[link])}/{rest}"
+        element.text = f"{_new_link_name(names.links[link])}/{rest}"
         return True
     return False
 
 
-def _put(element: Any, names: Mapping[str, str], text: str) -> bool:
+def _rename_text(element: Any, names: Mapping[str, str], text: str) -> bool:
     if text not in names:
         return False
     element.text = names[text]
     return True
 
 
-def _standing(body: Body) -> str:
+def _new_link_name(body: Body) -> str:
     assert body.into is not None
     return body.into.link.name
 

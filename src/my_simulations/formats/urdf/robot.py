@@ -5,13 +5,13 @@ from typing import Any, Dict, List, Optional, Sequence, Union
 
 from ...description.cost_budget import MODEL_BUDGET, budget_faults, cost_of
 from ...description.model import WORLD, Joint, JointAxis, Link, Model
-from ...description.validate import faults
+from ...description.validate import closest, faults
 from ...errors import Issue, Severity
 from ...geometry import IDENTITY, Pose, compose
 from ..default_inertia import usable_inertia
 from ..include_overrides import IncludeOverrides
 from ..sdf.sensor import kept_sensors
-from ..xml.binding import closest, fill
+from ..xml.binding import fill
 from ..xml.source import FaultLevel, Source
 from .fixed_joint_lumping import lump, lumped_into
 from .gazebo_extensions import Extensions, moved
@@ -190,7 +190,7 @@ class _RobotReader:
                         turned_to(up.joint.axis, poses[body.link.name].orientation)
                     self._joint(up)
             elif body.into is not None:
-                self._hand_over(body)
+                self._move_settings(body)
                 self._renamed.links[body.link.name] = body
         model.extra += frames
         if not model.links and root.link.name != WORLD:
@@ -267,7 +267,7 @@ class _RobotReader:
         self._elements[id(joint)] = connection.element
         self._model.joints.append(joint)
 
-    def _hand_over(self, body: Body) -> None:
+    def _move_settings(self, body: Body) -> None:
         """Move other settings of a lumped link to its new link.
 
         Where both set one, the later link counts for turnGravityOff and selfCollide, and the

@@ -5,6 +5,7 @@ import math
 import re
 from typing import Any, Dict, List, Mapping, Optional, Set, Tuple, Union
 
+from ...description.validate import closest
 from .source import FaultLevel, Source
 from .tables import Entry, Group, Kept, Nested, Part, Table, Value
 from .values import LIMIT, UNSET, Kind
@@ -223,14 +224,6 @@ class _Filler:
         self._source.warn(
             "unknown-element" if what.startswith("element") else "unknown-attribute",
             f"{what} is unknown in <{inside}>; it is kept without effect", element, hint)
-
-
-def closest(name: str, known: List[str]) -> str:
-    """Hint with the known name most similar to `name`; "" if none is."""
-    import difflib
-
-    matches = difflib.get_close_matches(name, known, 1)
-    return f"did you mean {matches[0]}?" if matches else ""
 
 
 def has_prefix(xml: str) -> bool:

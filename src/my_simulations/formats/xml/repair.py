@@ -80,7 +80,7 @@ class _Balancer:
             self._kept = at
             self._repair("what precedes the first element is ignored", 0)
         while at >= 0 and not result.cut_off and not result.is_unrepairable:
-            after = self._one(at)
+            after = self._handle_markup(at)
             if result.elements and not self._open:
                 self._drop_rest(after)
                 break
@@ -98,7 +98,7 @@ class _Balancer:
         if rest.strip("\0 \t\r\n") and not rest.lstrip().startswith("<!--"):
             self._repair("what follows the root element is ignored", after)
 
-    def _one(self, at: int) -> int:
+    def _handle_markup(self, at: int) -> int:
         """Handle the markup at position `at`; returns the position after it."""
         text = self._text
         for start, stop in _SKIP:
