@@ -37,7 +37,7 @@ def _walls(level: Level, path: str) -> Iterator[Issue]:
             sound.append(number)
     for a, b in _touching([level.walls[number] for number in sound]):
         first, second = level.walls[sound[a]], level.walls[sound[b]]
-        how = _meeting(first, second)
+        how = _intersection(first, second)
         if how:
             yield warning("walls-" + how, f"Wall_{first.id} and Wall_{second.id} on {level.name!r}"
                           f" {how}", xpath=f"{path}.walls[{sound[b]}]",
@@ -56,7 +56,7 @@ def _touching(walls: List[Wall]) -> List[Tuple[int, int]]:
     return sorted((a, b) for a, b in pairs if a < b)
 
 
-def _meeting(a: Wall, b: Wall) -> str:
+def _intersection(a: Wall, b: Wall) -> str:
     """`cross`, `overlap`, or "" for two walls that only meet at their ends."""
     sides = [_side(a, b.start), _side(a, b.end)]
     if max(map(abs, sides)) < SLACK:

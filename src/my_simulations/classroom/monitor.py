@@ -83,9 +83,9 @@ class Monitor:
             if isinstance(data, bytes):
                 self.picture.update_poses(data)
             else:
-                self._take(json.loads(data))
+                self._handle_message(json.loads(data))
 
-    def _take(self, message: Dict[str, Any]) -> None:
+    def _handle_message(self, message: Dict[str, Any]) -> None:
         kind = message.get("type")
         if kind == "world":
             document = message["document"]

@@ -109,7 +109,7 @@ def _start(plan: ClassPlan, _options: argparse.Namespace) -> int:
 def _status(plan: ClassPlan, options: argparse.Namespace) -> int:
     if plan.containers:
         return _container_status(plan, options)
-    found = _ask(ClassState(plan).manager(), "status.json")
+    found = _request(ClassState(plan).manager(), "status.json")
     if options.json:
         print(json.dumps(found))
         return OK
@@ -137,7 +137,7 @@ def _stop(plan: ClassPlan, options: argparse.Namespace) -> int:
     manager = ClassState(plan).manager()
     if options.students:
         for student in _chosen(plan, options.students):
-            _ask(manager, f"students/{student.name}/stop", b"")
+            _request(manager, f"students/{student.name}/stop", b"")
         return OK
     os.kill(int(manager["pid"]), signal.SIGTERM)
     until = time.monotonic() + _END_S
@@ -219,7 +219,7 @@ def _chosen(plan: ClassPlan, names: Sequence[str]) -> List[Student]:
     return [known[name] for name in names]
 
 
-def _ask(manager: Dict[str, Any], path: str, data: Optional[bytes] = None) -> Any:
+def _request(manager: Dict[str, Any], path: str, data: Optional[bytes] = None) -> Any:
     """Ask the manager. Raises CommandError."""
     address = urlsplit(manager["address"])
     url = f"{address.scheme}://{address.netloc}/{path}?{address.query}"

@@ -43,12 +43,12 @@ def main(words: List[str], program: str) -> int:
     from ..ros.lifecycle.engine_supply import EngineSupply
     from ..simulator.issue_log import IssueLog
 
-    def tell(issue: Issue) -> None:
+    def print_issue(issue: Issue) -> None:
         if options.verbose or issue.severity is not Severity.NOTE or issue.code == "meshes":
             say(issue)
 
     log = IssueLog()
-    log.open(tell)
+    log.open(print_issue)
     engines = EngineSupply(ProcessEngine)
     front_ends = FrontEnds()
     settings: Dict[str, Any] = {"log": lambda issue: say(issue)}

@@ -13,7 +13,7 @@ from .editor_options import EditorOptions
 from .transport import address_file
 from .transport.access_guard import Guard
 from .transport.browser_client import encoded
-from .transport.listening import keep_address, listening, url_of
+from .transport.listening import listening, save_address, url_of
 from .transport.page_files import PageFiles
 
 _WAIT_S = 10.0
@@ -48,7 +48,7 @@ class LoadingServer:
         self._thread = threading.Thread(target=self._main, name="loading page", daemon=True)
         self._thread.start()
         self._started.result(_WAIT_S)
-        self._address_files = keep_address(self.url, options) if self.guard.token else []
+        self._address_files = save_address(self.url, options) if self.guard.token else []
 
     def show(self, title: str, text: str = "", done: int = 0, of: int = 0) -> None:
         """What is under way, and how much of it is done (`of` 0: unknown). From any thread."""

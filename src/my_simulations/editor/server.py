@@ -16,7 +16,7 @@ from .assembly import Assembly
 from .editor_options import EditorOptions
 from .transport import address_file
 from .transport.access_guard import Guard
-from .transport.listening import keep_address, listening, url_of
+from .transport.listening import listening, save_address, url_of
 
 if TYPE_CHECKING:
     from .loading_server import LoadingServer
@@ -57,7 +57,7 @@ class EditorServer:
             raise CommandError(f"the editor did not start within {_START_S:g} s") from slow
         self.url = url_of(self._listener, options.host, self._guard.token)
         self.public_url = address_file.without_token(self.url)
-        self._address_files = keep_address(self.url, options) if self._guard.token else []
+        self._address_files = save_address(self.url, options) if self._guard.token else []
 
     def stop(self, reason: str = "the simulator ends") -> None:
         """Notify the pages, and end; unsaved edits stay in the autosave."""

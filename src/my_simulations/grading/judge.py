@@ -171,7 +171,7 @@ class Judge:
                 results: List[CheckResult] = []
                 with self._recorded_topics(world, graph, record.record):
                     WorldRun(self._assignment, world, name, graph).run(
-                        record, lambda found: self._keep(results, found))
+                        record, lambda found: self._add_result(results, found))
                 ended, place = program.why_ended(), program.error if program.status else None
                 if graph.busy:
                     place = program.interrupted_at()
@@ -180,7 +180,7 @@ class Judge:
                     self._note(note)
                 self._writer.file(OUTPUT, program.output())
 
-    def _keep(self, results: List[CheckResult], found: CheckResult) -> None:
+    def _add_result(self, results: List[CheckResult], found: CheckResult) -> None:
         results.append(found)
         self._writer.result(found)
 

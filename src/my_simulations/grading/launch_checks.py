@@ -207,13 +207,13 @@ def package_folders(folder: str) -> List[str]:
     return sorted(found)
 
 
-def _said(program: Program) -> str:
+def _plain_output(program: Program) -> str:
     return _COLOUR.sub("", program.output().decode("utf-8", "replace"))
 
 
 def _fault(program: Program) -> str:
     """What went wrong in the output, or that it has ended; "" for nothing."""
-    found = _DIED.search(_said(program))
+    found = _DIED.search(_plain_output(program))
     if found is not None:
         return found[0].strip()[:500]
     if not program.running:
@@ -222,5 +222,5 @@ def _fault(program: Program) -> str:
 
 
 def _last_line(program: Program) -> str:
-    lines = [line.strip() for line in _said(program).splitlines() if line.strip()]
+    lines = [line.strip() for line in _plain_output(program).splitlines() if line.strip()]
     return lines[-1][:500] if lines else "no output"

@@ -80,13 +80,13 @@ class ResultReader:
             return False
         self._waiting += data
         try:
-            while self._take():
+            while self._parse_next():
                 pass
         except (ValueError, TypeError, KeyError, OSError):
             return False
         return len(self._waiting) < _LONGEST_LINE or bool(self._file[0])
 
-    def _take(self) -> bool:
+    def _parse_next(self) -> bool:
         """Take one line or one file; False if it is not whole yet."""
         name, size = self._file
         if name:

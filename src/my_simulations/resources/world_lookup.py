@@ -97,7 +97,7 @@ def advice_on(name: str, caller: str = "") -> str:
     path = os.path.expanduser(name.strip().rstrip("/"))
     base = os.path.basename(path)
     beside = _worlds_in(os.path.dirname(path)) if os.path.isabs(path) else []
-    known = beside + _known(caller or os.getcwd())
+    known = beside + _known_worlds(caller or os.getcwd())
     same = [os.path.join(folder, file) for folder, file in known
             if os.path.basename(file) == base]
     if same:
@@ -117,7 +117,7 @@ def _stem(file: str) -> str:
     return os.path.splitext(os.path.basename(file))[0].lower()
 
 
-def _known(caller: str) -> List[Tuple[str, str]]:
+def _known_worlds(caller: str) -> List[Tuple[str, str]]:
     """Existing world files: (folder, name)."""
     own = own_directory()
     folders = [caller, users_folder(), *([os.path.join(own, "world")] if own else [])]

@@ -118,7 +118,7 @@ class Node:
         world = self._simulator.world.file
         rospy.set_param("~my_simulations/world_file", os.path.abspath(world) if world else "")
         rospy.set_param("~world_base_name", base_name(world))
-        self._keep_engine_pid()
+        self._publish_engine_pid()
         if not rospy.has_param("/use_sim_time"):
             rospy.set_param("/use_sim_time", True)
 
@@ -203,7 +203,7 @@ class Node:
         try:
             if self._membership is not None and not self._membership.refresh():
                 return
-            self._keep_engine_pid()
+            self._publish_engine_pid()
             if not (self._network and self._extensions):
                 self._open_requested_editor()
             if self._reconfigure is not None:
@@ -222,7 +222,7 @@ class Node:
         except CommandError as fault:
             rospy.logerr("the world editor cannot be opened: %s", fault)
 
-    def _keep_engine_pid(self) -> None:
+    def _publish_engine_pid(self) -> None:
         pid = self._simulator.engine_pid
         if pid != self._engine_pid:
             rospy.set_param("~my_simulations/engine_pid", pid)

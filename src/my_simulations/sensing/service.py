@@ -61,9 +61,9 @@ class Service:
             except (EOFError, OSError):
                 return
             for number, message in messages:
-                self._take(number, message)
+                self._dispatch(number, message)
 
-    def _take(self, number: int, message: Any) -> None:
+    def _dispatch(self, number: int, message: Any) -> None:
         if number == 0:
             self._rays.put(0, message, None)
             self._camera.put(0, message, None)

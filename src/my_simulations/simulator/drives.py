@@ -103,7 +103,7 @@ class Drives:
             self._session.call(Batch(tuple(commands)) if len(commands) > 1 else commands[0])
             self._motors.update({motor.row: motor for motor in new})
             self._planar.update(moved)
-            self._keep(steered)
+            self._store_servos(steered)
             return True
 
     def _with_ended_holds(self, motors: Sequence[JointMotor],
@@ -255,9 +255,9 @@ class Drives:
             elif isinstance(command, SetWheelSlips):
                 self._slips.update({wheel.row: wheel for wheel in command.wheels})
             elif isinstance(command, SetServos):
-                self._keep(command.servos)
+                self._store_servos(command.servos)
 
-    def _keep(self, servos: Sequence[JointServo]) -> None:
+    def _store_servos(self, servos: Sequence[JointServo]) -> None:
         for servo in servos:
             if servo.drive:
                 self._servos[servo.row] = servo

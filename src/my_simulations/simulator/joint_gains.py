@@ -54,11 +54,12 @@ def axis_inertia(model: Model, joint: Joint, second: bool = False) -> float:
     sides = [beyond]
     if not model.static and WORLD not in before:
         sides.append(before)
-    felt = [_felt((links[name] for name in side if name in links), frame.position, direction,
-                  joint.type == "prismatic") for side in sides]
-    if min(felt) <= 0.0:
-        return max(felt) if len(felt) > 1 else 0.0
-    return 1.0 / sum(1.0 / one for one in felt)
+    inertias = [_effective_inertia((links[name] for name in side if name in links),
+                                   frame.position, direction, joint.type == "prismatic")
+                for side in sides]
+    if min(inertias) <= 0.0:
+        return max(inertias) if len(inertias) > 1 else 0.0
+    return 1.0 / sum(1.0 / one for one in inertias)
 
 
 def _sides(model: Model, joint: Joint) -> "List[Set[str]]":
@@ -81,7 +82,7 @@ def _sides(model: Model, joint: Joint) -> "List[Set[str]]":
     return found
 
 
-def _felt(links: Iterable[Link], origin: Vec3, axis: Vec3, slides: bool) -> float:
+def _effective_inertia(links: Iterable[Link], origin: Vec3, axis: Vec3, slides: bool) -> float:
     total = 0.0
     for link in links:
         inertial = link.inertial

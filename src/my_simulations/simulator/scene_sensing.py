@@ -84,7 +84,7 @@ class SceneSensing:
         casts, self._casts = self._casts, []
         futures = [future for _, future in casts]
         batch = CastBatch(tuple(cast for cast, _ in casts), self._cast_at)
-        self._running().cast_all(batch).add_done_callback(lambda done: _hand_out(done, futures))
+        self._running().cast_all(batch).add_done_callback(lambda done: _set_results(done, futures))
 
     def render(self, shots: Sequence[Shot], ns: int, rows: bytes) -> "List[Future[Pictures]]":
         """Pictures, one of each shot; of the rows of all links, as of a sim time (ns)."""
@@ -151,7 +151,7 @@ class SceneSensing:
             self._process.change(scenery(world, self._materials, self._resolver))
 
 
-def _hand_out(done: "Future[List[Union[RayReturns, SensingError]]]",
+def _set_results(done: "Future[List[Union[RayReturns, SensingError]]]",
               futures: "List[Future[RayReturns]]") -> None:
     """Give each of the futures its part of an answer, or the fault of all."""
     fault = done.exception()

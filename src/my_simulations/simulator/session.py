@@ -103,12 +103,12 @@ class Session:
                 self.call(command)
                 return
             except OutdatedCommandError:
-                again = self._looked_up_again(look_up)
+                again = self._look_up_again(look_up)
                 if again == command:
                     raise
                 command = again
 
-    def _looked_up_again(self, look_up: Callable[[], Command]) -> Command:
+    def _look_up_again(self, look_up: Callable[[], Command]) -> Command:
         # A replacement changes the engine first, and the registry next. The wait is limited: the
         # change may itself wait for a plugin that moves something.
         held = self.structure_lock.acquire(timeout=_CHANGE_S)

@@ -147,7 +147,8 @@ def _work(options: argparse.Namespace, folder: StudyFolder, plan: CasePlan, shar
         "study": plan.study.name, "file": plan.study.file, "cases": total,
         "all_cases": len(plan), "shard": [shard.index, shard.of], "versions": plan.versions})
     try:
-        folder.keep(plan.study.file)  # not before: the folder may be that of another study
+        # Not before: the folder may be that of another study.
+        folder.copy_study_file(plan.study.file)
         finished = _finished(plan, shard, journal.path, options.retry)
         recorder = Recorder(journal, folder.path, folder.stem("trajectories", shard))
         rate = Rate(total - len(finished))

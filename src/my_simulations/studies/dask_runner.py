@@ -306,9 +306,9 @@ class DaskRunner:
         for future in ended:
             flight = self._flights.get(future.key)
             if flight is not None:
-                self._take(flight)
+                self._process_result(flight)
 
-    def _take(self, flight: _Flight) -> None:
+    def _process_result(self, flight: _Flight) -> None:
         try:
             results: List[Result] = flight.future.result(timeout=_GATHER_S)
         except TimeoutError:  # its worker ended between the last case and now, or the net is slow
@@ -327,14 +327,14 @@ class DaskRunner:
         self._remove(flight)
         done = set()
         for row, kept in results:
-            self._keep(row, kept)
+            self._add_row(row, kept)
             done.add(row.case)
         self._again += [case for case in flight.cases if case.id not in done]
         node = self._nodes.get(flight.worker)
         if node is not None:
             node.done += len(results)
 
-    def _keep(self, row: Row, kept: Optional[Kept]) -> None:
+    def _add_row(self, row: Row, kept: Optional[Kept]) -> None:
         self._recorder.add(row, kept)
         self._left -= 1
         self._told(row)
@@ -357,6 +357,6 @@ class DaskRunner:
         if losses < self._plan.study.limits.attempts:
             self._suspects.append(case)
             return
-        self._keep(Row(NODE_LOST, case.id, case.index, case.seed, dict(case.settings),
+        self._add_row(Row(NODE_LOST, case.id, case.index, case.seed, dict(case.settings),
                        attempt=losses, issue=f"the worker {flight.worker} was lost while only this"
                                              " case ran on it"), None)

@@ -185,7 +185,7 @@ class _Parser:
     def _peek(self) -> Tuple[str, str]:
         return self._tokens[self._at][:2] if self._at < len(self._tokens) else ("end", "")
 
-    def _take(self, *signs: str) -> Optional[str]:
+    def _accept(self, *signs: str) -> Optional[str]:
         kind, text = self._peek()
         if kind in ("sign", "word") and text in signs:
             self._at += 1
@@ -193,7 +193,7 @@ class _Parser:
         return None
 
     def _need(self, sign: str) -> None:
-        if not self._take(sign):
+        if not self._accept(sign):
             raise self._expected(f"'{sign}'")
 
     def _expected(self, expected: str) -> ExpressionError:
@@ -210,20 +210,20 @@ class _Parser:
         if self._depth > _DEEPEST:
             raise ExpressionError(f"an expression is nested at most {_DEEPEST} deep")
         node = self._and()
-        while self._take("or"):
+        while self._accept("or"):
             node = self._conditions(np.logical_or, node, self._and(), "or")
         self._depth -= 1
         return node
 
     def _and(self) -> _Node:
         node = self._not()
-        while self._take("and"):
+        while self._accept("and"):
             node = self._conditions(np.logical_and, node, self._not(), "and")
         return node
 
     def _not(self) -> _Node:
         negations = 0
-        while self._take("not"):
+        while self._accept("not"):
             negations += 1
         node = self._comparison()
         if not negations:
@@ -234,7 +234,7 @@ class _Parser:
 
     def _comparison(self) -> _Node:
         node = self._side()
-        sign = self._take(*_COMPARISONS)
+        sign = self._accept(*_COMPARISONS)
         if not sign:
             return node[1]
         sides = [node, self._side()]
@@ -253,7 +253,7 @@ class _Parser:
     def _sum(self) -> _Node:
         node = self._product()
         while True:
-            sign = self._take("+", "-")
+            sign = self._accept("+", "-")
             if not sign:
                 return node
             node = self._joined(_ARITHMETIC[sign], [node, self._product()], sign)
@@ -261,22 +261,22 @@ class _Parser:
     def _product(self) -> _Node:
         node = self._unary()
         while True:
-            sign = self._take("*", "/")
+            sign = self._accept("*", "/")
             if not sign:
                 return node
             node = self._joined(_ARITHMETIC[sign], [node, self._unary()], sign)
 
     def _unary(self) -> _Node:
         signs = 0
-        while self._take("-"):
+        while self._accept("-"):
             signs += 1
         node = self._value()
-        if self._take("^"):
+        if self._accept("^"):
             node = self._joined(_ARITHMETIC["^"], [node, self._exponent()], "^")
         return self._joined(np.negative, [node], "-") if signs % 2 else node
 
     def _exponent(self) -> _Node:
-        negative = self._take("-")
+        negative = self._accept("-")
         node = self._value()
         return self._joined(np.negative, [node], "-") if negative else node
 
@@ -284,7 +284,7 @@ class _Parser:
 
     def _value(self) -> _Node:
         kind, text = self._peek()
-        if self._take("("):
+        if self._accept("("):
             node = self._or()
             self._need(")")
             return node
@@ -299,7 +299,7 @@ class _Parser:
             return self._pair(text)
         if text in _KNOWN:
             return self._signal(text)
-        if self._take("("):
+        if self._accept("("):
             return self._call(text)
         self._at -= 1
         raise self._expected("a number, a function or one of " + ", ".join(_KNOWN))
@@ -309,7 +309,7 @@ class _Parser:
             self._at -= 2
             raise self._expected("a function: " + ", ".join([*_REDUCERS, *_FUNCTIONS]))
         given = [self._or()]
-        while self._take(","):
+        while self._accept(","):
             given.append(self._or())
         self._need(")")
         count = _FUNCTIONS[name][1] if name in _FUNCTIONS else 1
@@ -347,7 +347,7 @@ class _Parser:
             return _of_signal(Signal("speed", (name,)))
         parts = {"pose": POSE_PARTS, "twist": TWIST_PARTS, "joint": JOINT_PARTS}[kind]
         self._need(".")
-        part = self._take(*parts)
+        part = self._accept(*parts)
         if not part:
             raise self._expected("one of " + ", ".join(parts))
         return _of_signal(Signal(kind, (name,), part))

@@ -109,7 +109,7 @@ class StudyFolder:
                 raise
             raise CommandError(f"cannot write to {self.path}: {fault.strerror}") from None
 
-    def keep(self, study_file: str) -> None:
+    def copy_study_file(self, study_file: str) -> None:
         """Copy the study file for the record; the caller has opened a journal of the folder."""
         with replaced(os.path.join(self.path, COPY)) as part:
             shutil.copyfile(study_file, part)

@@ -64,7 +64,7 @@ class Journal:
         then, and every later call raises the same: the study ends, and can be resumed.
         """
         with self._lock:
-            self._put("".join(row.line() for row in rows).encode())
+            self._append("".join(row.line() for row in rows).encode())
             if time.monotonic() - self._synced > _FSYNC_S:
                 os.fsync(self._file)
                 self._synced = time.monotonic()
@@ -76,9 +76,9 @@ class Journal:
             os.close(self._file)
 
     def _write(self, value: Dict[str, Any]) -> None:
-        self._put((json.dumps(value) + "\n").encode())
+        self._append((json.dumps(value) + "\n").encode())
 
-    def _put(self, data: bytes) -> None:
+    def _append(self, data: bytes) -> None:
         if self._fault is not None:
             raise self._fault
         size = os.fstat(self._file).st_size

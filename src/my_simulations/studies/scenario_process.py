@@ -38,14 +38,14 @@ def main(words: List[str]) -> int:
     libc.prctl(_PR_SET_PDEATHSIG, signal.SIGTERM, 0, 0, 0)
     if os.getppid() != parent:  # it ended before this was asked for
         return 128 + signal.SIGTERM
-    process = subprocess.Popen(command, start_new_session=True, preexec_fn=_take_signals)
+    process = subprocess.Popen(command, start_new_session=True, preexec_fn=_unblock_signals)
     try:
         return _wait(process, seconds)
     finally:
         _end_all(process)
 
 
-def _take_signals() -> None:
+def _unblock_signals() -> None:
     signal.pthread_sigmask(signal.SIG_UNBLOCK, _ENDING)
 
 

@@ -51,12 +51,12 @@ class StudyRunner:
         """
         pool = SlotPool(self._plan, self._slots, self._hook)
         try:
-            pool.run(waiting_cases(self._plan, shard, self._finished), self._take)
+            pool.run(waiting_cases(self._plan, shard, self._finished), self._add_row)
         finally:
             pool.close()
             self._recorder.close()
 
-    def _take(self, row: Row, kept: Optional[Kept]) -> None:
+    def _add_row(self, row: Row, kept: Optional[Kept]) -> None:
         self._recorder.add(row, kept)
         with self._ready:
             self._told(row)

@@ -44,13 +44,13 @@ from .inserts import (
     entities_of_text,
     entity_of_text,
     entity_of_uri,
-    free_name,
     regrouped,
     simple_shape,
     used_names,
     world_of,
 )
 from .model_building import ModelBuilding
+from .model_parts import free_name
 from .model_scaling import resized
 from .property_path import made
 from .property_target import is_of_light, property_change, split_target
@@ -181,7 +181,7 @@ class EditRequests:
             if not is_light:
                 self._world.models.get(name)
             parts.append(RemoveLight(name) if is_light else RemoveModel(name))
-        return f"Delete {listed(names)}", _one(parts), {"names": names}
+        return f"Delete {listed(names)}", _as_one(parts), {"names": names}
 
     def _paste(self, op: Dict[str, Any]) -> Planned:
         entities, issues = entities_of_text(op["text"], self._resolver, op.get("source"))
@@ -207,7 +207,7 @@ class EditRequests:
             names.append(name)
             parts.append(self._addition(entity, name, pose))
         verb = "Insert" if op.get("source") else "Paste"
-        return f"{verb} {listed(names)}", _one(parts), {"names": names, "name": names[-1]}
+        return f"{verb} {listed(names)}", _as_one(parts), {"names": names, "name": names[-1]}
 
     # -- changing --------------------------------------------------------------------------------
 
@@ -344,7 +344,7 @@ class _Deferred:
         return Group(tuple(reversed(done)))
 
 
-def _one(parts: List[Operation]) -> Operation:
+def _as_one(parts: List[Operation]) -> Operation:
     return parts[0] if len(parts) == 1 else Group(tuple(parts))
 
 

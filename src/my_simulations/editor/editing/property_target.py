@@ -142,15 +142,15 @@ def _with_part(link: Link, name: str, path: str, value: Any,
             if not kind and path.split(".")[0] not in Collision.__dataclass_fields__:
                 continue  # a visual of the same name is meant
             changed = _found(with_value(collision, path, value), resolver)
-            return replace(link, collisions=_put(link.collisions, n, changed))
+            return replace(link, collisions=_replaced_at(link.collisions, n, changed))
     for n, visual in enumerate(link.visuals):
         if visual.name == name and kind != "collision":
             shown = _found(_painted(visual, path, value), resolver)
-            return replace(link, visuals=_put(link.visuals, n, shown))
+            return replace(link, visuals=_replaced_at(link.visuals, n, shown))
     return None
 
 
-def _put(items: List[Any], at: int, item: Any) -> List[Any]:
+def _replaced_at(items: List[Any], at: int, item: Any) -> List[Any]:
     return [*items[:at], item, *items[at + 1:]]
 
 

@@ -58,7 +58,7 @@ def url_of(listener: socket.socket, host: str, token: str) -> str:
     return f"http://{shown}:{port}/" + (f"?token={token}" if token else "")
 
 
-def keep_address(url: str, options: EditorOptions) -> List[str]:
+def save_address(url: str, options: EditorOptions) -> List[str]:
     """Keep an address with its token for gzclient; returns the files that do."""
     try:
         return address_file.write(url, options.cache_dir)

@@ -27,7 +27,7 @@ class Gripper(Controller):
         self._gains: Optional[PidGains] = None
         if self.interface == EFFORT:
             self._gains = s.needed_gains(path)
-            self.offer_gains(path, self._joint, self._gains, self._take_gains)
+            self.offer_gains(path, self._joint, self._gains, self._set_gains)
         self._tolerance = abs(s.number("goal_tolerance", 0.01))
         self._default_effort = abs(s.number("max_effort", 0.0))
         self._still = s.number("stall_velocity_threshold", 0.001)
@@ -38,10 +38,11 @@ class Gripper(Controller):
             self._check_goal)
         self._wanted, self._most = 0.0, self._default_effort
         self._action = ActionServer(self.context, f"{self.name}/gripper_cmd",
-                                    "control_msgs/GripperCommand", self._asked, self._cancelled)
+                                    "control_msgs/GripperCommand", self._start_goal,
+                                    self._cancelled)
         self.keep(self._action)
 
-    def _take_gains(self, gains: PidGains) -> None:
+    def _set_gains(self, gains: PidGains) -> None:
         self._gains = gains
 
     def start(self) -> None:
@@ -52,7 +53,7 @@ class Gripper(Controller):
         self._watch.end()
         self._preempt("the controller was stopped")
 
-    def _asked(self, goal: Goal) -> None:
+    def _start_goal(self, goal: Goal) -> None:
         if self.state != RUNNING:
             goal.reject(self._result(False, False), "the controller is not running")
             return

@@ -30,9 +30,9 @@ class JointLoop(Controller):
         self._state = self.publish("state", "control_msgs/JointControllerState")
         self.subscribe("command", "std_msgs/Float64",
                        lambda message: self._set_target(message.data))
-        self.offer_gains("pid", self._joint, self._gains, self._take_gains)
+        self.offer_gains("pid", self._joint, self._gains, self._set_gains)
 
-    def _take_gains(self, gains: PidGains) -> None:
+    def _set_gains(self, gains: PidGains) -> None:
         self._gains = gains
 
     def start(self) -> None:

@@ -67,7 +67,7 @@ class JointTrajectory(Controller):
                        checks=True)
         self._state = self.publish("state", "control_msgs/JointTrajectoryControllerState")
         self._action = ActionServer(self.context, f"{self.name}/follow_joint_trajectory", _ACTION,
-                                    self._asked, self._cancelled)
+                                    self._start_goal, self._cancelled)
         self.keep(self._action)
         self.serve("query_state", "control_msgs/QueryTrajectoryState", self._query)
 
@@ -93,7 +93,7 @@ class JointTrajectory(Controller):
             return
         self._preempt("another trajectory came")
 
-    def _asked(self, goal: Goal) -> None:
+    def _start_goal(self, goal: Goal) -> None:
         result = self._action.result()
         wanted = goal.message
         try:

@@ -257,7 +257,7 @@ class KobukiEvents:
         def seen(returns: RayReturns, ns: int) -> None:
             first = float(returns.ranges.flat[0])
             found[sides[0]] = not first < self._edge   # nothing below is a cliff
-            self._bottoms[sides[0]] = _reading(first)
+            self._bottoms[sides[0]] = _adc_value(first)
             self._cast_cliff_rays(sides[1:], found)
 
         self._context.scan(fan_of(sensor.ray), False, seen, (link, sensor.pose))
@@ -292,7 +292,7 @@ def sensor_named(base: Kobuki, name: str) -> Tuple[str, Sensor]:
     raise PluginError(f"the model has no sensor '{name}'")
 
 
-def _reading(distance: float) -> int:
+def _adc_value(distance: float) -> int:
     """What the base's converter reads at a distance (m), cut to the 16 bits of the message."""
     return int(_READING * math.atan2(_READING_AT, distance)) & 0xFFFF
 

@@ -172,7 +172,7 @@ class QuadrotorPropulsion(Plugin):
             self._last_ns = self.context.now_ns
             self._timer = self.context.every(0.0, self.update)
 
-    def _take_commands(self) -> None:
+    def _apply_commands(self) -> None:
         now = self.context.now_ns
         while self._queue and self._queue[0][0] <= now:
             self._voltages = self._queue.popleft()[1]
@@ -185,7 +185,7 @@ class QuadrotorPropulsion(Plugin):
     def update(self) -> None:
         dt = (self.context.now_ns - self._last_ns) * 1e-9
         self._last_ns = self.context.now_ns
-        self._take_commands()
+        self._apply_commands()
         velocity, spin = (clamped_vector(one, MOST_VELOCITY) for one in body_twist(self._link))
         arm = self._constants.l_m
         self._rotors = [rotor.stepped(self._constants, voltage, air, dt)

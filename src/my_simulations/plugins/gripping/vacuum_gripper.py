@@ -43,7 +43,7 @@ class VacuumGripper(Plugin):
             self.context.warn(f"it is {'on' if on else 'off'} already")
         self._on = on
         if on and self._search is None:
-            self._search = self.context.every(_HERTZ, self._take)
+            self._search = self.context.every(_HERTZ, self._attach_touched)
         elif not on:
             self._end_search()
             self._release_links()
@@ -64,7 +64,7 @@ class VacuumGripper(Plugin):
         message.data = bool(self._held)
         self._topic.publish(message)
 
-    def _take(self) -> None:
+    def _attach_touched(self) -> None:
         """Attach the links that are close."""
         context, here = self.context, self._link.pose.position
         models = context.models()

@@ -74,11 +74,11 @@ class Connection:
             if self._forked:
                 os._exit(1)   # the plugin has returned, or raised, in a process that it forked
             kept = fault if isinstance(fault, (PluginError, RequestError)) else None
-            self.send(Raised(self._take_handle_calls(), kept, describe_fault(fault)))
+            self.send(Raised(self._pop_handle_calls(), kept, describe_fault(fault)))
 
     def _done(self, call: Call) -> Done:
         result = self._function(call.function)(*call.arguments)
-        return Done(self._take_handle_calls(), result if call.function in self._answering else None)
+        return Done(self._pop_handle_calls(), result if call.function in self._answering else None)
 
     def _function(self, which: Union[int, str]) -> Callable[..., Any]:
         if isinstance(which, str):
@@ -94,7 +94,7 @@ class Connection:
         self._handle_calls.append(HandleCall(handle, name,
                                        pickle.dumps(arguments, pickle.HIGHEST_PROTOCOL)))
 
-    def _take_handle_calls(self) -> List[HandleCall]:
+    def _pop_handle_calls(self) -> List[HandleCall]:
         handle_calls, self._handle_calls = self._handle_calls, []
         return handle_calls
 
@@ -113,7 +113,7 @@ class Connection:
         if threading.get_ident() != self._thread:
             raise PluginError(f"'{name}' was used in a thread of the plugin; only functions that"
                               " the simulator calls can use the context")
-        self.send(Query(self._take_handle_calls(), name,
+        self.send(Query(self._pop_handle_calls(), name,
                       tuple(self._packed(name, one) for one in arguments),
                       {key: self._packed(name, one) for key, one in named.items()}))
         while True:

@@ -127,11 +127,11 @@ class DepthCamera(Plugin):
         if self._depth.wanted:
             outputs.append(DEPTH)
         if outputs:
-            self.context.photograph([self._colors.view(*outputs)], self._taken)
+            self.context.photograph([self._colors.view(*outputs)], self._deliver_pictures)
         else:
             self._publish_pictures(None, None, self.context.now_ns)
 
-    def _taken(self, pictures: List[Any], ns: int) -> None:
+    def _deliver_pictures(self, pictures: List[Any], ns: int) -> None:
         self._publish_pictures(pictures[0].rgb, pictures[0].depth, ns)
 
     def _publish_pictures(self, rgb: Optional[Any], depth: Optional[Any], ns: int) -> None:

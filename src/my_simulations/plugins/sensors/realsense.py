@@ -80,7 +80,7 @@ class RealSense(Plugin):
                         [*self._gray.publications, *self._depth.publications], world=True)
 
     def _request_picture(self, name: str, stream: PictureStream) -> None:
-        self._take(name, stream, (RGB,) if stream.wanted else (),
+        self._photograph(name, stream, (RGB,) if stream.wanted else (),
                    lambda picture, ns: stream.publish(
                        None if picture is None else picture.rgb, ns))
 
@@ -93,9 +93,9 @@ class RealSense(Plugin):
             self._gray.publish(rgb, ns)
             self._depth.publish(depth, rgb, ns)
 
-        self._take("depth", self._gray, outputs, seen)
+        self._photograph("depth", self._gray, outputs, seen)
 
-    def _take(self, name: str, stream: PictureStream, outputs: Tuple[str, ...],
+    def _photograph(self, name: str, stream: PictureStream, outputs: Tuple[str, ...],
               publish: Callable[[Any, int], None]) -> None:
         if not outputs:
             publish(None, self.context.now_ns)

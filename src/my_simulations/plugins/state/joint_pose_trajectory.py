@@ -35,7 +35,7 @@ class JointPoseTrajectory(Plugin):
         if topic:
             context.subscribe(topic, "trajectory_msgs/JointTrajectory", self._receive, queue=100)
         if service:
-            context.serve(service, "gazebo_msgs/SetJointTrajectory", self._asked)
+            context.serve(service, "gazebo_msgs/SetJointTrajectory", self._answer)
 
     def reset(self) -> None:
         self._end()
@@ -48,7 +48,7 @@ class JointPoseTrajectory(Plugin):
         except PluginError as fault:  # of this trajectory
             self.context.warn(str(fault))
 
-    def _asked(self, request: Any, response: Any) -> None:
+    def _answer(self, request: Any, response: Any) -> None:
         try:
             if request.model_name not in ("", self.context.model):
                 raise PluginError(f"this is model '{self.context.model}', not"
@@ -66,7 +66,7 @@ class JointPoseTrajectory(Plugin):
 
     def _begin(self, message: Any, without_physics: bool) -> None:
         context, frame = self.context, message.header.frame_id
-        joints, columns = self._known(message.joint_names)
+        joints, columns = self._find_joints(message.joint_names)
         for n, point in enumerate(message.points):
             if len(point.positions) != len(message.joint_names):
                 raise PluginError(f"point {n} of the trajectory has {len(point.positions)} "
@@ -89,7 +89,7 @@ class JointPoseTrajectory(Plugin):
         else:
             self._await()
 
-    def _known(self, names: Any) -> Tuple[List[Joint], List[int]]:
+    def _find_joints(self, names: Any) -> Tuple[List[Joint], List[int]]:
         """Return the existing joints and their columns; report and skip the others."""
         joints, columns = [], []
         for n, name in enumerate(names):

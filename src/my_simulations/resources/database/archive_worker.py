@@ -73,11 +73,11 @@ def unpack(kind: str, archive: str, folder: str, name: str, files: int, size: in
     if kind == "zip":
         with zipfile.ZipFile(archive) as packed:
             for entry in _of_zip(packed):
-                _one(entry, folder, name, count, skips_links)
+                _unpack_entry(entry, folder, name, count, skips_links)
         return
     with tarfile.open(archive, "r:gz") as tar:
         for entry in _of_tar(tar):
-            _one(entry, folder, name, count, skips_links)
+            _unpack_entry(entry, folder, name, count, skips_links)
     _read_to_end(archive, size + (files + 2) * 1024 + (1 << 20))
 
 
@@ -100,7 +100,7 @@ def _of_zip(packed: zipfile.ZipFile) -> Iterator[Entry]:
                bool(member.external_attr >> 16 & 0o111))
 
 
-def _one(entry: Entry, folder: str, name: str, count: _Count, skips_links: bool) -> None:
+def _unpack_entry(entry: Entry, folder: str, name: str, count: _Count, skips_links: bool) -> None:
     path, kind, size, opened, runs = entry
     count.entry(size)
     if skips_links and kind == "other":

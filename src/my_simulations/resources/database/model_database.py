@@ -69,7 +69,7 @@ class ModelDatabase(DownloadTime):
         Raises:
             ModelNotProvidedError: the model cannot be downloaded now.
         """
-        path = self._one(name)
+        path = self._folder_of(name)
         waiting, seen = _dependencies(path), {name}
         while waiting and len(seen) < _MOST_DEPENDENCIES:
             other = waiting.pop(0)
@@ -77,12 +77,12 @@ class ModelDatabase(DownloadTime):
                 continue
             seen.add(other)
             try:
-                waiting += _dependencies(self._one(other))
+                waiting += _dependencies(self._folder_of(other))
             except ModelNotProvidedError:
                 continue  # kept, to be reported where the model is used
         return path
 
-    def _one(self, name: str) -> str:
+    def _folder_of(self, name: str) -> str:
         if not _NAME.match(name) or name.strip(" .") != name:
             raise ModelNotProvidedError(f"{name!r} is not a valid model name")
         path = os.path.join(self._folder, name)

@@ -190,7 +190,7 @@ class Publishers(WorkerThread):
         if states_wanted:
             sim_ns = clock.sim_ns(step)
             due = [channel for channel in self._state_topics
-                   if channel.wanted and channel.is_due(step, sim_ns, self._standing)]
+                   if channel.wanted and channel.is_due(step, sim_ns, self._paused_state)]
             if due:
                 layout, sequence, links = self._simulator.feed.states()
                 passed_by = self._passed_by(layout.revision, sequence, step, len(links))
@@ -223,7 +223,7 @@ class Publishers(WorkerThread):
                  for at in range(step - missed, step)]
         return [states[-1] for states in there if states]
 
-    def _standing(self) -> Optional[Tuple[int, int]]:
+    def _paused_state(self) -> Optional[Tuple[int, int]]:
         """Key of the state of a paused world; None while it runs."""
         if self._simulator.clock.running:
             return None

@@ -50,11 +50,11 @@ def sources(spec: CameraSpec) -> Tuple[np.ndarray, np.ndarray]:
     x, y = _without_radial(lens, x_seen, y_seen, corner)
     for _ in range(_ROUNDS):
         miss_x, miss_y, bend = _misses(lens, x, y, x_seen, y_seen)
-        whole = np.where(_keeps_sides(*bend), bend[0] * bend[2] - bend[1] ** 2, np.inf)
+        whole = np.where(_is_unfolded(*bend), bend[0] * bend[2] - bend[1] ** 2, np.inf)
         x += np.clip((miss_x * bend[2] - miss_y * bend[1]) / whole, -_STRIDE, _STRIDE)
         y += np.clip((miss_y * bend[0] - miss_x * bend[1]) / whole, -_STRIDE, _STRIDE)
     miss_x, miss_y, bend = _misses(lens, x, y, x_seen, y_seen)
-    lost = (np.hypot(miss_x, miss_y) * f > 0.5) | ~_keeps_sides(*bend)
+    lost = (np.hypot(miss_x, miss_y) * f > 0.5) | ~_is_unfolded(*bend)
     x[lost] = np.inf
     return x * f + middle[0], y * f + middle[1]
 
@@ -88,7 +88,7 @@ def _misses(lens: Distortion, x: np.ndarray, y: np.ndarray, x_seen: np.ndarray,
         radial + y * y * slope + 6.0 * lens.p1 * y + 2.0 * lens.p2 * x)
 
 
-def _keeps_sides(across: np.ndarray, mixed: np.ndarray, down: np.ndarray) -> np.ndarray:
+def _is_unfolded(across: np.ndarray, mixed: np.ndarray, down: np.ndarray) -> np.ndarray:
     """Where a derivative neither mirrors nor turns the picture over: short of a fold."""
     kept: np.ndarray = (across * down - mixed * mixed > 0.0) & (across + down > 0.0)
     return kept
