@@ -12,7 +12,6 @@ import os
 import sys
 import time
 
-sys.path.insert(0, __file__.rsplit("/", 1)[0])
 import bare_world
 import pybullet
 from scenes import positions

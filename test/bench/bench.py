@@ -11,19 +11,17 @@ with the least and the largest. Nothing here fails on a slow machine.
 from __future__ import annotations
 
 import statistics
-import sys
 import time
-from typing import Callable, Dict, List, Tuple
+from typing import Callable, List, Tuple
 
-sys.path.insert(0, __file__.rsplit("/", 1)[0])
 import hostile
 import pace
 import scenes
 import starting
 from clock import Clock
-from server import Server, master, processor, proportional, resident, wait
+from row_table import Row, Rows, shown_with_ros
+from server import Server, processor, proportional, resident, wait
 
-Row = Tuple[str, str, str, bool]
 EMPTY = scenes.world("boxes", 0, True, 1000.0)
 
 
@@ -235,26 +233,9 @@ def files() -> List[Row]:
     return rows
 
 
-ROWS: Dict[str, Callable[[], List[Row]]] = {
+ROWS: Rows = {
     "start": start, "meshes": meshes, "prompt": prompt, "rest": rest, "services": services,
     "full": full, "asleep": asleep, "stacks": stacks, "resting": resting, "files": files}
 
-
-def main(names: List[str]) -> int:
-    unknown = [name for name in names if name not in ROWS]
-    if unknown:
-        print(__doc__, file=sys.stderr)
-        return 2
-    with master():
-        import rospy
-        rospy.init_node("bench", anonymous=True, disable_rostime=True, disable_signals=True)
-        print(f"{'what':<56} {'measured':<66} {'bar':<28} met")
-        for name in names or ROWS:
-            for what, figure, bar, good in ROWS[name]():
-                print(f"{what:<56} {figure:<66} {bar:<28} {'yes' if good else 'NO'}", flush=True)
-        rospy.signal_shutdown("done")
-    return 0
-
-
 if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
+    shown_with_ros(ROWS, __doc__)

@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
 """Prints what a large building costs. Run it in a shell with the workspace, on a quiet machine.
 
-usage: building.py      500 walls with 200 openings: plan to SDF, edits in the page, and the speed
-                        with 20 boxes awake in it beside bare PyBullet with the same bodies
+usage: building.py [ROW …]   rows: convert edits speed (default: all)
 
+500 walls with 200 openings: plan to SDF, edits in the page, and the speed with 20 boxes awake in it
+beside bare PyBullet with the same bodies.
 Nothing here fails on a slow machine.
 """
 from __future__ import annotations
@@ -11,16 +12,15 @@ from __future__ import annotations
 import json
 import multiprocessing
 import statistics
-import sys
 import time
 from typing import Any, List, Tuple
 
-sys.path.insert(0, __file__.rsplit("/", 1)[0])
 import scenes
-from bench import EMPTY, Row
+from bench import EMPTY
 from clock import Clock
 from editor import browser, editor_url
-from server import Server, master, wait
+from row_table import Row, shown_with_ros
+from server import Server, wait
 
 ROWS, COLUMNS, OPENINGS, BOXES = 25, 10, 200, 20
 SDF_SECONDS, SHARE, EDIT_MS = 0.5, 0.85, 50.0
@@ -202,17 +202,6 @@ def speed() -> Row:
     return ("the world made from it, 20 boxes awake", f"{mine:.2f} = {mine / alone:.2f} of bare"
             f" {alone:.2f}", f"{SHARE} of bare", mine / alone >= SHARE)
 
-
-def main() -> None:
-    import rospy
-
-    rows = [convert()]
-    with master():
-        rospy.init_node("bench", disable_rostime=True)
-        rows += [edits(), speed()]
-    for what, found, wanted, good in rows:
-        print(f"{'ok ' if good else 'LOW'} {what:58} {found:34} {wanted}")
-
-
 if __name__ == "__main__":
-    main()
+    shown_with_ros({"convert": lambda: [convert()], "edits": lambda: [edits()],
+                    "speed": lambda: [speed()]}, __doc__)

@@ -23,7 +23,6 @@ import tempfile
 import time
 from typing import Any, Dict, Iterator, List, NamedTuple
 
-sys.path.insert(0, __file__.rsplit("/", 1)[0])
 from server import children, end, processor, proportional, wait
 
 CLASS = [sys.executable, str(pathlib.Path(__file__).resolve().parents[2] / "scripts" / "class")]

@@ -14,7 +14,6 @@ import time
 from typing import Callable, Dict, List, Sequence, Tuple
 
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
-sys.path.insert(0, __file__.rsplit("/", 1)[0])
 sys.path.insert(0, __file__.rsplit("/", 2)[0] + "/unit/plugins")
 sys.path.insert(0, __file__.rsplit("/", 2)[0] + "/unit/support")
 import pybullet

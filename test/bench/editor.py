@@ -16,20 +16,17 @@ import math
 import os
 import shutil
 import statistics
-import sys
 import tempfile
 import threading
 import time
 from typing import Any, Callable, Dict, Iterator, List, Optional, Sequence, Tuple
 
-sys.path.insert(0, __file__.rsplit("/", 1)[0])
-import scenes
-from server import Server, children, master, processor, wait
+from bench import EMPTY
+from row_table import Row, Rows, shown_with_ros
+from server import Server, children, processor, wait
 
 from my_simulations.editor.transport import address_file
 
-Row = Tuple[str, str, str, bool]
-EMPTY = scenes.world("boxes", 0, True, 1000.0)
 CHROMIUM = (os.environ.get("CHROMIUM") or shutil.which("chromium-headless-shell")
             or shutil.which("chromium") or "chromium")
 SHAPES = ("<box><size>.5 .5 .5</size></box>", "<sphere><radius>.3</radius></sphere>",
@@ -501,28 +498,12 @@ def _drag(page: Any, poller: Poller, way: int) -> float:
     return float(poller.reached(target, released) or 0.0)
 
 
-ROWS: Dict[str, Callable[[], List[Row]]] = {
+ROWS: Rows = {
     "page": page_load, "idle": idle, "frames": frames, "moving": moving,
     "meshes": meshes, "slow": slow_page, "stl": stl_files, "release": release}
 
-
-def main(names: List[str]) -> int:
-    unknown = [name for name in names if name not in ROWS]
-    if unknown:
-        print(__doc__, file=sys.stderr)
-        return 2
-    with tempfile.TemporaryDirectory() as home, master():
+if __name__ == "__main__":
+    with tempfile.TemporaryDirectory() as home:
         # Its own home: no thumbnails, autosaves or added folders of the user's.
         os.environ["HOME"] = home
-        import rospy
-        rospy.init_node("bench", anonymous=True, disable_rostime=True, disable_signals=True)
-        print(f"{'what':<56} {'measured':<40} {'bar':<10} met")
-        for name in names or ROWS:
-            for what, figure, bar, good in ROWS[name]():
-                print(f"{what:<56} {figure:<40} {bar:<10} {'yes' if good else 'NO'}", flush=True)
-        rospy.signal_shutdown("done")
-    return 0
-
-
-if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
+        shown_with_ros(ROWS, __doc__)

@@ -18,8 +18,6 @@ from typing import Callable, TextIO, Tuple
 
 import numpy as np
 import pybullet
-
-sys.path.insert(0, __file__.rsplit("/", 1)[0])
 from server import children, processor
 
 ROBOT = str(pathlib.Path(__file__).resolve().parents[2] / "urdf" / "robo.urdf")

@@ -10,7 +10,6 @@ import sys
 import time
 from typing import List, Tuple
 
-sys.path.insert(0, __file__.rsplit("/", 1)[0])
 import scenes
 from server import Server, master, wait
 

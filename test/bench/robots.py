@@ -19,14 +19,13 @@ import statistics
 import subprocess
 import sys
 import time
-from typing import Callable, Dict, List, Sequence, Tuple
+from typing import Dict, List, Sequence, Tuple
 
-sys.path.insert(0, __file__.rsplit("/", 1)[0])
 import scenes
 import stock_robots
+from row_table import Row, Rows
 from server import Server, children, master, processor, wait
 
-Row = Tuple[str, str, str, bool]
 WORLD = scenes.world("boxes", 0, True, 1000.0)
 ROBOT = pathlib.Path(__file__).resolve().parents[2] / "urdf" / "robo.urdf.xacro"
 SECONDS = 15.0
@@ -216,7 +215,7 @@ def closed_loop() -> List[Row]:
              f"{100 * node:.0f} %, {100 * engine:.0f} % of a core", "", True)]
 
 
-ROWS: Dict[str, Callable[[], List[Row]]] = {
+ROWS: Rows = {
     "drive": drive, "ten": ten, "closed_loop": closed_loop,
     "small": lambda: stock_robots.stock(stock_robots.SMALL),
     "large": lambda: stock_robots.stock(stock_robots.LARGE),

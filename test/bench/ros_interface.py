@@ -18,11 +18,11 @@ import threading
 import time
 from typing import Any, Callable, Dict, List, Tuple
 
-sys.path.insert(0, __file__.rsplit("/", 1)[0])
 import scenes
-from bench import EMPTY, Row, milliseconds
+from bench import EMPTY, milliseconds
 from clock import Clock
-from server import Server, master, wait
+from row_table import Row, Rows, shown_with_ros
+from server import Server, wait
 
 from my_simulations.ros.service_connection import ServiceConnection
 
@@ -308,28 +308,12 @@ def paused() -> List[Row]:
              f"{max(took):.3f} s", "0.2 s", max(took) <= 0.2)]
 
 
-ROWS: Dict[str, Callable[[], List[Row]]] = {
+ROWS: Rows = {
     "calls": calls, "clients": clients, "ratios": ratios, "states": states, "spawns": spawns,
     "paused": paused}
 
-
-def main(names: List[str]) -> int:
-    if names[:1] == ["--client"]:
-        client(int(names[1]), float(names[2]), names[3])
-        return 0
-    if any(name not in ROWS for name in names):
-        print(__doc__, file=sys.stderr)
-        return 2
-    with master():
-        import rospy
-        rospy.init_node("bench", anonymous=True, disable_rostime=True, disable_signals=True)
-        print(f"{'what':<72} {'measured':<38} {'bar':<18} met")
-        for name in names or ROWS:
-            for what, figure, bar, good in ROWS[name]():
-                print(f"{what:<72} {figure:<38} {bar:<18} {'yes' if good else 'NO'}", flush=True)
-        rospy.signal_shutdown("done")
-    return 0
-
-
 if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
+    if sys.argv[1:2] == ["--client"]:
+        client(int(sys.argv[2]), float(sys.argv[3]), sys.argv[4])
+    else:
+        shown_with_ros(ROWS, __doc__)

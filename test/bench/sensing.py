@@ -10,13 +10,10 @@ from __future__ import annotations
 
 import math
 import statistics
-import sys
 import time
 from typing import Callable, List, Tuple
 
 import numpy as np
-
-sys.path.insert(0, __file__.rsplit("/", 1)[0])
 from row_table import Row, Rows, shown
 from server import processor, resident
 

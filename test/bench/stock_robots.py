@@ -7,7 +7,7 @@ import statistics
 import subprocess
 import sys
 import time
-from typing import Any, Dict, Iterator, List, NamedTuple, Optional, Tuple
+from typing import Any, Dict, Iterator, List, NamedTuple, Optional
 
 from mobile_robots import (
     LARGE_CONTROLLERS,
@@ -17,9 +17,9 @@ from mobile_robots import (
     large_robot,
     small_robot,
 )
+from row_table import Row
 from server import Server, processor
 
-Row = Tuple[str, str, str, bool]
 TURNS, MEASURE_S = 5, 2.5
 SETTLE_S = 8.0   # until the solver needs few iterations; the robot's velocity is 0 long before
 MOST_IDLE, MOST_SUBSCRIBED = 1.2, 2.0   # times the processor time of the robot without plugins
