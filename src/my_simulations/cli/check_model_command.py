@@ -53,14 +53,7 @@ def parser() -> argparse.ArgumentParser:
 
 @program
 def main(argv: Optional[Sequence[str]] = None) -> int:
-    """Run the check.
-
-    Args:
-        argv: the whole command line, program name first; default `sys.argv`.
-
-    Returns:
-        0 without errors, 1 with errors, 2 for an invalid command line.
-    """
+    """Run a command line, program name first; return the exit code that `parser` lists."""
     made = parser()
     options = made.parse_args((sys.argv if argv is None else list(argv))[1:])
     if options.explain:

@@ -66,14 +66,7 @@ def parser() -> argparse.ArgumentParser:
 
 @program
 def main(argv: Optional[Sequence[str]] = None) -> int:
-    """Run the command.
-
-    Args:
-        argv: the whole command line, program name first; default `sys.argv`.
-
-    Returns:
-        0 on success, 1 on failure, 2 for an invalid class file or command line.
-    """
+    """Run a command line, program name first; return the exit code that `parser` lists."""
     options = parser().parse_args((sys.argv if argv is None else list(argv))[1:])
     try:
         plan, issues = read_class(options.file)
@@ -233,7 +226,3 @@ def _request(manager: Dict[str, Any], path: str, data: Optional[bytes] = None) -
 _COMMANDS: Dict[str, Callable[[ClassPlan, argparse.Namespace], int]] = {
     "start": _start, "status": _status, "stop": _stop, "collect": _collect,
     "broadcast": _broadcast, "compose": _compose, "kubernetes": _kubernetes}
-
-
-if __name__ == "__main__":
-    sys.exit(main())

@@ -47,7 +47,3 @@ def _show(words: List[str]) -> None:
             show(found, "gazebo")
             return
         time.sleep(0.25)
-
-
-if __name__ == "__main__":
-    sys.exit(main())

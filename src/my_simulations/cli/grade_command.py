@@ -42,14 +42,7 @@ def parser() -> argparse.ArgumentParser:
 
 @program
 def main(argv: Optional[Sequence[str]] = None) -> int:
-    """Run the command.
-
-    Args:
-        argv: the whole command line, program name first; default `sys.argv`.
-
-    Returns:
-        0 if all were graded, 1 if some were not, 2 for an invalid assignment or command line.
-    """
+    """Run a command line, program name first; return the exit code that `parser` lists."""
     made = parser()
     options = made.parse_args((sys.argv if argv is None else list(argv))[1:])
     if options.jobs < 1:
@@ -93,7 +86,3 @@ def _grade(assignment: Assignment, options: argparse.Namespace) -> int:
     for path in done.files:
         print(path, flush=True)
     return OK if all(mark.status == GRADED for mark in done.marks) else NOT_ALL
-
-
-if __name__ == "__main__":
-    sys.exit(main())

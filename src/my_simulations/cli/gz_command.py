@@ -41,13 +41,9 @@ class _Parser(Parser):
 
 @program
 def main(argv: Optional[Sequence[str]] = None) -> int:
-    """Run one command.
+    """Run a command line, program name first.
 
-    Args:
-        argv: the whole command line, program name first; default `sys.argv`.
-
-    Returns:
-        0 on success, 1 on failure, 2 for an invalid command line.
+    Returns 0 on success, 1 on failure, 2 for an invalid command line.
     """
     words, remappings = object_client.plain_words(argv)
     if not words or words[0] in ("help", "-h", "--help"):
@@ -222,7 +218,3 @@ _COMMANDS: Dict[str, Callable[[List[str], Sequence[str]], int]] = {
     "topic": _running(_topic, gz_queries.topic),
     "world": _running(_world, gz_queries.world),
 }
-
-
-if __name__ == "__main__":
-    sys.exit(main())

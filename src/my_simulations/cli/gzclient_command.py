@@ -124,7 +124,3 @@ class _Client:
 
 def _complain(line: str) -> None:
     print(f"{PROGRAM}: {line}", file=sys.stderr, flush=True)
-
-
-if __name__ == "__main__":
-    sys.exit(main())

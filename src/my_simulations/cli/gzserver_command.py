@@ -56,7 +56,3 @@ def _make_node(*arguments: Any) -> Any:
     from ..ros.node import Node
 
     return Node(*arguments)
-
-
-if __name__ == "__main__":
-    sys.exit(main())

@@ -62,14 +62,7 @@ def parser() -> argparse.ArgumentParser:
 
 @program
 def main(argv: Optional[Sequence[str]] = None) -> int:
-    """Run the tool.
-
-    Args:
-        argv: the whole command line, program name first; default `sys.argv`.
-
-    Returns:
-        0 if the model was moved, 1 if not, 2 for an invalid command line.
-    """
+    """Run a command line, program name first; return the exit code that `parser` lists."""
     words, remappings = client.plain_words(argv)
     made = parser()
     options = made.parse_args(words)

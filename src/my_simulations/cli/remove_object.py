@@ -32,15 +32,7 @@ def parser() -> argparse.ArgumentParser:
 
 @program
 def main(argv: Optional[Sequence[str]] = None) -> int:
-    """Run the tool.
-
-    Args:
-        argv: the whole command line, program name first; default `sys.argv`.
-
-    Returns:
-        0 if every name was known and none of the objects is left, 1 if not, 2 for an invalid
-        command line.
-    """
+    """Run a command line, program name first; return the exit code that `parser` lists."""
     return client.run_tool(NAME, parser(), argv, _remove_all)
 
 

@@ -41,14 +41,7 @@ def parser() -> argparse.ArgumentParser:
 
 @program
 def main(argv: Optional[Sequence[str]] = None) -> int:
-    """Run the command.
-
-    Args:
-        argv: the whole command line, program name first; default `sys.argv`.
-
-    Returns:
-        0 on success, 1 on failure, 2 for an invalid command line.
-    """
+    """Run a command line, program name first; return the exit code that `parser` lists."""
     options = parser().parse_args((sys.argv if argv is None else list(argv))[1:])
     stem = os.path.splitext(os.path.basename(os.path.abspath(options.run)))[0]
     output = options.output or f"{stem}.html"
@@ -91,7 +84,3 @@ def replay(run: str, output: str, title: str = "", rate: float = STATES_HZ,
 def log_of(run: str) -> str:
     """The state log of a run: the file itself, or `state.log` in its folder."""
     return os.path.join(run, FILE) if os.path.isdir(run) else run
-
-
-if __name__ == "__main__":
-    sys.exit(main())

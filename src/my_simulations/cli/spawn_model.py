@@ -92,13 +92,9 @@ def joint_positions(options: argparse.Namespace) -> Dict[str, float]:
 
 @program
 def main(argv: Optional[List[str]] = None) -> int:
-    """Run the program.
+    """Run a command line, program name first.
 
-    Args:
-        argv: the whole command line, program name first; default `sys.argv`.
-
-    Returns:
-        0 if the model was spawned, 1 if not, 2 for an invalid command line.
+    Returns 0 if the model was spawned, 1 if not, 2 for an invalid command line.
     """
     words = sys.argv if argv is None else argv
     reader = parser()
@@ -356,7 +352,3 @@ def _bond(options: argparse.Namespace) -> None:
 
     rospy.on_shutdown(delete)
     rospy.spin()
-
-
-if __name__ == "__main__":
-    sys.exit(main())

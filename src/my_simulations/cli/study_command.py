@@ -1,7 +1,6 @@
 """The command `study`, with what records cases: rosbags and state logs."""
 from __future__ import annotations
 
-import sys
 from typing import Optional, Sequence
 
 from ..program_end import program
@@ -32,7 +31,3 @@ def _write_replay(log: str, path: str, title: str, last: float) -> None:
     from ..resources.resolver import Resolver
 
     write_replay(log, path, Resolver.from_environment(), title, last=last)
-
-
-if __name__ == "__main__":
-    sys.exit(main())

@@ -36,15 +36,7 @@ def parser() -> argparse.ArgumentParser:
 
 @program
 def main(argv: Optional[Sequence[str]] = None) -> int:
-    """Run the tool.
-
-    Args:
-        argv: the whole command line, program name first; default `sys.argv`.
-
-    Returns:
-        0 if the whole list was loaded or there is none, 1 otherwise, 2 for an invalid command
-        line.
-    """
+    """Run a command line, program name first; return the exit code that `parser` lists."""
     return client.run_tool(NAME, parser(), argv, _upload)
 
 
