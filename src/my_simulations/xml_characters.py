@@ -31,8 +31,7 @@ def without_forbidden(text: str) -> str:
 def check_characters(text: str, what: str) -> str:
     """The text itself; `what` names it in the message.
 
-    Raises:
-        CommandError: it contains a character that XML cannot hold.
+    Raises CommandError: it contains a character that XML cannot hold.
     """
     found = forbidden_character(text)
     if found:
@@ -43,8 +42,7 @@ def check_characters(text: str, what: str) -> str:
 def check_file_name(name: str) -> None:
     """Refuse a file name that is not shown as it is: with line ends or changes of direction.
 
-    Raises:
-        CommandError: it contains such a character.
+    Raises CommandError: it contains such a character.
     """
     found = hidden_character(name)
     if found:

@@ -15,8 +15,7 @@ _MOST_OF_A_FOLDER = 8 * LARGEST
 def scripts_of(uri: str, resolver: Resolver) -> Tuple[List[str], List[str]]:
     """The scripts of a URI, and the folders that may contain their images.
 
-    Raises:
-        ResourceNotFoundError: neither a file nor a folder.
+    Raises ResourceNotFoundError: neither a file nor a folder.
     """
     path = resolver.resolve(uri)
     if os.path.isdir(path):

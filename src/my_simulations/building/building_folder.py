@@ -53,8 +53,7 @@ def default_folder() -> str:
 def checked_name(name: str) -> str:
     """A building's name, as the name of its folder and model.
 
-    Raises:
-        CommandError: it is empty or not a plain file name.
+    Raises CommandError: it is empty or not a plain file name.
     """
     check_characters(name, "the name of the building")
     made = model_name(name)
@@ -185,8 +184,7 @@ def _load_image(level: Level, folder: str, issues: List[Issue]) -> None:
 def image_kind(content: bytes, name: str) -> str:
     """`PNG` or `JPEG`; decodes the whole image as a check, a large one in another process.
 
-    Raises:
-        InputError: not an image, truncated, or too large.
+    Raises InputError: not an image, truncated, or too large.
     """
     from PIL import UnidentifiedImageError
 

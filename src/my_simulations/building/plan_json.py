@@ -158,8 +158,7 @@ COUNTERS = {"walls": "wall", "windows": "window", "doors": "door", "stairs": "st
 def plan_from_text(text: Union[str, bytes], file: str = "") -> Plan:
     """As `plan_from_json`, from the text of a plan file.
 
-    Raises:
-        InputError: not JSON, or not a plan.
+    Raises InputError: not JSON, or not a plan.
     """
     try:
         tree = json.loads(text)

@@ -32,8 +32,7 @@ Store = Callable[[str, int, bytes], None]
 def send_file(plan: ClassPlan, student: Student, name: str, content: bytes) -> str:
     """Write a file into a home; returns its path there, from the home.
 
-    Raises:
-        CommandError: it cannot be written.
+    Raises CommandError: it cannot be written.
     """
     _as_student(plan, student, lambda home, _: _write(home, name, content), lambda _: None)
     return os.path.join(RECEIVED, name)
@@ -64,8 +63,7 @@ def collect(plan: ClassPlan, student: Student, out: str) -> int:
 def store_collection(student: Student, out: str, copy: Callable[[Store], None]) -> int:
     """Replace OUT/NAME by the files that `copy` stores; returns their number.
 
-    Raises:
-        CommandError: they cannot be written.
+    Raises CommandError: they cannot be written.
     """
     folder = os.path.join(out, student.name)
     count = [0]

@@ -12,8 +12,7 @@ from .signals import end_quietly, ignore
 def main(argv: Optional[List[str]] = None) -> int:
     """Run a world with its editor until a signal ends it.
 
-    Returns:
-        0 after SIGINT or SIGTERM, 1 if the node could not start.
+    Returns 0 after SIGINT or SIGTERM, 1 if the node could not start.
     """
     words = sys.argv if argv is None else argv
     end_quietly()

@@ -61,8 +61,7 @@ class Loaded(NamedTuple):
 def package_folder(package: str) -> str:
     """The folder of a ROS package.
 
-    Raises:
-        ToolError: it is unknown; the text names a similar package.
+    Raises ToolError: it is unknown; the text names a similar package.
     """
     folder = package_finder()(package)
     if folder is None:
@@ -76,8 +75,7 @@ def package_folder(package: str) -> str:
 def upload(parameters: client.Parameters, world: str, package: str) -> Upload:
     """Replace the object list and the groups by those of a world.
 
-    Raises:
-        ToolError: the package is unknown.
+    Raises ToolError: the package is unknown.
     """
     folder = package_folder(package)
     place = list_file(folder, package, world)

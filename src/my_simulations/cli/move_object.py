@@ -76,8 +76,7 @@ def main(argv: Optional[Sequence[str]] = None) -> int:
 def target_of(options: argparse.Namespace) -> Union[Pose, Path]:
     """The pose or path given by the options.
 
-    Raises:
-        InputError: an option that the mode needs is missing or invalid.
+    Raises InputError: an option that the mode needs is missing or invalid.
     """
     from ..errors import error
 
@@ -122,8 +121,7 @@ def _move(options: argparse.Namespace, target: Union[Pose, Path],
 def _as_node(model: str, remappings: Sequence[str], work: Callable[[], None]) -> None:
     """Run `work` as a ROS node, to receive sim time.
 
-    Raises:
-        MotionStoppedError: the node was shut down from elsewhere.
+    Raises MotionStoppedError: the node was shut down from elsewhere.
     """
     import rospy
 

@@ -97,11 +97,7 @@ class Parameters:
     """Access to the parameter server and the master."""
 
     def __init__(self, remappings: Sequence[str] = ()) -> None:
-        """Connect to the master.
-
-        Raises:
-            ToolError: no master responds.
-        """
+        """Connect to the master. Raises ToolError: no master responds."""
         self.uri = master_api.uri(remappings)
         fault = master_api.fault_of(self.uri, CALLER)
         if fault:
@@ -127,8 +123,7 @@ class Parameters:
     def wait(self, condition: Callable[[], Any], limit: float, what: str, hint: str) -> Any:
         """Wait on the wall clock until the condition returns something true; returns that.
 
-        Raises:
-            ToolError: `limit` wall seconds passed; the text contains `what` and `hint`.
+        Raises ToolError: `limit` wall seconds passed; the text contains `what` and `hint`.
         """
         until = time.monotonic() + limit
         while True:
@@ -160,8 +155,7 @@ class SimulatorClient:
     def __init__(self, parameters: Parameters, name: str, timeout: float) -> None:
         """Wait until the simulator `name` (a full node name) has advertised its services.
 
-        Raises:
-            ToolError: not within `timeout` wall seconds.
+        Raises ToolError: not within `timeout` wall seconds.
         """
         self.name = name
         self._master = parameters.uri
@@ -185,16 +179,14 @@ class SimulatorClient:
     def call_service(self, service: str, kind: str, **fields: Any) -> Any:
         """The response of a service of the node, with a type of gazebo_msgs or my_simulations_msgs.
 
-        Raises:
-            ToolError: it is not available or did not respond.
+        Raises ToolError: it is not available or did not respond.
         """
         return self._call(service, kind, **fields)
 
     def spawn(self, name: str, xml: str, sdf: bool, position: Vec3, rpy: Vec3) -> str:
         """Spawn a model; returns the status message.
 
-        Raises:
-            ToolError: it failed or did not respond.
+        Raises ToolError: it failed or did not respond.
         """
         return self._checked("spawn_sdf_model" if sdf else "spawn_urdf_model", "SpawnModel",
                              model_name=name, model_xml=xml,
@@ -204,8 +196,7 @@ class SimulatorClient:
                      file: str, launch_pid: int) -> str:
         """Spawn a model in our own simulator; see `SpawnObject.srv`.
 
-        Raises:
-            ToolError: it failed or did not respond.
+        Raises ToolError: it failed or did not respond.
         """
         return self._checked("spawn_object", "SpawnObject", model_name=name, model_xml=xml,
                              initial_pose=pose_message(Pose(position, quat_from_rpy(*rpy))),
@@ -214,8 +205,7 @@ class SimulatorClient:
     def delete(self, name: str) -> str:
         """Delete a model; returns the status message.
 
-        Raises:
-            ToolError: it failed or did not respond.
+        Raises ToolError: it failed or did not respond.
         """
         return self._checked("delete_model", "DeleteModel", model_name=name)
 
@@ -227,8 +217,7 @@ class SimulatorClient:
     def set_model_pose(self, name: str, pose: Pose) -> None:
         """Set the pose of a model in the world frame, with zero twist.
 
-        Raises:
-            ToolError: it failed or did not respond.
+        Raises ToolError: it failed or did not respond.
         """
         from gazebo_msgs.msg import ModelState
 

@@ -75,8 +75,7 @@ def _seconds(text: str) -> float:
 def joint_positions(options: argparse.Namespace) -> Dict[str, float]:
     """Joint positions (rad or m) of the options `-J` by joint; the last one per joint counts.
 
-    Raises:
-        ValueError: a position is not a finite number.
+    Raises ValueError: a position is not a finite number.
     """
     positions: Dict[str, float] = {}
     for joint, text in options.joints:

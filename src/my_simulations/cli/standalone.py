@@ -26,8 +26,7 @@ _EARLY_S = 1.0
 def main(words: List[str], program: str) -> int:
     """Run the world of the command line with its editor until a signal ends it.
 
-    Returns:
-        0 after SIGINT or SIGTERM, 1 if the world or the editor could not be started.
+    Returns 0 after SIGINT or SIGTERM, 1 if the world or the editor could not be started.
     """
     from ..ros.lifecycle.server_options import parse
 

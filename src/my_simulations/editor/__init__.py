@@ -35,8 +35,7 @@ def start(simulator: "Simulator", resolver: "Resolver",
 def start_loading(options: Optional[EditorOptions] = None) -> "LoadingServer":
     """Serve the page before there is a world; it shows what is under way.
 
-    Raises:
-        CommandError: the address cannot be listened at, or the page is not installed.
+    Raises CommandError: the address cannot be listened at, or the page is not installed.
     """
     from .loading_server import LoadingServer
 

@@ -41,8 +41,7 @@ def completed(inertial: Inertial,
               collisions: List[Collision]) -> Optional[Tuple[Inertial, str]]:
     """The inertia with omitted values filled in, and a phrase for the warning.
 
-    Returns:
-        None if no value is omitted, or if the omitted values cannot be estimated.
+    Returns None if no value is omitted, or if the omitted values cannot be estimated.
     """
     if is_zero(inertial):
         better = of_shapes(inertial, collisions)
@@ -75,8 +74,7 @@ def is_zero(inertial: Inertial) -> bool:
 def of_shapes(inertial: Inertial, collisions: List[Collision]) -> Optional[Inertial]:
     """The same mass and centre of mass, with the tensor of the collision shapes at uniform density.
 
-    Returns:
-        None if no collision is a box, sphere or cylinder.
+    Returns None if no collision is a box, sphere or cylinder.
     """
     total = solid_inertial(inertial.mass, collisions)
     if total is not None:
@@ -87,8 +85,7 @@ def of_shapes(inertial: Inertial, collisions: List[Collision]) -> Optional[Inert
 def solid_inertial(mass: float, collisions: List[Collision]) -> Optional[Inertial]:
     """The inertial of the collision shapes at uniform density with a mass (kg) in all.
 
-    Returns:
-        None if no collision is a box, sphere or cylinder.
+    Returns None if no collision is a box, sphere or cylinder.
     """
     solids = [(collision, solid) for collision in collisions
               for solid in [solid_moments(collision.geometry)] if solid is not None]

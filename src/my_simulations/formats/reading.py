@@ -85,8 +85,7 @@ def read_world_text(text: Text, resolver: Resolver, file: str = "<world>", *, se
                     progress: Progress = _silent) -> LoadedWorld:
     """As `read_world`, from text; `file` names it and, if it is a path, anchors relative URIs.
 
-    Raises:
-        InputError: nothing is usable.
+    Raises InputError: nothing is usable.
     """
     source, root = _open(text, resolver, file)
     return _loaded_world(root, source, _world_in(root, source, seed, profile), advice_limit,
@@ -135,11 +134,7 @@ def _loaded_world(root: Any, source: Source, parsed: World, advice_limit: Option
 
 
 def read_file(path: str, resolver: Resolver) -> Tuple[Entity, List[Issue]]:
-    """The first model or light of a file; see `read_entity`.
-
-    Raises:
-        InputError: nothing usable.
-    """
+    """The first model or light of a file; see `read_entity`. Raises InputError: nothing usable."""
     return read_entity(_content(path), resolver, path)
 
 

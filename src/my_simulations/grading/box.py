@@ -208,8 +208,7 @@ def _copy(files: List[List[str]], folder: str) -> None:
 def open_regular(path: str) -> BinaryIO:
     """Open a regular file that may have been replaced by a link or a pipe since it was listed.
 
-    Raises:
-        OSError: it cannot be opened, or is not a regular file.
+    Raises OSError: it cannot be opened, or is not a regular file.
     """
     descriptor = os.open(path, os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK | os.O_CLOEXEC)
     if not stat.S_ISREG(os.fstat(descriptor).st_mode):

@@ -20,8 +20,7 @@ _LARGEST_M = 50.0                        # what has flown farther away is not in
 def final_picture(world: OpenWorld) -> bytes:
     """Return a PNG picture of all models, 640 x 400, seen from one side and above.
 
-    Raises:
-        CommandError: nothing is installed to draw with; it says what is missing.
+    Raises CommandError: nothing is installed to draw with; it says what is missing.
     """
     centre, radius = _sphere(world)
     distance = radius / np.sin(_VFOV / 2.0)

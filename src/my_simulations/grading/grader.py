@@ -64,8 +64,7 @@ class Grader:
     def run(self, submissions: Sequence[Submission]) -> List[Mark]:
         """The marks of all submissions, in order.
 
-        Raises:
-            KeyboardInterrupt: after all boxes have ended; marks so far are kept.
+        Raises KeyboardInterrupt: after all boxes have ended; marks so far are kept.
         """
         hidden = [self._out, *(submission.path for submission in submissions)]
         with ThreadPoolExecutor(self._jobs, "grader") as pool:

@@ -22,8 +22,7 @@ _NBGRADER = ("assignment", "duedate", "timestamp", "student_id", "last_name", "f
 def write_lists(assignment: Assignment, marks: Sequence[Mark], out: str) -> List[str]:
     """Write all lists; returns the paths of those of all students.
 
-    Raises:
-        CommandError: one cannot be written.
+    Raises CommandError: one cannot be written.
     """
     texts = {"marks.csv": _csv(assignment, marks), "nbgrader.csv": _nbgrader(assignment, marks),
              "junit.xml": _junit(assignment, marks)}

@@ -25,8 +25,7 @@ img{max-width:100%}iframe{width:100%;height:34em;border:1px solid #ccc}"""
 def write_pages(assignment: Assignment, marks: Sequence[Mark], out: str) -> str:
     """Write a page for each student, and the overview, whose path is returned.
 
-    Raises:
-        CommandError: one cannot be written.
+    Raises CommandError: one cannot be written.
     """
     for mark in marks:
         path = os.path.join(os.path.abspath(out), STUDENTS, mark.student, "index.html")

@@ -34,8 +34,7 @@ class Submission:
 def submissions_of(paths: Sequence[str]) -> List[Submission]:
     """The submissions of a command line.
 
-    Raises:
-        CommandError: a path does not exist, or two submissions have one name.
+    Raises CommandError: a path does not exist, or two submissions have one name.
     """
     found: Dict[str, Submission] = {}
     for path in paths:

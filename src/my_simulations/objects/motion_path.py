@@ -24,8 +24,7 @@ class Polygon:
     def __init__(self, corners: Sequence[Point]) -> None:
         """Create a path through at least two corners (m); equal neighbours are skipped.
 
-        Raises:
-            InputError: the length of the path is zero.
+        Raises InputError: the length of the path is zero.
         """
         edges = []
         for start, end in zip(corners, [*corners[1:], *corners[:1]]):
@@ -65,8 +64,7 @@ class Circle:
     def __init__(self, centre: Point, radius: float) -> None:
         """Create a circle; centre and radius in m.
 
-        Raises:
-            InputError: the radius is not a positive number.
+        Raises InputError: the radius is not a positive number.
         """
         if not (math.isfinite(radius) and radius > 0.0):
             raise InputError([error("circle", f"the radius must be greater than 0, is {radius}")])
@@ -88,8 +86,7 @@ class Circle:
 def parse_numbers(text: str, count: int, what: str) -> List[float]:
     """Parse a list such as `[1, 2.5]` of a command line.
 
-    Raises:
-        InputError: it is not a list of `count` finite numbers.
+    Raises InputError: it is not a list of `count` finite numbers.
     """
     return _numbers(_literal(text, what), count, what, text)
 
@@ -97,8 +94,7 @@ def parse_numbers(text: str, count: int, what: str) -> List[float]:
 def parse_points(text: str, what: str) -> List[Point]:
     """Parse a list of points such as `[[0, 0], [1, 0]]` of a command line.
 
-    Raises:
-        InputError: it is not a list of pairs of finite numbers.
+    Raises InputError: it is not a list of pairs of finite numbers.
     """
     value = _literal(text, what)
     if not isinstance(value, (list, tuple)) or not value:

@@ -17,8 +17,7 @@ _START_TAG = re.compile(r"<[A-Za-z_][\w.:-]*")
 def read_document(file: str) -> str:
     """The text of an XML file, decoded as declared, else as UTF-8.
 
-    Raises:
-        InputError: the file is missing, unreadable, empty, or not in the declared encoding.
+    Raises InputError: the file is missing, unreadable, empty, or not in the declared encoding.
     """
     try:
         with open(file, "rb") as stream:

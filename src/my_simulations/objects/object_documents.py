@@ -132,8 +132,7 @@ class Documents:
     def of(self, placed: PlacedObject) -> Document:
         """The document of an object.
 
-        Raises:
-            InputError: the file is missing, unreadable or empty, or xacro fails.
+        Raises InputError: the file is missing, unreadable or empty, or xacro fails.
         """
         path, other = locate(placed, self._find)
         text = self._text(path, placed.file.xacro).result()
@@ -152,8 +151,7 @@ class Documents:
 def run_xacro(path: str, timeout: float) -> str:
     """The output of xacro for a file.
 
-    Raises:
-        InputError: xacro is not installed, fails, or runs longer than `timeout` wall seconds.
+    Raises InputError: xacro is not installed, fails, or runs longer than `timeout` wall seconds.
     """
     try:
         done = subprocess.run([*_xacro_command(path), path], capture_output=True, timeout=timeout,

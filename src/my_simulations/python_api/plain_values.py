@@ -14,8 +14,7 @@ _LONGEST = 2.0 ** 62 / 1e9  # s, 146 years
 def pose_of(values: Sequence[float]) -> Pose:
     """A pose from 3 (position), 6 (x y z roll pitch yaw, as in SDF) or 7 numbers (see `Readings`).
 
-    Raises:
-        CommandError: another number of values, or no numbers.
+    Raises CommandError: another number of values, or no numbers.
     """
     numbers = _numbers(values, "a pose")
     if len(numbers) == 3:
@@ -57,8 +56,7 @@ def _numbers(values: Sequence[float], what: str) -> List[float]:
 def nanoseconds_of(duration: Optional[float]) -> int:
     """A duration in s as nanoseconds; -1, for ever, for None and what 64 bits cannot hold.
 
-    Raises:
-        CommandError: it is no number.
+    Raises CommandError: it is no number.
     """
     if duration is None:
         return -1

@@ -42,8 +42,7 @@ class Picture:
 def camera_pose(position: Vec3, target: Vec3) -> Pose:
     """The pose of a camera (+x looks forward, +z up) that looks at a point, level.
 
-    Raises:
-        CommandError: both points are one.
+    Raises CommandError: both points are one.
     """
     line = subtract(target, position)
     if norm(line) < 1e-12:

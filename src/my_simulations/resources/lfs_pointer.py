@@ -16,10 +16,6 @@ def is_lfs_pointer(data: bytes) -> bool:
 
 
 def is_lfs_pointer_file(path: str) -> bool:
-    """Whether a file is a Git LFS pointer.
-
-    Raises:
-        OSError: it cannot be read.
-    """
+    """Whether a file is a Git LFS pointer. Raises OSError: it cannot be read."""
     with open(path, "rb") as stream:
         return is_lfs_pointer(stream.read(len(_BEGINNING)))

@@ -270,8 +270,7 @@ class Resolver:
     def model_file(self, uri: str, base_dir: str = "") -> str:
         """The description file of a URI: the file itself, or that of a model folder.
 
-        Raises:
-            ResourceNotFoundError: not found, or the folder has no description.
+        Raises ResourceNotFoundError: not found, or the folder has no description.
         """
         path = self.resolve(uri, base_dir)
         if not os.path.isdir(path):

@@ -45,8 +45,7 @@ def pose_from_message(message: Any, field: str = "pose") -> Pose:
 def twist_from_message(message: Any, field: str = "twist") -> Twist:
     """A geometry_msgs/Twist as a twist, m/s and rad/s, in the axes it was given in.
 
-    Raises:
-        CommandError: a number is NaN, infinite or beyond the limits above.
+    Raises CommandError: a number is NaN, infinite or beyond the limits above.
     """
     linear = checked_vector(vector(message.linear), SPEED, "m/s", f"{field}.linear")
     angular = checked_vector(vector(message.angular), SPIN, "rad/s", f"{field}.angular")
@@ -61,8 +60,7 @@ def vector(message: Any) -> Vec3:
 def checked_vector(values: Vec3, limit: float, unit: str, field: str) -> Vec3:
     """Return the vector if it is within the limit.
 
-    Raises:
-        CommandError: a number is NaN, infinite or beyond the limit.
+    Raises CommandError: a number is NaN, infinite or beyond the limit.
     """
     x, y, z = values
     if -limit <= x <= limit and -limit <= y <= limit and -limit <= z <= limit:   # not for NaN
@@ -75,8 +73,7 @@ def checked_vector(values: Vec3, limit: float, unit: str, field: str) -> Vec3:
 def checked_number(value: float, low: float, high: float, field: str, unit: str = "") -> float:
     """Return the value if it is in the range.
 
-    Raises:
-        CommandError: it is NaN, infinite or not between `low` and `high`.
+    Raises CommandError: it is NaN, infinite or not between `low` and `high`.
     """
     checked_finite(value, field)
     if not low <= value <= high:
@@ -86,11 +83,7 @@ def checked_number(value: float, low: float, high: float, field: str, unit: str 
 
 
 def checked_finite(value: float, field: str) -> float:
-    """The value.
-
-    Raises:
-        CommandError: it is NaN or infinite.
-    """
+    """The value. Raises CommandError: it is NaN or infinite."""
     if not is_finite(value):
         raise CommandError(f"{field} must be finite, is {value}")
     return value

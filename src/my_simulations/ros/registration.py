@@ -15,8 +15,7 @@ SUBSCRIBER_QUEUE = 10
 def class_of(row: Row) -> Any:
     """Import the message or service class of a row.
 
-    Raises:
-        ImportError: the package is not built, or was built before the definition was added.
+    Raises ImportError: the package is not built, or was built before the definition was added.
     """
     package, name = row.type.split("/")
     module = importlib.import_module(f"{package}.{'srv' if row.direction is SERVES else 'msg'}")

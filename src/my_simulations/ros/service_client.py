@@ -21,8 +21,7 @@ class ServiceUnavailableError(SimulationError):
 def wait_until(condition: Callable[[], bool], what: str, seconds: float) -> None:
     """Wait on the wall clock, since ROS time does not advance in a paused world.
 
-    Raises:
-        ServiceUnavailableError: `seconds` passed, or the node was shut down.
+    Raises ServiceUnavailableError: `seconds` passed, or the node was shut down.
     """
     until = time.monotonic() + seconds
     while not condition():
@@ -36,8 +35,7 @@ def wait_until(condition: Callable[[], bool], what: str, seconds: float) -> None
 def service(name: str, service_class: Any, seconds: float = SERVICE_SECONDS) -> Any:
     """A proxy for a service; waits until it is available.
 
-    Raises:
-        ServiceUnavailableError: it did not appear in time.
+    Raises ServiceUnavailableError: it did not appear in time.
     """
     try:
         rospy.wait_for_service(name, timeout=seconds)

@@ -28,8 +28,7 @@ class ServiceCallError(SimulationError):
 def service_class(package: str, name: str) -> Any:
     """The class of a service; of its package no other is imported.
 
-    Raises:
-        ImportError: the package or the service does not exist.
+    Raises ImportError: the package or the service does not exist.
     """
     import_genpy()  # first: the messages import it, and NumPy with it
     found = importlib.util.find_spec(package)

@@ -62,8 +62,7 @@ class Piece:
 def pieces_of(visual: Visual, look: Optional[Look]) -> List[Piece]:
     """What a visual is drawn as, in its own frame.
 
-    Raises:
-        InputError: a mesh or its like cannot be read.
+    Raises InputError: a mesh or its like cannot be read.
     """
     opacity = 1.0 - visual.transparency
     shape = visual.geometry

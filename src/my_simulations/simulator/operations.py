@@ -31,8 +31,7 @@ class Operation(Protocol):
     def apply(self, world: Simulator) -> "Operation":
         """Apply the edit and return its inverse.
 
-        Raises:
-            CommandError: the edit is not possible; nothing has changed.
+        Raises CommandError: the edit is not possible; nothing has changed.
         """
 
 

@@ -221,9 +221,8 @@ def default_roots(world_file: str = "", caller: str = "") -> List[str]:
 def allowed_path(path: str, roots: Sequence[str]) -> str:
     """The absolute path to write, with symbolic links in its folders resolved.
 
-    Raises:
-        CommandError: not below a root, not a .world or .sdf file, a link to another place, or a
-            character that is not shown.
+    Raises CommandError: not below a root, not a .world or .sdf file, a link to another place, or a
+    character that is not shown.
     """
     path = os.path.expanduser(path.strip())
     if not roots:

@@ -22,8 +22,7 @@ class TlsFiles:
 def scheduler_address(where: str) -> str:
     """The address of a Dask scheduler for Dask, or its scheduler file; "" for none.
 
-    Raises:
-        CommandError: it is no place where cases can run, or has no encryption.
+    Raises CommandError: it is no place where cases can run, or has no encryption.
     """
     kind, colon, rest = where.partition(":")
     if not where:

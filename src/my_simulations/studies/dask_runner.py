@@ -90,8 +90,7 @@ class StudyWorker(WorkerPlugin):
     def run(self, cases: List[Tuple[int, str]]) -> List[Result]:
         """Run the cases of these numbers and ids; returns what has finished.
 
-        Raises:
-            CommandError: a case has another id here: files or versions differ.
+        Raises CommandError: a case has another id here: files or versions differ.
         """
         if self._plan is None or self._pool is None:
             return []

@@ -148,11 +148,7 @@ _KNOWN = ("pose", "twist", "speed", "joint", "time", "vary", "contact", "force")
 
 
 def parse(text: str) -> Expression:
-    """Understand a measurement.
-
-    Raises:
-        ExpressionError: it is not in the language.
-    """
+    """Understand a measurement. Raises ExpressionError: it is not in the language."""
     if len(text) > _LONGEST:
         raise ExpressionError(f"an expression has at most {_LONGEST} characters")
     parser = _Parser(text)

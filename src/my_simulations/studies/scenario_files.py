@@ -51,8 +51,7 @@ def _files(pattern: str) -> List[str]:
 def declared_arguments(path: str) -> List[str]:
     """Names of the launch arguments that a file declares and leaves open.
 
-    Raises:
-        InputError: the file cannot be read, or is no roslaunch file; with file and line.
+    Raises InputError: the file cannot be read, or is no roslaunch file; with file and line.
     """
     try:
         root = etree.parse(path, etree.XMLParser(resolve_entities=False)).getroot()

@@ -92,8 +92,7 @@ class ScenarioSlot:
     def run(self, case: Case) -> Tuple[Row, Optional[ScenarioFiles]]:
         """Run a scenario; once more if rostest crashes.
 
-        Raises:
-            CaseStoppedError: `stop` was set; there is no result.
+        Raises CaseStoppedError: `stop` was set; there is no result.
         """
         def attempt(number: int) -> Tuple[Row, Optional[ScenarioFiles]]:
             row = Row(OK, case.id, case.index, case.seed, dict(case.settings), attempt=number,

@@ -138,8 +138,7 @@ class Slot:
     def run(self, case: Case) -> Tuple[Row, Optional[CaseTrajectory]]:
         """Run a case; once more in a new engine if its engine crashes.
 
-        Raises:
-            CaseStoppedError: `stop` was set; there is no result.
+        Raises CaseStoppedError: `stop` was set; there is no result.
         """
         def attempt(number: int) -> Tuple[Row, Optional[CaseTrajectory]]:
             row, trajectory = self._attempt(case, number)

@@ -183,8 +183,7 @@ def _inside(folder: str, inside: str) -> Optional[str]:
 def file_response(path: Optional[str], kind: str = "") -> web.StreamResponse:
     """A file, to be asked for each time whether it has changed.
 
-    Raises:
-        web.HTTPNotFound: `path` is None or no file.
+    Raises web.HTTPNotFound: `path` is None or no file.
     """
     if path is None or not os.path.isfile(path):
         raise web.HTTPNotFound

@@ -59,9 +59,8 @@ def _head(source: Union[str, IO[bytes]]) -> bytes:
 def opened(source: Union[str, IO[bytes]]) -> Any:
     """A PIL image whose header has been read.
 
-    Raises:
-        OSError, ValueError, SyntaxError, EOFError: it is none of `FORMATS`, damaged, or has too
-            many pixels.
+    Raises OSError, ValueError, SyntaxError, EOFError: it is none of `FORMATS`, damaged, or has too
+    many pixels.
     """
     from PIL import Image, UnidentifiedImageError
 

@@ -24,8 +24,7 @@ class _Joint(NamedTuple):
 def read_bvh(data: bytes) -> Tuple[Bones, Clip]:
     """The joints of a file, and their movement.
 
-    Raises:
-        MeshError: it is not BVH, or has no whole frame.
+    Raises MeshError: it is not BVH, or has no whole frame.
     """
     reader = _Reader(text_of(data))
     joints = reader.joints()

@@ -16,11 +16,7 @@ _DEEPEST = 100
 
 
 def read_collada(data: bytes) -> List[MeshPart]:
-    """The parts of a .dae file.
-
-    Raises:
-        MeshError: not COLLADA, or inconsistent numbers.
-    """
+    """The parts of a .dae file. Raises MeshError: not COLLADA, or inconsistent numbers."""
     import numpy as np
     from lxml import etree
 
@@ -69,11 +65,7 @@ def _line_of_fault(root: Any) -> int:
 
 
 def unit_of(root: Any) -> float:
-    """The length of a file's unit, m.
-
-    Raises:
-        MeshError: it is no length.
-    """
+    """The length of a file's unit, m. Raises MeshError: it is no length."""
     element = root.find("{*}asset/{*}unit")
     text = element.get("meter") if element is not None else None
     if text is None:

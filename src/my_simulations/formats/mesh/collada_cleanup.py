@@ -50,8 +50,7 @@ def tidied(data: bytes) -> Any:
 def parsed(data: bytes) -> Any:
     """The `<COLLADA>` element of a file, its elements in COLLADA's namespace.
 
-    Raises:
-        MeshError: not COLLADA.
+    Raises MeshError: not COLLADA.
     """
     from lxml import etree
 

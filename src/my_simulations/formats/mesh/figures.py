@@ -95,8 +95,7 @@ def read_figure(path: str) -> Optional[FigureFile]:
 def read_movement(path: str) -> Optional[Movement]:
     """The animation of a COLLADA or BVH file; None where there is none.
 
-    Raises:
-        MeshError: it cannot be read.
+    Raises MeshError: it cannot be read.
     """
     known = _is_collada(path) or _is_bvh(path)
     return _moves(path, _changed(path)) if known else None

@@ -38,8 +38,7 @@ def check_gltf(data: bytes, path: str) -> None:
 def named_in_gltf(tree: Any) -> List[Tuple[str, str]]:
     """The URIs of the files that a glTF document refers to, each after `buffers` or `images`.
 
-    Raises:
-        MeshError: the document is damaged.
+    Raises MeshError: the document is damaged.
     """
     uris = [(kind, item.get("uri")) for kind in ("buffers", "images")
             for item in _dicts(tree, kind)]
@@ -68,11 +67,7 @@ def _check_file(file: str, uri: str) -> None:
 
 
 def gltf_tree(data: bytes) -> Any:
-    """The JSON document of a .gltf or .glb file.
-
-    Raises:
-        MeshError: it has none.
-    """
+    """The JSON document of a .gltf or .glb file. Raises MeshError: it has none."""
     text = data
     if data[:4] == b"glTF":
         if len(data) < 20:

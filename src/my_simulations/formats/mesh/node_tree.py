@@ -119,8 +119,7 @@ class NodeTree(Bones):
     def bone(self, name: str, roots: Sequence[int]) -> int:
         """The node that a skin calls by a name, below `roots` first.
 
-        Raises:
-            MeshError: there is none.
+        Raises MeshError: there is none.
         """
         below = [n for n in range(len(self.elements)) if not roots or self._is_below(n, roots)]
         for numbers in (below, range(len(self.elements))):
@@ -145,11 +144,7 @@ class NodeTree(Bones):
 
 
 def local_matrix(placings: Sequence[Placing]) -> Array:
-    """(4, 4), parent from node.
-
-    Raises:
-        ValueError: one has not its count of numbers.
-    """
+    """(4, 4), parent from node. Raises ValueError: one has not its count of numbers."""
     made = np.eye(4)
     for _, kind, values in placings:
         one = np.eye(4)

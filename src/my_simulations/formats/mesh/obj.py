@@ -102,8 +102,7 @@ class _ObjReader:
 def positive_obj(data: bytes) -> bytes:
     """An OBJ file as trimesh reads it: with positive indices, and no lines that go on in others.
 
-    Raises:
-        ValueError: an index is not a number.
+    Raises ValueError: an index is not a number.
     """
     data = with_newlines(data).replace(b"\\\n", b" ")
     if not _NEGATIVE.search(data):

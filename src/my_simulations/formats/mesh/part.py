@@ -42,8 +42,7 @@ class MeshPart:
 def bounded(parts: Iterator[MeshPart]) -> List[MeshPart]:
     """The parts, checked for their number of triangles: a small file may have many instances.
 
-    Raises:
-        MeshError: they have more than `MOST_TRIANGLES`.
+    Raises MeshError: they have more than `MOST_TRIANGLES`.
     """
     found: List[MeshPart] = []
     count = 0

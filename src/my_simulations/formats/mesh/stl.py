@@ -16,8 +16,7 @@ _RECORD = 50  # bytes of a triangle: normal, corners, attributes
 def read_stl(data: bytes) -> List[MeshPart]:
     """The triangles of an STL file, binary or ASCII, as one part; equal corners are one vertex.
 
-    Raises:
-        MeshError: neither binary nor ASCII STL, or too many triangles.
+    Raises MeshError: neither binary nor ASCII STL, or too many triangles.
     """
     end = binary_stl_end(data, len(data))
     return [_welded(_binary_corners(data, end) if end else _ascii_corners(data))]

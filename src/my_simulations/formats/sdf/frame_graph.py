@@ -69,11 +69,7 @@ class FrameTree:
                 continue  # reported by its own model
 
     def pose(self, name: str) -> Pose:
-        """The pose of a frame in the root frame.
-
-        Raises:
-            FrameError: unknown name, or a cycle.
-        """
+        """The pose of a frame in the root frame. Raises FrameError: unknown name, or a cycle."""
         chain: List[str] = []
         while name not in self._known:
             placed = self._step(name, chain)
@@ -87,8 +83,7 @@ class FrameTree:
     def body_of(self, name: str) -> str:
         """The link a frame moves with; "" if the root frame has none.
 
-        Raises:
-            FrameError: unknown name, or a cycle.
+        Raises FrameError: unknown name, or a cycle.
         """
         chain: List[str] = []
         while name != self.root:

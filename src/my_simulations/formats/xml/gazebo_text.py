@@ -40,8 +40,7 @@ def stream_numbers(text: str, count: int) -> List[Optional[float]]:
 def leading_number(text: str) -> float:
     """The number at the beginning of a text, as read by `std::stod`; it may be infinite or NaN.
 
-    Raises:
-        ValueError: the text does not begin with a number.
+    Raises ValueError: the text does not begin with a number.
     """
     text = text.strip()
     special = _SPECIAL.match(text)
@@ -62,8 +61,7 @@ def leading_number(text: str) -> float:
 def leading_integer(text: str) -> int:
     """The integer at the beginning of a text, as read by `std::stoi`.
 
-    Raises:
-        ValueError: the text does not begin with an integer of at most 32 bits.
+    Raises ValueError: the text does not begin with an integer of at most 32 bits.
     """
     text = text.strip()
     hexadecimal = _HEX_INTEGER.match(text)

@@ -24,8 +24,7 @@ _FUNCTIONS: Mapping[str, Callable[[float], float]] = {
 def wide_lens_of(block: Camera, hfov: float) -> WideLens:
     """Return the lens of a camera whose horizontal field of view is `hfov`, rad.
 
-    Raises:
-        PluginError: its `<lens>` is unknown, or does not see that field of view.
+    Raises PluginError: its `<lens>` is unknown, or does not see that field of view.
     """
     lens = block.lens
     c1, c2, c3, f, fun = lens.c1, lens.c2, lens.c3, lens.f, lens.fun

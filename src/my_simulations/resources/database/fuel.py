@@ -88,8 +88,7 @@ class FuelModels:
     def path(self, uri: FuelUri) -> str:
         """The folder of a model, or a file in it; downloads the model if no cache has it.
 
-        Raises:
-            ModelNotProvidedError: the model cannot be downloaded now, or has no such file.
+        Raises ModelNotProvidedError: the model cannot be downloaded now, or has no such file.
         """
         folder = self.cached(uri) or self._download(uri)
         path = os.path.join(folder, uri.inside) if uri.inside else folder

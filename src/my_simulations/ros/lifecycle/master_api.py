@@ -42,8 +42,7 @@ class _Transport(xmlrpc.client.Transport):
 def call(uri: str, method: str, *arguments: Any, seconds: float = CALL_SECONDS) -> Any:
     """Call a ROS XML-RPC method; returns the value if the status code is 1 (success), else None.
 
-    Raises:
-        OSError: no response in time.
+    Raises OSError: no response in time.
     """
     try:
         with xmlrpc.client.ServerProxy(uri, transport=_Transport(seconds)) as proxy:
@@ -134,8 +133,7 @@ def node_name(argv: Sequence[str], default: str) -> str:
 def running_node(master: str, name: str) -> Optional[Tuple[str, int]]:
     """URI and process id of the running node of that name; None if there is none.
 
-    Raises:
-        OSError: the master does not respond.
+    Raises OSError: the master does not respond.
     """
     found = call(master, "lookupNode", name, name)
     if not found:

@@ -36,8 +36,7 @@ class Membership:
     def refresh(self) -> bool:
         """Whether the node is registered; an unreachable master is logged once.
 
-        Raises:
-            OSError: the master became unreachable meanwhile; the next call continues.
+        Raises OSError: the master became unreachable meanwhile; the next call continues.
         """
         try:
             known = master_api.call(self._uri, "lookupNode", self._name, self._name)

@@ -159,8 +159,7 @@ def _seed(text: str) -> int:
 def parse(argv: Sequence[str], program: str = "gzserver") -> ServerOptions:
     """Parse the command line without the program's name.
 
-    Raises:
-        SystemExit: status 2 for an invalid command line, 0 after `--help` and `--version`.
+    Raises SystemExit: status 2 for an invalid command line, 0 after `--help` and `--version`.
     """
     reader = parser(program)
     words = [word for word in argv if not is_remapping(word)]

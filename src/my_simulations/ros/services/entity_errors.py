@@ -34,8 +34,7 @@ def gazebo_prefix(entity: str, frame: str = "") -> Iterator[None]:
 def name_taken_message(entity: str) -> Iterator[None]:
     """Gazebo's status message where a name is taken; `entity` as "model 'x'".
 
-    Raises:
-        CommandError: the error in Gazebo's words.
+    Raises CommandError: the error in Gazebo's words.
     """
     try:
         yield

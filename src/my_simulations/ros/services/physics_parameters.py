@@ -77,8 +77,7 @@ def current_parameters(simulator: Simulator) -> Dict[str, Value]:
 def change_parameters(simulator: Simulator, values: Mapping[str, Value]) -> None:
     """Set some of the 15 parameters; the others keep their values.
 
-    Raises:
-        CommandError: a value is out of range; nothing has changed.
+    Raises CommandError: a value is out of range; nothing has changed.
     """
     with simulator.changing:
         _change(simulator, values)

@@ -35,8 +35,7 @@ class ReconfigureServer:
     def set(self, request: Any, response: Any) -> str:
         """Set the parameters of the request, clamped to their ranges.
 
-        Raises:
-            CommandError: an unknown parameter, or a value that is not finite.
+        Raises CommandError: an unknown parameter, or a value that is not finite.
         """
         try:
             wanted = self._messages.read(request.config)
@@ -50,8 +49,7 @@ class ReconfigureServer:
     def refresh(self) -> None:
         """Publish changes made by other means, and update the parameter server.
 
-        Raises:
-            OSError: the master does not respond; the next call tries again.
+        Raises OSError: the master does not respond; the next call tries again.
         """
         self._publish_changes()
         with self._lock:

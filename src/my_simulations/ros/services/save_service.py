@@ -25,8 +25,7 @@ class SaveService:
     def save(self, request: Any, response: Any) -> str:
         """Save the world in its current state.
 
-        Raises:
-            CommandError: the path is not allowed or cannot be written.
+        Raises CommandError: the path is not allowed or cannot be written.
         """
         # Imported with the first request: start-up time counts.
         from ...simulator.saving import default_roots, save_world

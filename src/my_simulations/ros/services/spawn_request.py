@@ -42,11 +42,7 @@ def options_of_attributes(attributes: Mapping[str, str]) -> SpawnOptions:
 
 
 def checked_name(name: str) -> str:
-    """The name, checked.
-
-    Raises:
-        CommandError: invalid as the name of a model.
-    """
+    """The name, checked. Raises CommandError: invalid as the name of a model."""
     if not name.strip():
         raise CommandError("model_name is empty")
     if "::" in name:

@@ -79,8 +79,7 @@ class StateServices:
     def move_model(self, state: Any) -> None:
         """Apply a gazebo_msgs/ModelState.
 
-        Raises:
-            CommandError: unknown model or frame, or a value that is NaN or infinite.
+        Raises CommandError: unknown model or frame, or a value that is NaN or infinite.
         """
         pose, twist = pose_from_message(state.pose), twist_from_message(state.twist)
         with gazebo_prefix("model does not exist", NO_FRAME):
@@ -90,8 +89,7 @@ class StateServices:
     def move_link(self, state: Any) -> None:
         """Apply a gazebo_msgs/LinkState.
 
-        Raises:
-            CommandError: unknown link or frame, or a value that is NaN or infinite.
+        Raises CommandError: unknown link or frame, or a value that is NaN or infinite.
         """
         pose, twist = pose_from_message(state.pose), twist_from_message(state.twist)
         with gazebo_prefix("link does not exist", NO_FRAME):

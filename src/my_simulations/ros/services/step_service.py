@@ -25,8 +25,7 @@ class StepService:
     def step(self, request: Any, response: Any) -> str:
         """Execute steps as fast as possible; returns when they are done.
 
-        Raises:
-            CommandError: the count is out of range, or the node shuts down.
+        Raises CommandError: the count is out of range, or the node shuts down.
         """
         steps = request.steps
         if not 0 <= steps <= MOST:

@@ -13,8 +13,7 @@ _PACKAGES = "libegl1 libegl-mesa0 libgl1 libgl1-mesa-dri"
 def new_context() -> Any:
     """A context, current in this thread.
 
-    Raises:
-        SensingUnavailableError: something is not installed; says what.
+    Raises SensingUnavailableError: something is not installed; says what.
     """
     try:
         import moderngl

@@ -30,8 +30,7 @@ class RayShape:
 def buffers_of(shape: RayShape) -> "List[Tuple[int, Tuple[Tuple[int, int, np.ndarray], ...]]]":
     """The Embree geometries of a shape, in the link frame: kind, and (use, format, rows) of each.
 
-    Raises:
-        InputError: a mesh or its like cannot be read.
+    Raises InputError: a mesh or its like cannot be read.
     """
     frame, solid = matrix(shape.pose), shape.geometry
     if isinstance(solid, Sphere):
