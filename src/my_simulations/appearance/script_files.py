@@ -26,10 +26,7 @@ def scripts_of(uri: str, resolver: Resolver) -> Tuple[List[str], List[str]]:
 def materials_of(script: str) -> Dict[str, ScriptMaterial]:
     """The materials of a script by name, cached by time; none for what is not a plain file.
 
-    Callers must not change them.
-
-    Raises:
-        OSError: it cannot be read.
+    Callers must not change them. Raises OSError: it cannot be read.
     """
     status = os.stat(script)
     if not os.path.isfile(script):  # a named pipe may never have a writer

@@ -100,10 +100,7 @@ def load_building(path: str) -> Tuple[Plan, List[Issue]]:
     """Load the plan of a building's folder or of an SDF file.
 
     Reads the plan file beside the model; if that is missing or unreadable, the plan is derived from
-    the model. Images are returned as data URLs.
-
-    Raises:
-        InputError: not a building.
+    the model. Images are returned as data URLs. Raises InputError: not a building.
     """
     issues: List[Issue] = []
     plan_path = os.path.join(path, PLAN_FILE)

@@ -68,10 +68,8 @@ class _Item(NamedTuple):
 def plan_from_model(model: Model, file: str = "") -> Tuple[Plan, List[Issue]]:
     """The plan of a building's model, and issues about parts that could not be derived.
 
-    Positions are those in the world at the model pose of the file.
-
-    Raises:
-        InputError: the model is not a building.
+    Positions are those in the world at the model pose of the file. Raises InputError: the model is
+    not a building.
     """
     issues: List[Issue] = []
     items: List[_Item] = []

@@ -31,10 +31,8 @@ def model_name(name: str) -> str:
 def building_model(plan: Plan) -> Model:
     """The static model of a plan.
 
-    The model frame is at the centre of the plan's bounding box on the ground.
-
-    Raises:
-        InputError: the plan has errors (see `check_plan`) or is empty.
+    The model frame is at the centre of the plan's bounding box on the ground. Raises InputError:
+    the plan has errors (see `check_plan`) or is empty.
     """
     faults = errors_of(check_plan(plan))
     if faults:

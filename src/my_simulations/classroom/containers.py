@@ -65,10 +65,7 @@ class Containers:
         """Copy the submission of a student to OUT/NAME; returns the number of files.
 
         Replaces an earlier collection. Links, hidden folders, and files beyond the limits of the
-        class are left out.
-
-        Raises:
-            CommandError: the files cannot be read or written.
+        class are left out. Raises CommandError: the files cannot be read or written.
         """
         return store_collection(student, out, lambda store: self._unpack(student, store))
 

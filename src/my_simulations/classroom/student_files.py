@@ -42,9 +42,7 @@ def collect(plan: ClassPlan, student: Student, out: str) -> int:
     """Copy the submission of a student to OUT/NAME; returns the number of files.
 
     Replaces an earlier collection. Links, and files beyond the limits of the class, are left out.
-
-    Raises:
-        CommandError: the files cannot be read or written.
+    Raises CommandError: the files cannot be read or written.
     """
     limit = int(plan.limits.file_mb * 1e6)
 

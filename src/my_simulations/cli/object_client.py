@@ -229,10 +229,8 @@ class SimulatorClient:
         """Pause the world in the `with` block, unless it is paused or the simulator is Gazebo.
 
         Use in the main thread: the first SIGINT, SIGTERM or SIGHUP raises KeyboardInterrupt in the
-        block. No further one, and none after the block, keeps the world paused.
-
-        Raises:
-            ToolError: the simulator did not respond.
+        block. No further one, and none after the block, keeps the world paused. Raises ToolError:
+        the simulator did not respond.
         """
         if not self.replaces or self._call("get_physics_properties", "GetPhysicsProperties").pause:
             yield

@@ -22,10 +22,8 @@ def start(simulator: "Simulator", resolver: "Resolver",
           loading: "Optional[LoadingServer]" = None) -> "EditorServer":
     """Serve the editor of a simulator from a thread of its own; returns once it listens.
 
-    With `loading`, it takes over the address and the pages of that server.
-
-    Raises:
-        CommandError: the address cannot be listened at, or the page is not installed.
+    With `loading`, it takes over the address and the pages of that server. Raises CommandError: the
+    address cannot be listened at, or the page is not installed.
     """
     from .server import EditorServer
 

@@ -84,10 +84,8 @@ class BodyPlanError(SimulationError):
 def plan_bodies(model: Model) -> List[BodyPlan]:
     """The bodies of a flattened model; every link is in exactly one body.
 
-    Joints of unsupported types, and joints that would close a loop, connect nothing.
-
-    Raises:
-        BodyPlanError: a joint names a link that does not exist, or a tree exceeds Bullet's limit.
+    Joints of unsupported types, and joints that would close a loop, connect nothing. Raises
+    BodyPlanError: a joint names a link that does not exist, or a tree exceeds Bullet's limit.
     """
     by_name = {link.name: index for index, link in enumerate(model.links)}
     if model.static:

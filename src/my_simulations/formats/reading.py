@@ -214,10 +214,7 @@ def read_any(text: Text, resolver: Resolver,
     """The first world of a document, else its first model or light, else an actor.
 
     The issues are complete, as those of `read_world`, and include all advice and faults of meshes
-    that are only shown.
-
-    Raises:
-        InputError: nothing is usable.
+    that are only shown. Raises InputError: nothing is usable.
     """
     source, root = _open(text, resolver, file)
     issues = source.log.issues

@@ -18,11 +18,9 @@ def split_rostest(path: str) -> Tuple[bytes, bytes]:
     """Return the two roslaunch files of a rostest.
 
     The first one has no tests, and sets the parameter `STARTED`. The second one has the tests of
-    the file, with its arguments, groups, remappings and variables, and nothing else: tests in
-    files that it includes do not count, because these may belong to the submission.
-
-    Raises:
-        InputError: the file is no roslaunch file, or has no test.
+    the file, with its arguments, groups, remappings and variables, and nothing else: tests in files
+    that it includes do not count, because these may belong to the submission. Raises InputError:
+    the file is no roslaunch file, or has no test.
     """
     try:
         started, tests = (etree.parse(path, etree.XMLParser(

@@ -60,10 +60,8 @@ def package_names() -> List[str]:
 def locate(placed: PlacedObject, find: FindPackage) -> Tuple[str, str]:
     """The path of the object's file, and that of a second candidate, "" for none.
 
-    An entry without a package is searched in the package of its list, then in this one.
-
-    Raises:
-        InputError: the package or the file does not exist.
+    An entry without a package is searched in the package of its list, then in this one. Raises
+    InputError: the package or the file does not exist.
     """
     found = [path for path in _candidates(placed, find) if os.path.isfile(path)]
     if found:

@@ -51,10 +51,8 @@ def sides(radius: float, error: float = RAY_ERROR) -> int:
 def triangles_of(shape: Geometry, round_sides: int = 0) -> Optional[Triangles]:
     """The surface of a shape; None for one that has none.
 
-    `round_sides`: of circles; 0 for as many as rays need.
-
-    Raises:
-        InputError: a mesh, terrain, map image or polygon that cannot be read.
+    `round_sides`: of circles; 0 for as many as rays need. Raises InputError: a mesh, terrain, map
+    image or polygon that cannot be read.
     """
     if isinstance(shape, Box):
         return box(shape.size)

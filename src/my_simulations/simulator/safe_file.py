@@ -15,10 +15,8 @@ def write_atomically(path: str, data: bytes, overwrite: bool, private: bool = Fa
     """Write a file atomically; creates missing folders.
 
     On any error an existing file is unchanged, and no partial file is left. If `private`, only the
-    user may read the file and enter its folder.
-
-    Raises:
-        CommandError: it exists and `overwrite` is False, or it cannot be written.
+    user may read the file and enter its folder. Raises CommandError: it exists and `overwrite` is
+    False, or it cannot be written.
     """
     folder = os.path.dirname(path)
     temporary: Optional[str] = None

@@ -214,10 +214,8 @@ class ShapeFactory:
     def prepare(self, model: Model, meshes: MeshTable) -> Iterator[None]:
         """Make the shapes of a static model in advance, one for each value of the iterator.
 
-        `take` returns them later, so that the build of the model takes little time.
-
-        Raises:
-            ShapeError: a shape cannot be made.
+        `take` returns them later, so that the build of the model takes little time. Raises
+        ShapeError: a shape cannot be made.
         """
         for link in model.links:
             for collision in link.collisions:

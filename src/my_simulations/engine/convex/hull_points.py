@@ -20,10 +20,7 @@ def hull_points(geometry: Geometry) -> np.ndarray[Any, Any]:
     """Points (n, 3) in metres, in the shape's frame, whose hull is the shape.
 
     Points are on the surface, so hulls of curved shapes are slightly smaller: a sphere of 256
-    points by 1 % of its radius.
-
-    Raises:
-        ValueError: a shape without a hull, such as a plane.
+    points by 1 % of its radius. Raises ValueError: a shape without a hull, such as a plane.
     """
     if isinstance(geometry, Box):
         return np.array(list(itertools.product((-0.5, 0.5), repeat=3))) * geometry.size

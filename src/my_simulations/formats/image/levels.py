@@ -87,10 +87,8 @@ def levels_of(path: str, widest: int, step: int) -> Levels:
 def elevations(path: str, widest: int) -> Optional[Elevations]:
     """The heights in a GeoTIFF or another floating-point image; None for other images.
 
-    Pixels without data get the least height of the others. `widest` as in `grey_levels`.
-
-    Raises:
-        InputError: with one issue, `image-unreadable`.
+    Pixels without data get the least height of the others. `widest` as in `grey_levels`. Raises
+    InputError: with one issue, `image-unreadable`.
     """
     if not _costly(path):
         return elevations_of(path, widest)

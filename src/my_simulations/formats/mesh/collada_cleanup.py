@@ -29,10 +29,7 @@ _NAMESPACE = "http://www.collada.org/2005/11/COLLADASchema"
 def tidied(data: bytes) -> Any:
     """The `<COLLADA>` element of a file, reduced to the geometry of its scene.
 
-    Elements keep the line numbers of the file.
-
-    Raises:
-        MeshError: not COLLADA, or invalid numbers.
+    Elements keep the line numbers of the file. Raises MeshError: not COLLADA, or invalid numbers.
     """
     root = parsed(data)
     document = _Document(root)

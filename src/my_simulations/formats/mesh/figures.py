@@ -84,10 +84,8 @@ class Movement:
 def read_figure(path: str) -> Optional[FigureFile]:
     """The figure in a COLLADA file; None for other files, or one without surfaces.
 
-    For files that `load_mesh` has read before, which reports faults of their shape.
-
-    Raises:
-        MeshError: a fault of a skin or an animation.
+    For files that `load_mesh` has read before, which reports faults of their shape. Raises
+    MeshError: a fault of a skin or an animation.
     """
     return _figure(path, _changed(path)) if _is_collada(path) else None
 

@@ -52,10 +52,8 @@ def clip_of(root: Any, tree: NodeTree) -> Optional[Clip]:
     """All animations of a file at once; None for none.
 
     Gazebo ignores `<animation_clip>`: a movement lasts until the last key. Between keys it is
-    linear, whatever `INTERPOLATION` says.
-
-    Raises:
-        ValueError, LookupError: numbers that do not fit each other.
+    linear, whatever `INTERPOLATION` says. Raises ValueError, LookupError: numbers that do not fit
+    each other.
     """
     channels: Dict[int, List[_Channel]] = {}
     for animation in root.findall("{*}library_animations/{*}animation"):

@@ -44,11 +44,8 @@ def load_mesh(mesh: Mesh) -> MeshData:
     """The triangles of a mesh file (m), with unit, scale, submesh and centring applied.
 
     The up axis of the file is not applied (Gazebo behaviour). The arrays are shared between calls
-    and read-only.
-
-    Raises:
-        InputError: with one issue: `mesh-not-found`, `mesh-unreadable`, `mesh-empty` (no faces, or
-            no such part) or `mesh-not-finite`.
+    and read-only. Raises InputError: with one issue: `mesh-not-found`, `mesh-unreadable`,
+    `mesh-empty` (no faces, or no such part) or `mesh-not-finite`.
     """
     try:
         status = os.stat(mesh.path) if mesh.path else None
@@ -65,10 +62,8 @@ def load_mesh(mesh: Mesh) -> MeshData:
 def load_solid(solid: Solid) -> MeshData:
     """The triangles of a mesh, a terrain, a map image or a polygon.
 
-    Exceptions of the readers are reported as faults of the file.
-
-    Raises:
-        InputError: with one issue; see `load_mesh` and `solids.solid_mesh`.
+    Exceptions of the readers are reported as faults of the file. Raises InputError: with one issue;
+    see `load_mesh` and `solids.solid_mesh`.
     """
     try:
         return load_mesh(solid) if isinstance(solid, Mesh) else solid_mesh(solid)

@@ -18,10 +18,8 @@ _LONGEST_CORNER = 64  # characters
 def read_obj(data: bytes) -> List[MeshPart]:
     """The parts of an OBJ file, by its `o` and `g` lines, in the order of their first faces.
 
-    The parts share the array of all vertices of the file.
-
-    Raises:
-        MeshError: an invalid number, an index out of range, or too many corners or triangles.
+    The parts share the array of all vertices of the file. Raises MeshError: an invalid number, an
+    index out of range, or too many corners or triangles.
     """
     import numpy as np
 

@@ -39,10 +39,8 @@ class PaintedPart:
 def painted_parts(mesh: Mesh) -> List[PaintedPart]:
     """The parts of a mesh file with their materials, or without if these cannot be read.
 
-    The triangles are those of `load_mesh`, which reports faults of the file.
-
-    Raises:
-        InputError: see `load_mesh`.
+    The triangles are those of `load_mesh`, which reports faults of the file. Raises InputError: see
+    `load_mesh`.
     """
     plain = load_mesh(mesh)
     try:

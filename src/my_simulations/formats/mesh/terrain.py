@@ -22,13 +22,10 @@ _WIDEST = 1025
 def solid_mesh(solid: Solid) -> MeshData:
     """The triangles of a heightmap, a map image or a polyline.
 
-    In metres, in the frame of the collision; the arrays are shared between calls and read-only.
-    A heightmap is a surface, so it can only be static. Polylines and map images have convex
-    parts.
-
-    Raises:
-        InputError: with one issue: `image-not-found`, `image-unreadable`, `solid-complex` (too many
-            points or boxes), `solid-empty` (nothing that could collide).
+    In metres, in the frame of the collision; the arrays are shared between calls and read-only. A
+    heightmap is a surface, so it can only be static. Polylines and map images have convex parts.
+    Raises InputError: with one issue: `image-not-found`, `image-unreadable`, `solid-complex` (too
+    many points or boxes), `solid-empty` (nothing that could collide).
     """
     if isinstance(solid, Polyline):
         return _extruded(solid)

@@ -23,10 +23,8 @@ def extensions() -> Set[str]:
 def read_other(data: bytes, path: str) -> List[MeshPart]:
     """The parts of a file in another format, in its declared unit, else in metres.
 
-    The extension of `path` gives the format; a .gltf file finds its buffers beside it.
-
-    Raises:
-        MeshError: trimesh cannot read it, or lacks a library for it.
+    The extension of `path` gives the format; a .gltf file finds its buffers beside it. Raises
+    MeshError: trimesh cannot read it, or lacks a library for it.
     """
     from trimesh.resolvers import FilePathResolver
 

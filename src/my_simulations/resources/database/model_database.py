@@ -64,10 +64,7 @@ class ModelDatabase(DownloadTime):
         """The folder of a model, which is downloaded with its dependencies if missing.
 
         If a dependency cannot be downloaded, the model is still usable; the missing model is
-        reported where it is used.
-
-        Raises:
-            ModelNotProvidedError: the model cannot be downloaded now.
+        reported where it is used. Raises ModelNotProvidedError: the model cannot be downloaded now.
         """
         path = self._folder_of(name)
         waiting, seen = _dependencies(path), {name}
