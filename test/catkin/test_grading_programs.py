@@ -420,8 +420,7 @@ def test_an_instructor_grades_five_submissions_by_a_shipped_assignment(tmp_path)
     right = (REPOSITORY / "scripts" / "stop_before_wall.py").read_text()
     for name, program in (("right", right), ("typo", right.replace("while", "whil")),
                           ("loop", "import time\nwhile True: time.sleep(0.1)\n"),
-                          ("idle", "print('nothing')\n"),
-                          ("crash", DRIVER)):
+                          ("idle", "print('nothing')\n"), ("crash", DRIVER)):
         (submissions / name).mkdir(parents=True)
         (submissions / name / "go.py").write_text(program)
     rows = graded(submissions, "stop_before_wall", "--jobs", "2")
@@ -473,8 +472,7 @@ def test_a_package_with_an_object_fulfils_the_assignment_of_objects(tmp_path):
         package = tmp_path / "submissions" / name
         for inside, text in (
                 ("package.xml", PACKAGE.format("my_package")), ("spawn.sh", SPAWN),
-                ("objects/my_object.urdf", object_),
-                ("config/empty_world/object_locations.yaml",
+                ("objects/my_object.urdf", object_), ("config/empty_world/object_locations.yaml",
                  f"my_object: {{model: my_object, model_type: urdf, position: {place},"
                  " orientation: [0, 0, 0]}\n")):
             (package / inside).parent.mkdir(parents=True, exist_ok=True)

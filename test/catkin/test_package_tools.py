@@ -22,8 +22,7 @@ ROSDEP = ("/usr/bin/python3", "/usr/bin/rosdep")
 def run(tmp_path, *words, **variables):
     """Both tools read files of the user's home folder, which is an empty one here."""
     kept = {name: os.environ[name] for name in ("LC_ALL", "PATH") if name in os.environ}
-    return subprocess.run(words, cwd=REPOSITORY, text=True,
-                          capture_output=True, timeout=120,
+    return subprocess.run(words, cwd=REPOSITORY, text=True, capture_output=True, timeout=120,
                           env={**kept, "HOME": str(tmp_path), **variables})
 
 

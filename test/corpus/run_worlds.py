@@ -140,8 +140,7 @@ def main(argv: Sequence[str]) -> int:
             if not path.endswith(".world") or options.only not in path:
                 continue
             with tempfile.TemporaryDirectory() as cache:
-                found = run(path, [folder, *shared], options.seconds,
-                            cache if options.cold else "")
+                found = run(path, [folder, *shared], options.seconds, cache if options.cold else "")
             tell(path, found)
             results.append(found)
             good = good and "end" not in found and not found["fell"] and not found["crashes"]

@@ -50,8 +50,7 @@ def ball(name: str = "ball", radius: float = 0.5, mass: float = 1.0,
 
 
 def ground(mu: float = 100.0, surface: Optional[Surface] = None) -> Model:
-    return Model("ground", static=True,
-                 links=[Link("link", collisions=[Collision("c", Plane(),
+    return Model("ground", static=True, links=[Link("link", collisions=[Collision("c", Plane(),
                                                            surface=surface or Surface(mu=mu))])])
 
 

@@ -44,8 +44,7 @@ def test_a_limit_holds_against_a_constant_effort(lab: Lab, laws: Laws, mass: flo
     lab.configure(gravity=(0.0, 0.0, 0.0))
     inertia = _felt(kind, mass)
     away = min(0.3, oscillator(1.0, inertia, 0.0, share * inertia / DT, 10 * inertia)[0] / 2)
-    model = _slider_or_hinge(lab, kind, mass, lower=-1.0, upper=away,
-                             damping=share * inertia / DT)
+    model = _slider_or_hinge(lab, kind, mass, lower=-1.0, upper=away, damping=share * inertia / DT)
     _push(lab, model, 10.0 * inertia)
     lab.seconds(2)
     for _ in range(100):
@@ -122,8 +121,7 @@ def test_wheels_of_a_free_base_slow_down_as_their_closed_form(lab: Lab, laws: La
 @MASSES
 @KINDS
 @DAMPING
-def test_efforts_act_up_to_their_limit(lab: Lab, laws: Laws, mass: float, kind: str,
-                                       share: float):
+def test_efforts_act_up_to_their_limit(lab: Lab, laws: Laws, mass: float, kind: str, share: float):
     lab.configure(gravity=(0.0, 0.0, 0.0))
     inertia = _felt(kind, mass)
     damping = share * inertia / DT

@@ -436,8 +436,7 @@ def test_a_link_may_have_more_collisions_than_a_bullet_compound(lab: Lab, static
     posts = [Collision(f"c{n}", Box((0.5, 0.5, 0.2)), Pose((n, 0, 0))) for n in range(40)]
     posts.append(Collision("round", Cylinder(0.25, 0.2), Pose((40, 0, 0))))
     row = Model("row", static=static, links=[Link(
-        "link", inertial=Inertial(40, Pose((20, 0, 0)), 1, 0, 0, 6000, 0, 6000),
-        collisions=posts)])
+        "link", inertial=Inertial(40, Pose((20, 0, 0)), 1, 0, 0, 6000, 0, 6000), collisions=posts)])
     lab.load(ground())
     model = lab.load(row, (0, 0, 0.1))
     probes = [lab.load(ball(f"p{n}", radius=0.1), (x, 0, 0.6)) for n, x in enumerate((0, 33, 40))]

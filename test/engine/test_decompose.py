@@ -181,8 +181,7 @@ def test_a_wall_inside_a_solid_does_not_make_it_concave():
     walled = box()
     corners = [(0.0, y, z) for y in (-0.5, 0.5) for z in (-0.5, 0.5)]
     mesh = trimesh.Trimesh(np.concatenate([walled.vertices, corners]),
-                           np.concatenate([walled.faces, [(8, 9, 11), (8, 11, 10)]]),
-                           process=False)
+                           np.concatenate([walled.faces, [(8, 9, 11), (8, 11, 10)]]), process=False)
     assert not mesh.is_watertight and is_convex(mesh)
 
 

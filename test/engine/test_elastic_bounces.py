@@ -67,8 +67,7 @@ def test_bounces_rise_to_the_square_of_the_restitution(lab: Lab, laws: Laws, ste
         drop = 3.0 + 0.0137 * n
         # A sampled top may be up to G (step / 2)^2 / 2 too low.
         laws.near(f"bounces with restitution 0.8, steps of {step} s: top, m",
-                  [float(first), float(second)], [0.64 * drop, 0.4096 * drop],
-                  rel=5 * BARS[step])
+                  [float(first), float(second)], [0.64 * drop, 0.4096 * drop], rel=5 * BARS[step])
 
 
 @pytest.mark.parametrize("step", BARS)

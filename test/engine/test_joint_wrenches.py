@@ -227,8 +227,7 @@ def test_two_hinges_share_a_beam(lab: Lab, laws, reverse: bool) -> None:
     ends = ("beam", "world") if reverse else ("world", "beam")
     number = lab.load(Model("m", links=[beam], joints=[
         Joint("near", "revolute", "world", "beam", Pose((-0.5, 0, 0)), axis=JointAxis((0, 1, 0))),
-        Joint("far", "revolute", *ends, Pose((0.5, 0, 0)), axis=JointAxis((0, 1, 0)))]),
-        (0, 0, 2))
+        Joint("far", "revolute", *ends, Pose((0.5, 0, 0)), axis=JointAxis((0, 1, 0)))]), (0, 0, 2))
     _read(lab, number, "near", "far")
     lab.seconds(2.0)
     law, up = "two hinges that share a beam: force, torque, by its weight", (0, 0, 2 * G)

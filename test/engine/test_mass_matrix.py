@@ -138,8 +138,7 @@ def _on_wheel(centre: "tuple[float, float, float]", moments: "tuple[float, float
 
 
 @pytest.mark.parametrize("centre, moments, balanced", [
-    ((0.0, 0.02, 0.0), (2e-4, 3e-4, 2e-4), True),
-    ((0.001, 0.0, 0.0), (2e-4, 3e-4, 2e-4), False),
+    ((0.0, 0.02, 0.0), (2e-4, 3e-4, 2e-4), True), ((0.001, 0.0, 0.0), (2e-4, 3e-4, 2e-4), False),
     ((0.0, 0.0, 0.0), (2e-4, 3e-4, 2.1e-4), False)], ids=["round", "eccentric", "oval"])
 def test_what_turns_without_changing_the_matrix(bullet, centre, moments, balanced):
     tree = _on_wheel(centre, moments)

@@ -110,8 +110,7 @@ def test_things_rest_on_a_flat_mesh_at_its_height(lab: Lab, laws: Laws, angle: f
 
 
 @pytest.mark.parametrize("step_size", [0.001, 0.01])
-def test_a_can_is_put_down_while_a_wheel_rolls_on_triangles(lab: Lab, laws: Laws,
-                                                            step_size: float):
+def test_a_can_is_put_down_while_a_wheel_rolls_on_triangles(lab: Lab, laws: Laws, step_size: float):
     """Its contact points were kept as close as those of the wheel: it sank into the floor."""
     lab.configure(step_size=step_size)
     static(lab, floor(), orientation=quat_from_rpy(0.0, 0.0, 0.3))

@@ -118,8 +118,7 @@ def test_velocity_decay_takes_its_share_off_in_every_step(lab: Lab, dt: float, l
 
 
 @pytest.mark.parametrize("share", [0.001, 0.01, 0.03, 0.04, 0.05])
-def test_a_damped_body_falls_and_turns_at_its_terminal_velocity(lab: Lab, laws: Laws,
-                                                                share: float):
+def test_a_damped_body_falls_and_turns_at_its_terminal_velocity(lab: Lab, laws: Laws, share: float):
     model = box()
     model.links[0].linear_decay = model.links[0].angular_decay = share
     sinking = lab.load(model)

@@ -98,8 +98,7 @@ def test_a_lying_can_stays_where_it_is(lab: Lab, laws: Laws, floor: str, asleep:
     lab.seconds(seconds)
     for can, start in zip(cans, starts):
         laws.at_most(f"a lying can on a {floor}: way in 30 s, m",
-                     math.dist(lab.pose(can).position[:2], start[:2]) * 30 / seconds,
-                     1e-3)
+                     math.dist(lab.pose(can).position[:2], start[:2]) * 30 / seconds, 1e-3)
 
 
 def _speed(lab: Lab, bodies: "Sequence[Tuple[int, str]]") -> "List[float]":

@@ -65,8 +65,7 @@ def test_links_of_a_tree_collide_where_one_of_them_asks(lab: Lab, whole: bool,
 
 def test_links_that_a_joint_connects_never_collide(lab: Lab):
     slide = JointAxis((0.0, 0.0, 1.0))
-    knuckle = Model("knuckle", self_collide=True,
-                    links=[cube("lower", 0.1), cube("upper", 0.15)],
+    knuckle = Model("knuckle", self_collide=True, links=[cube("lower", 0.1), cube("upper", 0.15)],
                     joints=[Joint("hold", "fixed", "world", "lower"),
                             Joint("turn", "universal", "lower", "upper", axis=slide,
                                   axis2=JointAxis((1.0, 0.0, 0.0)))])
@@ -91,8 +90,7 @@ def test_a_removed_model_leaves_the_next_one_its_own_rule(lab: Lab):
 @pytest.mark.parametrize("outer,inner,expected", [(False, True, RESTS), (True, False, FALLS)])
 def test_links_of_a_nested_model_do_what_their_own_model_says(lab: Lab, outer: bool, inner: bool,
                                                               expected: float):
-    inside = Model("inside", self_collide=inner,
-                   links=[cube("lower", 0.1), cube("upper", 0.4)])
+    inside = Model("inside", self_collide=inner, links=[cube("lower", 0.1), cube("upper", 0.4)])
     whole = Model("whole", self_collide=outer, allow_auto_disable=False, models=[inside])
     flat = flattened(whole)
     assert unflattened(flat) == whole

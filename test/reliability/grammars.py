@@ -12,8 +12,7 @@ WORDS = ("true", "false", "1", "0", "yes", "revolute", "fixed", "ball", "box", "
          "file:///dev/zero", "package://p/x.dae", "%s%n", "]]>", "&amp;")
 
 words = st.one_of(st.sampled_from(NUMBERS), st.sampled_from(NAMES), st.sampled_from(WORDS),
-                  st.lists(st.sampled_from(NUMBERS), max_size=9).map(" ".join),
-                  st.text(max_size=8))
+                  st.lists(st.sampled_from(NUMBERS), max_size=9).map(" ".join), st.text(max_size=8))
 
 
 def xml_text(text: str) -> str:

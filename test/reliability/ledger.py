@@ -26,8 +26,7 @@ CELL = 3.0
 def floating(*models: Model) -> Simulator:
     """Return a started, paused world without gravity, in which models keep their poses."""
     world = World(models=list(models), gravity=(0.0, 0.0, 0.0))
-    simulator = Simulator(world, engine_factory=ProcessEngine, paused=True,
-                          log=lambda issue: None)
+    simulator = Simulator(world, engine_factory=ProcessEngine, paused=True, log=lambda issue: None)
     simulator.start()
     return simulator
 

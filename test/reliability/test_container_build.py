@@ -24,8 +24,7 @@ LARGEST = 700.0
 """10^6 bytes that the container for running may take."""
 
 pytestmark = [
-    pytest.mark.long,
-    pytest.mark.skipif(os.geteuid() != 0 or not shutil.which("debootstrap"),
+    pytest.mark.long, pytest.mark.skipif(os.geteuid() != 0 or not shutil.which("debootstrap"),
                        reason="needs root and debootstrap")]
 
 

@@ -231,8 +231,7 @@ def test_a_killed_node_leaves_nothing_behind_and_comes_back_as_it_was_saved(grap
     assert slowest < LONGEST_CALL_S
     record("node killed", kills=kills, callers=len(callers), left_behind=0, lost=0, wrong=0,
            operations=sum(caller.done for caller in callers),
-           failed_calls=sum(caller.failed for caller in callers),
-           slowest_call_s=round(slowest, 1))
+           failed_calls=sum(caller.failed for caller in callers), slowest_call_s=round(slowest, 1))
 
 
 def until_pid(graph):

@@ -33,8 +33,7 @@ def busy_world() -> World:
                     (0.0, 0.3826834, 0.0, 0.9238795))
         inertial = Inertial(1.0, ixx=0.1, iyy=0.1, izz=0.1)
         if n % 3:
-            links = [Link("link", inertial=inertial,
-                          collisions=[Collision("c", shapes[n % 2])])]
+            links = [Link("link", inertial=inertial, collisions=[Collision("c", shapes[n % 2])])]
             models.append(Model(f"m{n}", pose, links=links))
         else:
             made = box(f"m{n}")

@@ -99,8 +99,7 @@ def target_of(options: argparse.Namespace) -> Union[Pose, Path]:
     return Circle((cx, cy), given(options.radius, "-r"))
 
 
-def _move(options: argparse.Namespace, target: Union[Pose, Path],
-          remappings: Sequence[str]) -> int:
+def _move(options: argparse.Namespace, target: Union[Pose, Path], remappings: Sequence[str]) -> int:
     parameters = client.Parameters(remappings)
     simulator = client.SimulatorClient(
         parameters, client.full_name(options.gazebo_namespace, remappings), options.timeout)

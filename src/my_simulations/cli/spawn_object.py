@@ -62,8 +62,7 @@ def _spawn_all(options: argparse.Namespace, remappings: Sequence[str]) -> int:
         if not failed:
             print(f"{NAME}: nothing to spawn")
         return client.FAILED if failed else client.OK
-    wrong = _spawn_each(selection.objects, simulator, options.timeout,
-                        Launch.of(remappings))
+    wrong = _spawn_each(selection.objects, simulator, options.timeout, Launch.of(remappings))
     return client.FAILED if failed or wrong else client.OK
 
 
@@ -97,13 +96,11 @@ def _spawn_one(placed: PlacedObject, document: Document, simulator: client.Simul
     replaced = placed.name in there
     if simulator.replaces:
         said = simulator.spawn_object(placed.name, document.xml, placed.position, placed.rpy,
-                                      replace=replaced, file=document.origin,
-                                      launch_pid=launch.pid)
+                                      replace=replaced, file=document.origin, launch_pid=launch.pid)
     else:
         if replaced:
             simulator.delete(placed.name)
-        said = simulator.spawn(placed.name, document.xml, document.sdf, placed.position,
-                               placed.rpy)
+        said = simulator.spawn(placed.name, document.xml, document.sdf, placed.position, placed.rpy)
     there.add(placed.name)
     x, y, z = placed.position
     also = f" (not {document.other})" if document.other else ""

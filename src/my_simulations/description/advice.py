@@ -233,8 +233,7 @@ def _overlaps(models: Sequence[Model], only: str) -> Iterator[Fault]:
         yield _inside(mover, still, depth, collision)
 
 
-def _insides(models: Sequence[Model],
-             only: str) -> Iterator[Tuple[str, str, float, Collision]]:
+def _insides(models: Sequence[Model], only: str) -> Iterator[Tuple[str, str, float, Collision]]:
     """Links that start in another model: the link, the one that it is in, metres, its shape."""
     cores: List[_Core] = []
     planes: List[Tuple[str, str, Pose, Plane]] = []
@@ -319,8 +318,7 @@ def _support(geometry: Geometry, pose: Pose, normal: Vec3) -> float:
     return abs(n[0]) * half[0] + abs(n[1]) * half[1] + abs(n[2]) * half[2]
 
 
-def _in_each_other(cores: List[_Core],
-                   only: str) -> Iterator[Tuple[str, str, float, Collision]]:
+def _in_each_other(cores: List[_Core], only: str) -> Iterator[Tuple[str, str, float, Collision]]:
     """Overlapping pairs, by sweep and prune along x; at most `MOST_OVERLAPS` of them."""
     cores = sorted(cores, key=lambda core: core.low[0])
     found = compared = 0

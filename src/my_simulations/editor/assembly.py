@@ -66,8 +66,7 @@ class Assembly:
                                   os.path.join(options.cache_dir, "autosave"), self.report_issue)
         web_folder = options.web or Pages.own_folder()
         protocol = Protocol.from_folder(web_folder)
-        pages = Pages(options, web_folder, documents, protocol.limits["upload_bytes"],
-                      self._export)
+        pages = Pages(options, web_folder, documents, protocol.limits["upload_bytes"], self._export)
         self.hub = Hub(simulator, documents, protocol, options.check_outgoing)
         self._plugins = PluginStates(options.plugins)
         self.hub.greetings.append(self._plugins.greeting)

@@ -256,8 +256,7 @@ class WorldRequests:
     def _new_folder(self, _client: Client, message: Dict[str, Any]) -> Dict[str, Any]:
         return self._files.new_folder(message)
 
-    def _filed(self, client: Client, verb: str,
-               handler: Callable[[Dict[str, Any]], Dict[str, Any]],
+    def _filed(self, client: Client, verb: str, handler: Callable[[Dict[str, Any]], Dict[str, Any]],
                message: Dict[str, Any]) -> Dict[str, Any]:
         try:
             with self._notices.notify_of_deletions(client.number):

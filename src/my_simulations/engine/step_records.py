@@ -268,8 +268,7 @@ class RecordReader:
         if words[RECORDS_WRITTEN] == read:
             return None
         keep_order()   # the number before its record
-        return StepRecord(self._memory,
-                          FIRST_RECORD + words[RECORD_PLACES + read % RECORDS])
+        return StepRecord(self._memory, FIRST_RECORD + words[RECORD_PLACES + read % RECORDS])
 
     def release(self) -> None:
         """Allow the writer to overwrite the oldest record."""

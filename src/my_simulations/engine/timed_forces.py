@@ -109,5 +109,4 @@ def _begun(force: _Timed, step: int) -> _Timed:
     late = step - force.start
     if late <= 0:
         return force
-    return replace(force, start=step,
-                   stop=FOREVER if force.stop == FOREVER else force.stop + late)
+    return replace(force, start=step, stop=FOREVER if force.stop == FOREVER else force.stop + late)

@@ -37,8 +37,7 @@ def usable_inertia(link: Link, source: Source, element: Any) -> Inertial:
     return replace(inertial, ixx=1.0, iyy=1.0, izz=1.0, ixy=0.0, ixz=0.0, iyz=0.0)
 
 
-def completed(inertial: Inertial,
-              collisions: List[Collision]) -> Optional[Tuple[Inertial, str]]:
+def completed(inertial: Inertial, collisions: List[Collision]) -> Optional[Tuple[Inertial, str]]:
     """The inertia with omitted values filled in, and a phrase for the warning.
 
     Returns None if no value is omitted, or if the omitted values cannot be estimated.

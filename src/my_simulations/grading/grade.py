@@ -29,8 +29,7 @@ class Grading(NamedTuple):
 
 
 def grade(assignment: Union[str, Assignment], submissions: Sequence[str], out: str = "marks", *,
-          jobs: Optional[int] = None, isolate: bool = True,
-          told: Told = lambda mark, kept: None,
+          jobs: Optional[int] = None, isolate: bool = True, told: Told = lambda mark, kept: None,
           warn: Callable[[str], None] = lambda text: None) -> Grading:
     """Grade submissions (doc/grading.md); those that have not changed keep their marks.
 

@@ -42,8 +42,7 @@ class RosGraph:
         os.environ.update(graph_environment(self.uri))
         from ..ros.attached_node import AttachedNode  # rospy: only programs need it
 
-        self._node = AttachedNode(world.simulator, resolver, self.uri,
-                                  assignment.may_change_world)
+        self._node = AttachedNode(world.simulator, resolver, self.uri, assignment.may_change_world)
         self._upkeep = time.monotonic()
         self._program: Optional[Program] = None
         self._lockstep: Optional[Lockstep] = None

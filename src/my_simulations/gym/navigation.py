@@ -65,8 +65,7 @@ class Navigate:
         self._left = self._before = 0.0  # m to the mark, now and a step ago
         self._nearest = RANGE
 
-    def begin(self, world: OpenWorld, random: np.random.Generator,
-              options: Dict[str, Any]) -> None:
+    def begin(self, world: OpenWorld, random: np.random.Generator, options: Dict[str, Any]) -> None:
         """Place robot, mark and boxes at random, apart from each other."""
         robot, self._mark, *boxes = _places(random)
         yaw = float(random.uniform(-math.pi, math.pi))

@@ -70,8 +70,7 @@ class PickAndPlace:
         self._scene: Optional[_Scene] = None
         self._before = 0.0  # m, as `_Scene.distance`, a step ago
 
-    def begin(self, world: OpenWorld, random: np.random.Generator,
-              options: Dict[str, Any]) -> None:
+    def begin(self, world: OpenWorld, random: np.random.Generator, options: Dict[str, Any]) -> None:
         """Put cube and mark on the ground at random, apart from each other."""
         side = 1.0 if random.random() < 0.5 else -1.0
         cube, mark = (np.array([random.uniform(0.28, 0.4), sign * side * random.uniform(0.06, 0.2),

@@ -58,8 +58,7 @@ class PushBox:
         self._before: Optional[Tuple[float, float]] = None
         self._apart = (0.0, 0.0)  # m from the box to the mark, from the robot to the box
 
-    def begin(self, world: OpenWorld, random: np.random.Generator,
-              options: Dict[str, Any]) -> None:
+    def begin(self, world: OpenWorld, random: np.random.Generator, options: Dict[str, Any]) -> None:
         """Put the box ahead of the robot and the mark behind the box, at random."""
         box: Any = random.uniform((0.5, -0.3), (0.9, 0.3))
         mark: Any = box + random.uniform((0.5, -0.3), (1.0, 0.3))

@@ -41,8 +41,7 @@ class Reach:
         self._left: Optional[float] = None
         self._before = 0.0  # m to the target, a step ago
 
-    def begin(self, world: OpenWorld, random: np.random.Generator,
-              options: Dict[str, Any]) -> None:
+    def begin(self, world: OpenWorld, random: np.random.Generator, options: Dict[str, Any]) -> None:
         """Put the target somewhere within reach, in front of the arm."""
         distance, bearing = random.uniform(0.25, 0.5), random.uniform(-1.5, 1.5)
         self._target = np.array([distance * math.cos(bearing), distance * math.sin(bearing),

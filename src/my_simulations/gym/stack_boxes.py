@@ -88,8 +88,7 @@ class StackBoxes:
         self._left: Optional[float] = None
         self._scene: Optional[_Scene] = None
 
-    def begin(self, world: OpenWorld, random: np.random.Generator,
-              options: Dict[str, Any]) -> None:
+    def begin(self, world: OpenWorld, random: np.random.Generator, options: Dict[str, Any]) -> None:
         """Lay the boxes on the ground at random, apart from each other."""
         red: Any = random.uniform((-0.25, -0.2), (-0.05, 0.2))
         blue: Any = random.uniform((0.05, -0.2), (0.25, 0.2))

@@ -54,8 +54,7 @@ class Task(Protocol):
     observation_space: "gymnasium.Space[Any]"
     view: View
 
-    def begin(self, world: OpenWorld, random: np.random.Generator,
-              options: Dict[str, Any]) -> None:
+    def begin(self, world: OpenWorld, random: np.random.Generator, options: Dict[str, Any]) -> None:
         """Arrange the world, which has just been reset, for an episode."""
 
     def act(self, world: OpenWorld, action: Any) -> None:

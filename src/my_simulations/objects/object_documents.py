@@ -101,8 +101,7 @@ class Documents:
     in advance for several files in parallel.
     """
 
-    def __init__(self, objects: Iterable[PlacedObject], find: FindPackage,
-                 timeout: float) -> None:
+    def __init__(self, objects: Iterable[PlacedObject], find: FindPackage, timeout: float) -> None:
         """Start to read the files of `objects`.
 
         Args:

@@ -185,8 +185,7 @@ class _Reader:
             return
         c, s = math.cos(yaw), math.sin(yaw)
         placed: Vec3 = (origin[0] + c * position[0] - s * position[1],
-                        origin[1] + s * position[0] + c * position[1],
-                        origin[2] + position[2])
+                        origin[1] + s * position[0] + c * position[1], origin[2] + position[2])
         # Only the parent's yaw rotates a child, not its roll and pitch (Care-O-bot tools).
         turned: Vec3 = (rpy[0], rpy[1], rpy[2] + yaw)
         if file is not None:
@@ -266,8 +265,7 @@ class _Reader:
             return None
         return ObjectFile(package, inside, "xacro" in kind, "sdf" in kind)
 
-    def _text(self, value: Mapping[Any, Any], path: KeyPath, name: str,
-              key: str) -> Optional[str]:
+    def _text(self, value: Mapping[Any, Any], path: KeyPath, name: str, key: str) -> Optional[str]:
         found = value.get(key)
         if isinstance(found, str) and found.strip():
             return found.strip()

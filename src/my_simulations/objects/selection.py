@@ -120,8 +120,7 @@ def select(words: Sequence[str], listing: ObjectList,
 
 
 def _choose(name: str, listing: ObjectList, aliases: Mapping[str, str], where: str,
-            chosen: Dict[str, None], result: Selection,
-            more: Sequence[str] = ()) -> None:
+            chosen: Dict[str, None], result: Selection, more: Sequence[str] = ()) -> None:
     known = listing.names
     found = name if name in listing.objects or name in listing.faults else aliases.get(name)
     if not name or found is None:

@@ -168,8 +168,7 @@ class Context(Protocol):
     def observe(self, hertz: float, call: Callable[[], None],
                 topics: "Sequence[Publication]" = (), *, lead: float = 0.0,
                 resume: Optional[Callable[[], None]] = None, transforms: bool = False,
-                remembers: bool = False,
-                contacts: bool = False, efforts: Sequence[str] = (),
+                remembers: bool = False, contacts: bool = False, efforts: Sequence[str] = (),
                 wrenches: Sequence[str] = (), world: bool = False) -> "CallHandle":
         """Follow the world at a rate in Hz of sim time, without stopping it.
 

@@ -89,5 +89,4 @@ class PluginLoader:
 def _unknown(found: FoundPlugin, entity: Entity, text: str) -> Issue:
     return warning("plugin-unknown", f"{text}; '{found.spec.name}' of model"
                    f" '{entity.model.name}' does nothing", file=found.spec.file,
-                   line=found.spec.line,
-                   hint="a package can bring one: see doc/plugins.md")
+                   line=found.spec.line, hint="a package can bring one: see doc/plugins.md")

@@ -159,8 +159,7 @@ class SimulatedContext(GraphUser):
     def observe(self, hertz: float, call: Callable[[], None],
                 topics: Sequence[Publication] = (), *, lead: float = 0.0,
                 resume: Optional[Callable[[], None]] = None, transforms: bool = False,
-                remembers: bool = False,
-                contacts: bool = False, efforts: Sequence[str] = (),
+                remembers: bool = False, contacts: bool = False, efforts: Sequence[str] = (),
                 wrenches: Sequence[str] = (), world: bool = False) -> Observation:
         if transforms:
             self.offer_transforms()

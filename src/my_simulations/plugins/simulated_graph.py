@@ -78,8 +78,7 @@ class GraphUser:
         changed: called, in any thread, when subscribers of a topic come or go.
     """
 
-    def __init__(self, graph: Graph, wake: Callable[[], None],
-                 changed: Callable[[], None]) -> None:
+    def __init__(self, graph: Graph, wake: Callable[[], None], changed: Callable[[], None]) -> None:
         self._graph, self._wake, self._changed = graph, wake, changed
         self.inbox: Deque[Callable[[], None]] = deque()
         self.outbox: List[Tuple[Topic, Any]] = []

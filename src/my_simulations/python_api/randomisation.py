@@ -141,8 +141,7 @@ def _shifted(colour: Optional[Color], shift: np.ndarray) -> Color:
 def _noisier(value: Any, factor: float) -> Any:
     """Return sensors, or parts of them, with other standard deviations of all their noise."""
     if isinstance(value, Noise):
-        return replace(value, stddev=value.stddev * factor,
-                       bias_stddev=value.bias_stddev * factor,
+        return replace(value, stddev=value.stddev * factor, bias_stddev=value.bias_stddev * factor,
                        dynamic_bias_stddev=value.dynamic_bias_stddev * factor)
     if isinstance(value, list):
         return [_noisier(one, factor) for one in value]

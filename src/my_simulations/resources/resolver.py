@@ -216,8 +216,7 @@ class Resolver:
         known = fuel_uri(uri)
         if known is None or self._fuel is None:
             raise ResourceNotFoundError(
-                uri,
-                reason="of web addresses only those of models on a Fuel server are"
+                uri, reason="of web addresses only those of models on a Fuel server are"
                 " read, https://HOST/1.0/OWNER/models/NAME, or model://, package://,"
                 " file:// and paths",
             )

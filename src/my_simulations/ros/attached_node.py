@@ -36,8 +36,7 @@ class AttachedNode:
         rospy.set_param("~manual_stepping", True)
         clock = publisher("/clock", queue_size=_CLOCK_QUEUE, tcp_nodelay=True)
         self._refused = RefusedRequests(may_change_world)
-        self._node = Node(simulator, resolver, clock, None, master,
-                          replace=self._refused.replace)
+        self._node = Node(simulator, resolver, clock, None, master, replace=self._refused.replace)
         self._node.advertise()
         self._node.start_publishing()
         self._node.advertise_late()

@@ -32,8 +32,7 @@ class Node:
     def __init__(self, simulator: Simulator, resolver: Resolver, clock: rospy.Publisher,
                  open_editor: Optional[Open] = None, master_uri: str = "",
                  announce_editor: Callable[[], None] = lambda: None,
-                 launch: Optional[Launch] = None,
-                 replace: Replace = lambda _: None) -> None:
+                 launch: Optional[Launch] = None, replace: Replace = lambda _: None) -> None:
         """Take over a started, paused simulator.
 
         Args:

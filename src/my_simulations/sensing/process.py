@@ -220,8 +220,7 @@ class SensingProcess:
             with shielded():
                 child = subprocess.Popen(
                     child_command("sensing", *arguments), pass_fds=inherited,
-                    stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
-                    env=child_environment())
+                    stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, env=child_environment())
         except OSError:
             ours.close()
             raise

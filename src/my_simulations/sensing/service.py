@@ -192,8 +192,7 @@ class _Rays:
         scene.move(poses, request.ns)
         if not len(directions):
             return RayReturns(np.zeros(0), np.zeros(0, np.float32), np.zeros(0, np.int32), step)
-        ranges, retro, rows = scene.cast(origins, directions @ frame[:3, :3].T, rays.near,
-                                         rays.far)
+        ranges, retro, rows = scene.cast(origins, directions @ frame[:3, :3].T, rays.near, rays.far)
         return RayReturns(ranges, retro, rows, step)
 
     def _fan(self, fan: Any) -> np.ndarray:

@@ -126,5 +126,4 @@ def surface_of(look: Optional[Look], opacity: float) -> Surface:
     return Surface(diffuse, specular, look.emissive or _DULL, look.texture or None,
                    look.pattern, (1.0 / (look.scale[0] or 1.0), 1.0 / (look.scale[1] or 1.0)),
                    (1.0 - look.transparency) * opacity, look.lit,
-                   alpha_test=look.alpha_test, blended=look.blended,
-                   double_sided=look.double_sided)
+                   alpha_test=look.alpha_test, blended=look.blended, double_sided=look.double_sided)

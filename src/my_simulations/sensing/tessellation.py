@@ -61,8 +61,7 @@ def triangles_of(shape: Geometry, round_sides: int = 0) -> Optional[Triangles]:
     if isinstance(shape, Ellipsoid):
         return ellipsoid(shape.radii, round_sides or sides(max(shape.radii)))
     if isinstance(shape, Cylinder):
-        return tapered(shape.radius, shape.radius, shape.length,
-                       round_sides or sides(shape.radius))
+        return tapered(shape.radius, shape.radius, shape.length, round_sides or sides(shape.radius))
     if isinstance(shape, Cone):
         return tapered(shape.radius, 0.0, shape.length, round_sides or sides(shape.radius))
     if isinstance(shape, Capsule):

@@ -55,8 +55,7 @@ class InterModelJoints:
         """The same joints after a model was renamed; those of the names `kept` keep theirs."""
         return self._of([replace(one, joint=replace(
             one.joint, name=one.joint.name if one.joint.name in kept
-            else _rescoped(one.joint.name, old, new),
-            parent=_rescoped(one.joint.parent, old, new),
+            else _rescoped(one.joint.name, old, new), parent=_rescoped(one.joint.parent, old, new),
             child=_rescoped(one.joint.child, old, new))) for one in self._all])
 
     def present(self, registry: Registry) -> "InterModelJoints":

@@ -158,8 +158,7 @@ class Registry:
         places = {name: place for place, name in enumerate(self._entities)}
         for link in moved.link_names:
             self._plain_links[link] = dict(sorted(
-                self._plain_links[link].items(),
-                key=lambda pair: places[pair[1][0].model.name]))
+                self._plain_links[link].items(), key=lambda pair: places[pair[1][0].model.name]))
 
     def replace_all(self, entities: Iterable[Entity]) -> None:
         for name in self.names():

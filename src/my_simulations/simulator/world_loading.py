@@ -22,8 +22,7 @@ def _silent(_title: str, _text: str, _done: int, _of: int) -> None:
 
 def start_world(name: str, resolver: Resolver, engines: Callable[[], Engine], log: Log, *,
                 seed: int = 0, profile: str = "", steps: int = FOREVER, caller: str = "",
-                read: Callable[[], None] = lambda: None,
-                progress: Progress = _silent) -> Simulator:
+                read: Callable[[], None] = lambda: None, progress: Progress = _silent) -> Simulator:
     """Read a world and start its simulator, paused.
 
     Args:

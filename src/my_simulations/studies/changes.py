@@ -121,8 +121,7 @@ def _links(model: Model, before: str = "") -> List[Tuple[str, Link]]:
 
 def _changed(model: Model, link: str, change: Callable[[Link], Link], before: str = "") -> Model:
     return replace(
-        model,
-        links=[change(found) if link in ("", before + found.name) else found
+        model, links=[change(found) if link in ("", before + found.name) else found
                for found in model.links],
         models=[_changed(inner, link, change, f"{before}{inner.name}::")
                 for inner in model.models])

@@ -111,8 +111,7 @@ def _on_slurm(options: argparse.Namespace, folder: StudyFolder, plan: CasePlan) 
         raise CommandError(f"--shards must be at least 1, is {options.shards}")
     folder.check_shards(shards)
     path = slurm.write_script(folder.path, slurm.job_script(
-        plan.study.name, plan.study.file, folder.path, shards, _slots(options, 1),
-        options.sbatch))
+        plan.study.name, plan.study.file, folder.path, shards, _slots(options, 1), options.sbatch))
     told = slurm.submit(path) if slurm.can_submit() else ""
     if options.json:
         _print(json.dumps({"script": path, "shards": shards, "submitted": bool(told)}))

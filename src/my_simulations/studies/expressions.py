@@ -378,8 +378,7 @@ class _Parser:
 def _combined(function: Callable[..., Value], nodes: List[_Node], condition: bool) -> _Node:
     values = [node.value for node in nodes]
     return _Node(lambda samples: function(*[value(samples) for value in values]),
-                 any(node.series for node in nodes), condition,
-                 any(node.inner for node in nodes),
+                 any(node.series for node in nodes), condition, any(node.inner for node in nodes),
                  frozenset().union(*(node.signals for node in nodes)))
 
 

@@ -76,7 +76,6 @@ def test_each_limit_is_reported_with_both_numbers(name):
 
 def test_large_useful_models_are_within_the_limits():
     assert not list(budget_faults(Cost(links=300, shapes=1000, triangles=500_000, pairs=44_850,
-                                  colliding_pairs=44_850),
-                                  Model("robot")))
+                                  colliding_pairs=44_850), Model("robot")))
     assert not world_excess(Cost(links=10_000, shapes=40_000, triangles=2_000_000, pairs=500_000,
                                  colliding_pairs=50_000))

@@ -198,8 +198,7 @@ def test_what_the_launch_file_spawned_is_saved_when_asked_for_and_then_by_every_
         assert found["chosen"] == {"state": False, "launched": False}
         reply = await browser.ask("save", path="w.world")
         assert reply["left_out"] == ["robo"] and saved() == (["a"], False)
-        reply = await browser.ask("save", path="w.world", overwrite=True, launched=True,
-                                  state=True)
+        reply = await browser.ask("save", path="w.world", overwrite=True, launched=True, state=True)
         assert reply["left_out"] == [] and saved() == (["a", "robo"], True)
         assert (await browser.ask("folders"))["chosen"] == {"state": True, "launched": True}
         await browser.ask("save")

@@ -172,8 +172,7 @@ def test_under_another_name_a_model_takes_its_own_meshes(case, home):
 
     async def drop(browser):
         for name, radius in (("crate", 0.1), ("copy", 0.3)):
-            await browser.ask("import_model", name=name,
-                              files=sent(crate__model_dot_sdf=sdf,
+            await browser.ask("import_model", name=name, files=sent(crate__model_dot_sdf=sdf,
                                          crate__meshes__a_dot_stl=ball(radius)))
         await browser.edit("insert", uri="model://copy", pose=[1, 2, 0.1, 0, 0, 0, 1])
 

@@ -18,8 +18,7 @@ from my_simulations.simulator.simulator import Simulator
 def flight():
     """A box that flies with 1 m/s along x from the origin, at sim time 0; twists are unused."""
     simulator = Simulator(World(models=[box("a")], gravity=(0.0, 0.0, 0.0)), paused=True,
-                          engine_factory=InlineEngine,
-                          log=lambda issue: None)
+                          engine_factory=InlineEngine, log=lambda issue: None)
     simulator.start()
     simulator.states.set_model_state("a", Pose(), Twist((1.0, 0.0, 0.0)))
     yield simulator

@@ -33,8 +33,7 @@ def kind(name, more=""):
 
 
 def test_clones_are_numbered_and_upright():
-    world, issues = world_of(population("<model_count>3</model_count>" + BOX,
-                                        pose="1 2 3 0 0 1"))
+    world, issues = world_of(population("<model_count>3</model_count>" + BOX, pose="1 2 3 0 0 1"))
     assert [model.name for model in world.models] == ["can_clone_0", "can_clone_1", "can_clone_2"]
     assert all(model.pose.orientation == (0, 0, 0, 1) for model in world.models) and issues == []
 

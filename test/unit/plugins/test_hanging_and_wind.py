@@ -334,8 +334,7 @@ def test_a_controller_of_no_type_is_told():
 
 def test_the_force_on_a_foot_is_that_of_its_contacts_in_its_own_axes():
     context = FakeContext("<plugin/>", model="dog", links=["calf"],
-                          sensor=Sensor("foot", "contact", update_rate=100.0),
-                          sensor_link="calf")
+                          sensor=Sensor("foot", "contact", update_rate=100.0), sensor_link="calf")
     context.links["calf"].pose = Pose(orientation=quat_from_rpy(math.pi / 2.0, 0.0, 0.0))
     FootContact(context).load()
     context.touching = [("dog::calf", "ground::link",

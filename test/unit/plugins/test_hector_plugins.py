@@ -48,8 +48,7 @@ def test_a_fix_lies_where_an_independent_ellipsoid_says():
     there = (x - math.sin(lon) * east - math.sin(lat) * math.cos(lon) * north
              + math.cos(lat) * math.cos(lon) * up,
              y + math.cos(lon) * east - math.sin(lat) * math.sin(lon) * north
-             + math.cos(lat) * math.sin(lon) * up,
-             z + math.cos(lat) * north + math.sin(lat) * up)
+             + math.cos(lat) * math.sin(lon) * up, z + math.cos(lat) * north + math.sin(lat) * up)
     expected = gps.geodetic(*there)
     assert math.radians(fix.latitude) == pytest.approx(expected[0], abs=0.002 / 6.4e6)
     assert math.radians(fix.longitude) == pytest.approx(expected[1], abs=0.002 / 6.4e6)

@@ -95,8 +95,7 @@ def test_an_organized_cloud_has_nan_and_the_ring_where_a_point_is_left_out():
     points = velodyne_points(cloud)
     assert (cloud.height, cloud.width, cloud.row_step, cloud.is_dense) == (3, 2, 44, False)
     assert points["ring"].tolist() == [0, 1] * 3
-    assert away(points) == pytest.approx([1.0, 2.0, math.nan, 3.0, math.nan, math.nan],
-                                         nan_ok=True)
+    assert away(points) == pytest.approx([1.0, 2.0, math.nan, 3.0, math.nan, math.nan], nan_ok=True)
     assert np.isnan(points["intensity"]).tolist() == [False, False, True, False, True, True]
 
 

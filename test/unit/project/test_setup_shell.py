@@ -498,8 +498,7 @@ def test_loopback_address_goes_once_the_name_resolves(clone, tmp_path):
     home = tmp_path / "home"
     fake(home, "getent", "exit 0")
     (home / "loopback").touch()
-    done = shell(clone, "OWN=$HOME; use_loopback\necho \"[${ROS_IP:-}]\"", home,
-                 ROS_IP="127.0.0.1")
+    done = shell(clone, "OWN=$HOME; use_loopback\necho \"[${ROS_IP:-}]\"", home, ROS_IP="127.0.0.1")
     assert done.stdout.splitlines() == ["[]"]
     assert not (home / "loopback").exists()
 

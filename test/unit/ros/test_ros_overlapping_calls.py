@@ -35,8 +35,7 @@ def model(name):
 @pytest.fixture
 def sim():
     made = Simulator(World(models=[model("a"), model("other")], lights=[Light("sun")]),
-                     paused=True, log=lambda issue: None,
-                     engine_factory=InlineEngine)
+                     paused=True, log=lambda issue: None, engine_factory=InlineEngine)
     made.start()
     yield made
     made.close()

@@ -35,8 +35,7 @@ def services():
                           paused=True, log=reported.append)
     simulator.start()
     made = ModelServices(simulator, Resolver(), issues.append, launcher=41)
-    yield SimpleNamespace(spawn=made, simulator=simulator, issues=issues,
-                          reported=reported)
+    yield SimpleNamespace(spawn=made, simulator=simulator, issues=issues, reported=reported)
     simulator.close()
 
 

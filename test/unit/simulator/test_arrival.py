@@ -30,8 +30,7 @@ GROUND = Model("ground", static=True, links=[Link("l", collisions=[Collision("c"
 @pytest.fixture
 def sim():
     made = Simulator(World(models=[GROUND, cube("deep", 0.2), cube("high", 5.0)]), paused=True,
-                     engine_factory=InlineEngine,
-                     log=lambda issue: pytest.fail(str(issue)))
+                     engine_factory=InlineEngine, log=lambda issue: pytest.fail(str(issue)))
     made.start()
     yield made
     made.close()
@@ -118,8 +117,7 @@ def test_advice_says_file_and_line_of_a_model_that_is_spawned_by_another_name(
     document = parse_document(text, Resolver(), "odd.file")
     entity, _ = document.read_entity()
     sim.models.spawn(replace(entity, name="new"), Pose((0, 0, 4.5)))
-    found = {one.code: one for one in arrival_advice(sim, "new", {},
-                                                     document.written(entity.name))}
+    found = {one.code: one for one in arrival_advice(sim, "new", {}, document.written(entity.name))}
     assert sorted(found) == ["inertia-odd", "starts-inside"]
     for code, where in (("inertia-odd", link), ("starts-inside", collision)):
         assert (found[code].file, found[code].line, found[code].xpath) == ("odd.file", *where)

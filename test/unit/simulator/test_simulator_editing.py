@@ -192,8 +192,7 @@ def test_changed_surroundings_are_saved_and_read_again(case, tmp_path):
     assert found.wind == Wind((1, 2, 3))
     assert found.atmosphere == Atmosphere(temperature=300.0)
     assert found.magnetic_field == (1e-5, 2e-5, 3e-5)
-    assert found.spherical_coordinates == SphericalCoordinates(latitude_deg=48.5,
-                                                               heading_deg=10.0)
+    assert found.spherical_coordinates == SphericalCoordinates(latitude_deg=48.5, heading_deg=10.0)
 
 
 def test_what_the_tables_do_not_know_of_a_scene_is_kept(case, tmp_path):

@@ -9,8 +9,7 @@ def two_rooms():
     walls = [Wall(0, (0.0, 0.0), (6.0, 0.0)), Wall(1, (6.0, 0.0), (6.0, 4.0)),
              Wall(2, (6.0, 4.0), (0.0, 4.0)), Wall(3, (0.0, 4.0), (0.0, 0.0)),
              Wall(4, (3.0, 0.0), (3.0, 4.0), color="#c2a9a0")]
-    ground = Level("Level 1", walls=walls,
-                   windows=[Opening(0, 0.8, 0.8, 0.5, wall=0, along=1.5)],
+    ground = Level("Level 1", walls=walls, windows=[Opening(0, 0.8, 0.8, 0.5, wall=0, along=1.5)],
                    doors=[Opening(0, 0.9, 2.0, wall=4, along=2.0)],
                    stairs=[Stairs(0, (4.5, 2.0), width=1.0, depth=3.0)])
     upper = Level("Level 2", walls=[Wall(n + 5, wall.start, wall.end)

@@ -55,8 +55,7 @@ def inertial_of(collisions: List[Collision], *, density: Optional[float] = None,
 def with_density(i: Inertial, factor: float) -> Inertial:
     """The inertial of the same solid at another density, of 1 kg/m^3 before."""
     return replace(i, mass=i.mass * factor, ixx=i.ixx * factor, iyy=i.iyy * factor,
-                   izz=i.izz * factor, ixy=i.ixy * factor, ixz=i.ixz * factor,
-                   iyz=i.iyz * factor)
+                   izz=i.izz * factor, ixy=i.ixy * factor, ixz=i.ixz * factor, iyz=i.iyz * factor)
 
 
 def _solid(geometry: Geometry) -> Optional[Inertial]:
@@ -91,8 +90,7 @@ def _capsule(r: float, h: float) -> Inertial:
     tube, balls = math.pi * r * r * h, 4 / 3 * math.pi * r ** 3
     side = tube * (3 * r * r + h * h) / 12 + balls * (
         2 / 5 * r * r + h * h / 4 + 3 / 8 * h * r)
-    return Inertial(tube + balls, ixx=side, iyy=side,
-                    izz=tube * r * r / 2 + balls * 2 / 5 * r * r)
+    return Inertial(tube + balls, ixx=side, iyy=side, izz=tube * r * r / 2 + balls * 2 / 5 * r * r)
 
 
 def _cone(r: float, h: float) -> Inertial:

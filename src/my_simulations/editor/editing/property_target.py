@@ -116,8 +116,7 @@ def _edited(old: Model, new: Model) -> Operation:
     return EditModel(old.name, new, meshes)
 
 
-def _links_with(owner: Model, rest: str, path: str, value: Any,
-                resolver: Resolver) -> List[Link]:
+def _links_with(owner: Model, rest: str, path: str, value: Any, resolver: Resolver) -> List[Link]:
     """The model's links, one of them with the property changed in it or in a part of it."""
     for n, link in enumerate(owner.links):
         if link.name == rest:
@@ -133,8 +132,7 @@ def _links_with(owner: Model, rest: str, path: str, value: Any,
     raise CommandError(f"model {owner.name!r} has no link, joint, collision or visual {rest!r}")
 
 
-def _with_part(link: Link, name: str, path: str, value: Any,
-               resolver: Resolver) -> Optional[Link]:
+def _with_part(link: Link, name: str, path: str, value: Any, resolver: Resolver) -> Optional[Link]:
     exact = _PART.match(name)
     kind, name = (exact.group(1), exact.group(2)) if exact else ("", name)
     for n, collision in enumerate(link.collisions):

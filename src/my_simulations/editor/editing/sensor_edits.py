@@ -28,8 +28,7 @@ def sensor_xml(holder: Union[Link, Joint]) -> List[str]:
     return [xml for xml in holder.extra if xml.startswith("<sensor")]
 
 
-def with_sensor_value(model: Model, rest: str, path: str, value: Any,
-                      resolver: Resolver) -> Model:
+def with_sensor_value(model: Model, rest: str, path: str, value: Any, resolver: Resolver) -> Model:
     """Return the model with another value of a parameter of a sensor.
 
     Args:

@@ -54,8 +54,7 @@ def _text(model: Model, name: str, height: float) -> bytes:
     return write_entity(whole)
 
 
-def _readable(files: Dict[str, bytes], name: str, target: str,
-              resolver: Resolver) -> List[Issue]:
+def _readable(files: Dict[str, bytes], name: str, target: str, resolver: Resolver) -> List[Issue]:
     """What the simulator says of the folder. Raises InputError."""
     with tempfile.TemporaryDirectory(prefix="my_simulations-") as scratch:
         folder = os.path.join(scratch, name)

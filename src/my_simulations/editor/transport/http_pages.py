@@ -54,8 +54,7 @@ class Pages(PageFiles):
         ]
 
     async def _resource(self, request: web.Request) -> web.StreamResponse:
-        path = self._documents.served.path(request.match_info["root"],
-                                           request.match_info["inside"])
+        path = self._documents.served.path(request.match_info["root"], request.match_info["inside"])
         return file_response(path)
 
     async def _solid(self, request: web.Request) -> web.StreamResponse:
@@ -109,8 +108,7 @@ class Pages(PageFiles):
             raise web.HTTPNotFound
         loop = asyncio.get_running_loop()
         try:
-            data, name = await loop.run_in_executor(None, self._export,
-                                                    request.match_info["name"])
+            data, name = await loop.run_in_executor(None, self._export, request.match_info["name"])
         except CommandError as fault:
             raise web.HTTPNotFound(text=f"{fault}\n") from None
         return web.Response(body=data, content_type=BYTES, headers={

@@ -36,8 +36,7 @@ def solid_mesh(solid: Solid) -> MeshData:
                      solid.path) from None
     if isinstance(solid, Heightmap):
         return _terrain(solid.path, changed, solid.size, solid.position, solid.sampling)
-    return _plan(solid.path, changed, solid.scale, solid.threshold, solid.height,
-                 solid.granularity)
+    return _plan(solid.path, changed, solid.scale, solid.threshold, solid.height, solid.granularity)
 
 
 def _fault(code: str, message: str, path: str = "", hint: str = "") -> InputError:

@@ -130,8 +130,7 @@ class _Filler:
         self._found = found
 
     def fill(self, target: Any, element: Any, children: Mapping[str, Entry],
-             attributes: Mapping[str, Value], more: Tuple[str, ...],
-             wrap: Tuple[str, ...]) -> None:
+             attributes: Mapping[str, Value], more: Tuple[str, ...], wrap: Tuple[str, ...]) -> None:
         self._attributes(target, element, attributes, more)
         seen: Set[str] = set()
         for child in element:

@@ -243,8 +243,7 @@ def _recover(text: str, fault: Any, file: str, log: IssueCollector) -> Any:
     try:
         root = etree.fromstring(plain.lstrip(b" \t\r"), parser)
     except etree.XMLSyntaxError:
-        raise _fault("xml-malformed", f"not well formed: {fault.msg}", file, line,
-                     column) from None
+        raise _fault("xml-malformed", f"not well formed: {fault.msg}", file, line, column) from None
     faults = [
         entry for entry in parser.error_log
         if entry.domain_name != "NAMESPACE" and entry.level_name != "WARNING"

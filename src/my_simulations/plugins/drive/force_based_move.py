@@ -61,8 +61,7 @@ class ForceBasedMove(Plugin):
         self._push()
         hertz = p.number("odometryRate", 20.0)
         if hertz > 0.0:
-            context.observe(hertz, self.publish, self._odometer.topics,
-                            transforms=self._broadcasts)
+            context.observe(hertz, self.publish, self._odometer.topics, transforms=self._broadcasts)
 
     def reset(self) -> None:
         self._command.stop()

@@ -147,8 +147,7 @@ class MultiCamera(Plugin):
             baseline = p.number("hackBaseline", 0.0) if side == "right" else 0.0
             self._streams.append(PictureStream(
                 context, sensor, context.sensor_link, block,
-                topics_of(context, f"/{side or block.name}"), baseline,
-                p.flag("borderCrop", True)))
+                topics_of(context, f"/{side or block.name}"), baseline, p.flag("borderCrop", True)))
         ImagerRate(context, [stream.topics.base for stream in self._streams], self.update,
                    lambda: any(stream.wanted for stream in self._streams),
                    [one for stream in self._streams for one in stream.publications])

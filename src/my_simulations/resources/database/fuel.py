@@ -159,8 +159,7 @@ class FuelModels:
 class _Downloads:
     """Downloads models; its modules are imported with the first download."""
 
-    def __init__(self, cache: str, progress: Optional[Progress],
-                 seconds: Optional[float]) -> None:
+    def __init__(self, cache: str, progress: Optional[Progress], seconds: Optional[float]) -> None:
         from .download_time import WORLD_SECONDS, DownloadTime
 
         self._cache = cache

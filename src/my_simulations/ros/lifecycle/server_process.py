@@ -192,8 +192,7 @@ class Server:
             if loader.fault is not None:
                 return self._refuse(loader.fault)
             node = self._start_node(loader, launcher)
-            abandonment = Abandonment(self._master, self._name, self._launch,
-                                      node.master_timeout())
+            abandonment = Abandonment(self._master, self._name, self._launch, node.master_timeout())
             while not self._ended.wait(UPKEEP_SECONDS):
                 node.refresh()
                 reason = abandonment.reason()

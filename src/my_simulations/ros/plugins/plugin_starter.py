@@ -34,7 +34,6 @@ class PluginStarter(HostStarter):
             from .ros_graph import RosGraph
 
             return PluginHost(simulator, RosGraph(),
-                              PluginRegistry(classes, PackageIndex().folders), log,
-                              isolate=True)
+                              PluginRegistry(classes, PackageIndex().folders), log, isolate=True)
 
         super().__init__(simulator, make)

@@ -82,6 +82,5 @@ def _pose(message: Any, light: Light) -> Pose:
     pose = pose_from_message(message)
     q = message.orientation
     if q.x == q.y == q.z == q.w == 0.0:
-        return light.pose if not any(pose.position) else Pose(pose.position,
-                                                              light.pose.orientation)
+        return light.pose if not any(pose.position) else Pose(pose.position, light.pose.orientation)
     return pose

@@ -39,8 +39,7 @@ class FigureShape:
         self._path = ActorPath(figure.actor, {name: length or 0.0
                                               for name, length in lengths.items()})
 
-    def _pieces(self, figure: Figure, trouble: Callable[[str], None],
-                viewers: str) -> List[Piece]:
+    def _pieces(self, figure: Figure, trouble: Callable[[str], None], viewers: str) -> List[Piece]:
         try:
             load_mesh(figure.skin)   # within limits, and it tells faults of the file
         except InputError as fault:

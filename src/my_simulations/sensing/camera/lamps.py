@@ -98,8 +98,7 @@ def _direction(light: Light) -> np.ndarray:
     return unit
 
 
-def shadow_view(light: Light, low: np.ndarray, high: np.ndarray, eye: np.ndarray,
-                ) -> ShadowView:
+def shadow_view(light: Light, low: np.ndarray, high: np.ndarray, eye: np.ndarray, ) -> ShadowView:
     """Where a light's map is drawn from.
 
     It depends on the casters' bounds (`low`, `high`) and, where these are wide, on which part of
