@@ -314,6 +314,19 @@ RANDOM = Randomisation(friction=(0.5, 1.5), mass=(0.5, 2.0), gravity=(0.9, 1.1),
                        colour=0.3, sensor_noise=(2.0, 8.0))
 
 
+@pytest.mark.parametrize(("wrong", "told"), [
+    ({"friction": (2.0, 1.0)}, "the least value of friction comes first"),
+    ({"mass": 1.0}, r"mass is a range \(least, greatest\), not 1.0"),
+    ({"light": (-1.0, 1.0)}, "light must not be negative"),
+    ({"sensor_noise": ("low", 1.0)}, "sensor_noise must be a finite number, is 'low'"),
+    ({"colour": 2.0}, "colour must be between 0 and 1"),
+    ({"textures": "wood.png"}, "textures is a list of names"),
+])
+def test_a_randomisation_that_is_not_possible_is_refused(wrong, told):
+    with pytest.raises(CommandError, match=told):
+        Randomisation(**wrong)
+
+
 def _drawn(world):
     box, robot = world.description("box"), world.description("robo")
     laser, = (sensor for link in robot.links for sensor in link.sensors if sensor.ray)

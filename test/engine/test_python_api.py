@@ -111,7 +111,7 @@ def test_a_duration_may_be_infinite_but_not_nan(world, longest):
     world.apply_wrench("ball::link", force=[2, 0, 0], duration=longest)
     world.step(100)
     assert world.states().twist["ball"][0] == pytest.approx(0.1, rel=1e-6)
-    with pytest.raises(CommandError, match="NaN"):
+    with pytest.raises(CommandError, match="a duration must be a finite number, is nan"):
         world.apply_wrench("ball::link", force=[2, 0, 0], duration=math.nan)
 
 
@@ -191,6 +191,35 @@ def test_values_that_are_no_numbers_are_refused(values):
     for read in (pose_of, twist_of, lambda given: vector_of(given, "a force")):
         with pytest.raises(CommandError, match="is a sequence of numbers, not"):
             read(values)
+
+
+@pytest.mark.parametrize(("call", "told"), [
+    (lambda world: world.robot("pendulum").move([0.1]), "dictionary of numbers by name, not"),
+    (lambda world: world.robot("pendulum").set_positions({"pin": "up"}),
+     r"positions\['pin'\] must be a finite number, is 'up'"),
+    (lambda world: world.robot("pendulum").drive({"pin": None}), "must be a finite number"),
+    (lambda world: world.robot("pendulum").drive({"pin": 1.0}, effort=-1.0),
+     "effort must not be negative, is -1.0"),
+    (lambda world: world.robot("pendulum").jacobian("rod", [0, 0, math.nan]), "contains NaN"),
+    (lambda world: world.apply_effort("pin", 1.0, duration="long"), "must be a finite number"),
+    (lambda world: world.move_joint("pin", 0.1, 5.0, rate=-1.0), "rate must not be negative"),
+    (lambda world: world.restore(3), "what save has returned, not 3"),
+    (lambda world: world.reset(seed="a"), "seed must be a whole number, is 'a'"),
+    (lambda world: world.render([0, 0, 1], outputs="rgb"), r"a list such as \['rgb'\], not 'rgb'"),
+    (lambda world: world.cast_rays("up", [0, 0, 1]), "arrays of numbers"),
+    (lambda world: my_simulations.open_world(objects="MY_OBJECT"), "a list of names, not"),
+    (lambda world: my_simulations.open_world(parameters=[1]), "a dictionary or a YAML file, not"),
+])
+def test_wrong_arguments_are_named(world, call, told):
+    world.spawn(PENDULUM)
+    with pytest.raises(CommandError, match=told):
+        call(world)
+
+
+def test_an_unknown_row_names_those_that_there_are(world):
+    with pytest.raises(KeyError, match="no row 'boll'; rows are ground_plane"):
+        world.states().pose["boll"]
+    assert "boll" not in world.states().pose
 
 
 def test_files_may_be_named_by_paths(tmp_path):

@@ -37,6 +37,8 @@ def read_parameters(source: Parameters) -> Mapping[str, Any]:
         return source
     import yaml
 
+    if not isinstance(source, (str, os.PathLike)):
+        raise CommandError(f"parameters are a dictionary or a YAML file, not {source!r}")
     path = os.fspath(source)
     try:
         with open(path, encoding="utf-8") as stream:

@@ -78,9 +78,12 @@ def open_world(world: FilePath = "worlds/empty.world", *, seed: int = 0, profile
 
     Raises:
         InputError: the world, or one of the objects, cannot be used.
-        CommandError: the engine cannot be started.
+        CommandError: an argument cannot be used, or the engine cannot be started.
     """
-    choice = WorldChoice(os.fspath(world), seed, profile, tuple(objects), os.fspath(object_list))
+    if isinstance(objects, str):
+        raise CommandError(f"objects are a list of names, not {objects!r}")
+    choice = WorldChoice(os.fspath(world), whole_number(seed, "seed"), profile, tuple(objects),
+                         os.fspath(object_list))
     classes = {} if isinstance(plugins, bool) else dict(plugins)
     robots = RobotOptions(plugins is not False, sensors, classes, read_parameters(parameters),
                           isolate)
@@ -175,7 +178,7 @@ class OpenWorld(WorldChanges):
 
         What follows repeats bit for bit what followed `open_world` with the same seed.
         """
-        again = self._choice.seed if seed is None else seed
+        again = self._choice.seed if seed is None else whole_number(seed, "seed")
         unchanged = self.simulator.models.revision == self._furnished and self._lost is None
         if again == self._choice.seed and unchanged:
             self._robots.end()
@@ -350,6 +353,8 @@ class OpenWorld(WorldChanges):
 
         Models that were spawned since are removed, and removed ones come back. Raises CommandError.
         """
+        if not isinstance(saved, SavedState):
+            raise CommandError(f"restore takes what save has returned, not {saved!r}")
         self._running_simulator().exact_states.restore(saved.state)
 
     def save_world(self, path: FilePath, *, overwrite: bool = False, state: bool = False) -> str:

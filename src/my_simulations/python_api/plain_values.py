@@ -2,7 +2,7 @@
 from __future__ import annotations
 
 import math
-from typing import List, Optional, Sequence
+from typing import Any, Dict, List, Mapping, Optional, Sequence
 
 from ..errors import CommandError
 from ..geometry import Pose, Twist, Vec3, normalised, pose_from_xyzrpy
@@ -44,10 +44,41 @@ def twist_of(values: Sequence[float]) -> Twist:
     return Twist(vector_of(numbers[:3], "linear"), vector_of(numbers[3:], "angular"))
 
 
+def number_of(value: Any, what: str) -> float:
+    """A finite number; `what` names it. Raises CommandError."""
+    try:
+        if not isinstance(value, str):
+            number = float(value)
+            if math.isfinite(number):
+                return number
+    except (TypeError, ValueError):
+        pass
+    raise CommandError(f"{what} must be a finite number, is {value!r}")
+
+
+def limit_of(value: Any, what: str) -> Optional[float]:
+    """A number that is not negative, or None; `what` names it. Raises CommandError."""
+    if value is None or value == math.inf:
+        return value
+    if number_of(value, what) < 0.0:
+        raise CommandError(f"{what} must not be negative, is {value!r}")
+    return float(value)
+
+
+def numbers_by_name(values: Any, what: str) -> Dict[str, float]:
+    """Finite numbers by name; `what` names them. Raises CommandError."""
+    if not isinstance(values, Mapping):
+        raise CommandError(f"{what} are a dictionary of numbers by name, not {values!r}")
+    return {name: number_of(value, f"{what}[{name!r}]") for name, value in values.items()}
+
+
 def _numbers(values: Sequence[float], what: str) -> List[float]:
     try:
         if not isinstance(values, str):  # whose digits would count
-            return [float(value) for value in values]
+            found = [float(value) for value in values]
+            if not all(map(math.isfinite, found)):
+                raise CommandError(f"{what} contains NaN or infinity")
+            return found
     except (TypeError, ValueError):
         pass
     raise CommandError(f"{what} is a sequence of numbers, not {values!r}")
@@ -56,12 +87,11 @@ def _numbers(values: Sequence[float], what: str) -> List[float]:
 def nanoseconds_of(duration: Optional[float]) -> int:
     """A duration in s as nanoseconds; -1, for ever, for None and what 64 bits cannot hold.
 
-    Raises CommandError: it is no number.
+    Raises CommandError: it is not a number.
     """
-    if duration is None:
+    if duration is None or duration == math.inf:
         return -1
-    if math.isnan(duration):
-        raise CommandError("a duration must be a number of seconds, not NaN")
+    duration = number_of(duration, "a duration")
     if duration >= _LONGEST:
         return -1
     return max(0, round(max(0.0, duration) * 1e9))

@@ -12,6 +12,8 @@ from ..description.model import Inertial, Link, Model
 from ..description.sensor import Noise
 from ..description.shapes import Collision, Color, Material, Visual
 from ..description.world import World
+from ..errors import CommandError
+from .plain_values import limit_of, number_of
 from .world_choice import WorldChoice
 
 Range = Tuple[float, float]
@@ -25,7 +27,8 @@ _WHITE = (1.0, 1.0, 1.0, 1.0)   # with it, a texture has its own colours
 class Randomisation:
     """What differs from one episode to the next. The defaults leave everything as in the files.
 
-    Each model has one factor of friction, mass and noise for all its links.
+    Each model has one factor of friction, mass and noise for all its links. Raises CommandError for
+    a range or an amount that is not possible.
 
     Attributes:
         friction: factor of the coefficients of friction.
@@ -46,6 +49,15 @@ class Randomisation:
     textures: Tuple[str, ...] = ()
     sensor_noise: Range = _SAME
     models: Tuple[str, ...] = ()
+
+    def __post_init__(self) -> None:
+        for name in ("friction", "mass", "gravity", "light", "sensor_noise"):
+            _check_range(name, getattr(self, name))
+        if not 0.0 <= number_of(self.colour, "colour") <= 1.0:
+            raise CommandError(f"colour must be between 0 and 1, is {self.colour!r}")
+        for name in ("textures", "models"):
+            if isinstance(getattr(self, name), str):
+                raise CommandError(f"{name} is a list of names, not {getattr(self, name)!r}")
 
     def apply(self, choice: WorldChoice, random: np.random.Generator) -> WorldChoice:
         """Return a choice whose world and models are drawn; equal generators draw the same."""
@@ -114,6 +126,17 @@ class _Factors:
     friction: float
     mass: float
     noise: float
+
+
+def _check_range(name: str, values: Range) -> None:
+    try:
+        least, greatest = values
+    except (TypeError, ValueError):
+        raise CommandError(f"{name} is a range (least, greatest), not {values!r}") from None
+    if number_of(least, name) > number_of(greatest, name):
+        raise CommandError(f"the least value of {name} comes first: {values!r}")
+    if name != "gravity":
+        limit_of(least, name)
 
 
 def _heavier(old: Inertial, factor: float) -> Inertial:

@@ -34,8 +34,11 @@ def cast_rays(simulator: Simulator, scene: SceneSensing, origins: Any, direction
     """Cast rays into the world as it is now; see `OpenWorld.cast_rays`. Raises CommandError."""
     import numpy as np
 
-    starts = np.atleast_2d(np.asarray(origins, float))
-    ways = np.atleast_2d(np.asarray(directions, float))
+    try:
+        starts = np.atleast_2d(np.asarray(origins, float))
+        ways = np.atleast_2d(np.asarray(directions, float))
+    except (TypeError, ValueError) as fault:
+        raise CommandError(f"origins and directions are arrays of numbers: {fault}") from fault
     if starts.shape[1:] != (3,) or ways.shape[1:] != (3,) or not (
             len(starts) == len(ways) or 1 in (len(starts), len(ways))):
         raise CommandError("origins and directions must have the shape (n, 3), or (3,)")

@@ -29,7 +29,10 @@ class NamedRows(Mapping[str, np.ndarray]):
         self._rows: Dict[str, int] = {name: row for row, name in enumerate(self.names)}
 
     def __getitem__(self, name: str) -> np.ndarray:
-        return self.array[self._rows[name]]
+        row = self._rows.get(name)
+        if row is None:
+            raise KeyError(f"there is no row {name!r}; rows are {', '.join(self.names) or 'none'}")
+        return self.array[row]
 
     def __iter__(self) -> Iterator[str]:
         return iter(self.names)

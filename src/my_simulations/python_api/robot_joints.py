@@ -10,7 +10,7 @@ from ..geometry import IDENTITY, ZERO3, Pose, compose, inverse
 from ..simulator.simulator import Simulator
 from .joint_limits import JointLimits, drive_within_limits, limits_of, move_within_limits
 from .kinematics import Chain, InverseKinematics, Target
-from .plain_values import nanoseconds_of, pose_of, vector_of
+from .plain_values import limit_of, nanoseconds_of, numbers_by_name, pose_of, vector_of
 from .readings import JointReadings, NamedRows, joint_readings, link_readings
 
 
@@ -65,12 +65,12 @@ class Robot:
             positions: rad or m.
             rates: rad/s or m/s that these axes then have; 0 for those not named.
         """
+        positions, rates = self._scoped_numbers(positions, "positions"), self._scoped_numbers(
+            rates, "rates")
         unknown = sorted(set(rates) - set(positions))
         if unknown:
             raise CommandError(f"a rate needs a position of the same joint: {', '.join(unknown)}")
-        self._running_simulator().joints.set_positions(
-            {name: float(value) for name, value in self._all_scoped(positions).items()},
-            {name: float(value) for name, value in self._all_scoped(rates).items()})
+        self._running_simulator().joints.set_positions(positions, rates)
 
     def move(self, positions: Mapping[str, float], *, effort: Optional[float] = None,
              rate: Optional[float] = None) -> None:
@@ -81,7 +81,9 @@ class Robot:
             effort: most that each motor spends, N m or N; None for the limit of the robot's file.
             rate: fastest that each axis moves, rad/s or m/s; None for the limit of the file.
         """
-        move_within_limits(self._running_simulator(), self._all_scoped(positions), effort, rate)
+        move_within_limits(
+            self._running_simulator(), self._scoped_numbers(positions, "positions"),
+            limit_of(effort, "effort"), limit_of(rate, "rate"))
 
     def drive(self, rates: Mapping[str, float], *, effort: Optional[float] = None) -> None:
         """Drive axes at rates, until another call.
@@ -90,7 +92,8 @@ class Robot:
             rates: rad/s or m/s.
             effort: most that each motor spends, N m or N; None for the limit of the robot's file.
         """
-        drive_within_limits(self._running_simulator(), self._all_scoped(rates), effort)
+        drive_within_limits(self._running_simulator(), self._scoped_numbers(rates, "rates"),
+                            limit_of(effort, "effort"))
 
     def apply_efforts(self, efforts: Mapping[str, float], *, duration: Optional[float] = None
                       ) -> None:
@@ -100,9 +103,9 @@ class Robot:
             efforts: N m or N.
             duration: s of sim time; None for until the world is reset.
         """
-        for name, effort in efforts.items():
-            self._running_simulator().wrenches.apply_effort(self._scoped(name), float(effort),
-                                                duration_ns=nanoseconds_of(duration))
+        for name, effort in self._scoped_numbers(efforts, "efforts").items():
+            self._running_simulator().wrenches.apply_effort(
+                name, effort, duration_ns=nanoseconds_of(duration))
 
     def release(self, joints: Iterable[str] = ()) -> None:
         """Switch off what `move` and `drive` have set, for some joints or for all."""
@@ -175,8 +178,9 @@ class Robot:
         at = [n for n, name in enumerate(rows.names) if name.startswith(begin)]
         return NamedRows([rows.names[n][len(begin):] for n in at], rows.array[at])
 
-    def _all_scoped(self, values: Mapping[str, float]) -> Dict[str, float]:
-        return {self._scoped(name): value for name, value in values.items()}
+    def _scoped_numbers(self, values: Mapping[str, float], what: str) -> Dict[str, float]:
+        return {self._scoped(name): value
+                for name, value in numbers_by_name(values, what).items()}
 
     def _scoped(self, name: str) -> str:
         return f"{self.name}::{name}"

@@ -9,8 +9,15 @@ from ..formats.reading import Text
 from ..geometry import ZERO3, Twist
 from ..simulator.simulator import Simulator
 from .furnishing import Furnisher
-from .joint_limits import move_within_limits
-from .plain_values import nanoseconds_of, pose_of, twist_of, vector_of
+from .joint_limits import drive_within_limits, move_within_limits
+from .plain_values import (
+    limit_of,
+    nanoseconds_of,
+    number_of,
+    pose_of,
+    twist_of,
+    vector_of,
+)
 from .robot_joints import Robot
 from .robots import Robots
 
@@ -95,8 +102,8 @@ class WorldChanges:
             effort: adds to others on the same axis.
             duration: s of sim time; None for until the world is reset.
         """
-        self._running_simulator().wrenches.apply_effort(joint, float(effort),
-                                             duration_ns=nanoseconds_of(duration))
+        self._running_simulator().wrenches.apply_effort(
+            joint, number_of(effort, "effort"), duration_ns=nanoseconds_of(duration))
 
     def drive_joint(self, joint: str, rate: float, effort: float) -> None:
         """Drive a joint axis at a rate by a motor of limited effort, until another call.
@@ -106,7 +113,8 @@ class WorldChanges:
             rate: rad/s or m/s.
             effort: most that the motor spends, N m or N.
         """
-        self._running_simulator().drives.drive_axes({joint: (float(rate), float(effort))})
+        drive_within_limits(self._running_simulator(), {joint: number_of(rate, "rate")},
+                            limit_of(effort, "effort"))
 
     def move_joint(self, joint: str, position: float, effort: Optional[float] = None,
                    rate: Optional[float] = None) -> None:
@@ -119,7 +127,8 @@ class WorldChanges:
             rate: fastest that it moves, rad/s or m/s; None for the limit of the file, if it has
                 one.
         """
-        move_within_limits(self._running_simulator(), {joint: position}, effort, rate)
+        move_within_limits(self._running_simulator(), {joint: number_of(position, "position")},
+                           limit_of(effort, "effort"), limit_of(rate, "rate"))
 
     def release_joint(self, joint: str) -> None:
         """Switch off what `drive_joint` or `move_joint` has set."""

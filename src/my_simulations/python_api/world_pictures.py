@@ -61,6 +61,8 @@ def checked_camera(camera: CameraSpec, outputs: Sequence[str]) -> None:
         raise CommandError(f"hfov must be between 0 and pi rad, is {camera.hfov}")
     if not 0.0 < camera.near < camera.far < math.inf:
         raise CommandError(f"0 < near < far is needed, near is {camera.near}, far {camera.far}")
+    if isinstance(outputs, str):
+        raise CommandError(f"outputs are a list such as ['rgb'], not {outputs!r}")
     unknown = [output for output in outputs if output not in _OUTPUTS]
     if unknown or not outputs:
         raise CommandError(f"outputs are {', '.join(_OUTPUTS)}; there is no"
