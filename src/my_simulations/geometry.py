@@ -64,7 +64,6 @@ def scale(a: Vec3, factor: float) -> Vec3:
 
 
 def dot(a: Vec3, b: Vec3) -> float:
-    """Scalar product."""
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 
 
@@ -78,7 +77,6 @@ def cross(a: Vec3, b: Vec3) -> Vec3:
 
 
 def norm(a: Vec3) -> float:
-    """Euclidean length."""
     return math.sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2])
 
 

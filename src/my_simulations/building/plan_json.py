@@ -191,7 +191,6 @@ def plan_from_json(tree: Any, file: str = "") -> Plan:
 
 
 def plan_to_json(plan: Plan) -> Dict[str, Any]:
-    """The JSON values of a plan, with all fields."""
     return {"format": FORMAT, **asdict(plan)}
 
 

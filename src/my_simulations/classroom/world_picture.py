@@ -53,7 +53,6 @@ class WorldPicture:
         self._poses: Dict[int, Pose] = {}
 
     def clear(self) -> None:
-        """Remove all models."""
         self._parts, self._poses = {}, {}
 
     def update_models(self, models: Mapping[str, Optional[Mapping[str, Any]]]) -> None:

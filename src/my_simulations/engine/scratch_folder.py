@@ -42,7 +42,6 @@ class Scratch:
         return self._path
 
     def close(self) -> None:
-        """Remove the folder with its content."""
         if self._path:
             shutil.rmtree(self._path, ignore_errors=True)
             os.close(self._lock)

@@ -48,7 +48,6 @@ class Pid:
         return LoopMemory(self.integral, self.error)
 
     def resume(self, memory: LoopMemory) -> None:
-        """Continue from a state."""
         self.integral, self.error = memory.integral, memory.error
 
     def reset_after_jump(self) -> None:

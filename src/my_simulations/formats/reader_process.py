@@ -101,7 +101,6 @@ class ReaderProcess:
         return child.pid if child is not None else 0
 
     def close(self) -> None:
-        """End the child."""
         with self._lock:
             self._end()
 

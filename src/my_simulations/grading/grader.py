@@ -78,7 +78,6 @@ class Grader:
                 raise
 
     def folder_of(self, student: str) -> str:
-        """The folder of a student's mark."""
         return os.path.join(self._out, STUDENTS, student)
 
     def _grade(self, submission: Submission, hidden: Sequence[str]) -> Mark:

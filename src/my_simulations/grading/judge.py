@@ -94,7 +94,6 @@ class Judge:
         self._resolver = Resolver.from_environment()
 
     def run(self) -> None:
-        """Decide all checks."""
         form = self._assignment.form
         file: Optional[WorldFile] = None
         name = matching(self._folder, form.world) if form.world else ""

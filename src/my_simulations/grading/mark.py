@@ -105,5 +105,4 @@ def without_result(checks: Sequence[Check], known: Sequence[CheckResult], reason
 
 
 def all_failed(assignment: Assignment, student: str, status: str, reason: str) -> Mark:
-    """A mark without points."""
     return Mark(student, status, without_result(assignment.checks, [], reason))

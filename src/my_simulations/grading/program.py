@@ -170,7 +170,6 @@ class Program:
                 os.kill(pid, number)
 
     def close(self) -> None:
-        """Kill the program with all its processes."""
         self._ended.set()
         self._signal(box.descendants(self.pid), signal.SIGKILL)
         with contextlib.suppress(subprocess.TimeoutExpired):

@@ -31,7 +31,6 @@ class ResultWriter:
         self._line({"result": asdict(found)})
 
     def note(self, text: str) -> None:
-        """Send a remark."""
         self._line({"note": text[:1000]})
 
     def isolation(self, text: str) -> None:

@@ -75,7 +75,6 @@ class WorldVectorEnv(VectorEnv[Any, Any, Any]):
         return tuple(self._threads.map(lambda env: env.render(), self.envs))
 
     def close_extras(self, **kwargs: Any) -> None:
-        """End all engines."""
         list(self._threads.map(lambda env: env.close(), self.envs))
         self._threads.shutdown()
 

@@ -39,7 +39,6 @@ class Goal:
         self._end(REJECTED, result, text)
 
     def succeed(self, result: Any, text: str = "") -> None:
-        """End the goal as succeeded."""
         self._end(SUCCEEDED, result, text)
 
     def abort(self, result: Any, text: str = "") -> None:
@@ -50,7 +49,6 @@ class Goal:
         self._end(PREEMPTED if self.status in (ACTIVE, PREEMPTING) else RECALLED, result, text)
 
     def feedback(self, feedback: Any) -> None:
-        """Publish the progress of the goal."""
         self._server.send_feedback(self, feedback)
 
     def _end(self, status: int, result: Any, text: str) -> None:
@@ -88,7 +86,6 @@ class ActionServer:
         self._publish_status()
 
     def result(self) -> Any:
-        """Return an empty result message."""
         return self._context.message(f"{self._kind}Result")
 
     def close(self) -> None:

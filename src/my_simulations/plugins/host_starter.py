@@ -85,7 +85,6 @@ class HostStarter:
         return self._host.topic_uses() if self._host is not None else []
 
     def states(self) -> List[PluginState]:
-        """The states of all plugins; none before the first model with a plugin."""
         return self._host.states() if self._host is not None else []
 
     def stop(self) -> None:

@@ -41,7 +41,6 @@ class MessageMaker:
         self._queue.put((topic, later, fail))
 
     def stop(self) -> None:
-        """Stop the thread after the waiting messages."""
         if self._thread is not None:
             self._queue.put(None)
             self._thread.join(_END_S)

@@ -224,7 +224,6 @@ class StepView:
         self._found, self._answers = {}, {}
 
     def show_now(self) -> None:
-        """Show the present state."""
         self._record = self._part = None
 
     @property

@@ -21,7 +21,6 @@ class Outgoing:
         self._graph, self._maker = graph, MessageMaker(sent)
 
     def stop(self) -> None:
-        """Stop after the waiting messages."""
         self._maker.stop()
 
     def send(self, plugins: Mapping[SimulatedContext, RunningPlugin], guarded: Callable[..., bool],

@@ -88,7 +88,6 @@ class Parameters:
                           PluginParameter(name, "flag", str(default).lower()))
 
     def vector(self, name: str, default: Vec3 = (0.0, 0.0, 0.0)) -> Vec3:
-        """Return three numbers."""
         return self._read(name, default, _three, "three numbers", PluginParameter(
             name, "text", _written(*default)))
 

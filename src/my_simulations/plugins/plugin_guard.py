@@ -29,7 +29,6 @@ class PluginGuard:
         self._watch = CallWatch(abandon)
 
     def stop(self) -> None:
-        """Stop watching calls."""
         self._watch.stop()
 
     def run_inside(self, turn: Callable[[], None]) -> None:

@@ -94,7 +94,6 @@ class GraphUser:
         raise NotImplementedError
 
     def warn(self, text: str) -> None:
-        """Report a warning to the user."""
         raise NotImplementedError
 
     def unsent(self) -> Deque[None]:
@@ -219,6 +218,5 @@ class GraphUser:
         self._graph.offer_transforms(self._changed)
 
     def transform(self, parent: str, child: str, pose: Pose) -> None:
-        """Broadcast a transform to tf."""
         self.transforms.append(
             (self.now_ns, (str(parent), str(child), pose_of(pose, "a transform"))))

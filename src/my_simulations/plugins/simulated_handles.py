@@ -41,7 +41,6 @@ class SimulatedLink:
 
     @property
     def pose(self) -> Pose:
-        """World pose of the link frame."""
         return self._view.link_at(self.row)[0]
 
     @property

@@ -90,7 +90,6 @@ class FakeGraph:
 
     @property
     def now_ns(self) -> int:
-        """Sim time."""
         raise NotImplementedError
 
     # -- what a test does --------------------------------------------------------------------------
@@ -111,7 +110,6 @@ class FakeGraph:
     # -- Context -----------------------------------------------------------------------------------
 
     def use_namespace(self, namespace: str) -> None:
-        """Set the prefix of names."""
         self._namespace = namespace.strip("/")
 
     def _name(self, name: str) -> str:

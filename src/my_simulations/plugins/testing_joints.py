@@ -52,7 +52,6 @@ class FakeJoint:
         self.motor = (rate, effort)
 
     def set_servo(self, servo: JointServo) -> None:
-        """Drive the axis by a servo."""
         servo = servo.held_at(self.position)
         before, self.servo = self.servo, servo
         if not servo.drive:

@@ -44,7 +44,6 @@ class PackageIndex:
             return None
 
     def folders(self) -> List[str]:
-        """Folders of all packages, in the order of rospkg."""
         rospack = self._get()
         found = [self.find(name) for name in (rospack.list() if rospack is not None else ())]
         return [folder for folder in found if folder]

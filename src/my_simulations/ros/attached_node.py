@@ -99,6 +99,5 @@ class AttachedNode:
             self._answers[service] = answer
 
     def close(self) -> None:
-        """Take the node off the graph."""
         self._node.stop()
         rospy.signal_shutdown("the world is closed")

@@ -211,7 +211,6 @@ class Node:
             rospy.logdebug("the ROS master does not respond: %s", fault)
 
     def _open_requested_editor(self) -> None:
-        """Open the editor if a client has requested it by a parameter."""
         name = f"~{EDITOR_REQUESTED}"
         if self._open_editor is None or not rospy.get_param(name, False):
             return

@@ -19,7 +19,6 @@ class Lights:
         self._session = session
 
     def all(self) -> List[Light]:
-        """All lights, in order."""
         with self._session.registry_lock:
             return list(self._session.world.lights)
 

@@ -105,11 +105,9 @@ class Registry:
         return list(self._with_plugins.values())
 
     def names(self) -> List[str]:
-        """Model names, in order."""
         return list(self._entities)
 
     def entities(self) -> List[Entity]:
-        """All entities, in order."""
         return list(self._entities.values())
 
     def add(self, entity: Entity, slot: Optional[OrderSlot] = None) -> None:

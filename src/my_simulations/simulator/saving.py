@@ -74,7 +74,6 @@ def _frame(entity: Entity, snapshot: Snapshot) -> Pose:
 
 
 def _joints_of(simulator: Simulator, entities: Sequence[Entity]) -> List[Joint]:
-    """The joints between these models, or between one of them and the world."""
     there = {entity.model.name for entity in entities}
     return [joint for joint in simulator.models.inter_model_joints
             if all("::" not in end or end.split("::")[0] in there

@@ -198,7 +198,6 @@ class Session:
             self.registry.revision += 1
 
     def entities(self) -> List[Entity]:
-        """All entities in load order."""
         with self.registry_lock:
             return self.registry.entities()
 

@@ -102,7 +102,6 @@ class Simulator:
 
     @property
     def engine_pid(self) -> int:
-        """Process id of the engine."""
         return self._session.supervisor.engine.pid
 
     def report(self, issue: Issue) -> None:
@@ -123,7 +122,6 @@ class Simulator:
             self._session.call(command)
 
     def close(self) -> None:
-        """Stop the engine."""
         self._session.supervisor.close()
 
     def load_world(self, world: World, meshes: Optional[Dict[str, MeshTable]] = None) -> None:

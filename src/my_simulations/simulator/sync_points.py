@@ -58,7 +58,6 @@ class SyncPoints:
 
     @property
     def records(self) -> RecordReader:
-        """The records that `set_rules` asks for."""
         if self._records is None:
             self._records = RecordReader(self._session.ring.memory)
         return self._records

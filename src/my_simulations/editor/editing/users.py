@@ -46,7 +46,6 @@ class Users:
             self._connected[client] = User(key, known)
 
     def leave(self, client: int) -> None:
-        """A page has gone."""
         with self._lock:
             self._connected.pop(client, None)
 

@@ -133,7 +133,6 @@ class Library:
 
     @property
     def added(self) -> List[str]:
-        """The folders that the user added."""
         with self._lock:
             return list(self._added)
 

@@ -90,7 +90,6 @@ class TopicChannel:
                 writer.add_record(MESSAGE, time, frame)
 
     def close(self) -> None:
-        """End all subscriptions."""
         for topic in self._recorded.values():
             topic.subscription.close()
 

@@ -63,7 +63,6 @@ class Logs:
         hub.greetings.append(self.state)
 
     def routes(self) -> Dict[str, Route]:
-        """By type of request."""
         return {"log_start": Route(self._start, None), "log_stop": Route(self._stop, None),
                 "log_list": Route(self._list, self._disk), "log_open": Route(self._open, None),
                 "log_seek": Route(self._seek, None), "log_play": Route(self._play, None),

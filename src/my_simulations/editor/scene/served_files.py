@@ -34,7 +34,6 @@ class ServedFiles:
         self._more: List[str] = []
 
     def add_root(self, folder: str) -> None:
-        """Files below this folder may be served, too."""
         with self._lock:
             if folder and folder not in self._more:
                 self._more.append(folder)

@@ -127,7 +127,6 @@ class LiveTopics:
         return None if message is None else number_at(message, field)
 
     def leave(self, client: Client) -> None:
-        """A page has gone."""
         for topic in list(self._topics.values()):
             topic.plotters.discard(client.number)
             self._remove_client(topic, client)
@@ -147,7 +146,6 @@ class LiveTopics:
         return self._topics
 
     def close(self) -> None:
-        """End all subscriptions."""
         for topic in list(self._topics.values()):
             self._drop(topic)
 

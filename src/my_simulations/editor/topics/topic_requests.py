@@ -32,12 +32,10 @@ class TopicRequests:
         self._driving = Driving(source, self._pool)
 
     def routes(self) -> Dict[str, Route]:
-        """By type of message."""
         return {"topics": Route(self._topics, None), "drive": Route(self._driving.drive, None),
                 "viewed": Route(self._viewed, None), "topic_fields": Route(self._fields, None)}
 
     def leave(self, client: Client) -> None:
-        """A page has gone."""
         self.live.leave(client)
         self._driving.leave(client)
 

@@ -40,7 +40,6 @@ def write(address: str, cache_dir: str = "") -> List[str]:
 
 
 def remove(paths: List[str]) -> None:
-    """Remove what `write` wrote."""
     for path in paths:
         with contextlib.suppress(OSError):  # it is gone, or the disk cannot be written any more
             os.unlink(path)

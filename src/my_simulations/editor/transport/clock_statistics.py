@@ -35,7 +35,6 @@ class ClockStatistics:
         return self._factor()
 
     def read(self) -> Dict[str, Any]:
-        """The push `stats` as of now."""
         # In this order: the step that a pause is told with is its last.
         now, paused = time.monotonic_ns(), self._simulator.clock.paused
         step, clock = self._simulator.clock.now()

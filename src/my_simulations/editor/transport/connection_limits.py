@@ -32,7 +32,6 @@ class SilentConnections:
         return make
 
     def request_received(self, protocol: Any) -> None:
-        """A right request came."""
         self._waiting.pop(protocol, None)
 
     def _end(self, protocol: Any) -> None:

@@ -72,7 +72,6 @@ class Hub:
     # -- telling ---------------------------------------------------------------------------------
 
     def push(self, message: Dict[str, Any], to: Optional[Iterable[Client]] = None) -> None:
-        """Send a message to clients, all by default."""
         self.check([message])
         text = encoded(message)
         for client in list(self.clients.values()) if to is None else to:

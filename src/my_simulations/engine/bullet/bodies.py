@@ -244,7 +244,6 @@ def mark_asleep(uid: int) -> None:
 
 
 def remove(body: Body) -> None:
-    """Remove the body from PyBullet."""
     for uid in body.uids:
         pybullet.removeBody(uid)
 

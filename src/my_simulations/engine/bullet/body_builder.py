@@ -345,7 +345,6 @@ class Builder:
                                                    above.orientation))
 
     def remove(self, built: Sequence[Body]) -> None:
-        """Remove the bodies from PyBullet."""
         self._ignore_each_other(built, False)
         for body in built:
             remove(body)

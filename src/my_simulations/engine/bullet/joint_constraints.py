@@ -110,7 +110,6 @@ class Constraints:
     # -- loops -----------------------------------------------------------------------------------
 
     def _close(self, joint: Joint) -> None:
-        """Make the constraints of a joint that closes a loop."""
         parent, child = self._end(joint.parent), self._end(joint.child)
         at = self._model_from_joint(joint)
         made: List[int] = []

@@ -29,7 +29,6 @@ class PidController:
         return LoopMemory(self._integral, self._last)
 
     def resume(self, memory: LoopMemory) -> None:
-        """Continue from a state."""
         self._integral, self._last = memory.integral, memory.error
 
     def effort(self, position: float, rate: float, dt: float, most: float) -> float:

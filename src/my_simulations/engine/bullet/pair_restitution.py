@@ -125,7 +125,6 @@ class PairRestitution(StepHelper):
 
     @staticmethod
     def _pairs(kinds: List[_Kind], members: Dict[_Kind, Set[int]]) -> List[Tuple[_Kind, _Kind]]:
-        """Return the pairs of kinds that can collide and bounce."""
         few = len(kinds) <= _MOST_KINDS
         return [(one, other) for one, other in itertools.combinations_with_replacement(kinds, 2)
                 if (one.moves or other.moves) and not (one.never and other.never)

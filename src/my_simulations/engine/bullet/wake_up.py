@@ -25,7 +25,6 @@ class WakeUp:
         self._touch = touch
 
     def everything(self) -> None:
-        """Wake all moving bodies."""
         for body in self._bodies.values():
             self._rouse(body)
 

@@ -113,7 +113,6 @@ def _turn(a: Point, b: Point, c: Point) -> float:
 
 
 def _clipped(ring: List[int], points: List[Point]) -> List[Triangle]:
-    """Triangulate a ring by ear clipping."""
     triangles: List[Triangle] = []
     ring = list(ring)
     at, waited = 0, 0

@@ -67,7 +67,6 @@ class Extensions:
                 self._to_link(child, body)
 
     def to_connection(self, connection: Connection) -> None:
-        """Apply extensions of a joint."""
         for block in self._blocks(connection.joint.name):
             for child in block:
                 self._to_joint(child, connection)

@@ -177,7 +177,6 @@ class BaseController(Controller):
         return done
 
     def _publish_command(self) -> None:
-        """Publish the velocity command of the last update."""
         assert self._limited is not None
         message = stamped(self.context, "geometry_msgs/TwistStamped")
         message.twist.linear.x, message.twist.linear.y, message.twist.angular.z = self.last

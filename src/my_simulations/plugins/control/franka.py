@@ -95,7 +95,6 @@ class FrankaGripper(Controller):
         self._topic = self.publish("joint_states", _JOINT_STATE)
 
     def start(self) -> None:
-        """Hold the fingers."""
         self._hold()
         self.observe(_UPDATE_HZ, self._publish, [self._topic],
                      efforts=[finger.name for finger in self._fingers])

@@ -46,7 +46,6 @@ class Gripper(Controller):
         self._gains = gains
 
     def start(self) -> None:
-        """Hold the position."""
         self._hold()
 
     def stop(self) -> None:

@@ -93,7 +93,6 @@ class ControllerManager:
 
     @property
     def controllers(self) -> Dict[str, Controller]:
-        """The loaded controllers by name."""
         return dict(self._loaded)
 
     @property

@@ -35,7 +35,6 @@ class _OfQuadrotor(Controller):
     hardware: QuadrotorHardware
 
     def load(self) -> None:
-        """Check the hardware."""
         if not isinstance(self.hardware, QuadrotorHardware):
             raise PluginError(f"controller '{self.name}' needs the <robotSimType>"
                               " hector_quadrotor_controller_gazebo/QuadrotorHardwareSim")

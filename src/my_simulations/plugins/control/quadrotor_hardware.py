@@ -158,7 +158,6 @@ class QuadrotorHardware(Hardware):
         response.success = True
 
     def run_motors(self, running: bool) -> None:
-        """Start or stop the motors."""
         if running == self.running:
             return
         self.running = running

@@ -72,7 +72,6 @@ class Kobuki(Plugin):
         return sensor_named(self, name)
 
     def power(self, on: bool) -> None:
-        """Switch the motors on or off."""
         self._powered = on
         self._change.begin()
 

@@ -140,7 +140,6 @@ class Odometer:
 
 
 def fill_pose(message: Any, pose: Pose) -> None:
-    """Fill a geometry_msgs/Pose."""
     at, turn = message.position, message.orientation
     at.x, at.y, at.z = pose.position
     turn.x, turn.y, turn.z, turn.w = pose.orientation

@@ -73,7 +73,6 @@ class WheelFrames:
                        for joint in joints]
 
     def send(self) -> None:
-        """Publish the present state."""
         for parent, child, carrier, wheel in self._pairs:
             self._context.transform(parent, child, compose(inverse(carrier.pose), wheel.pose))
 

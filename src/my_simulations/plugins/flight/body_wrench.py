@@ -31,7 +31,6 @@ def body_twist(link: Link) -> Tuple[Vec3, Vec3]:
 
 
 def fill_wrench(message: Any, wrench: Wrench) -> None:
-    """Fill a geometry_msgs/Wrench."""
     force, torque = wrench
     message.force.x, message.force.y, message.force.z = force
     message.torque.x, message.torque.y, message.torque.z = torque

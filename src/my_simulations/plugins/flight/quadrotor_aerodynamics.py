@@ -60,7 +60,6 @@ class QuadrotorAerodynamics(Plugin):
         self.update()
 
     def update(self) -> None:
-        """Follow the wind."""
         wind = self.context.wind if self._wind is None else self._wind
         if wind != self._drag.wind:
             self._drag = replace(self._drag, wind=wind)

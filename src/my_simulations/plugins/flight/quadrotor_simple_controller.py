@@ -87,7 +87,6 @@ class QuadrotorSimpleController(Plugin):
             self._engage()
 
     def _engage(self) -> None:
-        """Start the motors."""
         if self._timer is not None:
             return
         for pid in (self._roll, self._pitch, self._yaw, self._x, self._y, self._z):
@@ -97,7 +96,6 @@ class QuadrotorSimpleController(Plugin):
         self._timer = self.context.every(self._hertz, self.update)
 
     def _shut_down(self) -> None:
-        """Stop the motors."""
         if self._timer is not None:
             self._timer.end()
             self._timer = None

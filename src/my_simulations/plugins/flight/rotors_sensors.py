@@ -74,7 +74,6 @@ class RotorsImu(Imu):
     clock_set = reset
 
     def update(self) -> None:
-        """Measure and publish."""
         context, sample = self.context, self.measured()
         values = [errors.apply(value, context.now_ns) for errors, value in zip(
             self._errors, (*sample.angular_velocity, *sample.linear_acceleration))]
@@ -110,7 +109,6 @@ class RotorsMagnetometer(Plugin):
         context.observe(0.0, self.update, [self._topic])
 
     def update(self) -> None:
-        """Measure and publish."""
         context = self.context
         x, y, z = (size * draw for size, draw in zip(
             self._stddev, self._noise.draw(3, context.now_ns)))
@@ -138,7 +136,6 @@ class RotorsPressure(Plugin):
         context.observe(0.0, self.update, [self._topic])
 
     def update(self) -> None:
-        """Measure and publish."""
         context = self.context
         message = stamped(context, "sensor_msgs/FluidPressure", self._frame)
         (noise,) = self._noise.draw(1, context.now_ns)
@@ -185,7 +182,6 @@ class RotorsGps(Plugin):
     clock_set = reset
 
     def update(self) -> None:
-        """Measure and publish."""
         context, link, ns = self.context, self._link, self.context.now_ns
         velocity = velocity_at(link.pose, link.twist, self._mount)
         if self._fix.wanted:

@@ -59,13 +59,11 @@ class VacuumGripper(Plugin):
         self._held = []
 
     def publish(self) -> None:
-        """Publish whether it holds something."""
         message = self.context.message("std_msgs/Bool")
         message.data = bool(self._held)
         self._topic.publish(message)
 
     def _attach_touched(self) -> None:
-        """Attach the links that are close."""
         context, here = self.context, self._link.pose.position
         models = context.models()
         self._held = [one for one in self._held if one[1].partition("::")[0] in models]

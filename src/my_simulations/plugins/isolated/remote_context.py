@@ -33,7 +33,6 @@ class RemoteLink(RemoteHandle):
 
     @property
     def pose(self) -> Pose:
-        """World pose of the link frame."""
         pose: Pose = self._connection.state(self.number)[0]
         return pose
 
@@ -134,7 +133,6 @@ class RemoteContext:
 
     @property
     def model(self) -> str:
-        """The model's name."""
         return self._connection.readings.model
 
     @property

@@ -56,11 +56,9 @@ class DepthStream:
 
     @property
     def cloud_wanted(self) -> bool:
-        """Whether the point cloud has a subscriber."""
         return self._points is not None and self._points.wanted
 
     def publish(self, depth: Optional[Any], rgb: Optional[Any], ns: int) -> None:
-        """Publish on all topics that have a subscriber."""
         context = self._context
         head = header(context, ns, self._frame)
         if self._info.wanted:

@@ -61,7 +61,6 @@ class _SensorPlugin(Plugin):
         return header(self.context, self.context.now_ns, self._frame)
 
     def update(self) -> None:
-        """Measure and publish."""
         raise NotImplementedError
 
 

@@ -156,7 +156,6 @@ class Magnetic(_LinkSensor):
         context.observe(rate_of(p), self.update, [self._topic])
 
     def update(self) -> None:
-        """Measure and publish."""
         context = self.context
         felt = rotate(conjugate(self._link.pose.orientation), self._field)
         x, y, z = self._errors.apply(felt, context.now_ns)
@@ -190,7 +189,6 @@ class Baro(_LinkSensor):
             [self._altimeter] if self._altimeter is not None else [])])
 
     def update(self) -> None:
-        """Measure and publish."""
         context = self.context
         (height,) = self._errors.apply(self._link.pose.position[2:], context.now_ns)
         head = header(context, context.now_ns, self._frame)

@@ -140,14 +140,12 @@ def cloud_message(context: Context, header: Any, points: Any, dense: bool) -> An
 
 
 def point_field(context: Context, name: str, offset: int, kind: int = FLOAT32) -> Any:
-    """A sensor_msgs/PointField."""
     field = context.message("sensor_msgs/PointField")
     field.name, field.offset, field.datatype, field.count = name, offset, kind, 1
     return field
 
 
 def header(context: Context, ns: int, frame: str) -> Any:
-    """A std_msgs/Header."""
     made = context.message("std_msgs/Header")
     made.stamp, made.frame_id = context.stamp(ns), frame
     return made

@@ -69,7 +69,6 @@ class Imu(Plugin):
                        self._mount, self._reference)
 
     def update(self) -> None:
-        """Measure and publish."""
         sample = self._noisy(self.measured())
         context, noise = self.context, self._white.draw(6, self.context.now_ns)
         message = stamped(context, "sensor_msgs/Imu", self._frame)

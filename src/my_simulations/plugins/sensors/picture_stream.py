@@ -71,12 +71,10 @@ class PictureStream:
 
     @property
     def wanted(self) -> bool:
-        """Whether a picture topic has a subscriber."""
         return self._image.wanted or self._compressed.wanted
 
     @property
     def info_wanted(self) -> bool:
-        """Whether CameraInfo has a subscriber."""
         return self._info.wanted
 
     @property

@@ -54,7 +54,6 @@ class RayPlugin(Plugin):
         self.context.scan(self._fan, self._visuals, self._publish)
 
     def _publish(self, returns: RayReturns, ns: int) -> None:
-        """Publish the returns of the rays at a sim time."""
         raise NotImplementedError
 
 

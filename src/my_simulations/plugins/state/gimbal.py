@@ -25,6 +25,5 @@ class Gimbal(Plugin):
         self.reset()
 
     def reset(self) -> None:
-        """Hold the joint again."""
         self._joint.set_servo(JointServo(0, "effort", target=_ANGLE, gains=PidGains(1.0),
                                          most_effort=_MOST_EFFORT))

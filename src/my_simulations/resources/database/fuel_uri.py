@@ -58,7 +58,6 @@ class FuelUri:
 
 
 def is_web_address(uri: str) -> bool:
-    """Whether a URI is an http or https address."""
     return uri.lower().startswith(("http://", "https://"))
 
 

@@ -66,7 +66,6 @@ class ModelServices:
         return self._spawn(request, document, self._attribute_options(request, document))
 
     def spawn_sdf(self, request: Any, _response: Any) -> str:
-        """Spawn an SDF or URDF model, or an SDF light."""
         document = self._parsed(request, "")
         return self._spawn(request, document, self._attribute_options(request, document))
 

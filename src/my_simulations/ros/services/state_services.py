@@ -72,7 +72,6 @@ class StateServices:
         return "set model state done"
 
     def set_link(self, request: Any, _response: Any) -> str:
-        """Set pose and twist of a link."""
         self.move_link(request.link_state)
         return "success"
 

@@ -49,7 +49,6 @@ class Batch:
         self.local = np.concatenate([self.local, local[None]])
 
     def remove(self, owner: str) -> None:
-        """None of a model any more."""
         kept = np.array([one != owner for one in self.owners], dtype=bool)
         self.owners = [one for one in self.owners if one != owner]
         self.rows, self.local = self.rows[kept], self.local[kept]

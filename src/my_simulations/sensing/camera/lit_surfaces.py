@@ -73,7 +73,6 @@ class LitSurfaces:
             name: np.ascontiguousarray(value, dtype=np.float32) for name, value in values.items()})
 
     def draw(self, batch: Batch, lighting: Lighting) -> None:
-        """Draw a batch into the target in use."""
         if not batch.count:
             return
         surface = batch.surface

@@ -78,7 +78,6 @@ class Renderer:
         self._lenses: Dict[CameraSpec, Tuple[np.ndarray, np.ndarray]] = {}
 
     def add(self, body: Body) -> None:
-        """A model has come."""
         self._kept.forget()
         for n, link in enumerate(body.model.links):
             for m, visual in enumerate(link.visuals):

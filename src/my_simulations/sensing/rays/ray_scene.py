@@ -133,7 +133,6 @@ class RayScene:
         self._changed = True
 
     def clear(self) -> None:
-        """Everything has gone."""
         for name in list(self._models):
             self.remove(name)
         self.set_scenery(SetScenery())
