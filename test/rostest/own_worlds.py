@@ -131,8 +131,7 @@ class OwnWorlds(unittest.TestCase):
         with Launched(self.typed, self.home, self.spawners(path)) as launched:
             launched.says("spawn_model: SpawnModel: Successfully spawned")
             with Program([executable("gazebo_ros", "spawn_model"), "-urdf", "-model",
-                          "is_stepped_manually",
-                          "-param", "robot_description", "-x", "2"],
+                          "by_hand", "-param", "robot_description", "-x", "2"],
                          ROS_MASTER_URI=launched.uri) as program:
                 self.assertEqual(program.ended(), 0, program.text)
             launched.ask("delete_model", DeleteModel, model_name="students")
@@ -140,7 +139,7 @@ class OwnWorlds(unittest.TestCase):
         self.assertEqual(saved.path, os.path.join(self.typed, "out.world"))
         world = ElementTree.parse(saved.path).getroot().find("world")
         self.assertEqual([model.get("name") for model in world.findall("model")],
-                         ["ground_plane", "is_stepped_manually"])
+                         ["ground_plane", "by_hand"])
 
 
 def support_folder():

@@ -15,7 +15,7 @@ from typing import Any, Callable, Dict, Iterator, List, Optional, Sequence, Tupl
 
 from ..errors import InputError, Issue, Severity, SimulationError
 from ..geometry import Pose, Vec3, quat_from_rpy
-from ..ros.arguments import number
+from ..ros.arguments import seconds
 from ..ros.call_deadline import CallTimeoutError, within
 from ..ros.lifecycle import master_api
 from ..ros.own_server import spawns_objects
@@ -45,14 +45,6 @@ def common_options(parser: argparse.ArgumentParser) -> None:
                         help="wall-clock timeout of each call (default %(default)g)")
     parser.add_argument("--gazebo-namespace", default="gazebo", metavar="NS",
                         help="name of the simulator node (default %(default)s)")
-
-
-def seconds(text: str) -> float:
-    """A positive finite number of seconds, for argparse."""
-    value = number(text)
-    if not 0.0 < value < float("inf"):
-        raise argparse.ArgumentTypeError(f"must be a positive number of seconds, is {text}")
-    return value
 
 
 def plain_words(argv: Optional[Sequence[str]]) -> Tuple[List[str], List[str]]:

@@ -12,7 +12,7 @@ from typing import Any, Dict, List, Optional
 
 from ..errors import InputError, SimulationError
 from ..program_end import program
-from ..ros.arguments import Parser, number
+from ..ros.arguments import Parser, number, seconds
 from ..ros.call_deadline import CallTimeoutError, within
 from ..ros.lifecycle.launch_info import Launch
 
@@ -50,7 +50,7 @@ def parser() -> argparse.ArgumentParser:
     made.add_argument("-namespace", dest="robot_namespace", help=argparse.SUPPRESS)
     made.add_argument("-unpause", action="store_true", help="unpause physics after spawning")
     made.add_argument("-wait", metavar="MODEL", help="wait until this model exists before spawning")
-    made.add_argument("-timeout", type=_seconds, default=WAIT_SECONDS, metavar="SECONDS",
+    made.add_argument("-timeout", type=seconds, default=WAIT_SECONDS, metavar="SECONDS",
                       help="wall-clock timeout of each call (default %(default)g)")
     for axis, unit in zip(("x", "y", "z", "R", "P", "Y"), ("m",) * 3 + ("rad",) * 3):
         made.add_argument(f"-{axis}", type=number, default=0.0, metavar=unit.upper(),
@@ -63,13 +63,6 @@ def parser() -> argparse.ArgumentParser:
     made.add_argument("-b", dest="bond", action="store_true",
                       help="keep running, and delete the model on exit")
     return made
-
-
-def _seconds(text: str) -> float:
-    value = number(text)
-    if not 0.0 < value < float("inf"):
-        raise argparse.ArgumentTypeError(f"must be a positive number of seconds, is {text}")
-    return value
 
 
 def joint_positions(options: argparse.Namespace) -> Dict[str, float]:

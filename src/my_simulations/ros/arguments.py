@@ -46,3 +46,11 @@ def number(text: str) -> float:
     except ValueError:
         comma = "; use a decimal point" if "," in text else ""
         raise argparse.ArgumentTypeError(f"{text!r} is not a number{comma}") from None
+
+
+def seconds(text: str) -> float:
+    """A positive finite number of seconds, for argparse."""
+    value = number(text)
+    if not 0.0 < value < float("inf"):
+        raise argparse.ArgumentTypeError(f"must be a positive number of seconds, is {text}")
+    return value
