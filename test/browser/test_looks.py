@@ -355,6 +355,33 @@ def test_each_of_many_copies_is_seen_where_it_is(editor):
              "eight boxes, one of them elsewhere")
 
 
+FLOOR = """<sdf version="1.6"><model name="floor"><static>true</static><link name="link"><visual
+ name="v"><geometry><box><size>3 3 0.01</size></box></geometry></visual></link></model></sdf>"""
+
+
+def test_a_thin_floor_is_as_bright_in_coarse_pictures_as_in_full_ones(editor):
+    editor.get(f"editor.actions.edit({{kind: 'insert', name: 'floor', sdf: {FLOOR!r},"
+               " pose: [0, 0, 0.005, 0, 0, 0, 1]})")
+    editor.until("Boolean(editor.store.model('floor'))", "the floor")
+    editor.rest()
+
+    def brightness():
+        x, y = editor.pixel((0.5, 0.5, 0.01))
+        clip = {"x": x - 8, "y": y - 8, "width": 16, "height": 16}
+        image = Image.open(io.BytesIO(editor.page.screenshot(clip=clip))).convert("L")
+        return float(np.asarray(image, dtype=float).mean())
+
+    full, width = brightness(), editor.get("document.querySelector('.view-canvas').width")
+    editor.get("(() => { window.timeout = setTimeout; window.setTimeout = () => 0; })()")
+    editor.get("editor.view.redraw()")
+    editor.until(f"document.querySelector('.view-canvas').width < {width}", "a coarse picture")
+    editor.frame()
+    coarse = brightness()
+    editor.get("(() => { window.setTimeout = timeout; editor.view.redraw(); })()")
+    editor.rest()
+    assert abs(coarse - full) < 12
+
+
 def boxes_seen(editor, places):
     """Whether the tops of boxes of 1 m, which are orange, are seen at all of these places."""
     image = Image.open(io.BytesIO(editor.page.screenshot())).convert("RGB")

@@ -389,3 +389,14 @@ def test_what_moves_less_than_a_pixel_leaves_the_picture_at_full_resolution(edit
         assert editor.get(SHARPNESS) == full
         editor.get("new Promise((done) => setTimeout(done, 50))")
     editor.get("clearInterval(window.creeping)")
+
+
+def test_a_single_picture_after_a_long_rest_is_soon_drawn_in_full(editor):
+    insert(editor, "box", standing(0, 0))
+    editor.rest()
+    full = editor.get(SHARPNESS)
+    editor.get("(() => { const now = performance.now.bind(performance);"
+               " performance.now = () => now() + 3.6e6; })()")
+    editor.page.keyboard.press("f")
+    wait_for(lambda: editor.get(SHARPNESS) < full, "the coarse picture of the flight")
+    wait_for(lambda: editor.get(SHARPNESS) == full, "the full picture")

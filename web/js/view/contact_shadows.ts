@@ -69,8 +69,9 @@ export class ContactShadows {
   constructor() {
     this.mesh = new Mesh(new PlaneGeometry(2, 2), new MeshBasicMaterial({color: 0x000000,
       map: this.#first.texture, transparent: true, opacity: STRENGTH, depthWrite: false,
-      fog: false, toneMapped: false, polygonOffset: true, polygonOffsetFactor: -1,
-      polygonOffsetUnits: -1}));
+      fog: false, toneMapped: false,
+      // Without a factor: in a coarse picture the slope of one pixel is more than a thin floor.
+      polygonOffset: true, polygonOffsetUnits: -4}));
     this.mesh.renderOrder = 0.7;
     this.mesh.visible = false;
     this.#camera.layers.set(CASTERS);

@@ -244,10 +244,12 @@ export class Stage {
     }
     gl.deleteSync(this.#fence);
     this.#fence = null;
-    this.#took = took;
-    this.#way.pictured(took, performance.now());
     // Without an earlier check, a late end does not mean that the picture was slow.
-    if (this.#waited || took < SLOW) this.#adapt(took);
+    if (this.#waited || took < SLOW) {
+      this.#took = took;
+      this.#way.pictured(took, performance.now());
+      this.#adapt(took);
+    }
     this.#waited = false;
     return false;
   }
