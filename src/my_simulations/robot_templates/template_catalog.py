@@ -49,13 +49,13 @@ def _named(default: str, *more: Parameter) -> Tuple[Parameter, ...]:
 
 TEMPLATES: Tuple[Template, ...] = (
     Template("differential_drive", "Differential drive",
-             "A car with two driven wheels and a caster, and with sensors of your choice",
+             "A robot car with two driven wheels and a caster, and with sensors of your choice",
              _named("car", *car_parameters(0.4, 0.24, 3.0, 0.08)), differential_drive),
     Template("four_wheels", "Four wheels",
-             "A skid-steered car with four driven wheels, and with sensors of your choice",
+             "A skid-steered robot car with four driven wheels, and with sensors of your choice",
              _named("rover", *car_parameters(0.5, 0.3, 6.0, 0.1)), four_wheels),
     Template("arm", "Arm with gripper",
-             "Four joints and a gripper, fixed to the world; the Joints panel moves it",
+             "A robot arm with four joints and a gripper, fixed to the world, for the Joints panel",
              _named("arm", *ARM), arm_with_gripper),
     Template("camera", "Camera", "A camera on a post that publishes images",
              _named("camera_post", HEIGHT, NAMESPACE, *CAMERA), camera_on_post),

@@ -57,7 +57,7 @@ def seat(model: Model, width: float, seats: int) -> None:
 
 
 def sofa() -> Model:
-    model = Model("sofa", "Sofa", "A sofa for three, 2.1 m wide, 48 kg.", 48)
+    model = Model("sofa", "Sofa", "A sofa (couch) for three, 2.1 m wide, 48 kg.", 48)
     seat(model, 2.1, 3)
     return model
 
@@ -94,7 +94,7 @@ def desk() -> Model:
 
 def office_chair() -> Model:
     model = Model(
-        "office_chair", "Office chair", "A swivel chair that stands fast, 14 kg.", 14, 0.5
+        "office_chair", "Office chair", "A swivel chair that does not roll, 14 kg.", 14, 0.5
     )
     for k in range(5):
         angle = 2 * math.pi * k / 5

@@ -39,7 +39,7 @@ def handle(x: float, y: float, low: float, high: float) -> Mesh:
 
 def refrigerator() -> Model:
     model = Model(
-        "refrigerator", "Refrigerator", "A refrigerator of 0.6 x 0.65 x 1.8 m, 65 kg.", 65
+        "refrigerator", "Refrigerator", "A refrigerator (fridge) of 0.6 x 0.65 x 1.8 m, 65 kg.", 65
     )
     model.block("light_grey", (0.6, 0.6, 1.76), (-0.02, 0, 0.92), 0.015)
     model.block("dark_grey", (0.5, 0.54, 0.04), (-0.02, 0, 0.02), 0.005)

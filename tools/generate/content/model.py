@@ -60,6 +60,7 @@ class Model:
     Attributes:
         name: of the model and its folder.
         title, description: for `model.config`.
+        kind: a word that the Insert tab finds the model by, after the description.
         mass: kg; None for a static model.
         friction: coefficient mu.
     """
@@ -69,6 +70,7 @@ class Model:
     description: str
     mass: Optional[float] = None
     friction: float = 0.6
+    kind: str = ""
     parts: List[Tuple[str, Mesh]] = field(default_factory=list)
     collisions: List[Collision] = field(default_factory=list)
 
@@ -159,7 +161,7 @@ class Model:
   <author>
     <name>my_simulations</name>
   </author>
-  <description>{self.description}</description>
+  <description>{self.description} {self.kind}.</description>
 </model>
 """
 

@@ -30,7 +30,7 @@ export class InsertTab {
     this.locations = null;
     this.#search = h('input', {
       type: 'search',
-      placeholder: 'Find a model',
+      placeholder: 'Find: chair, kitchen…',
       'aria-label': 'Find a model',
       oninput: () => this.#show(),
     });
@@ -96,6 +96,7 @@ export class InsertTab {
       fill(this.#list, h('p', {class: 'empty', text: 'Loading models…'}));
       return;
     }
+    this.#templates.filter(this.#search.value);
     const found = searched(this.locations, this.#search.value);
     const at = document.activeElement instanceof HTMLElement
       ? document.activeElement.dataset.uri : undefined;

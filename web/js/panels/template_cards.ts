@@ -1,6 +1,6 @@
 /** The building editor and the robot templates, at the top of the Insert tab. */
 import {templateDialog} from './dialogs/template_dialog.js';
-import {fill, h, onActivate} from '../ui/dom.js';
+import {elementsOf, fill, h, onActivate} from '../ui/dom.js';
 import {icon} from '../ui/icons.js';
 import type {Page} from './panels.js';
 import type {Template} from '../protocol.js';
@@ -28,6 +28,14 @@ export class TemplateCards {
     } catch (fault) {
       this.#page.notices.fault(fault);
     }
+  }
+
+  /** Leaves the cards whose title or description contains a text. */
+  filter(wanted: string) {
+    const word = wanted.trim().toLowerCase();
+    const cards = elementsOf(this.#grid, '.template-card');
+    for (const one of cards) one.hidden = !`${one.textContent} ${one.title}`.toLowerCase().includes(word);
+    this.element.hidden = cards.length > 0 && cards.every((one) => one.hidden);
   }
 
   #building() {
