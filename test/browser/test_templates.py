@@ -35,13 +35,20 @@ def test_a_car_with_a_camera_is_built_driven_and_shows_its_picture(editor):
     before = editor.model("taxi")["pose"][0]
     assert before == approx(1.0, abs=0.02)
     assert editor.model("taxi")["links"][0]["inertial"]["mass"] == 2.5
+    hints = editor.page.get_by_role("note", name="Hints")
+    hints.get_by_text("play, then").wait_for()
     editor.page.keyboard.press("Space")
     editor.until("!editor.store.stats.paused", "the running world")
+    hints.get_by_text("drive taxi").wait_for()
     editor.page.keyboard.down("ArrowUp")
     wait_for(lambda: editor.model("taxi")["pose"][0] > before + 0.3, "the car's way")
     editor.page.keyboard.up("ArrowUp")
     picture = editor.page.get_by_role("region", name="/camera/image_raw")
     picture.get_by_text("160 x 120").wait_for()
+    editor.get("editor.store.emit('issue', {severity: 'warning', message: 'a warning'})")
+    warning = editor.page.locator(".notice").last
+    for element in (picture, warning):
+        assert bottom_of(element) <= hints.bounding_box()["y"], "the hints are covered"
     editor.page.keyboard.press("Control+p")
     plots = editor.page.locator("#dock")
     plots.wait_for()

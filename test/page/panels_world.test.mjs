@@ -5,6 +5,7 @@ import {geometryFields, unitGeometry} from '../../web/js/panels/geometry_fields.
 import {sectionsOf, valueAt} from '../../web/js/panels/property_sections.js';
 import {defaultFields, pluginFields} from '../../web/js/panels/plugin_fields.js';
 import {modelOf, rowOf, worldRows} from '../../web/js/panels/world_rows.js';
+import {driveHints} from '../../web/js/panels/hint_line.js';
 import {searched} from '../../web/js/panels/insert_tab.js';
 import {drivenJoints} from '../../web/js/panels/joints_panel.js';
 import {box, light, world} from './fake_simulator.mjs';
@@ -255,4 +256,12 @@ test('joints that cannot move are not driven; units follow the type', () => {
     ['N', 'N m'],
   );
   assert.deepEqual(drivenJoints(null), []);
+});
+
+test('the hints of a selected robot that the arrow keys drive begin with them', () => {
+  const robot = {name: 'taxi', plugins: [{name: 'd', filename: 'libgazebo_ros_diff_drive.so', xml: ''}]};
+  assert.deepEqual(driveHints(robot, true).map(([keys]) => keys), ['Space', '↑ ↓ ← →']);
+  assert.deepEqual(driveHints(robot, false)[0], ['↑ ↓ ← →', 'drive taxi']);
+  assert.deepEqual(driveHints({name: 'box', plugins: []}, false), []);
+  assert.deepEqual(driveHints(undefined, true), []);
 });

@@ -1,6 +1,8 @@
 /** One line over the view that names the keys and the mouse of the tool in use, until it is closed. */
 import {fill, h, remembered} from '../ui/dom.js';
 import {icon} from '../ui/icons.js';
+import {modelOfSelection} from '../selected_model.js';
+import type {Model} from '../protocol.js';
 import type {Mode, Store} from '../store.js';
 
 /** keys, and what they do */
@@ -28,6 +30,17 @@ const BY_MODE: Record<Mode, Hints> = {
   connect: [['click a link', 'parent'], ['click another link', 'child'], ['Esc', 'cancel']],
 };
 
+/** Names of plugin libraries that listen to velocity commands. */
+const DRIVES = /drive|planar_move/;
+
+/** What is said first while a robot is selected that the arrow keys drive. Pure. */
+export function driveHints(model: Pick<Model, 'name'|'plugins'>|undefined, paused: boolean): Hints {
+  if (!model?.plugins.some(({filename}) => DRIVES.test(filename))) return [];
+  return paused
+    ? [['Space', 'play, then'], ['↑ ↓ ← →', `drive ${model.name}`]]
+    : [['↑ ↓ ← →', `drive ${model.name}`], ['Shift', 'faster']];
+}
+
 /** @param element  what the line lies in */
 export function mountHints(element: HTMLElement, store: Store) {
   if (remembered.get('hints-closed', false)) return;
@@ -39,11 +52,17 @@ export function mountHints(element: HTMLElement, store: Store) {
         remembered.set('hints-closed', true);
         line.remove();
       }}, icon('close')));
+  let shown = '';
   const show = () => {
-    const rows = touch && store.mode === 'select' ? TOUCH : BY_MODE[store.mode];
+    const rows = touch && store.mode === 'select' ? TOUCH : [
+      ...store.mode === 'select' ? driveHints(modelOfSelection(store), store.stats.paused) : [],
+      ...BY_MODE[store.mode]];
+    const text = rows.flat().join('\n');
+    if (text === shown) return;
+    shown = text;
     fill(hints, ...rows.map(([keys, what]) => h('span', {}, h('kbd', {text: keys}), ` ${what}`)));
   };
-  store.listen('mode', show);
+  for (const event of ['mode', 'selection', 'stats', 'entity'] as const) store.listen(event, show);
   show();
   element.append(line);
 }
