@@ -212,6 +212,13 @@ def drawn(sheet):
     return sheet.editor, sheet
 
 
+def test_the_palette_is_whole_on_a_small_laptop(sheet):
+    high, shown = sheet.editor.get("(() => { const palette = document.querySelector("
+                                   "'.building-palette');"
+                                   " return [palette.scrollHeight, palette.clientHeight]; })()")
+    assert high <= shown
+
+
 def place_of_a_wall(editor):
     """x and y of the first pixel of a coarse grid where a wall is seen, and what is picked."""
     box = editor.page.locator("#view").bounding_box()

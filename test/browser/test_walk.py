@@ -27,7 +27,7 @@ def draw_house(editor):
     sheet.click((DOOR_X, 0))
     sheet.shows(doors=1)
     save_building(sheet, "House")
-    editor.page.keyboard.press("Control+b")
+    editor.button("Done").click()
     wait_for(lambda: "House" in editor.names(), "the house in the world")
     editor.until("editor.view.camera.pitch < -1.1", "a look into the house from above")
 
@@ -49,8 +49,9 @@ def test_a_house_is_drawn_furnished_left_by_car_and_saved(launch, browser):
     editor = browser.open(node.url)
     draw_house(editor)
     editor.page.get_by_role("tab", name="Insert").click()
-    editor.page.get_by_role("searchbox", name="Find a model", exact=True).fill("Desk")
+    editor.page.get_by_role("searchbox", name="Find a model", exact=True).fill("furniture")
     editor.page.get_by_role("button", name="Desk", exact=True).click()
+    assert not editor.button("Draw a building").is_visible(), "what the search does not mean"
     desk = put(editor, "the desk", (-1.2, 0.8))
     assert desk[:3] == approx((-1.2, 0.8, 0.0), abs=0.05)
     editor.page.get_by_role("searchbox", name="Find a model", exact=True).fill("")

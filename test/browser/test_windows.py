@@ -239,7 +239,7 @@ def test_the_building_editor_has_the_window_and_shows_the_world_in_its_plan(open
     assert editor.page.locator(".context text").all_text_contents() == ["box", "sphere"]
     assert editor.page.locator("#menubar").is_hidden()
     assert editor.page.locator("#left").is_hidden()
-    assert editor.page.locator("#building").bounding_box()["width"] == approx(1366)
+    assert editor.page.locator("#centre").bounding_box()["width"] == approx(1366)
     editor.page.get_by_role("menuitem", name="File", exact=True).click()
     editor.page.get_by_role("menuitem", name="Exit Building Editor").click()
     editor.page.locator("#menubar").wait_for()
