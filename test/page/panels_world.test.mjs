@@ -4,6 +4,7 @@ import {layersOf} from '../../web/js/panels/layers_tab.js';
 import {geometryFields, unitGeometry} from '../../web/js/panels/geometry_fields.js';
 import {sectionsOf, valueAt} from '../../web/js/panels/property_sections.js';
 import {defaultFields, pluginFields} from '../../web/js/panels/plugin_fields.js';
+import {withSensorState} from '../../web/js/panels/plugin_states.js';
 import {modelOf, rowOf, worldRows} from '../../web/js/panels/world_rows.js';
 import {driveHints} from '../../web/js/panels/hint_line.js';
 import {searched} from '../../web/js/panels/insert_tab.js';
@@ -137,6 +138,21 @@ test('parameters that the XML of a plugin leaves out are fields with their defau
   assert.equal(mode.unit, undefined, 'a text has no unit');
   const [, , , text] = made('<plugin name="p"/>').fields;
   assert.equal(text.ops('$& <').ops[0].text, '<plugin name="p">\n  <b>$&amp; &lt;</b>\n</plugin>');
+});
+
+test('parameters that the plugin of a sensor reads and its XML leaves out are fields with their defaults', () => {
+  const sensor = {name: 'eye', type: 'camera', parameters: [
+    {path: 'plugin:p/topic', kind: 'text', value: 'x'}, {path: 'update_rate', kind: 'number', value: 10}]};
+  const state = {model: 'm', name: 'p', filename: 'l.so', state: 'failed', reason: 'no topic', parameters: [
+    {name: 'topic', type: 'text', default: '', choices: []}, {name: 'gain', type: 'number', default: '2', choices: []}]};
+  const document = world([box('m', undefined, {links: [{name: 'l', collisions: [], visuals: [], sensors: [sensor]}]})]);
+  const found = withSensorState({title: 'eye', sections: []}, {document, pluginStates: [state]},
+    {kind: 'sensor', model: 'm', owner: 'l', name: 'eye'});
+  const [told, defaults] = found.sections;
+  assert.deepEqual(told.fields.map(({path}) => told.entity[path]), ['failed', 'no topic']);
+  assert.deepEqual(defaults.fields.map(({label, path}) => [label, defaults.entity[path]]), [['gain', 2]]);
+  assert.deepEqual(defaults.fields[0].ops(3).ops,
+    [{kind: 'set', target: 'm::l::sensor:eye', path: 'plugin:p/gain', value: '3'}]);
 });
 
 test('every field of every row finds a value in the document', () => {

@@ -50,14 +50,26 @@ export function defaultFields(model: Model, index: number, parameters: PluginPar
   const shown = xml.replace(/<!--[^]*?-->/g, '');
   const entity: Record<string, unknown> = {};
   const fields: Field[] = [];
-  for (const {name, type, default: text, choices} of parameters) {
+  for (const parameter of parameters) {
+    const {name} = parameter;
     if (shown.includes(`<${name}>`) || shown.includes(`<${name} `) || shown.includes(`<${name}/`)) continue;
-    const path = `default:${name.replaceAll('.', '_')}`;
-    entity[path] = READ[type](text);
-    fields.push({path, label: name, type, ...unitOf(name, type), ...(choices.length ? {choices} : {}), ops: (next) =>
-      replaced(model, index, name, withElement(xml, `<${name}>${escaped(next)}</${name}>`))});
+    const {field, value} = defaultField(parameter, (next) =>
+      replaced(model, index, name, withElement(xml, `<${name}>${escaped(next)}</${name}>`)));
+    entity[field.path] = value;
+    fields.push(field);
   }
   return {entity, fields};
+}
+
+/**
+ * The field of a parameter with its default value.
+ * @param ops  what a change does
+ */
+export function defaultField({name, type, default: text, choices}: PluginParameter, ops: Field['ops']):
+    {field: Field, value: unknown} {
+  const path = `default:${name.replaceAll('.', '_')}`;
+  return {field: {path, label: name, type, ...unitOf(name, type), ...(choices.length ? {choices} : {}), ops},
+    value: READ[type](text)};
 }
 
 /** The unit of a number, as a part of its field. */

@@ -1,10 +1,11 @@
 /** Whether a plugin runs, as the tree and the property panel show it. */
 import {h} from '../ui/dom.js';
 import {defaultFields} from './plugin_fields.js';
-import type {Model, PluginState, World} from '../protocol.js';
+import {sensorPlugin, stateSection} from './sensor_fields.js';
+import type {Model, PluginState, Sensor, World} from '../protocol.js';
 import type {Found} from './property_sections.js';
 import type {Row} from './world_rows.js';
-import type {Field, Section} from './property_fields.js';
+import type {Section} from './property_fields.js';
 
 /** The state of the plugin of a row; undefined before the simulator has sent it. */
 export function pluginState({document, pluginStates}: {document: World|null,
@@ -15,14 +16,29 @@ export function pluginState({document, pluginStates}: {document: World|null,
     one.model === model && one.name === plugin.name && one.filename === plugin.filename);
 }
 
-/** The state of the plugin of a sensor's row; undefined without one. */
-export function sensorState({document, pluginStates}: {document: World|null,
-    pluginStates: PluginState[]}, {model = '', owner, name}: Row): PluginState|undefined {
+/** The sensor of a row, and the state of its plugin; undefined without one. */
+function sensorOf({document, pluginStates}: {document: World|null, pluginStates: PluginState[]},
+    {model = '', owner, name}: Row): {sensor: Sensor, state: PluginState}|undefined {
   const found = document?.models.find((one) => one.name === model);
   const holder = found && [...found.links, ...found.joints].find((one) => one.name === owner);
   const sensor = holder?.sensors?.find((one) => one.name === name);
-  return sensor && pluginStates.find((state) => state.model === model &&
-    sensor.parameters.some(({path}) => path.startsWith(`plugin:${state.name}/`)));
+  const state = sensor && pluginStates.find((one) => one.model === model &&
+    sensor.parameters.some(({path}) => path.startsWith(`plugin:${one.name}/`)));
+  return sensor && state && {sensor, state};
+}
+
+/** The state of the plugin of a sensor's row; undefined without one. */
+export const sensorState = (store: {document: World|null, pluginStates: PluginState[]}, row: Row) =>
+  sensorOf(store, row)?.state;
+
+/** The sections of a sensor with those of its plugin at the end. */
+export function withSensorState(found: Found, store: {document: World|null, pluginStates: PluginState[]},
+    row: Row): Found {
+  const {sensor, state} = sensorOf(store, row) ?? {};
+  if (!sensor || !state) return found;
+  const target = `${row.model}::${row.owner}::sensor:${sensor.name}`;
+  return {...found, sections: [...found.sections,
+    ...sensorPlugin(sensor, state, target).map((one) => ({...one, prefix: ''}))]};
 }
 
 /** A tag at the end of a row, red where something failed. */
@@ -36,10 +52,7 @@ export const stateTag = (text: string, reason: string) =>
 export function withState({title, sections}: Found, state: PluginState, model: Model|undefined,
     index: number): Found {
   const [first, ...others] = sections;
-  const fields: Field[] = [{path: 'state', label: 'state',
-      type: 'text', fixed: true}];
-  if (state.reason) fields.push({path: 'reason', label: 'reason', type: 'xml', fixed: true});
-  const made: Section[] = [first, {key: 'state', title: '', target: '', entity: state, fields}, ...others];
+  const made: Section[] = [first, stateSection(state), ...others];
   const left = model && defaultFields(model, index, state.parameters);
   if (left?.fields.length) {
     made.splice(-1, 0, {key: 'defaults', title: 'Parameters with default values', target: '', ...left});

@@ -6,7 +6,7 @@ import {compose, inverse} from '../pose.js';
 import {byId, elementsOf, fill, h, onceAFrame, remembered} from '../ui/dom.js';
 import {faultText} from '../ui/dialog.js';
 import {icon} from '../ui/icons.js';
-import {pluginState, withState} from './plugin_states.js';
+import {pluginState, withSensorState, withState} from './plugin_states.js';
 import {makeInput} from './property_inputs.js';
 import {sharedSections} from './model_sections.js';
 import {sectionsOf, valueAt} from './property_sections.js';
@@ -131,6 +131,7 @@ export class Properties {
   /** What the row is; of a plugin, whether it runs. */
   #ofRow(): Found|null {
     const found = sectionsOf(this.store.document, this.row);
+    if (found && this.row?.kind === 'sensor') return withSensorState(found, this.store, this.row);
     const state = found && this.row?.kind === 'plugin' ? pluginState(this.store, this.row) : undefined;
     const {model = '', index = -1} = this.row ?? {};
     return found && state ? withState(found, state, this.store.model(model), index) : found;

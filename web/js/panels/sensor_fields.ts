@@ -1,7 +1,8 @@
 /** The parameters of a sensor as fields, in a section for each of its elements. Pure. */
 import {parameterUnit} from './parameter_units.js';
 import type {Field, Section} from './property_fields.js';
-import type {Sensor} from '../protocol.js';
+import {defaultField} from './plugin_fields.js';
+import type {PluginState, Sensor} from '../protocol.js';
 
 const UNITS: Record<string, string> = {
   min_angle: 'rad', max_angle: 'rad', horizontal_fov: 'rad', cutoff_angle: 'rad', near: 'm', far: 'm',
@@ -43,6 +44,31 @@ export function sensorSections(sensor: Sensor, target: string): Section[] {
     });
   });
   return [...sections.values()];
+}
+
+/**
+ * The state of the plugin of a sensor, and fields for the parameters that it has read and its XML leaves
+ * out. A change adds the element.
+ * @param target  `MODEL::LINK::sensor:NAME`
+ */
+export function sensorPlugin(sensor: Sensor, state: PluginState, target: string): Section[] {
+  const left = state.parameters.filter(({name}) =>
+    !sensor.parameters.some(({path}) => path === `plugin:${state.name}/${name}`));
+  const made = left.map((parameter) => defaultField(parameter, (next) => ({
+    label: `Set ${parameter.name} of ${sensor.name}`,
+    ops: [{kind: 'set', target, path: `plugin:${state.name}/${parameter.name}`, value: String(next)}]})));
+  const title = `Plugin ${state.name}`;
+  return [stateSection(state, `${title}: state`), {
+    key: `${target}|defaults`, title: `${title}: parameters with default values`, target,
+    entity: Object.fromEntries(made.map(({field, value}) => [field.path, value])),
+    fields: made.map(({field}) => field)}].filter(({fields}) => fields.length);
+}
+
+/** Whether a plugin runs, and why not. */
+export function stateSection(state: PluginState, title = ''): Section {
+  const fields: Field[] = [{path: 'state', label: 'state', type: 'text', fixed: true}];
+  if (state.reason) fields.push({path: 'reason', label: 'reason', type: 'xml', fixed: true});
+  return {key: 'state', title, target: '', entity: state, fields};
 }
 
 /** Kinds of sensors that can be added to a link. */
