@@ -4,17 +4,18 @@ from __future__ import annotations
 import os
 
 import pytest
+import trimesh
 from axe_playwright_python.sync_playwright import Axe
 from test_building import Sheet
 from test_model_editor import build_cart
-from test_panels import with_box
+from test_panels import drop, with_box
 from test_templates import form_of
 
 RULES = {"runOnly": ["wcag2a", "wcag2aa", "wcag21a", "wcag21aa", "best-practice"],
          "rules": {"region": {"enabled": False}}, "resultTypes": ["violations"]}
 """Splitters lie between two landmarks and menus over all of them, so not all is in a region."""
 DIALOGS = ["open", "saveAs", "cloneWorld", "recover", "applyForce", "hotkeys", "about", "logs",
-           "array", "commands", "topics", "joints", "plot"]
+           "array", "commands", "topics", "joints", "plot", "newWorld"]
 
 
 def check(editor):
@@ -83,6 +84,95 @@ def test_the_inspector_of_a_wall_and_the_dialog_that_saves_a_building(editor):
     editor.page.keyboard.press("Control+s")
     editor.page.get_by_role("dialog").wait_for()
     check(editor)
+
+
+def close_dialog(editor):
+    """Closes the dialog on top with Escape; then something has the focus."""
+    count = editor.page.get_by_role("dialog").count()
+    editor.page.keyboard.press("Escape")
+    editor.until(f"document.querySelectorAll('dialog[open]').length < {count}", "a closed dialog")
+    editor.until("document.activeElement !== document.body", "the focus of before")
+
+
+def open_button(editor, name):
+    editor.button(name).click()
+    editor.page.get_by_role("dialog").first.wait_for()
+    check(editor)
+
+
+def test_messages_the_folder_dialogs_and_the_history(editor):
+    with_box(editor)
+    editor.get("editor.store.emit('issue', {severity: 'warning', message: 'odd', file: 'a.world',"
+               " line: 3, xpath: '/sdf/world'})")
+    open_button(editor, "Messages")
+    editor.page.keyboard.press("Escape")
+    editor.page.get_by_role("tab", name="Insert").click()
+    open_button(editor, "Add Path")
+    close_dialog(editor)
+    editor.page.keyboard.press("Control+Shift+s")
+    editor.page.get_by_role("dialog", name="Save World As").wait_for()
+    open_button(editor, "New Folder…")
+    close_dialog(editor)
+    close_dialog(editor)
+
+
+def test_what_a_dropped_mesh_is_asked_for(editor):
+    drop(editor, "block.stl", trimesh.creation.box((1.0, 1.0, 1.0)).export(file_type="stl"),
+         (0.0, 0.0, 0.0))
+    editor.page.get_by_role("dialog").wait_for()
+    check(editor)
+    close_dialog(editor)
+
+
+def test_the_dialogs_of_the_model_editor(editor):
+    build_cart(editor)
+    for name in ("Mesh…", "SVG…", "Model…", "Plugins…", "Inertia of all links", "Save As…"):
+        open_button(editor, name)
+        close_dialog(editor)
+    editor.get("editor.store.select(['untitled::link_1'])")
+    for name in ("Rename…", "Inertia…", "Shapes…", "Size…"):
+        open_button(editor, name)
+        close_dialog(editor)
+    editor.page.locator(".model-joints button").first.click()
+    editor.page.get_by_role("dialog").wait_for()
+    check(editor)
+    close_dialog(editor)
+    editor.page.keyboard.press("Control+e")
+    editor.page.get_by_role("region", name="Schematic").wait_for()
+    check(editor)
+    editor.page.keyboard.press("Control+m")
+    editor.page.get_by_role("dialog", name="Exit model editor?").wait_for()
+    check(editor)
+    close_dialog(editor)
+
+
+def test_the_dialogs_of_the_building_editor(editor):
+    sheet = Sheet(editor)
+    sheet.open()
+    sheet.tool("wall")
+    sheet.click((0, 0), (2, 0))
+    editor.page.keyboard.press("Escape")
+    sheet.tool("door")
+    sheet.click((1, 0))
+    sheet.shows(doors=1)
+    editor.page.mouse.dblclick(*sheet.pixel((1, 0)))
+    editor.page.get_by_role("dialog").wait_for()
+    check(editor)
+    close_dialog(editor)
+    for name in ("Roof", "Level inspector"):
+        open_button(editor, name)
+        close_dialog(editor)
+    editor.page.keyboard.press("Control+o")
+    editor.page.get_by_role("dialog", name="Save building?").wait_for()
+    check(editor)
+    editor.page.get_by_role("button", name="Don't Save").click()
+    editor.page.get_by_role("dialog", name="Open Building").wait_for()
+    check(editor)
+    close_dialog(editor)
+    editor.button("Done").click()
+    editor.page.get_by_role("dialog", name="Exit building editor?").wait_for()
+    check(editor)
+    close_dialog(editor)
 
 
 def test_a_menu(editor):

@@ -163,7 +163,15 @@ def test_parameters_of_a_sensor_are_set_in_fields(editor):
     editor.until("editor.store.model('rover').links.flatMap(({sensors}) => sensors).some("
                  "({parameters}) => parameters.some(({path, value}) => path === 'ray/range/max'"
                  " && value === 4.5))", "the new range")
+    defaults = properties.locator(".section", has_text="parameters with default values")
+    namespace = defaults.get_by_role("textbox", name="robotNamespace")
+    namespace.fill("lab")
+    namespace.press("Enter")
+    editor.until("editor.store.model('rover').links.flatMap(({sensors}) => sensors).some("
+                 "({parameters}) => parameters.some(({path, value}) =>"
+                 " path === 'plugin:laser/robotNamespace' && value === 'lab'))", "the new element")
     editor.page.keyboard.press("Escape")
+    editor.page.keyboard.press("Control+z")
     editor.page.keyboard.press("Control+z")
     wait_for(lambda: far.input_value() == before, "the value of before")
 

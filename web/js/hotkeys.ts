@@ -65,6 +65,7 @@ export const HOTKEYS: readonly Hotkey[] = Object.freeze([
   {keys: 'F', title: 'Frame selection', group: 'Camera', action: 'frameSelection'},
   {keys: 'Shift+F', title: 'Frame all models', group: 'Camera', action: 'frameAll'},
   {keys: 'Home', title: 'Reset view', group: 'Camera', action: 'resetView'},
+  {keys: 'Arrow keys, Space', title: 'Move the cursor of the plan, click there', group: 'Building editor'},
   {keys: 'Shift held', title: 'Disable snapping while drawing', group: 'Building editor'},
   {keys: '0-9, Enter', title: 'Enter the length of the wall', group: 'Building editor'},
   {keys: 'Alt held', title: 'Detach the end of a wall from linked walls', group: 'Building editor'},
@@ -117,6 +118,8 @@ export function belongsToControl(event: KeyboardEvent) {
   const {target} = event;
   if (!(target instanceof Element)) return false;
   if (target.closest('dialog, [role="dialog"]') || document.querySelector('dialog:modal')) return true;
+  // No field types anything with F6, which leaves it.
+  if (/^F\d+$/.test(event.key)) return false;
   // A check box needs the space bar alone.
   if (target.closest('input[type="checkbox"]')) return event.key === ' ';
   if (target.closest('input, textarea, select, [contenteditable="true"]')) {

@@ -11,6 +11,7 @@ import {listenToKeys, listenToMouse, listenToView} from './input_events.js';
 import {inspectItem, inspectLevel, inspectRoof} from './inspector.js';
 import {dropLevel, mountLevels, newLevel} from './level_bar.js';
 import {mountPalette} from './palette.js';
+import {planCursor} from './plan_cursor.js';
 import {Preview, placingOps} from './building_preview.js';
 import {mountScrollbars} from './scrollbars.js';
 import {SelectTool} from './select_tool.js';
@@ -99,14 +100,15 @@ export async function mount(element: HTMLElement, {store, request, actions}: {st
   const opening = {...bound(files), open: () => open(() => files.open()), fresh: () => open(() => files.fresh())};
   mountMenuBar(menu, menus(session, opening, {importPlan, leave}));
   mountLevels(levels, {session, canvas});
-  mountPalette(palette, {session, importPlan});
+  mountPalette(palette, {session, importPlan, draw: () => canvas.element.focus()});
   listenToMouse({session, canvas, draw: drawSoon});
   const preview = new Preview({store, session, request, onIssues: (found) => { issues = found; drawSoon(); }});
   const around = onceAFrame(() => canvas.showAround(actions.footprints(opened?.name)));
   around();
   const ends = [
     ...(['document', 'entity', 'poses'] as const).map((event) => store.listen(event, around)),
-    listenToKeys(element, {session, files: opening, exit: leave, draw: drawSoon}),
+    listenToKeys(element, {session, files: opening, exit: leave, draw: drawSoon,
+      cursor: planCursor({session, canvas})}),
     listenToView(byId('view'), {session, actions}), () => preview.end(),
     watchSize(sheet, canvas), askBeforeUnload(session), unlisten,
   ];

@@ -2,6 +2,7 @@
 import {belongsToControl, hotkey} from '../hotkeys.js';
 import {isDown} from '../mouse_buttons.js';
 import {isModalOpen} from '../ui/dialog.js';
+import {closestTo} from '../ui/dom.js';
 import {menuList, openPopup} from '../ui/popup.js';
 import {hitOf} from './hit_test.js';
 import {inspectItem, inspectLevel} from './inspector.js';
@@ -118,9 +119,9 @@ const OF_THE_PAGE = new Set(['building', 'fullScreen', 'hotkeys', 'togglePanels'
  * is: the world's keys would change models that are not shown.
  * @returns stops listening
  */
-export function listenToKeys(element: HTMLElement, {session, files, exit, draw}: {session: Session,
-    files: FileCommands,
-    exit: () => void, draw: () => void}): () => void {
+export function listenToKeys(element: HTMLElement, {session, files, exit, draw, cursor}: {session: Session,
+    files: FileCommands, exit: () => void, draw: () => void,
+    cursor: (event: KeyboardEvent) => boolean}): () => void {
   let typed = '';
   const run: Record<string, () => unknown> = {
     'Ctrl+S': () => files.save(), 'Ctrl+Shift+S': () => files.saveAs(), 'Ctrl+O': () => files.open(),
@@ -129,6 +130,7 @@ export function listenToKeys(element: HTMLElement, {session, files, exit, draw}:
     'Ctrl+C': () => session.copy(), 'Ctrl+V': () => session.paste(), 'Ctrl+A': () => session.selectAll(),
     Delete: () => session.removeSelected(), Backspace: () => session.removeSelected(),
     F: () => session.show('image'), G: () => session.show('features'),
+    F6: () => goToPart(element, 1), 'Shift+F6': () => goToPart(element, -1),
     Escape() {
       if (session.tool.cancel()) return;
       if (session.tool.name !== 'select') session.endTool();
@@ -137,7 +139,8 @@ export function listenToKeys(element: HTMLElement, {session, files, exit, draw}:
   };
   const onKeyDown = (event: KeyboardEvent) => {
     if (isModalOpen() || event.defaultPrevented || belongsToControl(event)) return;
-    if (type(event)) {
+    if (event.key === 'Enter' && closestTo(event, 'button, [role="menuitem"], summary')) return;
+    if (type(event) || cursor(event)) {
       event.preventDefault();
       return;
     }
@@ -176,10 +179,20 @@ export function listenToKeys(element: HTMLElement, {session, files, exit, draw}:
   };
 }
 
+/** The parts of the editor that F6 visits, by what takes the focus there. */
+const PARTS = ['.building-menu [tabindex="0"]', '.building-palette button', '.plan-sheet'];
+
+function goToPart(element: HTMLElement, step: number) {
+  const parts = PARTS.flatMap((selector) => element.querySelector<HTMLElement>(selector) ?? []);
+  const at = parts.findIndex((part) => part.contains(document.activeElement) ||
+    part.closest('.building-menu, .building-palette')?.contains(document.activeElement));
+  parts[(Math.max(at, 0) + step + parts.length) % parts.length]?.focus();
+}
+
 function spelling(event: KeyboardEvent) {
   const key = event.key.length === 1 ? event.key.toUpperCase() : event.key;
   return [event.ctrlKey || event.metaKey ? 'Ctrl' : '', event.altKey ? 'Alt' : '',
-    event.shiftKey && (event.ctrlKey || event.metaKey) ? 'Shift' : '', key].filter(Boolean).join('+');
+    event.shiftKey && (event.ctrlKey || event.metaKey || key === 'F6') ? 'Shift' : '', key].filter(Boolean).join('+');
 }
 
 /**

@@ -19,8 +19,9 @@ function glyph(name: keyof typeof GLYPHS) {
     stroke: 'currentColor', 'stroke-width': 1.4, 'aria-hidden': true}, svg('path', {d: GLYPHS[name]})));
 }
 
-export function mountPalette(element: HTMLElement, {session,
-    importPlan}: {session: Session, importPlan: () => void}) {
+/** @param draw  called when a tool is taken: the sheet gets the keys */
+export function mountPalette(element: HTMLElement, {session, importPlan, draw}: {session: Session,
+    importPlan: () => void, draw: () => void}) {
   const tools: [string, [keyof typeof GLYPHS, string, () => Tool, string?][]][] = [
     ['Create Walls', [['wall', 'Wall', () => new WallTool(session), 'Shift suspends snapping']]],
     ['Add Features', [
@@ -38,6 +39,7 @@ export function mountPalette(element: HTMLElement, {session,
         else {
           active = id;
           session.tool = make();
+          draw();
         }
         update();
       }}, ...content);

@@ -71,7 +71,8 @@ export class Canvas {
     this.world = svg('g', {}, this.image, this.axes(), this.context, this.features);
     this.minor = gridPattern('building-grid-minor', SCALE / 10, 'minor');
     this.major = gridPattern('building-grid-major', SCALE, 'major');
-    this.element = svg('svg', {class: 'plan-sheet', role: 'img', 'aria-label': 'Plan of the building',
+    this.element = svg('svg', {class: 'plan-sheet', role: 'application',
+      'aria-label': 'Plan of the building: arrow keys move the cursor, Space clicks',
       tabindex: 0},
     svg('defs', {}, this.minor, this.major),
     svg('rect', {class: 'sheet', width: '100%', height: '100%'}),

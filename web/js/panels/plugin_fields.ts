@@ -65,7 +65,7 @@ export function defaultFields(model: Model, index: number, parameters: PluginPar
  * The field of a parameter with its default value.
  * @param ops  what a change does
  */
-export function defaultField({name, type, default: text, choices}: PluginParameter, ops: Field['ops']):
+export function defaultField({name, type, default: text, choices}: PluginParameter, ops: NonNullable<Field['ops']>):
     {field: Field, value: unknown} {
   const path = `default:${name.replaceAll('.', '_')}`;
   return {field: {path, label: name, type, ...unitOf(name, type), ...(choices.length ? {choices} : {}), ops},
