@@ -117,7 +117,7 @@ export class Files {
     if (!await this.mayDiscard()) return false;
     const buildings = await this.request('building_list', {});
     const path = h('input', {type: 'text', placeholder: 'folder or .sdf file'});
-    const list = h('div', {class: 'building-list', role: 'listbox', 'aria-label': 'Buildings'},
+    const list = h('div', {class: 'building-list', ...(buildings.length ? {role: 'listbox', 'aria-label': 'Buildings'} : {})},
       ...buildings.map(({name, path: where}) => h('button', {
         type: 'button', role: 'option', class: 'wide', title: where, text: name,
         onclick: () => { path.value = where; },

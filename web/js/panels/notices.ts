@@ -128,8 +128,8 @@ export class Notices {
     fill(
       this.#list,
       h(
-        'header',
-        {},
+        'div',
+        {class: 'notice-head'},
         h('h2', {text: 'Messages'}),
         h('button', {
           type: 'button',

@@ -158,6 +158,8 @@ export class Dialog {
     this.element.close();
     this.element.remove();
     if (this.#before instanceof HTMLElement) this.#before.focus();
+    // Nothing had it, or what had it is gone: the keys go to the view.
+    if (document.activeElement === document.body) document.querySelector('main')?.focus();
     this.#resolve(value);
   }
 
