@@ -146,6 +146,7 @@ raise RuntimeError('reached %s' % reached)
 for place in (('127.0.0.1', given['port']), ('192.0.2.1', 80), ('1.1.1.1', 53)):
     attempt(str(place), socket.create_connection, place, 2)
 attempt('abstract', lambda: socket.socket(socket.AF_UNIX).connect(given['local']))
+attempt('agent', lambda: socket.socket(socket.AF_UNIX).connect(given['agent']))
 attempt('raw', socket.socket, socket.AF_PACKET, socket.SOCK_RAW)
 """ + END, "done: [], refused: [&#x27;Connection refused&#x27;, &#x27;Network is unreachable"),
     "links": ("""
@@ -230,7 +231,12 @@ def attacked(tmp_path_factory):
         abstract = held.enter_context(socket.socket(socket.AF_UNIX))
         abstract.bind(local)
         abstract.listen()
+        agent = held.enter_context(socket.socket(socket.AF_UNIX))
+        agent.bind(os.path.relpath(folder / "agent"))   # a long path would not fit
+        (folder / "agent").chmod(0o777)
+        agent.listen()
         given = json.dumps({"folder": str(folder), "port": server.getsockname()[1], "local": local,
+                            "agent": str(folder / "agent"),
                             "others": [str(folder / path) for path in others]})
         for name, (program, _) in ATTACKS.items():
             (folder / name).mkdir()

@@ -71,7 +71,8 @@ class LocalWorld:
         with open(log_file(self._plan, self.student), "ab") as output:
             self._process = subprocess.Popen(
                 [sys.executable, "-I", student_box.__file__], stdin=subprocess.PIPE, stdout=output,
-                stderr=subprocess.STDOUT, pass_fds=passed, start_new_session=True)
+                stderr=subprocess.STDOUT, pass_fds=passed, start_new_session=True,
+                env=permitted_variables(os.environ))   # without root the student can read it
         os.close(writing)
         self.monitor = monitoring.getsockname()[1]
         monitoring.close()

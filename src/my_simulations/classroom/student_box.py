@@ -57,6 +57,7 @@ def main() -> int:
         return 128 + signal.SIGKILL
     signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGTERM})   # until there is a handler
     os.sched_setaffinity(0, spec["processors"])
+    sockets = box.unix_sockets()
     if not box.unshare_all():
         sys.stderr.write("this system does not permit namespaces\n")
         return 1
@@ -66,7 +67,7 @@ def main() -> int:
         os.close(told)
         box.LIBC.prctl(_PR_SET_PDEATHSIG, signal.SIGKILL, 0, 0, 0)
         os.read(ready, 1)
-        os._exit(_inside(spec, box, cell))
+        os._exit(_inside(spec, sockets, box, cell))
     os.close(ready)
     os.write(told, b".")
     _forward(child)
@@ -84,9 +85,10 @@ def _forward(process: int) -> None:
     signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGTERM})
 
 
-def _inside(spec: Dict[str, Any], box: Any, cell: Any) -> int:
+def _inside(spec: Dict[str, Any], sockets: List[str], box: Any, cell: Any) -> int:
     """Prepare the namespaces, and run relay and command; returns the exit status."""
     _prepare(spec, box, cell)
+    box.hide_sockets(sockets)
     relay = subprocess.Popen(spec["relay"], stdin=subprocess.DEVNULL, env={"PATH": os.defpath},
                              cwd="/", pass_fds=spec["descriptors"],
                              preexec_fn=lambda: _become(spec["relay_user"], box, cell))

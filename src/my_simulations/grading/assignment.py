@@ -222,6 +222,13 @@ class Assignment:
     recorded: Tuple[str, ...] = ()
 
     @property
+    def files(self) -> Tuple[str, ...]:
+        """The assignment file and those that it names."""
+        named = (self.file, self.world, *(model.file for model in self.models),
+                 *(check.file for check in self.of(Rostest)))
+        return tuple(dict.fromkeys(path for path in named if path))
+
+    @property
     def recorded_topics(self) -> Tuple[str, ...]:
         return tuple(dict.fromkeys(name.partition(".")[0] for name in self.recorded))
 

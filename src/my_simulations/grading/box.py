@@ -58,6 +58,7 @@ def main() -> int:
     LIBC.prctl(_PR_SET_PDEATHSIG, signal.SIGKILL, 0, 0, 0)
     if os.getppid() != spec["parent"]:  # it ended before this was asked for
         return 128 + signal.SIGKILL
+    sockets = unix_sockets()
     isolated = bool(spec["namespaces"]) and unshare_all()
     if not isolated:
         LIBC.prctl(_PR_SET_CHILD_SUBREAPER, 1, 0, 0, 0)
@@ -67,7 +68,7 @@ def main() -> int:
         os.close(told)
         LIBC.prctl(_PR_SET_PDEATHSIG, signal.SIGKILL, 0, 0, 0)
         os.read(ready, 1)     # the parent is there: the death signal is set in time
-        os._exit(_inside(spec, isolated))
+        os._exit(_inside(spec, isolated, sockets))
     os.close(ready)
     os.write(told, b".")
     return _wait(child, spec["seconds"], isolated)
@@ -130,12 +131,12 @@ def _use_small_network() -> None:
 
 # -- inside ----------------------------------------------------------------------------------------
 
-def _inside(spec: Dict[str, Any], isolated: bool) -> int:
+def _inside(spec: Dict[str, Any], isolated: bool, sockets: List[str]) -> int:
     """Prepare the box and run the command as its first process; returns the exit status."""
     scratch = spec["scratch"]
     achieved: List[str] = []
     if isolated:
-        achieved = ["processes", "network", *_own_files(spec)]
+        achieved = ["processes", "network", *_own_files(spec, sockets)]
     submission = os.path.join(scratch, "submission")
     os.makedirs(submission, exist_ok=True)
     if "files" not in achieved:
@@ -146,7 +147,8 @@ def _inside(spec: Dict[str, Any], isolated: bool) -> int:
     os.chmod(os.path.join(scratch, "judge"), 0o700)
     environment = {**spec["environment"], "TMPDIR": os.path.join(scratch, "judge"),
                    "BOX_ISOLATION": ",".join(achieved)}
-    process = subprocess.Popen(spec["command"], env=environment, cwd=scratch,
+    # Not in a folder of the submission, whose modules Python would import.
+    process = subprocess.Popen(spec["command"], env=environment, cwd="/",
                                pass_fds=spec["descriptors"], stdin=subprocess.DEVNULL)
     while True:
         pid, status = os.wait()  # orphans of the box are ours, too
@@ -154,7 +156,7 @@ def _inside(spec: Dict[str, Any], isolated: bool) -> int:
             return status_of(status)
 
 
-def _own_files(spec: Dict[str, Any]) -> List[str]:
+def _own_files(spec: Dict[str, Any], sockets: List[str]) -> List[str]:
     """Make all file systems read-only, then those that the box can write; what has worked."""
     scratch = spec["scratch"]
     try:
@@ -171,6 +173,7 @@ def _own_files(spec: Dict[str, Any]) -> List[str]:
     os.makedirs(judge)
     tmpfs(judge, spec["bytes"])   # its own: a submission that fills the other one cannot harm it
     _copy(spec["copy"], submission)
+    hide_sockets(sockets)
     for path in spec["hidden"]:
         hide(path)
     needed = [scratch, *spec["kept"]]
@@ -224,6 +227,23 @@ def hide(path: str) -> None:
             mount("none", path, "tmpfs", MS_NOSUID | MS_NODEV | 1, "size=4k,mode=000")
         elif os.path.exists(path):
             mount("/dev/null", path, "", MS_BIND)
+
+
+def unix_sockets() -> List[str]:
+    """Paths of the sockets of this system, for `hide_sockets`; read before a new network."""
+    with open("/proc/net/unix", encoding="utf-8", errors="surrogateescape") as table:
+        columns = [line.rstrip("\n").split(None, 7) for line in table]
+    return sorted({one[7] for one in columns if len(one) == 8 and one[7].startswith("/")})
+
+
+def hide_sockets(paths: List[str]) -> None:
+    """Hide sockets of processes outside, such as an SSH agent: no namespace separates them.
+
+    /run is hidden with all that may come to it later.
+    """
+    hide("/run")
+    for path in paths:
+        hide(path)
 
 
 def _is_below(path: str, folder: str) -> bool:

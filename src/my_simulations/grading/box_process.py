@@ -17,7 +17,7 @@ from ..errors import SimulationError
 from . import box
 from .assignment import Assignment
 from .mark import FAILED, GRADED, TIMED_OUT, CheckResult, Mark, without_result
-from .permitted_variables import OF_ONE_PROCESS
+from .permitted_variables import permitted_variables
 from .result_stream import ResultReader
 from .submission import Submission
 from .submission_files import Content, content_of
@@ -45,7 +45,7 @@ def grade_in_box(assignment: Assignment, submission: Submission, slot: int, hidd
         stop: ends the grading with GradingStoppedError once it is set.
     """
     content = content_of(submission.path)
-    reader = ResultReader(folder)
+    reader = ResultReader(folder, assignment.checks)
     with tempfile.TemporaryDirectory(prefix="my_simulations_grade_") as scratch:
         receiving, sending = os.pipe()
         try:
@@ -63,19 +63,19 @@ def _specification(assignment: Assignment, submission: Submission, slot: int,
     root = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
     task = {"assignment": assignment.file, "scratch": scratch, "slot": slot,
             "descriptor": sending, "unreadable": content.unreadable}
-    environment = {**child_environment(), "PYTHONDONTWRITEBYTECODE": "1"}
-    for name in OF_ONE_PROCESS:
-        environment.pop(name, None)
+    environment = {**permitted_variables(child_environment()), "PYTHONDONTWRITEBYTECODE": "1",
+                   "HOME": os.path.expanduser("~")}
     return {"parent": os.getpid(), "seconds": assignment.limits.seconds,
             "command": child_command("grading.judge", json.dumps(task)),
             "environment": environment, "scratch": scratch,
             "bytes": int(assignment.limits.file_mb * 1e6), "copy": content.files,
-            "hidden": [path for path in hidden if not _contains(path, assignment.file)],
+            "hidden": [path for path in hidden if not contains(path, assignment.file)],
             "kept": [root, assignment.file, sys.prefix, os.getcwd()],
             "descriptors": [sending]}
 
 
-def _contains(folder: str, path: str) -> bool:
+def contains(folder: str, path: str) -> bool:
+    """Whether a path is a folder or lies in it."""
     return path == folder or path.startswith(folder.rstrip(os.sep) + os.sep)
 
 
@@ -86,7 +86,8 @@ def _run(spec: Dict[str, Any], receiving: int, sending: int, reader: ResultReade
         try:
             process = subprocess.Popen(
                 [sys.executable, "-I", box.__file__], stdin=subprocess.PIPE, stdout=output,
-                stderr=subprocess.STDOUT, pass_fds=(sending,), start_new_session=True)
+                stderr=subprocess.STDOUT, pass_fds=(sending,), start_new_session=True,
+                env=permitted_variables(os.environ))   # without root the submission can read it
         finally:
             os.close(sending)
         try:

@@ -8,15 +8,16 @@ import shutil
 import threading
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
-from typing import Callable, Dict, List, Optional, Sequence, Tuple
+from typing import Callable, List, Optional, Sequence, Tuple
 
 from .. import __version__
 from ..errors import CommandError
 from ..resources.database.archive import ArchiveError
 from ..simulator.safe_file import write_atomically
-from .assignment import Assignment, Rostest
-from .box_process import GradingStoppedError, grade_in_box
+from .assignment import Assignment
+from .box_process import GradingStoppedError, contains, grade_in_box
 from .mark import FAILED, GRADED, Mark, all_failed, mark_of
+from .program import workspace_paths
 from .submission import Submission, content_key, size_of
 from .submission_files import SubmissionError
 from .unpacking import unpacked
@@ -66,7 +67,8 @@ class Grader:
 
         Raises KeyboardInterrupt: after all boxes have ended; marks so far are kept.
         """
-        hidden = [self._out, *(submission.path for submission in submissions)]
+        hidden = [self._out, *(submission.path for submission in submissions),
+                  *self._folders_of(submissions)]
         with ThreadPoolExecutor(self._jobs, "grader") as pool:
             waiting = [pool.submit(self._grade, one, hidden) for one in submissions]
             try:
@@ -76,6 +78,14 @@ class Grader:
                 for one in waiting:
                     one.cancel()
                 raise
+
+    def _folders_of(self, submissions: Sequence[Submission]) -> List[str]:
+        """The folders in which submissions lie beside others, as far as nothing else needs them."""
+        needed = [os.getcwd(), os.path.expanduser("~"), *self._assignment.files,
+                  *workspace_paths()]
+        return [folder for folder in {os.path.dirname(one.path) for one in submissions}
+                if not any(contains(os.path.realpath(folder), os.path.realpath(path))
+                           for path in needed)]
 
     def folder_of(self, student: str) -> str:
         return os.path.join(self._out, STUDENTS, student)
@@ -148,10 +158,6 @@ class Grader:
 
     def _key_of_assignment(self) -> str:
         """Of all that decides a mark besides the submission."""
-        assignment = self._assignment
-        files: Dict[str, None] = dict.fromkeys(
-            [assignment.file, assignment.world, *(model.file for model in assignment.models),
-             *(check.file for check in assignment.of(Rostest))])
         own = os.path.dirname(os.path.abspath(__file__))
-        keys = [content_key(path) for path in (*files, own) if path]
+        keys = [content_key(path) for path in (*self._assignment.files, own)]
         return "\0".join([__version__, str(self._namespaces), *keys])

@@ -20,9 +20,9 @@ from ..editor.logs.world_record import LogRecord
 from ..errors import InputError, SimulationError, errors_of
 from ..python_api import OpenWorld
 from ..python_api.robots import RobotOptions
-from ..resources.resolver import Resolver
 from .assignment import Assignment, Launch, Rostest, Timed
 from .assignment_file import read_assignment
+from .confined_resolver import ConfinedResolver
 from .file_checks import (
     NO_WORLD,
     WorldFile,
@@ -91,7 +91,10 @@ class Judge:
         self._own = os.path.join(scratch, "judge")
         self._unreadable = unreadable
         self._writer = writer
-        self._resolver = Resolver.from_environment()
+        self._resolver = ConfinedResolver.from_environment()
+        self._resolver.allow(self._folder, self._own, *map(os.path.dirname, (
+            path for path in (assignment.world, *(model.file for model in assignment.models))
+            if path)))
 
     def run(self) -> None:
         form = self._assignment.form

@@ -5,9 +5,9 @@ import os
 import socket
 import subprocess
 import time
-from typing import List, Optional
+from typing import Optional
 
-from ..child_process import wait_or_kill
+from ..child_process import child_command, child_environment, wait_or_kill
 from ..editor.topic_source import TopicSource
 from ..python_api import OpenWorld
 from ..resources.resolver import Resolver
@@ -148,13 +148,10 @@ def graph_environment(uri: str) -> "dict[str, str]":
 def start_master() -> "tuple[str, subprocess.Popen[bytes]]":
     """Start a ROS master on a free port; returns its URI and process. Raises GradingError."""
     port = free_port()
-    words: List[str] = ["rosmaster", "--core", "-p", str(port)]
-    try:
-        process = subprocess.Popen(words, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
-                                   stderr=subprocess.DEVNULL)
-    except OSError as fault:
-        raise GradingError(f"the ROS master cannot be started: {fault}; source the setup.bash of"
-                           " your workspace") from None
+    process = subprocess.Popen(
+        child_command("grading.prompt_master", "--core", "-p", str(port)),
+        env=child_environment(), stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
+        stderr=subprocess.DEVNULL)
     until = time.monotonic() + _MASTER_S
     while time.monotonic() < until and process.poll() is None:
         with socket.socket() as probe:
@@ -162,7 +159,7 @@ def start_master() -> "tuple[str, subprocess.Popen[bytes]]":
                 return f"http://127.0.0.1:{port}/", process
         time.sleep(_POLL_S)
     process.kill()
-    raise GradingError("the ROS master did not start")
+    raise GradingError("the ROS master did not start; source the setup.bash of your workspace")
 
 
 def free_port() -> int:

@@ -12,12 +12,14 @@ import json
 import os
 import re
 from dataclasses import asdict
-from typing import Any, Dict, List
+from typing import Any, Dict, List, Sequence
 
+from .assignment import Check
 from .mark import CheckResult
 
 _MOST_BYTES = 200 << 20
 _LONGEST_LINE = 1 << 16
+_ROUNDING = 0.005      # of points
 _NAME = re.compile(r"[\w][\w.-]{0,60}\Z")
 
 
@@ -55,13 +57,18 @@ class ResultWriter:
 class ResultReader:
     """Collects the stream.
 
+    Args:
+        folder: gets the files.
+        checks: the checks that can have results.
+
     Attributes:
         results, notes, isolation: as received.
         files: names of files, which are in the folder.
         ended: whether the end was received.
     """
 
-    def __init__(self, folder: str) -> None:
+    def __init__(self, folder: str, checks: Sequence[Check]) -> None:
+        self._points = {check.name: check.points for check in checks}
         self.results: List[CheckResult] = []
         self.notes: List[str] = []
         self.isolation = ""
@@ -103,7 +110,11 @@ class ResultReader:
 
     def _line(self, value: Dict[str, Any]) -> None:
         if "result" in value:
-            self.results.append(CheckResult(**value["result"]))
+            found = CheckResult(**value["result"])
+            if not 0.0 <= found.points <= found.most + _ROUNDING or (
+                    found.most != self._points[found.name]):
+                raise ValueError(found)
+            self.results.append(found)
         elif "note" in value:
             self.notes.append(str(value["note"]))
         elif "isolation" in value:

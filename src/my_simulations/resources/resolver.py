@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import copy
 import os
-from typing import Callable, Iterator, List, Optional, Protocol, Sequence, Tuple
+from typing import Callable, Iterator, List, Optional, Protocol, Sequence, Tuple, Type, TypeVar
 
 from ..errors import ResourceError
 from .database.fuel_uri import FuelUri, fuel_uri, is_web_address
@@ -17,6 +17,8 @@ from .model_provider import DATABASE, ModelNotProvidedError, Progress
 from .package_files import PACKAGE, package_directories
 from .ros_packages import ExportedPaths, FindPackage, PackageIndex, package_name
 from .suggestions import NO_PACKAGE, same_file_elsewhere, suggestion, unlisted_model_folder
+
+Found = TypeVar("Found", bound="Resolver")
 
 _MEDIA_SUFFIXES = ("", "models", "media/models", "Media/models")
 _HOME_MODELS = "/.gazebo/models/"
@@ -103,7 +105,7 @@ class Resolver:
         self._late: Optional[ExportedPaths] = None
 
     @classmethod
-    def from_environment(cls, progress: Optional[Progress] = None) -> "Resolver":
+    def from_environment(cls: Type[Found], progress: Optional[Progress] = None) -> Found:
         """A resolver with Gazebo's variables, ~/.gazebo/models, our own models and ROS packages.
 
         Saved buildings are models, too (Gazebo behaviour). `progress` is called during downloads.

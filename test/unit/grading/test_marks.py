@@ -103,7 +103,7 @@ def test_results_and_files_come_through_in_pieces(assignment, tmp_path):
     writer.end()
     with os.fdopen(receiving, "rb") as stream:
         data = stream.read()
-    reader = ResultReader(str(tmp_path / "anna"))
+    reader = ResultReader(str(tmp_path / "anna"), assignment.checks)
     assert all(reader.feed(data[at:at + 7]) for at in range(0, len(data), 7))
     assert reader.results == [CheckResult("valid", 2.0, 1.0, "why", "f", 2)]
     assert (reader.notes, reader.isolation, reader.ended) == (["a note"], "files", True)
@@ -111,9 +111,13 @@ def test_results_and_files_come_through_in_pieces(assignment, tmp_path):
 
 
 @pytest.mark.parametrize("data", [
-    b"text\n", b'{"file": "../x", "size": 1}\n', b'{"result": {"name": 1}}\n', b"x" * (1 << 17)])
-def test_a_stream_that_is_invalid_is_not_read_further(tmp_path, data):
-    assert not ResultReader(str(tmp_path)).feed(data)
+    b"text\n", b'{"file": "../x", "size": 1}\n', b'{"result": {"name": 1}}\n', b"x" * (1 << 17),
+    b'{"result": {"name": "valid", "most": 2.0, "points": 6000.0}}\n',
+    b'{"result": {"name": "valid", "most": 6000.0, "points": 6000.0}}\n',
+    b'{"result": {"name": "other", "most": 2.0, "points": 2.0}}\n'])
+def test_a_stream_that_is_invalid_is_not_read_further(assignment, tmp_path, data):
+    (tmp_path / "lab.yaml").unlink()
+    assert not ResultReader(str(tmp_path), assignment.checks).feed(data)
     assert os.listdir(tmp_path) == []
 
 
