@@ -347,6 +347,8 @@ def test_files_are_sent_and_collected_without_following_links(class_of_two, tmp_
     plan, _, secret, outside = class_of_two
     home = Path(plan.home(plan.students[0]))
     handed_in = home / "submission" / "pkg"
+    worlds = home / "my_simulations" / "worlds"    # the default folder for saved worlds
+    assert worlds.resolve() == handed_in.parent and handed_in.parent.is_dir()
     handed_in.mkdir(parents=True)
     (handed_in / "go.py").write_text("pass")
     (handed_in / "go.py").chmod(0o755)
@@ -356,7 +358,7 @@ def test_files_are_sent_and_collected_without_following_links(class_of_two, tmp_
     if os.getuid() == 0:
         subprocess.run(["chown", "-R", str(plan.students[0].user), str(home)], check=True)
     assert call("collect", plan.file, "--out", tmp_path / "out")[:2] == (
-        0, "anna: 1 files\nben: 0 files\n")
+        0, "anna: 1 files\nben: 0 files: nothing is in ~/submission\n")
     found = [path for path in (tmp_path / "out").rglob("*") if not path.is_dir()]
     assert found == [tmp_path / "out" / "anna" / "pkg" / "go.py"] and os.access(found[0], os.X_OK)
     hostile = home / "submission" / os.fsdecode(b"\xff\n,<b>" + 100 * b"\xfe")
@@ -368,7 +370,7 @@ def test_files_are_sent_and_collected_without_following_links(class_of_two, tmp_
     found = {path.name for path in (tmp_path / "out" / "anna").rglob("*") if path.is_file()}
     assert found == {"go.py", hostile.name}
     assert mark_shown(plan, "anna") == {"points": 0.0, "most": 2.0, "status": "graded"}
-    assert mark_shown(plan, "ben") is None
+    assert mark_shown(plan, "ben") == {"points": 0.0, "most": 2.0, "status": "graded"}
     sheet = tmp_path / "sheet.txt"
     sheet.write_text("task 1")
     target = tmp_path / "target"

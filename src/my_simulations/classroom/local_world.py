@@ -16,6 +16,7 @@ from ..editor.transport.access_guard import COOKIE
 from ..grading.box import descendants
 from ..grading.permitted_variables import permitted_variables
 from ..grading.program import workspace_paths
+from ..resources.world_lookup import WORLDS
 from ..simulator.watchdog import process_time
 from . import relay, student_box
 from .class_plan import ClassPlan, Student, launch_text
@@ -168,13 +169,31 @@ def processors_of(number: int, count: int) -> List[int]:
 
 
 def make_home(plan: ClassPlan, student: Student) -> str:
-    """The home folder, which only the student can enter; made if it does not exist."""
+    """The home folder, which only the student can enter; made if it does not exist.
+
+    A new one has the folder of the submission, in which worlds are saved by default.
+    """
     os.makedirs(os.path.dirname(plan.home(student)), exist_ok=True)
     home = os.path.realpath(plan.home(student))
-    os.makedirs(home, 0o700, exist_ok=True)
+    with contextlib.suppress(FileExistsError):
+        os.mkdir(home, 0o700)
+        _fill_home(home, plan.submission)
+        for folder, folders, names in os.walk(home):
+            for path in (os.path.join(folder, name) for name in (*folders, *names)):
+                if os.geteuid() == 0:
+                    os.lchown(path, student.user, student.user)
     if os.geteuid() == 0:
         os.chown(home, student.user, student.user)
     return home
+
+
+def _fill_home(home: str, submission: str) -> None:
+    """Make the folder of the submission, to which the default folder for worlds leads."""
+    handed_in, worlds = (os.path.join(home, inside) for inside in (submission, WORLDS))
+    for folder in (handed_in, os.path.dirname(worlds)):
+        os.makedirs(folder, exist_ok=True)
+    if not os.path.exists(worlds):
+        os.symlink(os.path.relpath(handed_in, os.path.dirname(worlds)), worlds)
 
 
 def log_file(plan: ClassPlan, student: Student) -> str:

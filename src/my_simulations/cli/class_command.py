@@ -149,17 +149,22 @@ def _collect(plan: ClassPlan, options: argparse.Namespace) -> int:
             return Containers(plan).collect(student, options.out)
         return collect(plan, student, options.out)
 
-    status = _for_each(plan.students, lambda student: (
-        f"{student.name}: {copy(student)} files"))
+    def describe(student: Student) -> str:
+        count = copy(student)
+        where = "" if count else f": nothing is in ~/{plan.submission}"
+        return f"{student.name}: {count} files{where}"
+
+    status = _for_each(plan.students, describe)
     if not options.grade:
         return status
     from .grade_command import main as grade
 
     folders = [os.path.join(options.out, student.name) for student in plan.students]
-    handed_in = [folder for folder in folders if os.path.isdir(folder)]
-    if not handed_in:
+    if not any(map(os.path.isdir, folders)):
         raise CommandError("no student has handed in anything")
-    words = [options.grade, *handed_in, "--out", marks_folder(plan)]
+    for folder in folders:     # who has handed in nothing gets a mark, too
+        os.makedirs(folder, exist_ok=True)
+    words = [options.grade, *folders, "--out", marks_folder(plan)]
     if options.jobs:
         words += ["--jobs", str(options.jobs)]
     return grade(["grade", *words]) or status

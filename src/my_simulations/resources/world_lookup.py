@@ -22,10 +22,13 @@ SHIPPED = (
 _SYSTEM = ("/usr/", "/opt/ros/")
 """Folders of installed packages, which are never used for saving, even if writable."""
 
+WORLDS = os.path.join("my_simulations", "worlds")
+"""Default folder for saved worlds, in the home of a user."""
+
 
 def users_folder() -> str:
     """Default folder for saved worlds; it need not exist."""
-    return os.path.expanduser("~/my_simulations/worlds")
+    return os.path.join(os.path.expanduser("~"), WORLDS)
 
 
 def ships(path: str) -> bool:
