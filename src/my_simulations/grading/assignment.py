@@ -2,7 +2,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Any, Optional, Tuple
+from typing import Any, Optional, Tuple, Union
 
 from ..studies.expressions import Expression
 from ..studies.study import PlacedModel
@@ -90,12 +90,19 @@ class Requirement(Timed):
     Attributes:
         require: the condition.
         partial: a number from 0 to 1, the share of the points if it does not hold.
-        message: what the student reads then; "" for the condition itself.
+        message: texts and measurements that the student reads then; empty for the condition
+            itself, with what was measured.
     """
 
     require: Optional[Expression] = None
     partial: Optional[Expression] = None
-    message: str = ""
+    message: Tuple[Union[str, Expression], ...] = ()
+
+    @property
+    def expressions(self) -> Tuple[Expression, ...]:
+        """All that is measured."""
+        return tuple(one for one in (self.require, self.partial, *self.message)
+                     if isinstance(one, Expression))
 
 
 @dataclass(frozen=True)

@@ -1,7 +1,8 @@
 """Reads the checks of an assignment: the first key that is a kind of check decides which one."""
 from __future__ import annotations
 
-from typing import Any, Callable, Dict, Optional, Tuple
+import re
+from typing import Any, Callable, Dict, Optional, Tuple, Union
 
 from ..objects.yaml_source import KeyPath
 from ..studies.expressions import Expression, ExpressionError, parse
@@ -24,6 +25,7 @@ SHAPES = ("box", "sphere", "cylinder", "plane", "mesh", "capsule", "ellipsoid", 
           "heightmap", "polyline")
 _COMMON = ("points", "name")
 _MOST_S = 3600.0
+_MEASURED = re.compile(r"\{([^{}]*)\}")
 
 Fields = Dict[str, Any]
 
@@ -109,8 +111,7 @@ class CheckReader:
             require=self._expression(inside["require"], (*path, "require"), True),
             partial=self._expression(inside["partial"], (*path, "partial"), False)
             if "partial" in inside else None,
-            message=self._values.text(inside["message"], (*path, "message"))
-            if "message" in inside else "")
+            message=self._message(inside.get("message", ""), (*path, "message")))
 
     def _no_contact(self, inside: Fields, path: KeyPath, common: Fields) -> Check:
         names = self._values.names(inside["no_contact"], (*path, "no_contact"))
@@ -173,6 +174,13 @@ class CheckReader:
         self._values.fault(path, f"'{path[-1]}' must be one of {', '.join(known)}, is {value!r}")
         return known[0]
 
+    def _message(self, value: Any, path: KeyPath) -> Tuple[Union[str, Expression], ...]:
+        """The parts of a text with `{EXPRESSION}`."""
+        parts = _MEASURED.split(self._values.text(value, path)) if value != "" else []
+        found = [self._expression(part, path, False) if number % 2 else part
+                 for number, part in enumerate(parts)]
+        return tuple(part for part in found if part)
+
     def _expression(self, value: Any, path: KeyPath, condition: bool) -> Optional[Expression]:
         text = self._values.text(value, path)
         try:
@@ -182,7 +190,7 @@ class CheckReader:
                                "grade-expression")
             return None
         if found is not None and found.condition != condition:
-            wanted = "a condition" if condition else "a number from 0 to 1"
+            wanted = "a condition" if condition else "a number"
             self._values.fault(path, f"'{path[-1]}' takes {wanted}", code="grade-expression")
         if found is not None and any(signal.kind == "vary" for signal in found.signals):
             self._values.fault(path, "an assignment varies nothing: there is no 'vary'",

@@ -130,8 +130,7 @@ def _signals(check: Timed) -> List[Signal]:
     if isinstance(check, NoContact):
         return [Signal("contact", (check.first, check.second))]
     if isinstance(check, Requirement):
-        return [signal for one in (check.require, check.partial) if one is not None
-                for signal in one.signals]
+        return [signal for one in check.expressions for signal in one.signals]
     return []
 
 
@@ -155,11 +154,12 @@ def _required(check: Requirement, samples: Samples, name: str) -> CheckResult:
         return result(check, 0.0, "there is no condition")
     if check.require.value(samples):
         return result(check, 1.0)
-    reason = (check.message
-              or f"not true within {check.within:g} s of sim time: {check.require.text}")
-    measured = check.require.measured(samples)[:_MOST_MEASURED]
-    if measured:
-        reason += f"; {', '.join(measured)}"
+    reason = "".join(part if isinstance(part, str) else f"{part.value(samples):.2f}"
+                     for part in check.message)
+    if not reason:
+        reason = "; ".join([
+            f"not true within {check.within:g} s of sim time: {check.require.text}",
+            *check.require.measured(samples)[:_MOST_MEASURED]])
     share = 0.0
     if check.partial is not None:
         share = float(check.partial.value(samples))

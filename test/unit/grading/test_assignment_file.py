@@ -80,6 +80,8 @@ def test_all_kinds_of_checks_are_read(tmp_path):
     ("{points: 1, require: pose.a.x < 1}", "'within' is missing"),
     ("{points: 1, require: pose.a.x < 1, within: 1, message: [a]}",
      "'checks.1.message' must be text"),
+    ("{points: 1, require: pose.a.x < 1, within: 1, message: 'at {pose.a.x}'}",
+     "has a value for each sample"),
     ("{points: 1, require: pose.a.x <, within: 1}", "expected a"),
     ("{points: 1, require: final(pose.a.x), within: 1}", "takes a condition"),
     ("{points: 1, require: vary.x < 1, within: 1}", "there is no 'vary'"),
