@@ -57,7 +57,7 @@ sys.meta_path.insert(0, Finder)
 """
 
 # A node whose registration thread does not look by itself whether the node has ended.
-PATIENT = """import threading, time, rospy
+PATIENT = """import sys, threading, time, traceback, rospy
 from rospy.impl.registration import RegManager
 from my_simulations.ros.prompt_end import end_promptly
 
@@ -78,6 +78,15 @@ while not managers[0].cond._waiters:
 threads = list(rospy.core._shutdown_threads)
 rospy.signal_shutdown("done")
 print(len(threads), "threads,", sum(thread.is_alive() for thread in threads), "alive")
+
+def serves():
+    return any(frame.f_code.co_name == "serve_forever" for top in sys._current_frames().values()
+               for frame, _ in traceback.walk_stack(top))
+
+deadline = time.monotonic() + 60.0
+while serves() and time.monotonic() < deadline:
+    time.sleep(0.01)
+print("the server", "still polls" if serves() else "has ended")
 """
 
 
@@ -153,6 +162,7 @@ class NodeLife(unittest.TestCase):
         with Program([sys.executable, "-c", PATIENT]) as program:
             self.assertEqual(program.ended(), 0, program.text)
             self.assertIn("1 threads, 0 alive", program.text)
+            self.assertIn("the server has ended", program.text)
 
     def test_a_state_log_is_whole_after_an_interrupt(self):
         self.assert_logs(signal.SIGINT)

@@ -10,6 +10,7 @@ import rospy
 from ..resources.resolver import Resolver
 from ..simulator.simulator import Simulator
 from .node import Node
+from .prompt_end import end_promptly
 from .refused_requests import RefusedRequests
 from .registration import publisher
 
@@ -32,6 +33,7 @@ class AttachedNode:
                  may_change_world: bool = True) -> None:
         rospy.init_node(_NAME, argv=[_NAME], disable_rostime=True, disable_signals=True,
                         log_level=rospy.WARN)
+        end_promptly()
         rospy.set_param("/use_sim_time", True)
         rospy.set_param("~manual_stepping", True)
         clock = publisher("/clock", queue_size=_CLOCK_QUEUE, tcp_nodelay=True)
