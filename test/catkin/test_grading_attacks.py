@@ -25,7 +25,7 @@ world: worlds/empty.world
 models:
   box: {{file: {BOX}, pose: [0, 0, 0.1]}}
 services: all
-limits: {{processor_seconds: 20, memory_mb: 1000, processes: 60, file_mb: 50}}
+limits: {{processor_seconds: 8, memory_mb: 1000, processes: 60, file_mb: 50}}
 checks:
   - {{points: 4, name: moved, require: pose.box.x > 0.1, within: 0.3}}
   - {{points: 2, name: talks, topic: /chat, rate: 20, within: 0.3}}

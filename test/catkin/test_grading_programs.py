@@ -189,8 +189,9 @@ def test_the_replay_contains_topics_of_the_assignment(tmp_path):
 
 
 def test_each_lost_point_has_the_line_of_the_fault_of_the_program(tmp_path):
-    rows, students = grade(tmp_path, QUICK, {"loop": "x = 1\nwhile True:\n    x += 1\n",
-                                             "typo": "def f(:\n", "idle": "pass\n"})
+    limits = "limits: {processor_seconds: 8}\n"
+    rows, students = grade(tmp_path, limits + QUICK, {"loop": "x = 1\nwhile True:\n    x += 1\n",
+                                                      "typo": "def f(:\n", "idle": "pass\n"})
     pages = {name: (students / name / "index.html").read_text() for name in rows}
     assert all(points(row, "moved", "talks") == [0, 0] for row in rows.values())
     assert (pages["loop"].count("<code>go.py:2</code>")
@@ -230,7 +231,8 @@ def test_a_program_that_cannot_be_read_is_named(tmp_path):
 
 
 def test_a_program_that_exceeds_its_processor_time_is_told_so(tmp_path):
-    rows, students = grade(tmp_path, "limits: {processor_seconds: 1}\n" + QUICK,
+    limits = "limits: {processor_seconds: 1}\n"
+    rows, students = grade(tmp_path, limits + QUICK.replace("within: 0.3", "within: 3"),
                            {"anna": "while True: pass\n"})
     assert points(rows["anna"], "moved", "talks") == [0, 0]
     page = (students / "anna" / "index.html").read_text()

@@ -10,9 +10,8 @@ import contextlib
 import os
 import threading
 import time
-from typing import Callable, Dict, Optional
+from typing import Callable, List, Optional, Set
 
-from . import box
 from .program import Program
 from .thread_states import ThreadStates
 
@@ -20,9 +19,12 @@ _LOOK_S = 0.0005
 _BUSY_LOOK_S = 0.002
 _LOOK_SHARE = 0.1     # of the time, at most, is spent on looking
 _STUCK_LOOKS = 400    # all wait, but bytes stay unread
+_RESTLESS_LOOKS = 20  # all wait, but some thread wakes up again and again
+_QUIET_LOOKS = 2      # are enough without namespaces, where each look takes long
 _LONGEST_S = 60.0     # wall time of one wait, whatever the program does
 _FIRST_S = 1.0        # wall time in which a program sees the first step
-_START_S = 5.0        # processor time to start, s
+_START_S = 10.0       # processor time to start, s
+_START_SHARE = 0.25   # of the processor time of the program, at most, to start
 _FEWEST_STEPS = 20    # until a program counts as one that never waits
 _BUSY_SHARE = 0.9     # of the steps
 
@@ -33,12 +35,17 @@ class Lockstep:
     Args:
         program: the program.
         judge: process id of the process that steps the world.
+        processor_seconds: that each process of the program may use in all.
     """
 
-    def __init__(self, program: Program, judge: int) -> None:
+    def __init__(self, program: Program, judge: int, processor_seconds: float) -> None:
         self._program = program
+        self._start_seconds = min(_START_S, _START_SHARE * processor_seconds)
         main = threading.get_native_id()
         self._threads = ThreadStates(judge, lambda: {main, program.watcher})
+        self._has_network = "network" in os.environ.get("BOX_ISOLATION", "").split(",")
+        """Of its own: all its connections are those of the program and the world."""
+        self._most_looks = _RESTLESS_LOOKS if self._has_network else _QUIET_LOOKS
         self._sim = 0.0
         self._began: Optional[float] = None
         self._steps, self._busy_steps = 0, 0
@@ -51,12 +58,14 @@ class Lockstep:
     def start(self, step: Callable[[], object]) -> None:
         """Wait until the program has started and waits for the world.
 
-        `step` makes the first step: rospy looks for a sim time above 0 every 0.3 s of wall time.
+        `step` makes the first step: rospy looks for a sim time above 0 every 0.3 s of wall time,
+        after it has received that time. A program that never waits is waited for only once.
         """
-        self._wait(_START_S)
+        waits = self._wait(self._start_seconds)
         step()
-        time.sleep(_FIRST_S if self._program.running else 0.0)
-        self._wait(_START_S)
+        if waits and self._wait(self._start_seconds):
+            time.sleep(_FIRST_S if self._program.running else 0.0)
+            self._wait(self._start_seconds)
         self._began = time.monotonic()
 
     def wait(self, seconds: float) -> None:
@@ -71,9 +80,10 @@ class Lockstep:
 
     def _wait(self, processor_seconds: float) -> bool:
         """Whether the program waits now; False if its processor time is used up."""
-        until = self._used() + processor_seconds
+        until: Optional[float] = None
         deadline = time.monotonic() + _LONGEST_S
         waiting, is_quiet = 0, False
+        ran: List[bytes] = []
         pause = _LOOK_S
         self._threads.refresh()
         while self._program.running:
@@ -81,16 +91,21 @@ class Lockstep:
             began = time.monotonic()
             if self._threads.any_runs():
                 waiting, is_quiet = 0, False
-                if self._used() >= until or began > deadline:
+                used = self._used()
+                until = used + processor_seconds if until is None else until
+                if used >= until or began > deadline:
                     return False
                 took = time.monotonic() - began
                 pause = max(_BUSY_LOOK_S, min(took / _LOOK_SHARE, processor_seconds))
                 continue
             waiting, pause = waiting + 1, _LOOK_S
-            if is_quiet or waiting >= _STUCK_LOOKS:
+            has_started = self._threads.refresh()   # such threads are looked at the next time
+            ran, before = self._threads.run_times(), ran
+            # Threads are looked at one after the other, and work could be handed on meanwhile.
+            stood = ran == before or waiting >= self._most_looks
+            if waiting >= _STUCK_LOOKS or is_quiet and stood and not has_started:
                 return True
-            self._threads.refresh()    # what has started meanwhile is looked at the next time
-            is_quiet = not _bytes_under_way()
+            is_quiet = not self._bytes_under_way()
         return True
 
     def close(self) -> None:
@@ -100,7 +115,7 @@ class Lockstep:
     def _used(self) -> float:
         """Processor time of the program so far, s: of its threads, and of processes that ended."""
         total = 0.0
-        for pid in box.descendants(self._program.pid):
+        for pid in self._program.processes.pids():
             with contextlib.suppress(OSError, ValueError, IndexError):
                 with open(f"/proc/{pid}/stat", encoding="utf-8", errors="replace") as stat:
                     ended = stat.read().rpartition(")")[2].split()[13:15]
@@ -110,13 +125,13 @@ class Lockstep:
                         total += int(stat.read().split()[0]) * 1e-9
         return total
 
-
-def _bytes_under_way() -> bool:
-    """Whether a TCP connection of this network has bytes that were not read or not acknowledged."""
-    totals: Dict[str, int] = {}
-    for name in ("tcp", "tcp6"):
-        with contextlib.suppress(OSError):
-            with open(f"/proc/net/{name}", encoding="ascii") as table:
-                next(table)
-                totals[name] = sum(line.split()[4] != "00000000:00000000" for line in table)
-    return any(totals.values())
+    def _bytes_under_way(self) -> bool:
+        """Whether a TCP connection has bytes that were not read or not acknowledged."""
+        found: Set[str] = set()
+        for name in ("tcp", "tcp6"):
+            with contextlib.suppress(OSError):
+                with open(f"/proc/net/{name}", encoding="ascii") as table:
+                    next(table)
+                    found.update(words[9] for words in map(str.split, table)
+                                 if words[4] != "00000000:00000000")
+        return bool(found) and (self._has_network or bool(found & self._threads.sockets()))

@@ -17,6 +17,7 @@ from ..simulator.watchdog import resident_bytes
 from . import box, cell
 from .assignment import GradeLimits
 from .permitted_variables import permitted_variables
+from .process_list import ProcessList
 
 OUTPUT = "output.txt"
 _FIRST_USER = 61000
@@ -104,6 +105,7 @@ class Program:
 
     Attributes:
         pid: of the cell.
+        processes: those of the program, below the cell.
         watcher: thread id of the thread that watches the memory.
         excess: why it was killed; "" if it was not.
     """
@@ -131,6 +133,7 @@ class Program:
                 [sys.executable, "-I", cell.__file__, json.dumps(spec)], cwd=folder,
                 stdin=subprocess.DEVNULL, stdout=output, stderr=subprocess.STDOUT)
         self.pid = self._process.pid
+        self.processes = ProcessList(self.pid)
         self._ended = threading.Event()
         self._thread = threading.Thread(target=self._watch, name="memory", daemon=True)
         self._thread.start()
@@ -153,11 +156,11 @@ class Program:
     def suspended(self) -> Iterator[None]:
         """Stop all its processes meanwhile. Messages to them wait in their sockets."""
         stopped: Set[int] = set()
-        found = set(box.descendants(self.pid))
+        found = set(self.processes.pids())
         while found - stopped and len(stopped) <= self._limits.processes:
             self._signal(found - stopped, signal.SIGSTOP)
             stopped |= found
-            found = set(box.descendants(self.pid))   # a process may have started another one
+            found = set(self.processes.pids())   # a process may have started another one
         try:
             yield
         finally:
@@ -176,6 +179,8 @@ class Program:
             self._process.wait(_END_S)
         self._process.kill()
         self._process.wait()
+        self._thread.join()
+        self.processes.close()
 
     def output(self) -> bytes:
         """The end of what it has printed."""

@@ -54,7 +54,8 @@ class RosGraph:
         for check in self._assignment.of(ServiceAnswer):
             self._node.call(check.service, check.type_name)
         self._program = program
-        self._lockstep = Lockstep(program, os.getpid())
+        self._lockstep = Lockstep(program, os.getpid(),
+                                  self._assignment.limits.processor_seconds)
         self._lockstep.start(lambda: self._world.step(1))
 
     def step(self, steps: int) -> None:

@@ -3,9 +3,9 @@ from __future__ import annotations
 
 import contextlib
 import os
-from typing import Callable, Dict, Set, Tuple
+from typing import Callable, Dict, List, Set, Tuple
 
-from . import box
+from .process_list import ProcessList
 
 _BYTES = 256   # the state stands behind the name of the thread, which has 15 bytes at most
 
@@ -20,26 +20,42 @@ class ThreadStates:
 
     def __init__(self, root: int, ignored: Callable[[], Set[int]]) -> None:
         self._root = root
+        self._processes = ProcessList(root)
         self._ignored = ignored
-        self._files: Dict[Tuple[int, int], int] = {}
+        self._files: Dict[Tuple[int, int], Tuple[int, int]] = {}
 
-    def refresh(self) -> None:
-        """Find threads that have started, and forget those that have ended."""
+    def refresh(self) -> bool:
+        """Find threads that have started, and forget those that have ended.
+
+        Returns:
+            Whether threads have started since the last call.
+        """
+        if not self._processes.is_outdated:
+            return False
         ignored = self._ignored()
         found: Set[Tuple[int, int]] = set()
-        for pid in (self._root, *box.descendants(self._root)):
+        for pid in (self._root, *self._processes.pids()):
             with contextlib.suppress(OSError):
                 found |= {(pid, int(name)) for name in os.listdir(f"/proc/{pid}/task")
                           if int(name) not in ignored}
         for gone in self._files.keys() - found:
-            os.close(self._files.pop(gone))
-        for pid, thread in found - self._files.keys():
+            for file in self._files.pop(gone):
+                os.close(file)
+        new = found - self._files.keys()
+        for pid, thread in new:
             with contextlib.suppress(OSError):
-                self._files[pid, thread] = os.open(f"/proc/{pid}/task/{thread}/stat", os.O_RDONLY)
+                state = os.open(f"/proc/{pid}/task/{thread}/stat", os.O_RDONLY)
+                try:
+                    runs = os.open(f"/proc/{pid}/task/{thread}/schedstat", os.O_RDONLY)
+                except OSError:
+                    os.close(state)
+                    raise
+                self._files[pid, thread] = state, runs
+        return bool(new)
 
     def any_runs(self) -> bool:
         """Whether a known thread runs, can run or waits for a disk."""
-        for file in self._files.values():
+        for file, _ in self._files.values():
             with contextlib.suppress(OSError):   # it has ended
                 text = os.pread(file, _BYTES, 0)
                 at = text.rfind(b")")
@@ -47,7 +63,28 @@ class ThreadStates:
                     return True
         return False
 
+    def run_times(self) -> List[bytes]:
+        """How long and how often each known thread has run (proc(5), schedstat)."""
+        found = []
+        for _, file in self._files.values():
+            with contextlib.suppress(OSError):   # it has ended
+                found.append(os.pread(file, _BYTES, 0))
+        return found
+
+    def sockets(self) -> Set[str]:
+        """The inodes of the sockets of all known processes, as in `/proc/net/tcp`."""
+        found: Set[str] = set()
+        for pid in {pid for pid, _ in self._files}:
+            with contextlib.suppress(OSError):
+                for file in os.scandir(f"/proc/{pid}/fd"):
+                    with contextlib.suppress(OSError):
+                        link = os.readlink(file.path)
+                        found |= {link[8:-1]} if link.startswith("socket:[") else set()
+        return found
+
     def close(self) -> None:
-        for file in self._files.values():
-            os.close(file)
+        self._processes.close()
+        for files in self._files.values():
+            for file in files:
+                os.close(file)
         self._files.clear()
