@@ -186,9 +186,10 @@ def test_a_hostile_page_reaches_nothing(case, site, asked, browser, monkeypatch,
         "its own name for us": (f"http://evil.example:{site.port}/",
                                 f"http://evil.example:{port}/"),
     }
-    secrets = ["", "?token=wrong"] if token is None else [""]
     figures = {}
     for what, (page_url, base) in origins.items():
+        # Names and origins are checked before the token: to try a wrong one once is enough.
+        secrets = ["", "?token=wrong"] if token is None and what == "another port" else [""]
         page = context.new_page()
         page.goto(page_url)
         said = page.evaluate(f"([base, routes, secrets]) => ({ATTACK})(base, routes, secrets)",
