@@ -546,14 +546,17 @@ def test_modules_are_compiled_before_a_user_who_may_not_write_needs_them(clone, 
 
 
 def test_processor_time_of_programs_that_lost_their_parent_is_counted(clone, tmp_path):
-    busy = "import time; end = time.process_time() + 0.3\nwhile time.process_time() < end: pass"
+    busy = "import time; end = time.process_time() + 0.6\nwhile time.process_time() < end: pass"
     (tmp_path / "busy.py").write_text(busy)
+    # On a busy machine, 0.6 s of processor time take longer than the usual patience.
+    adopt = clone / "tools" / "lib" / "adopt.py"
+    adopt.write_text(adopt.read_text().replace("PATIENCE_S = 2.0", "PATIENCE_S = 60.0"))
     script = (f". \"$CLONE/tools/lib/lanes.sh\"; LOGS=$HOME; STEPS=1\n"
               f"orphan() {{ begin orphan; attempt orphan 50 bash -c "
               f"'setsid {sys.executable} {tmp_path}/busy.py & exit 0'; judge orphan 0 0 0; }}\n"
               "PROCESSOR_TIME=0; queue orphan; run_queue; echo; echo $PROCESSOR_MS")
     done = shell(clone, script, tmp_path / "home")
-    assert int(done.stdout.splitlines()[-1]) > 270, done.stdout + done.stderr
+    assert int(done.stdout.splitlines()[-1]) > 570, done.stdout + done.stderr
 
 
 ENDS_AT_ONCE = """
