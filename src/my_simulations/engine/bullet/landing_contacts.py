@@ -19,7 +19,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from math import acos, asin
 from operator import attrgetter, itemgetter
-from typing import AbstractSet, Callable, Dict, List, NamedTuple, Optional, Set, Tuple
+from typing import Callable, Dict, Iterable, List, NamedTuple, Optional, Set, Tuple
 
 import pybullet
 
@@ -41,7 +41,7 @@ from .agenda import Agenda
 from .approach import Motions, extent, flies
 from .bodies import Body, Part
 from .body_events import COMMANDED, BodyEvent
-from .contact_points import DISTANCE, LOAD, NORMAL, OTHER_PLACE, PLACE
+from .contact_points import DISTANCE, LOAD, NORMAL, OTHER_PLACE, PLACE, LinkKey
 from .landing_points import MOST_TILT, Filters, LandingPoints, Touch, extents_across
 from .link_states import Motion
 from .step_helper import FAR, StepHelper, next_multiple
@@ -169,12 +169,12 @@ class LandingContacts(StepHelper):
         flight = self._flights.get(uid)
         return flight is not None and step < flight.arrives
 
-    def see_rolling(self, links: AbstractSet[Tuple[int, int]], step: int) -> None:
+    def see_rolling(self, links: Iterable[LinkKey], step: int) -> None:
         """Record rolling links before their contacts are dropped: their bodies do not fly."""
         if self._agenda.next > step:
             return
-        for uid in dict.fromkeys(uid for uid, _ in links if uid in self._flights):
-            if self._agenda.at(uid) <= step:
+        for uid in [uid for uid, _ in links if self._agenda.at(uid) <= step]:
+            if self._agenda.at(uid) <= step and uid in self._flights:
                 self._is_on_ground(self._flights[uid], step, pybullet.getBaseVelocity(uid)[0])
 
     def before(self, step: int, dt: float, gravity: Vec3) -> None:

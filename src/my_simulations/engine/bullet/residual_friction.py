@@ -217,9 +217,9 @@ class ResidualFriction(StepHelper):
         contacts = pybullet.getContactPoints(bodyA=uid)
         if not contacts:
             return _FLIES
-        if len(contacts) > _MOST_CONTACTS:
-            return _PILED if any(each[OTHER_BODY] in self._moving for each in contacts) else _SLIDES
         neighbours = {each[OTHER_BODY] for each in contacts} & self._moving
+        if len(contacts) > _MOST_CONTACTS:
+            return _PILED if neighbours else _SLIDES
         if len(neighbours) > 1:
             return _PILED
         # Bodies with joints use another solver, which leaves no residual friction.

@@ -19,7 +19,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from math import dist
-from typing import AbstractSet, Any, Callable, Dict, List, Optional, Set, Tuple
+from typing import AbstractSet, Any, Callable, Dict, Iterable, List, Optional, Set, Tuple
 
 import pybullet
 
@@ -194,21 +194,27 @@ class RollingContacts(StepHelper):
             linear, angular = pybullet.getBaseVelocity(uid)
             if (linear != _NONE or angular != _NONE) and _slow(linear, angular):
                 pybullet.resetBaseVelocity(uid, _NONE, _NONE)
-        self._landing.see_rolling(self._rolling.keys(), step)
-        self._clear_contacts(False, step)
+        rolling = self._rolling
+        self._landing.see_rolling(rolling, step)
         if self.on_seams:
+            self._clear_contacts([key for key in rolling if key not in self.on_seams], step)
             if not self._moving.issubset({uid for uid, _ in self.on_seams}):
                 self._find_pairs()
-            self._clear_contacts(True, step)
+            rolling = [key for key in rolling if key in self.on_seams]
+        self._clear_contacts(rolling, step)
 
-    def _clear_contacts(self, on_seams: bool, step: int) -> None:
-        """Discard the contact points of links that roll on triangles, or of all others.
+    def _clear_contacts(self, links: Iterable[LinkKey], step: int) -> None:
+        """Discard the contact points of links.
 
         Bullet does so when a filter group is set, and finds new ones in the next step.
         """
-        for key, meets in self._rolling.items():
-            if (key in self.on_seams) is on_seams and not self._landing.flies(key[0], step):
-                pybullet.setCollisionFilterGroupMask(*key, meets.group, meets.mask)
+        flies, filters = self._landing.flies, self._rolling
+        clear = pybullet.setCollisionFilterGroupMask
+        for key in links:
+            uid, index = key
+            if not flies(uid, step):
+                meets = filters[key]
+                clear(uid, index, meets.group, meets.mask)
 
     def due(self, step: int) -> int:
         """Each step while a link rolls or is kept at rest, otherwise the step of the next check."""

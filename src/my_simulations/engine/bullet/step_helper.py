@@ -90,17 +90,19 @@ class StepLoop(BodyObserver):
                     deque(starmap(one, repeat((), free)), maxlen=0)  # a loop without bytecode
                 step += free
                 continue
-            acting = [n for n, at in enumerate(dues) if at <= step]
-            others = min([end, *(at for at in dues if at > step)])
-            befores = [n for n in acting if self._befores[n] is not None]
-            afters = [n for n in acting if self._afters[n] is not None]
+            acting, others = [], end
+            for n, at in enumerate(dues):
+                if at <= step:
+                    acting.append(n)
+                elif at < others:
+                    others = at
             # Mostly the same helpers act in each step. The others are checked after a change only.
             while step < others:
                 self._notified = False
-                self._call(self._befores, befores, step, dt, gravity)
+                self._call(self._befores, acting, step, dt, gravity)
                 self._prepare()
                 one()
-                self._call(self._afters, afters, step, dt, gravity)
+                self._call(self._afters, acting, step, dt, gravity)
                 step += 1
                 if self._notified:
                     dues = [helper.due(step) for helper in helpers]
@@ -122,8 +124,8 @@ class StepLoop(BodyObserver):
         if not self._notified:
             for n in acting:
                 call = calls[n]
-                assert call is not None
-                call(step, dt, gravity)
+                if call is not None:
+                    call(step, dt, gravity)
                 if self._notified:
                     begin = n + 1
                     break
