@@ -60,14 +60,9 @@ def note_constraints(found: Acting, body: Body, links: Mapping[int, Motion]) -> 
     for n in range(pybullet.getNumConstraints()):
         number = pybullet.getConstraintUniqueId(n)
         info = pybullet.getConstraintInfo(number)
-        if body.uid not in (info[0], info[2]) or info[4] == pybullet.JOINT_GEAR:
-            continue
-        force, torque = _on_the_second(info, pybullet.getConstraintState(number))
-        for uid, index, pivot, sign in ((info[0], info[1], info[6], -1.0),
-                                        (info[2], info[3], info[7], 1.0)):
+        for uid, index in (info[0:2], info[2:4]) if info[4] != pybullet.JOINT_GEAR else ():
             if uid == body.uid and index in links:
-                at = Pose(links[index].position, links[index].orientation)
-                note(found, index, scale(force, sign), transform(at, pivot), scale(torque, sign))
+                note(found, index, *constraint_forces(number, body, index, links[index]))
 
 
 def constraint_forces(number: int, body: Body, index: int, link: Motion

@@ -3,7 +3,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from itertools import zip_longest
-from typing import Any, Callable, Dict, Iterable, List, Optional, Sequence, Tuple, Type
+from typing import Any, Callable, Dict, List, Optional, Sequence, Tuple, Type
 
 import pybullet
 
@@ -73,8 +73,9 @@ class BulletBackend:
             Restart: self._restart,
             PrepareModel: self._preparation.begin,
             ContinuePreparation: self._preparation.advance,
-            SetModelState: self._set_model, SetLinkState: self._set_link,
-            SetJoints: self._set_joints,
+            SetModelState: lambda command: self._mover.set_model(
+                command, self._entry(command.model_id)),
+            SetLinkState: self._mover.set_link, SetJoints: self._mover.set_joints,
             SetAxes: self._set_axes, PinModels: self._hold,
             ConnectModels: self._connect,
             DisconnectModels: self._disconnect,
@@ -88,7 +89,7 @@ class BulletBackend:
                 command.servos, self._helpers.settings.step_size),
             ReadEfforts: lambda command: self._helpers.forces.servos.efforts(command.rows),
             AddTimedForces: self._add_timed_forces,
-            ClearTimedForces: self._clear_timed_forces,
+            ClearTimedForces: lambda command: self._helpers.forces.drop(command.force_ids),
             ReadRunState: run_states.read,
             SetRunState: run_states.set,
         }
@@ -100,6 +101,9 @@ class BulletBackend:
         if not isinstance(command, (Restart, Clear)):
             self._build_deferred()
         self._helpers.loop.changed()
+        if isinstance(command, (SetModelState, SetLinkState, SetJoints)):
+            for model_id in command.of:
+                self._entry(model_id)
         return self._appliers[type(command)](command)
 
     def configure(self, settings: PhysicsSettings) -> None:
@@ -302,22 +306,6 @@ class BulletBackend:
 
     # -- states ----------------------------------------------------------------------------------
 
-    def _set_model(self, command: SetModelState) -> None:
-        self._check(command.of)
-        self._mover.set_model(command, self._entry(command.model_id))
-
-    def _set_link(self, command: SetLinkState) -> None:
-        self._check(command.of)
-        self._mover.set_link(command)
-
-    def _set_joints(self, command: SetJoints) -> None:
-        self._check(command.of)
-        self._mover.set_joints(command)
-
-    def _check(self, model_ids: Iterable[int]) -> None:
-        for model_id in model_ids:
-            self._entry(model_id)
-
     def _set_axes(self, command: SetAxes) -> None:
         entry = self._entry(command.model_id)
         entry.model = replace(entry.model, joints=list(command.joints))
@@ -341,6 +329,3 @@ class BulletBackend:
         refusal = self._helpers.forces.queue(command.forces)
         if refusal:
             raise CommandRefusedError(refusal)
-
-    def _clear_timed_forces(self, command: ClearTimedForces) -> None:
-        self._helpers.forces.drop(command.force_ids)
