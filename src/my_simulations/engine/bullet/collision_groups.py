@@ -2,10 +2,8 @@
 
 Two links collide if each one's group shares a bit with the other's mask. The groups hold a link's
 collide_bitmask (SDF, surface/contact), shifted, and what it is made of; the masks what it meets.
-
-A plane is two things here. Bullet finds one point a step where a shape meets a plane, and four at
-once where a box meets a box: boxes that meet a plane tilt when they land and slide short. So a
-large box stands below each plane, for links that are made of boxes, and all others meet the plane.
+Links made of boxes meet a large box below each plane, and all others meet the plane
+(doc/dev/contacts.md, "Floors").
 """
 from __future__ import annotations
 

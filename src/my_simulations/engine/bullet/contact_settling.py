@@ -1,27 +1,21 @@
 """Keep bodies at rest in place: separate initial overlaps, and choose the solver accuracy.
 
-Split impulses act for at most 1 s after a body was added. With them Bullet separates overlapping
-rigid bodies without a change of momentum. So a body that starts inside a shelf does not jump out,
-and a body with a large moment of inertia does not keep turning. In this mode Bullet does not
-correct joints that are past their limits; this module corrects them, also without velocity.
+Figures and reasons: doc/dev/contacts.md, "Bodies at rest".
 
-Meanwhile contacts start with up to 0.99 of their impulse of the step before. Split impulses end
-once no overlap is deep: with them a stack of ten boxes leans by 1 mm per second, and a wall of 200
-bricks moves 1.7 mm per second (measured).
+Split impulses act for at most 1 s after a body was added: with them Bullet separates overlapping
+rigid bodies without a change of momentum. In this mode Bullet does not correct joints that are past
+their limits; this module corrects them, also without velocity. Split impulses end once no overlap
+is deep.
 
-Bullet ends its iterations once no constraint row changes a velocity by more than sqrt(1e-7) m/s.
-With this residual a body at rest can drift. Contacts of articulated bodies have no warm start: a
-parked robot moved 1 mm and 0.8 degrees in a minute, or slid if 50 iterations did not solve its
-wheels (measured). The accuracy depends on the bodies:
+With Bullet's usual residual, sqrt(1e-7) m/s, a body at rest can drift, and contacts of articulated
+bodies have no warm start. So the accuracy depends on the bodies:
 
 - While a slow articulated body touches something, the residual is 3e-8 m/s, with more iterations.
-  Steps then take five times as long.
 - An articulated body is held after it has stood still for half a second, if only gravity and static
   bodies act on it and no motor moves an axis. Every 16 steps it and its joints are set back to the
   held pose, at rest. Until another body touches it, it does not affect the accuracy.
-- Rigid bodies that may not sleep, or that a force or a tie keeps awake, creep on slopes. While
-  there are such bodies, the residual is 3e-6 m/s. Small ones creep on level floors too: twenty
-  cards of 2 mm moved 2.7 mm apart in 20 s, with this residual 0.3 mm.
+- While rigid bodies that may not sleep, or that a force or a tie keeps awake, lean on friction or
+  are small, the residual is 3e-6 m/s.
 - Bodies that move, sleep, or stand on a level floor cost nothing.
 """
 from __future__ import annotations

@@ -2,8 +2,7 @@
 
 The wrench of a joint on its outboard links is their inertial wrench minus all other forces on them:
 gravity, contacts, external wrenches, and constraints to other links. Bullet's own joint sensors are
-not used. With more than one joint they count Coriolis forces twice, and they omit the efforts of
-motors and limits (measured: 4 to 80 % off).
+not used (doc/dev/contacts.md, "Joint wrenches").
 
 The last step before a read-out is measured, including all helpers that act before and after it. So
 the forces of a model that is held or moved by command match its visible motion.

@@ -1,13 +1,10 @@
 """Find all contact points of a landing body before its impact, so that it lands flat.
 
-Bullet finds one contact point per step and pair, and four at once only for two boxes. So the first
-impact of a can or a mesh that lands upright would act at one point of its rim. It would tilt by 6
-degrees from 5 cm, and fall over from 0.3 m (measured). Bullet keeps contact points between steps
-and solves all of them. So in the step in which a flying body will touch a surface, the body is
-tilted back and forth by 2 mrad about the contact. Bullet detects contacts after each tilt, then the
-body is moved back. The points lie on its corners, or around its rim. The body stays tilted by
-0.1 mrad: then the point that the step adds is a corner too, and does not replace a better one.
-Points of surfaces that do not touch yet, as of a body that lands on a corner, carry no load.
+Bullet finds one contact point per step and pair, and four at once only for two boxes (reasons and
+figures: doc/dev/contacts.md, "Landings"). So in the step in which a flying body will touch a
+surface, `LandingPoints` tilts it back and forth by 2 mrad about the contact, and Bullet detects
+contacts after each tilt. The body stays tilted by 0.1 mrad: then the point that the step adds is a
+corner too, and does not replace a better one.
 
 A periodic check finds flying bodies. For each, the distance to all bodies in reach gives the step
 of the next check. If two bodies fly side by side, one is checked again once the other has landed.

@@ -1,15 +1,13 @@
 """Correct upright cylinders that slide on level floors, and over seams between floors.
 
-Bullet drops a contact point once the two surfaces have slid apart by a fiftieth of the body's size,
-and finds one new point per step. So a fast body stands on one or two points, and sinks by up to
-3 mm. When a body starts to slide, or reaches another floor, its points are therefore dropped, and
-the new points may slide apart ten times as far.
+Figures: doc/dev/contacts.md, "Upright cylinders that slide". When a body starts to slide, or
+reaches another floor, its contact points are dropped, and the new points may slide apart ten times
+as far as usual.
 
 At a seam, the body overlaps the next box of the same height less in its side than in its top. So
-Bullet pushes it back: a can at 0.7 m/s turned round at the first seam of a tiled floor. A side
-below floor level cannot cause a real contact. So a body that such a side has pushed gets back its
-velocity of before the step, without tilting and sinking. This also removes the friction of that
-step.
+Bullet pushes it back. A side below floor level cannot cause a real contact. So a body that such a
+side has pushed gets back its velocity of before the step, without tilting and sinking. This also
+removes the friction of that step.
 
 Boxes need no correction, because Bullet finds four points of two boxes in each step. Rolling
 cylinders do not touch the sides.

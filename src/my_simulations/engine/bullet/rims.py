@@ -1,12 +1,9 @@
 """Divide wheels and rods into pieces, so that both ends have contacts.
 
 Bullet finds one contact point per step between a lying cylinder and a floor, at one end or the
-other. A base on wide wheels with equal efforts therefore yawed by 13 degrees in 1 s. So the
-cylinder of a wheel consists of a thin disc at each end and a slightly smaller cylinder between.
-
-A rod without joints alternated between contacts at its two ends: placed 1 mm above the floor, it
-sank 4 to 6 mm into it while split impulses were on. So rods are built in the same way, capsules
-with a sphere at each end. ODE finds contacts at both ends of either shape.
+other (doc/dev/contacts.md, "Wheels"). So the cylinder of a wheel, or of a rod without joints,
+consists of a thin disc at each end and a slightly smaller cylinder between; a capsule has a sphere
+at each end. ODE finds contacts at both ends of either shape.
 """
 from __future__ import annotations
 

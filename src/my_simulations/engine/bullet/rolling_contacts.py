@@ -1,14 +1,9 @@
 """Make lying cylinders roll at constant speed, and keep them at rest on level floors.
 
-Bullet keeps the contact points of a pair between steps at fixed places on the surfaces. On a
-rolling cylinder they lag 0.2 to 0.4 mm behind the axle, and their load accelerates it: a can pushed
-to 0.05 m/s rolled at 0.4 m/s after 20 s, and a can at rest started to roll. So the points of lying
-cylinders are dropped before each step; the step finds new ones.
-
-A step finds one new point, at one end or the other, so it pushes only one end out of the floor.
-With the separation rate of other contacts, a cylinder of 3 cm rolls 1.9 mm deep. There Bullet is
-inaccurate on boxes: the cylinder loses 2 % of 0.05 m/s in 20 s (measured). On static bodies the
-overlaps of a rolling cylinder are therefore separated as fast as possible without a jump.
+Bullet's contact points lag behind the axle of a rolling cylinder and accelerate it. So the points
+of lying cylinders are dropped before each step; the step finds new ones. It finds one, at one end
+or the other, so overlaps with static bodies are separated as fast as possible without a jump
+(figures: doc/dev/contacts.md, "Cylinders on their side").
 
 A cylinder at rest would rock on such points. So a cylinder that hardly moves keeps its points, is
 stopped in each step and set back, if the floor is level and no moving body, joint or timed force
@@ -194,7 +189,7 @@ class RollingContacts(StepHelper):
             linear, angular = pybullet.getBaseVelocity(uid)
             if (linear != _NONE or angular != _NONE) and _slow(linear, angular):
                 pybullet.resetBaseVelocity(uid, _NONE, _NONE)
-        rolling = self._rolling
+        rolling: Iterable[LinkKey] = self._rolling
         self._landing.see_rolling(rolling, step)
         if self.on_seams:
             self._clear_contacts([key for key in rolling if key not in self.on_seams], step)

@@ -2,11 +2,10 @@
 
 A lying cylinder that overlaps a floor of triangles also touches the edge of the triangle ahead or
 behind. That edge carries part of the weight, pushes along or against the motion, and turns the
-wheel: at 0.05 m/s a wheel lost or gained up to 80 % of its speed in 10 s. Two corrections are made:
+wheel (figures: doc/dev/contacts.md, "Cylinders on their side"). Two corrections are made:
 
-- Bullet merges a new point with an old one within its breaking threshold, a fiftieth of the body's
-  size. So a point on an edge replaced the one below the axle. While a cylinder rolls on triangles,
-  the threshold is smaller for new pairs; its own pairs are new in each step.
+- Bullet merges a new point with an old one within its breaking threshold. While a cylinder rolls on
+  triangles, the threshold is smaller for new pairs; its own pairs are new in each step.
 - The error of the edge forces in a step is compensated in the next one: the normal forces should
   act along the normal of the deepest point, and through the axle.
 """

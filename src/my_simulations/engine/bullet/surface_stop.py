@@ -1,9 +1,7 @@
 """Stop fast bodies at the surface that they hit, before they penetrate it deeply.
 
-A body at 10 m/s moves 1 cm per step, and Bullet solves an impact only once bodies overlap: a box
-that fell 5 m penetrated the floor by 6 mm for a step. If a body would go deeper than 1.8 mm in a
-step, it is moved back before the step by the excess; its velocity is kept. It arrives a fraction of
-a step later.
+If a body would go deeper than 1.8 mm in a step, it is moved back before the step by the excess; its
+velocity is kept (doc/dev/contacts.md, "Floors"). It arrives a fraction of a step later.
 
 A bouncing body is moved back to the surface itself, with the velocity that it had there. Bullet
 separates overlaps at 5 m/s per metre, and this lift adds energy: from 5 m, with steps of 1 ms, each

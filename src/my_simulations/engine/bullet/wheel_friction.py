@@ -1,14 +1,11 @@
 """Friction of sliding wheels and of surfaces with slip: Coulomb's law for any heading.
 
-Bullet's solver for articulated bodies computes friction along the world axes. With its pyramid, the
-friction on a body that slides diagonally is up to 1.41 mu N. With its cone, the mobility of the
-link weights the two directions, so that a driven wheel has hardly any friction along its axle. And
-it has no slip that depends on the force (slip1, slip2; ODE's manual, "Contact"), of which Gazebo
-Classic 11 applies the sum of both surfaces to a pair.
-
-So Bullet's friction is reduced to a share of 0.001 for links with slip, and for links on joints
-while they slide on static bodies. A force at each contact replaces it. It is computed after a step,
-and acts in the next one. At the slip velocity v it is
+Bullet's friction of articulated bodies depends on the heading, and has no slip that depends on the
+force (slip1, slip2; ODE's manual, "Contact"), of which Gazebo Classic 11 applies the sum of both
+surfaces to a pair. So it is reduced to a share of 0.001 for links with slip, and for links on
+joints while they slide on static bodies (figures: doc/dev/contacts.md, "Friction"). A force at each
+contact replaces it. It is computed after a step, and acts in the next one. At the slip velocity v
+it is
 
     F = -v / (s + h) + B,  at most mu N,
 
@@ -19,9 +16,8 @@ the tensor of both, and the limit is |M^-1 F| = N. A fast wheel then meets -N M 
 all forces within this ellipse, the one that dissipates the most power.
 
 While all links of a body without slip are held, or slide with all friction, it is computed every
-few steps only: a step with it takes twice as long as one without.
-
-Once all links of a body that have no slip have stopped sliding, they get Bullet's friction back.
+few steps only. Once all links of a body that have no slip have stopped sliding, they get Bullet's
+friction back.
 """
 from __future__ import annotations
 
