@@ -12,6 +12,34 @@ GRIPPER = {"type": "franka_gazebo/FrankaGripperSim", "finger1": {"joint": "one",
            "finger2": {"joint": "two", "gains": GAINS}, "grasp": {"resting_threshold": 0.01}}
 
 
+ACTIONS = {
+    "Move": ("float64 width\nfloat64 speed\n", "bool success\nstring error\n"),
+    "Grasp": ("float64 width\nGraspEpsilon epsilon\nfloat64 speed\nfloat64 force\n",
+              "bool success\nstring error\n"),
+    "Homing": ("", "bool success\nstring error\n"), "Stop": ("", "bool success\nstring error\n")}
+
+
+@pytest.fixture
+def hand(tmp_path, monkeypatch):
+    """A gripper in a workspace that has the messages of franka_gripper."""
+    folder = tmp_path / "franka_gripper"
+    (folder / "msg").mkdir(parents=True)
+    (folder / "package.xml").write_text("<package><name>franka_gripper</name></package>")
+    files = {"GraspEpsilon": "float64 inner\nfloat64 outer\n"}
+    for name, (goal, result) in ACTIONS.items():
+        status = "std_msgs/Header header\nactionlib_msgs/GoalStatus status\n"
+        files.update({
+            f"{name}Goal": goal, f"{name}Result": result, f"{name}Feedback": "",
+            f"{name}ActionGoal": "std_msgs/Header header\nactionlib_msgs/GoalID goal_id\n"
+                                 f"{name}Goal goal\n",
+            f"{name}ActionResult": f"{status}{name}Result result\n",
+            f"{name}ActionFeedback": f"{status}{name}Feedback feedback\n"})
+    for name, text in files.items():
+        (folder / "msg" / f"{name}.msg").write_text(text)
+    monkeypatch.setenv("ROS_PACKAGE_PATH", str(tmp_path))
+    return Gripper()
+
+
 class Gripper(Arm):
     """Two fingers of 1 kg, which begin open."""
 
@@ -24,6 +52,16 @@ class Gripper(Arm):
     def send(self, position, effort=0.0, name="g"):
         self.deliver("grip/gripper_action/goal", goal_id=Message(id=name, stamp=Span()),
                      goal=Message(command=Message(position=position, max_effort=effort)))
+
+    def ask_for(self, action, name="g", **goal):
+        """Send a goal of an action of franka_gripper."""
+        self.deliver(f"grip/{action}/goal", goal_id=Message(id=name, stamp=Span()),
+                     goal=Message(**goal))
+
+    def ended(self, action):
+        """Status, success and reason of the goals of an action that have ended."""
+        return [(one.status.status, one.result.success, one.result.error)
+                for one in self.published(f"grip/{action}/result")]
 
     def stop_at(self, position):
         """Close for 3 s; an object between the fingers stops both at a position."""
@@ -83,6 +121,69 @@ def test_a_goal_is_replaced_and_cancelled_and_refused():
     assert arm.switch((), ["grip"])
     arm.send(0.0, name="d")
     assert arm.results()[-1][0] == REJECTED
+
+
+def test_a_hand_moves_to_a_width_at_a_speed(hand):
+    hand.ask_for("move", width=0.03, speed=0.1)
+    hand.context.advance(0.3)
+    assert hand.ended("move") == []
+    hand.context.advance(0.6)
+    assert hand.ended("move") == [(SUCCEEDED, True, "")]
+    assert 2.0 * hand.at("one") == pytest.approx(0.03, abs=2e-3)
+
+
+def test_a_hand_grasps_an_object_of_the_wanted_width_and_presses_it(hand):
+    hand.ask_for("grasp", width=0.03, epsilon=Message(inner=0.005, outer=0.005), speed=0.1,
+                 force=10.0)
+    hand.stop_at(0.016)
+    assert hand.ended("grasp") == [(SUCCEEDED, True, "")]
+    finger = hand.context.joints["one"]
+    finger.velocity = 0.0
+    hand.context.advance(0.01)   # released: each finger is pressed with half of the force
+    assert finger.velocity == pytest.approx(-5.0 * 0.01, rel=0.15)   # 1 kg
+    hand.ask_for("stop")
+    assert hand.ended("stop") == [(SUCCEEDED, True, "")]
+    finger.velocity = 0.0
+    hand.context.advance(0.01)
+    assert abs(finger.velocity) < 0.01
+
+
+def test_a_grasp_of_another_width_fails_with_the_width(hand):
+    hand.ask_for("grasp", width=0.03, epsilon=Message(inner=0.005, outer=0.005), speed=0.1,
+                 force=10.0)
+    hand.stop_at(0.01)
+    ((status, success, error),) = hand.ended("grasp")
+    assert (status, success) == (ABORTED, False)
+    assert "rest at a width of 0.0200 m, not at 0.0300 m" in error
+
+
+def test_homing_closes_and_opens_the_fingers(hand):
+    hand.ask_for("homing")
+    hand.stop_at(0.0)
+    assert hand.ended("homing") == [] and hand.at("one") < 0.012
+    hand.context.advance(6.0)
+    assert hand.ended("homing") == [(SUCCEEDED, True, "")]
+    assert hand.at("one") == pytest.approx(0.04, abs=1e-3)
+
+
+def test_goals_of_a_hand_are_replaced_stopped_and_checked(hand):
+    hand.ask_for("move", "a", width=0.0, speed=0.01)
+    hand.send(0.01, name="b")
+    hand.ask_for("stop", "c")
+    assert hand.ended("move") == [(PREEMPTED, False, "another goal came")]
+    assert [status for status, *_ in hand.results()] == [PREEMPTED]
+    for goal, word in (({"width": 0.09, "speed": 0.1}, "0 to 0.08 m"),
+                       ({"width": 0.01, "speed": -0.1}, "negative"),
+                       ({"width": float("nan"), "speed": 0.1}, "not finite")):
+        hand.ask_for("move", word, **goal)
+        status, success, error = hand.ended("move")[-1]
+        assert (status, success) == (ABORTED, False) and word in error
+
+
+def test_without_franka_gripper_there_is_gripper_action_alone():
+    arm = Gripper()
+    assert "grip/move/result" not in " ".join(arm.context.published)
+    assert any("move, grasp, homing and stop" in text for text in arm.context.log_messages)
 
 
 def test_the_engine_stops_for_the_gripper_only_while_it_has_a_goal():

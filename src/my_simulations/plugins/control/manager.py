@@ -57,7 +57,7 @@ TYPES: Mapping[str, str] = {
     "force_torque_sensor_controller/ForceTorqueSensorController":
         "sensor_controllers:ForceTorqueSensorController",
     "franka_control/FrankaStateController": "franka:FrankaStateController",
-    "franka_gazebo/FrankaGripperSim": "franka:FrankaGripper",
+    "franka_gazebo/FrankaGripperSim": "franka_gripper:FrankaGripper",
     "unitree_legged_control/UnitreeJointController":
         "unitree_joint_controller:UnitreeJointController",
 }
