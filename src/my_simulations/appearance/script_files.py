@@ -12,12 +12,12 @@ _MOST_OF_A_FOLDER = 8 * LARGEST
 """Bytes of scripts that are read of one folder."""
 
 
-def scripts_of(uri: str, resolver: Resolver) -> Tuple[List[str], List[str]]:
-    """The scripts of a URI, and the folders that may contain their images.
+def scripts_of(uri: str, resolver: Resolver, base_dir: str = "") -> Tuple[List[str], List[str]]:
+    """The scripts of a URI, relative to `base_dir`, and the folders that may contain their images.
 
     Raises ResourceNotFoundError: neither a file nor a folder.
     """
-    path = resolver.resolve(uri)
+    path = resolver.resolve(uri, base_dir)
     if os.path.isdir(path):
         return _scripts_in(path), [path]
     return [path] if path.endswith(".material") else [], [os.path.dirname(path)]

@@ -13,12 +13,15 @@ _SCHEMES = ("model", "package", "file")
 _LIKE = 0.7
 _MOST_ABOVE = 6
 """Folders above a file in which models are looked for, if it is in no package."""
+_MOST_CORRECTIONS = 3   # of one URI
 NO_PACKAGE = "ROS package "
 """Prefix of `ResourceNotFoundError.tried` for an unknown package."""
 
 
 def suggestion(uri: str, tried: Sequence[str], packages: Callable[[], List[str]]) -> str:
-    """The URI with its misspelt part corrected, if such a file exists; else "".
+    """The URI with its misspelt parts corrected; "" if no existing name is similar.
+
+    A correction that exists comes first; else it is that of the first part alone.
 
     Args:
         uri: the URI.
@@ -30,18 +33,43 @@ def suggestion(uri: str, tried: Sequence[str], packages: Callable[[], List[str]]
         right = f"{scheme.group(1).lower()}://{uri[scheme.end():]}"
         if scheme.group(1) != scheme.group(1).lower() or scheme.group().count("/") < 2:
             return right
+    first = ""
     for place in tried:
         if place.startswith(NO_PACKAGE):
             wrong = place[len(NO_PACKAGE):]
-            names = [os.path.basename(folder) for folder in packages()]
+            meant = _with(uri, wrong, [os.path.basename(folder) for folder in packages()])
+            exists = bool(meant)
         else:
-            folder, wrong = _first_missing(place)
-            names = _listed(folder)
-        near = difflib.get_close_matches(wrong, names, 1, _LIKE)
-        if near and wrong and wrong in uri:
-            at = uri.rindex(wrong)
-            return uri[:at] + near[0] + uri[at + len(wrong):]
-    return ""
+            meant, exists = _corrected(uri, place)
+        if exists:
+            return meant
+        first = first or meant
+    return first
+
+
+def _corrected(uri: str, path: str) -> "tuple[str, bool]":
+    """A URI with the parts corrected that a path does not have, and whether such a file exists."""
+    meant = ""
+    for _ in range(_MOST_CORRECTIONS):
+        folder, wrong = _first_missing(path)
+        near = _with(wrong, wrong, _listed(folder))
+        if not near or wrong not in uri:
+            break
+        corrected = _with(uri, wrong, [near])
+        path = os.path.join(folder, near) + path[len(os.path.join(folder, wrong)):]
+        if os.path.exists(path):
+            return corrected, True
+        meant, uri = meant or corrected, corrected
+    return meant, False
+
+
+def _with(uri: str, wrong: str, names: Sequence[str]) -> str:
+    """A URI with the name nearest to the last `wrong` in its place; "" for none."""
+    near = difflib.get_close_matches(wrong, names, 1, _LIKE)
+    if not (near and wrong and wrong in uri):
+        return ""
+    at = uri.rindex(wrong)
+    return uri[:at] + near[0] + uri[at + len(wrong):]
 
 
 def same_file_elsewhere(uri: str, model_folders: Sequence[str], own_folders: Sequence[str],

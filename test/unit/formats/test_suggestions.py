@@ -38,6 +38,38 @@ def test_the_first_part_of_a_path_that_does_not_exist_is_compared_with_what_does
         assert suggestion(uri, [str(tmp_path / tried)], nothing) == meant
 
 
+def test_a_correction_that_exists_comes_before_one_of_a_part(tmp_path):
+    for path in ("tables/meshes/top.dae", "table/mesh/top.dae", "tablet/skin.png"):
+        (tmp_path / path).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / path).write_text("")
+    for uri, meant in (("model://tabel/mseh/top.dae", "model://table/mesh/top.dae"),
+                       ("model://tablets/skn.png", "model://tablet/skin.png"),
+                       ("model://tablets/zzz.png", "model://tablet/zzz.png")):
+        assert suggestion(uri, [str(tmp_path / uri[8:])], nothing) == meant
+    places = [str(tmp_path / "none" / "tablets"), str(tmp_path / "tablet" / "skn.png")]
+    assert suggestion("model://tablet/skn.png", places, nothing) == "model://tablet/skin.png"
+
+
+def test_scripts_and_textures_are_compared_with_those_beside_them(tmp_path):
+    for folder, name in (("scripts", "room.material"), ("textures", "wood_floor.png")):
+        (tmp_path / "materials" / folder).mkdir(parents=True)
+        (tmp_path / "materials" / folder / name).write_text(
+            "material Wood\n{ technique { pass { texture_unit { texture wood_flor.png } } } }")
+
+    def hints(name):
+        text = sdf('<model name="m"><link name="l"><visual name="v"><geometry><sphere><radius>1'
+                   "</radius></sphere></geometry><material><script>"
+                   f"<uri>materials/scripts/{name}</uri><name>Wood</name></script></material>"
+                   "</visual></link></model>")
+        (tmp_path / "m.sdf").write_text(text)
+        _, issues = read_entity(text, Resolver(), str(tmp_path / "m.sdf"))
+        return [issue.hint for issue in issues]
+
+    (hint,) = hints("rom.material")
+    assert hint.startswith("did you mean materials/scripts/room.material? Otherwise")
+    assert hints("room.material") == ["did you mean wood_floor.png?"]
+
+
 def test_an_unknown_package_is_compared_with_the_known_ones():
     found = suggestion("package://my_simulatons/a.dae", ["ROS package my_simulatons"],
                        lambda: ["/ws/src/other", "/ws/src/my_simulations"])

@@ -47,7 +47,7 @@ def _read_scripts(uris: List[str], element: Any, source: Source
         named = written[number] if len(written) == len(uris) else element
         source.report_home_path(uri, named)
         try:
-            scripts, more = scripts_of(uri, source.resolver)
+            scripts, more = scripts_of(uri, source.resolver, source.base_dir)
             folders += more
             for script in scripts:
                 known.update((name, (found, script))
@@ -71,7 +71,13 @@ def _check_texture(material: ScriptMaterial, script: str, folders: List[str],
     source.log.add(warning(
         "image-not-found", f"the texture {material.texture!r} of material {material.name!r} was"
         " not found; the material is shown without it", file=script,
-        line=_line_of(material.texture, script), hint=f"copy it to {expected}"))
+        line=_line_of(material.texture, script),
+        hint=closest(name, _files_of([*folders, expected])) or f"copy it to {expected}"))
+
+
+def _files_of(folders: List[str]) -> List[str]:
+    """The names of the files in folders that exist."""
+    return [name for folder in folders if os.path.isdir(folder) for name in os.listdir(folder)]
 
 
 def _line_of(texture: str, script: str) -> int:
