@@ -41,6 +41,7 @@ def test_it_takes_off_flies_and_lands_with_the_thrust_of_each_state():
     context, _ = drone()
     assert command(context, (0.0, 0.0, 1.0)) == OFF
     command(context)
+    assert context.stops == 0   # the engine waits for it only while it flies
     context.deliver("drone/takeoff")
     context.advance(0.4)
     assert context.wrenches["base"][0][2] == pytest.approx(1.5 * MASS * 9.8)
@@ -50,7 +51,7 @@ def test_it_takes_off_flies_and_lands_with_the_thrust_of_each_state():
     context.advance(0.9)
     assert context.wrenches["base"][0][2] == pytest.approx(0.8 * MASS * 9.8)
     context.advance(0.2)
-    assert context.wrenches["base"] == OFF
+    assert context.wrenches["base"] == OFF and context.stops == 0
 
 
 def test_velocity_commands_rise_pitch_roll_and_turn():

@@ -9,10 +9,11 @@ turns them the wrong way.
 from __future__ import annotations
 
 import random
-from typing import Any, Tuple
+from typing import Any, Optional, Tuple
 
-from ...geometry import Vec3, conjugate, norm, rotate, rpy_from_quat, scale, subtract
+from ...geometry import ZERO3, Vec3, conjugate, norm, rotate, rpy_from_quat, scale, subtract
 from ..base import Plugin
+from ..context import CallHandle
 from ..finite_messages import finite_only
 from ..parameters import namespace_or
 from .body_wrench import NO_WRENCH, hold_wrench
@@ -21,7 +22,6 @@ from .quadrotor_simple_controller import load_factor, to_heading
 
 _LANDED, _FLYING, _TAKING_OFF, _LANDING = range(4)    # the numbers on the topic `state`
 _SECONDS = {_TAKING_OFF: 0.5, _LANDING: 1.0}          # of the two manoeuvres
-_NEXT = {_TAKING_OFF: _FLYING, _LANDING: _LANDED}
 _STRENGTH = {_FLYING: 1.0, _TAKING_OFF: 1.5, _LANDING: 0.8}   # factor of thrust and torque
 
 
@@ -58,8 +58,10 @@ class SjtuDrone(Plugin):
         context.subscribe("dronevel_mode" if own else "/drone/vel_mode", "std_msgs/Bool",
                           self._choose_velocities)
         self._moves_to_positions = self._tilts_by_velocity = False
+        self._timer: Optional[CallHandle] = None   # while it is not landed
         self.reset()
-        context.every(0.0, self.update)
+        context.observe(0.0, self._publish, [self._poses, self._velocities, self._accelerations],
+                        resume=self._begin_motion)
 
     def reset(self) -> None:
         for pid in self._pids:
@@ -69,14 +71,17 @@ class SjtuDrone(Plugin):
         self._random = random.Random(f"{self.context.seed}::{self.context.model}::drone")
         self._drift: Tuple[float, ...] = (0.0,) * 4
         self._drift_until_ns = self.context.now_ns + self._drift_ns
-        self._velocity, self._position = self._link.twist.linear, self._link.pose.position
-        self._state = _LANDED
+        self._switch_off()
         self.clock_set()
-        hold_wrench(self.context, self._link, NO_WRENCH)
 
     def clock_set(self) -> None:
         """Restart the time since the last update, and a manoeuvre."""
         self._last_ns = self._since_ns = self.context.now_ns
+        self._begin_motion()
+
+    def _begin_motion(self) -> None:
+        """Publish accelerations from the present time and velocity on."""
+        self._seen_velocity, self._seen_ns = self._link.twist.linear, self.context.now_ns
 
     def _receive(self, message: Any) -> None:
         """Keep a command, with the noise of its motion."""
@@ -99,6 +104,9 @@ class SjtuDrone(Plugin):
     def _take_off(self) -> None:
         if self._state == _LANDED:
             self._start(_TAKING_OFF)
+            self._velocity, self._position = self._link.twist.linear, self._link.pose.position
+            self._last_ns = self.context.now_ns
+            self._timer = self.context.every(0.0, self.update)
 
     def _land(self) -> None:
         if self._state in (_FLYING, _TAKING_OFF):
@@ -107,7 +115,15 @@ class SjtuDrone(Plugin):
     def _start(self, state: int) -> None:
         self._state, self._since_ns = state, self.context.now_ns
 
+    def _switch_off(self) -> None:
+        self._state = _LANDED
+        if self._timer is not None:
+            self._timer.end()
+            self._timer = None
+        hold_wrench(self.context, self._link, NO_WRENCH)
+
     def update(self) -> None:
+        """In each step between a take-off and the landing."""
         elapsed_ns = self.context.now_ns - self._last_ns
         if elapsed_ns <= 0:
             return
@@ -116,16 +132,15 @@ class SjtuDrone(Plugin):
         pose, twist = self._link.pose, self._link.twist
         acceleration = scale(subtract(twist.linear, self._velocity), 1.0 / dt)
         self._velocity = twist.linear
-        self._publish(acceleration)
         if self._state in _SECONDS and \
                 self._last_ns - self._since_ns > _SECONDS[self._state] * 1e9:
-            self._start(_NEXT[self._state])
-            if self._state == _LANDED:
-                hold_wrench(self.context, self._link, NO_WRENCH)
+            if self._state == _LANDING:
+                self._switch_off()
+                return
+            self._start(_FLYING)
         change = subtract(pose.position, self._position)
         self._position = pose.position
-        if self._state != _LANDED:
-            self._control(acceleration, change, dt)
+        self._control(acceleration, change, dt)
 
     def _control(self, acceleration: Vec3, change: Vec3, dt: float) -> None:
         """Push the body; `change` is that of its position since the last step, m."""
@@ -162,15 +177,18 @@ class SjtuDrone(Plugin):
         hold_wrench(self.context, link, ((0.0, 0.0, max(0.0, lift) * strength),
                                          scale(torque, strength)))
 
-    def _publish(self, acceleration: Vec3) -> None:
-        pose = self._link.pose
+    def _publish(self) -> None:
+        pose, velocity, now = self._link.pose, self._link.twist.linear, self.context.now_ns
+        gained, elapsed = subtract(velocity, self._seen_velocity), (now - self._seen_ns) * 1e-9
+        acceleration = scale(gained, 1.0 / elapsed) if elapsed > 0.0 else ZERO3
+        self._seen_velocity, self._seen_ns = velocity, now
         if self._poses.wanted:
             message = self.context.message("geometry_msgs/Pose")
             at, turn = message.position, message.orientation
             at.x, at.y, at.z = pose.position
             turn.x, turn.y, turn.z, turn.w = pose.orientation
             self._poses.publish(message)
-        for topic, vector in ((self._velocities, self._velocity),
+        for topic, vector in ((self._velocities, velocity),
                               (self._accelerations, acceleration)):
             if topic.wanted:
                 message = self.context.message("geometry_msgs/Twist")
