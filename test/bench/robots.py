@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Prints what robots cost. Run it in a shell that has sourced the workspace, on a quiet machine.
 
-usage: robots.py [ROW …]   rows: drive ten closed_loop small large large_steps many busy
+usage: robots.py [ROW …]   rows: drive ten closed_loop small large large_steps many busy acting
 (default: all)
 
 The robots are lab robots with a laser of 360 rays at 10 Hz, a differential drive and joint states
@@ -21,6 +21,7 @@ import sys
 import time
 from typing import Dict, List, Sequence, Tuple
 
+import acting_plugins
 import scenes
 import stock_robots
 from row_table import Row, Rows
@@ -220,7 +221,7 @@ ROWS: Rows = {
     "small": lambda: stock_robots.stock(stock_robots.SMALL),
     "large": lambda: stock_robots.stock(stock_robots.LARGE),
     "large_steps": lambda: stock_robots.stock(stock_robots.LARGE_STEPS),
-    "many": stock_robots.many, "busy": stock_robots.busy}
+    "many": stock_robots.many, "busy": stock_robots.busy, "acting": acting_plugins.acting}
 
 
 def main() -> None:

@@ -18,10 +18,11 @@ from mobile_robots import (
     small_robot,
 )
 from row_table import Row
-from server import Server, processor
+from server import Server, processor, wait
 
 TURNS, MEASURE_S = 5, 2.5
-SETTLE_S = 8.0   # until the solver needs few iterations; the robot's velocity is 0 long before
+# Sim time until the solver needs few iterations; the robot's velocity is 0 long before.
+SETTLE_S, LATEST_S = 8.0, 120.0
 MOST_IDLE, MOST_SUBSCRIBED = 1.2, 2.0   # times the processor time of the robot without plugins
 BUSY = 15
 
@@ -128,12 +129,20 @@ def measure(server: Server, seconds: float = MEASURE_S) -> Used:
                 {name: one / passed for name, one in parts.items()})
 
 
+def settle(seconds: float = SETTLE_S) -> None:
+    """Wait for a time in sim s: a busy machine takes longer."""
+    import rospy
+
+    end = rospy.get_rostime().to_sec() + seconds
+    wait(lambda: rospy.get_rostime().to_sec() >= end, LATEST_S, "settled robot")
+
+
 def turn(robot: Robot, plugins: bool, subscribed: bool) -> Used:
     """Measure one of the three cases, in a world of its own."""
     with Server(world(robot.step_size)) as server:
         spawn(robot, plugins)
         with subscriber(robot.topics) if subscribed else contextlib.nullcontext():
-            time.sleep(SETTLE_S)
+            settle()
             return measure(server)
 
 
@@ -166,10 +175,10 @@ def busy() -> List[Row]:
         others = [subprocess.Popen([sys.executable, "-c", "while True: pass"])
                   for _ in range(BUSY)]
         try:
-            time.sleep(SETTLE_S)
+            settle()
             alone = measure(server, 2.0 * MEASURE_S).factor
             with subscriber(SMALL.topics):
-                time.sleep(SETTLE_S)
+                settle()
                 subscribed = measure(server, 2.0 * MEASURE_S).factor
         finally:
             for one in others:
@@ -186,9 +195,9 @@ def many(count: int = 10) -> List[Row]:
         for number in range(count):
             spawn(SMALL, True, number)
         with subscriber(SMALL.topics, count):
-            time.sleep(SETTLE_S)
+            settle()
             subscribed = measure(server)
-        time.sleep(SETTLE_S)
+        settle()
         alone = measure(server)
     return [(f"{count} small robots, all subscribed: processor time", f"{subscribed.share:.2f} s a "
              f"sim s (real-time factor {subscribed.factor:.2f})", "1", subscribed.share <= 1.0),
