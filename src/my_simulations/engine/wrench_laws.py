@@ -19,8 +19,10 @@ from ..geometry import (
     conjugate,
     cross,
     dot,
+    multiply,
     norm,
     rotate,
+    rotation_vector,
     scale,
     subtract,
     transform,
@@ -79,6 +81,38 @@ class VelocityForce:
         along = (self.gains[0] * (self.x - vx), self.gains[1] * (self.y - vy), 0.0)
         return (rotate(pose.orientation, along),
                 (0.0, 0.0, self.gains[2] * (self.yaw - twist.angular[2])))
+
+
+@dataclass(frozen=True)
+class PoseSpring:
+    """Springs and dampers that pull a link to a pose, and a force that lifts it.
+
+    The force is k (p_wanted - p) - c v, with the linear velocity v of the origin, applied at the
+    centre of mass. The torque is k_a log(q^-1 q_wanted) - c_a w in axes of the link, with half the
+    rotation vector log (ignition's `Quaternion::Log`). Source: gazebo_plugins (hand_of_god).
+
+    Attributes:
+        wanted: world pose.
+        stiffness: k in N/m, k_a in N m/rad.
+        damping: c in N s/m, c_a in N m s/rad.
+        lift: N, world axes.
+    """
+
+    wanted: Pose
+    stiffness: Tuple[float, float]
+    damping: Tuple[float, float]
+    lift: Vec3
+
+    def wrench(self, pose: Pose, twist: Twist, com: Vec3, joint: AxisState = AT_REST) -> Wrench:
+        """See `WrenchLaw`."""
+        (kl, ka), (cl, ca) = self.stiffness, self.damping
+        force = subtract(scale(subtract(self.wanted.position, pose.position), kl),
+                         scale(twist.linear, cl))
+        back = conjugate(pose.orientation)
+        torque = subtract(
+            scale(rotation_vector(multiply(back, self.wanted.orientation)), 0.5 * ka),
+            scale(rotate(back, twist.angular), ca))
+        return add(force, self.lift), rotate(pose.orientation, torque)
 
 
 @dataclass(frozen=True)

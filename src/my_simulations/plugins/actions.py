@@ -82,7 +82,8 @@ class ActionServer:
             context.subscribe(f"{name}/goal", f"{kind}ActionGoal", self._receive_goal, _QUEUE),
             context.subscribe(f"{name}/cancel", "actionlib_msgs/GoalID", self._receive_cancel,
                               _QUEUE)]
-        self._timer: CallHandle = context.every(_STATUS_HZ, self._publish_status)
+        self._timer: CallHandle = context.observe(_STATUS_HZ, self._publish_status,
+                                                  [self._status])
         self._publish_status()
 
     def result(self) -> Any:
@@ -141,11 +142,11 @@ class ActionServer:
                 self._cancelled(goal)
 
     def _publish_status(self) -> None:
-        now = self._context.now_ns
+        now = self._context.now_ns   # of an observation: can be earlier than the last message
         self._goals = [goal for goal in self._goals if goal.ended_ns is None
-                       or 0 <= now - goal.ended_ns <= _KEEP_NS]
+                       or abs(now - goal.ended_ns) <= _KEEP_NS]
         self._early = [(one, came_ns) for one, came_ns in self._early
-                       if 0 <= now - came_ns <= _KEEP_NS]
+                       if abs(now - came_ns) <= _KEEP_NS]
         message = stamped(self._context, "actionlib_msgs/GoalStatusArray")
         message.status_list = [self._status_of(goal) for goal in self._goals]
         self._status.publish(message)

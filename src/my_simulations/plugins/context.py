@@ -198,6 +198,12 @@ class Context(Protocol):
         When time is set, nothing is left of it.
         """
 
+    def on_world_change(self, call: Callable[[], None]) -> CallHandle:
+        """Be called before the next step after a change of models, physics or surroundings.
+
+        Gravity and wind are among these; poses and velocities of models are not.
+        """
+
     # -- the model -------------------------------------------------------------------------------
 
     @property

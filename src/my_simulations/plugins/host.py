@@ -81,7 +81,7 @@ class PluginHost:
         self._with_input: Deque[RunningPlugin] = deque()
         self._with_output: Dict[SimulatedContext, RunningPlugin] = {}
         self._due: Deque[ScheduledCall] = deque()
-        self._revision = -1
+        self._revision = self._seen_revision = -1   # of the loaded models, and of the last turn
         self._clock_changes = ClockChanges(simulator.resets)
         self._loaded = threading.Condition()
         self._stop = threading.Event()
@@ -161,13 +161,16 @@ class PluginHost:
     @property
     def has_pending_input(self) -> bool:
         """Whether a received message or request is not applied yet."""
-        return self._delivering or self._observations.changed or any(
+        return self._delivering or self._observations.changed or (
+            self._seen_revision != self._simulator.models.revision) or any(
             running.context.inbox for running in self._models.all() if not running.is_busy)
 
     def _deliver_all(self) -> None:
         """Wait until all received messages and requests are handed over and applied."""
         if self._was_stepped_manually != self._simulator.clock.is_stepped_manually:
             self._request_subscriber_check()
+        elif self._seen_revision != self._simulator.models.revision:
+            self.wake()
         with self._loaded:
             self._loaded.wait_for(lambda: not self.has_pending_input or self._stop.is_set(),
                                   _LOADING_S)
@@ -277,6 +280,11 @@ class PluginHost:
         if settings != self._settings:
             self._sync.finish_changes()
         self._follow_models()
+        if self._seen_revision != self._models.revision:
+            self._seen_revision = self._models.revision
+            for running in self._at_work():
+                for call in running.context.world_change_calls:
+                    self._call_now_or_later(running, call)
 
     def _at_work(self) -> List[RunningPlugin]:
         return [one for one in self._models.all() if one.plugin is not None]

@@ -84,6 +84,7 @@ class SimulatedContext(GraphUser):
         self.wrench_ids: Dict[str, int] = {}
         self._attached: List[str] = []
         self._held = False
+        self._world_changes: List[ScheduledCall] = []
         self.sensing = SensingRequests(shared.scene, self.inbox, wake, self.warn,
                                        lambda: self.observations.request_step(self))
 
@@ -180,6 +181,16 @@ class SimulatedContext(GraphUser):
 
     def once(self, ns: int, call: Callable[[], None]) -> ScheduledCall:
         return self._schedule.once(self, ns, call)
+
+    def on_world_change(self, call: Callable[[], None]) -> ScheduledCall:
+        made = ScheduledCall(self, None, call)
+        self._world_changes = [*(one for one in self._world_changes if not one.ended), made]
+        return made
+
+    @property
+    def world_change_calls(self) -> List[Callable[[], None]]:
+        """The functions to call after a change of the world."""
+        return [one.call for one in self._world_changes if not one.ended]
 
     # -- the model -------------------------------------------------------------------------------
 

@@ -117,6 +117,7 @@ class FakeContext(FakeGraph):
         self.model_sensors: List[Tuple[str, Sensor]] = []
         self.labels: Dict[int, str] = {}
         self._calls: List[_Call] = []
+        self._world_changes: List[_Call] = []
 
     # -- what a test does --------------------------------------------------------------------------
 
@@ -131,6 +132,12 @@ class FakeContext(FakeGraph):
                 if one in self._calls and one.is_due(self.step, self.now_ns, clock):
                     one.call()
             self._compute_laws()
+
+    def change_world(self) -> None:
+        """Call the functions of `on_world_change`, after the test has changed something."""
+        for one in list(self._world_changes):
+            one.call()
+        self._compute_laws()
 
     # -- Context -----------------------------------------------------------------------------------
 
@@ -167,6 +174,10 @@ class FakeContext(FakeGraph):
     def once(self, ns: int, call: Callable[[], None]) -> Any:
         self._calls.append(_Call(self._calls, call, None, ns))
         return self._calls[-1]
+
+    def on_world_change(self, call: Callable[[], None]) -> Any:
+        self._world_changes.append(_Call(self._world_changes, call, None))
+        return self._world_changes[-1]
 
     def link(self, name: str) -> FakeLink:
         name = name or "base"

@@ -1,7 +1,7 @@
 """Stores the newest transforms of /tf."""
 from __future__ import annotations
 
-from typing import Any, Dict, Optional, Tuple
+from typing import Any, Callable, Dict, Optional, Tuple
 
 from ..geometry import IDENTITY, Pose, compose, inverse, normalised, pose_is_finite
 from .context import Context
@@ -11,9 +11,10 @@ _DEEPEST = 100  # frames above another: more is a loop
 
 
 class Transforms:
-    """Subscribes to `/tf` and `/tf_static`."""
+    """Subscribes to `/tf` and `/tf_static`; `changed` is called after each message."""
 
-    def __init__(self, context: Context) -> None:
+    def __init__(self, context: Context, changed: Callable[[], None] = lambda: None) -> None:
+        self._changed = changed
         self._parents: Dict[str, Tuple[str, Pose]] = {}
         for topic in ("/tf", "/tf_static"):
             context.subscribe(topic, "tf2_msgs/TFMessage", self._receive, queue=100)
@@ -27,6 +28,7 @@ class Transforms:
                     or abs(sum(part * part for part in pose.orientation) - 1.0) > _NEAR_UNIT:
                 continue  # tf2 ignores these, too
             self._parents[child] = (parent, Pose(pose.position, normalised(pose.orientation)))
+        self._changed()
 
     def look_up(self, frame: str, child: str) -> Optional[Pose]:
         """Return the pose of `child` in `frame`; None if /tf does not connect them."""

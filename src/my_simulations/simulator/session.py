@@ -196,6 +196,7 @@ class Session:
         with self.structure_lock, self.registry_lock:
             self.world = replace(self.world, **fields)
             self.registry.revision += 1
+        self.supervisor.engine.notify_host()
 
     def entities(self) -> List[Entity]:
         with self.registry_lock:

@@ -185,6 +185,10 @@ def test_the_hand_of_god_pulls_like_a_critically_damped_spring():
     assert force == pytest.approx((50 * 1.5 - 2 * math.sqrt(100.0) * 0.1, 0.0, 2 * 9.8))
     assert torque == pytest.approx((0.0, 0.0, 8 * 0.2 - 2 * math.sqrt(4.0) * 0.2))
     assert context.transforms[-1][:2] == ("world", "hog_actual")
+    context.gravity = (0.0, 0.0, -1.6)
+    context.change_world()
+    assert context.wrenches["hand"][0][2] == pytest.approx(2 * 1.6)
+    assert context.stops == 0   # the engine computes the springs
 
 
 def test_a_mimic_joint_is_coupled_with_the_defaults_of_the_original():

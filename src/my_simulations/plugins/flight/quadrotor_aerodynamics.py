@@ -22,7 +22,6 @@ from ..parameters import namespace_or
 from .body_wrench import fill_wrench
 
 MOST_VELOCITY = 100.0   # m/s and rad/s: faster motion counts as this (hector_quadrotor_model)
-_WIND_HZ = 10.0         # how often it looks for another wind of the world
 
 
 class QuadrotorAerodynamics(Plugin):
@@ -47,7 +46,7 @@ class QuadrotorAerodynamics(Plugin):
         self._wrenches = context.publish(p.text("wrenchTopic", "aerodynamics/wrench"),
                                          "geometry_msgs/WrenchStamped", 10)
         context.observe(0.0, self._publish, [self._wrenches])
-        context.every(_WIND_HZ, self.update)
+        context.on_world_change(self.update)
 
     def reset(self) -> None:
         """Drag ended with the reset. The wind is that of the world."""

@@ -32,7 +32,8 @@ METHODS = frozenset((
 """Methods of the context whose results are sent."""
 
 HANDLES = {"link": "link", "model_link": "link", "joint": "joint", "publish": "topic",
-           "subscribe": "end", "serve": "end", "every": "end", "observe": "end", "once": "end"}
+           "subscribe": "end", "serve": "end", "every": "end", "observe": "end", "once": "end",
+           "on_world_change": "end"}
 """Methods of the context that return handles, and the kinds of these."""
 
 CALLS_WITHOUT_RESULT = frozenset(("set_planar_velocity", "set_wrench", "set_wrench_law",

@@ -153,6 +153,9 @@ class RemoteContext:
     def once(self, ns: int, call: Callable[[], None]) -> RemoteCallHandle:
         return self._scheduled("once", ns, call)
 
+    def on_world_change(self, call: Callable[[], None]) -> RemoteCallHandle:
+        return self._scheduled("on_world_change", call)
+
     def _scheduled(self, name: str, *arguments: Any, **named: Any) -> RemoteCallHandle:
         made: RemoteCallHandle = self._handle(name, *arguments, **named)
         return made

@@ -1,32 +1,23 @@
 """libgazebo_ros_hand_of_god.so: a critically damped spring pulls a link to a tf frame.
 
-Parameters, defaults, frames and law are those of gazebo_plugins: the link goes to the frame
-`FRAME_desired` in `world`, and `FRAME_actual` is its pose. Gravity does not act on it.
+Parameters, defaults, frames and law (`PoseSpring`) are those of gazebo_plugins: the link goes to
+the frame `FRAME_desired` in `world`, and `FRAME_actual` is its pose. Gravity does not act on it.
 """
 from __future__ import annotations
 
 import math
+from typing import Optional
 
-from ...geometry import (
-    Pose,
-    Quat,
-    Vec3,
-    add,
-    conjugate,
-    multiply,
-    normalised,
-    rotate,
-    scale,
-    subtract,
-)
+from ...engine.wrench_laws import PoseSpring
+from ...geometry import ZERO3, Pose, scale
 from ..base import Plugin
-from ..context import PluginError
+from ..context import CallHandle, PluginError
 from ..parameters import namespace_or
 from ..transforms import Transforms
 
 
 class HandOfGod(Plugin):
-    """Pulls the link `<linkName>`."""
+    """Pulls the link `<linkName>`; only changes of the wanted pose cost a synchronization."""
 
     def load(self) -> None:
         context, p = self.context, self.context.parameters
@@ -40,36 +31,40 @@ class HandOfGod(Plugin):
         inertial = self._link.inertial
         self._damping = (2.0 * math.sqrt(self._stiffness[0] * inertial.mass),
                          2.0 * math.sqrt(self._stiffness[1] * inertial.ixx))
-        self._transforms = Transforms(context)
-        self._told = False
-        context.every(0.0, self.update)
+        self._wanted: Optional[Pose] = None
+        self._published: Optional[CallHandle] = None
+        self._transforms = Transforms(context, self._follow)
+        self.update()
+        context.on_world_change(self.update)
+        context.once(context.now_ns, self._report_missing)
+
+    def reset(self) -> None:
+        """The pull ended with the reset."""
+        self.update()
 
     def update(self) -> None:
+        """Pull towards the wanted pose, against the present gravity."""
         lift = scale(self.context.gravity, -self._link.inertial.mass)
+        if self._wanted is None:
+            self.context.set_wrench(self._link.name, lift, ZERO3)
+        else:
+            self.context.set_wrench_law(self._link.name, PoseSpring(
+                self._wanted, self._stiffness, self._damping, lift))
+
+    def _follow(self) -> None:
+        """Look up the wanted pose after tf has changed."""
         wanted = self._transforms.look_up("world", f"{self._frame}_desired")
-        if wanted is None:
-            if not self._told:
-                self._told = True
-                self.context.warn(f"there is no tf frame {self._frame}_desired in world yet")
-            self.context.set_wrench(self._link.name, lift, (0.0, 0.0, 0.0))
+        if wanted == self._wanted:
             return
-        pose, twist = self._link.pose, self._link.twist
-        (kl, ka), (cl, ca) = self._stiffness, self._damping
-        force = subtract(scale(subtract(wanted.position, pose.position), kl),
-                         scale(twist.linear, cl))
-        back = multiply(conjugate(pose.orientation), wanted.orientation)
-        torque = subtract(scale(logarithm(back), ka),
-                          scale(rotate(conjugate(pose.orientation), twist.angular), ca))
-        self.context.set_wrench(self._link.name, add(force, lift), rotate(pose.orientation, torque))
-        self.context.transform("world", f"{self._frame}_actual",
-                               Pose(pose.position, pose.orientation))
+        self._wanted = wanted
+        self.update()
+        if self._published is None:
+            self._published = self.context.observe(0.0, self._publish, transforms=True)
 
+    def _publish(self) -> None:
+        if self._wanted is not None:
+            self.context.transform("world", f"{self._frame}_actual", self._link.pose)
 
-def logarithm(turn: Quat) -> Vec3:
-    """Half the rotation vector (rad), the short way; what ignition's Quaternion::Log gives."""
-    x, y, z, w = normalised(turn)
-    if w < 0.0:
-        x, y, z, w = -x, -y, -z, -w
-    size = math.sqrt(x * x + y * y + z * z)
-    share = math.atan2(size, w) / size if size > 1e-12 else 1.0
-    return (x * share, y * share, z * share)
+    def _report_missing(self) -> None:
+        if self._wanted is None:
+            self.context.warn(f"there is no tf frame {self._frame}_desired in world yet")

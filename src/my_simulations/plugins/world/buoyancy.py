@@ -17,7 +17,6 @@ from ..context import Link
 from ..parameters import Parameters
 
 _WATER = 999.1026  # kg/m^3, at 15 degrees
-_GRAVITY_HZ = 10.0  # how often a change of gravity is checked
 
 
 class Buoyancy(Plugin):
@@ -34,7 +33,7 @@ class Buoyancy(Plugin):
             if found is not None and found[0] > 0.0:
                 self._floats.append((context.link(spec.name), *found))
         self.update()
-        context.every(_GRAVITY_HZ, self.update)
+        context.on_world_change(self.update)
 
     def reset(self) -> None:
         """Forces ended with the reset."""

@@ -11,8 +11,6 @@ from ...geometry import scale
 from ..base import Plugin
 from ..context import Context
 
-_GRAVITY_HZ = 10.0   # how often a change of gravity is checked
-
 
 class GravityCompensation:
     """Carries the links of a model from now on. For models on a joint to the world.
@@ -30,7 +28,7 @@ class GravityCompensation:
             context.warn("gravity is not compensated: no joint connects the model to the world")
         self.apply()
         if links:
-            context.every(_GRAVITY_HZ, self.apply)
+            context.on_world_change(self.apply)
 
     def apply(self) -> None:
         """Apply the forces against the present gravity, also after a reset."""
