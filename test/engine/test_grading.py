@@ -228,6 +228,9 @@ def test_an_invalid_assignment_or_command_line_ends_with_2(folder, capsys):
     (folder / "bad.yaml").write_text("checks:\n  - {points: x}\n")
     assert main(["grade", "bad.yaml", "anna"]) == 2
     assert "bad.yaml:2: error: a check has exactly one of the keys" in capsys.readouterr().err
+    assert main(["grade", "lab_shet", "anna"]) == 2
+    assert "there is no assignment 'lab_shet': it is neither a file nor one of drive_square" in (
+        capsys.readouterr().err)
     assert main(["grade", "lab.yaml", "nobody"]) == 2
     assert main(["grade", "lab.yaml", "--check"]) == 0
     assert "5 checks, 11 points" in capsys.readouterr().out

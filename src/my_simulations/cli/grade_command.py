@@ -53,6 +53,9 @@ def main(argv: Optional[Sequence[str]] = None) -> int:
         for issue in fault.issues:
             print(issue, file=sys.stderr)
         return INVALID
+    except CommandError as fault:
+        print(f"{NAME}: {fault}", file=sys.stderr)
+        return INVALID
     for issue in issues:
         print(issue, file=sys.stderr)
     if options.check:
