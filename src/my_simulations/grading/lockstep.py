@@ -2,7 +2,8 @@
 
 A program has done its part when all its threads wait, and no byte is on its way between it and the
 world. Sim time advances only then, so a busy machine gives the same mark as an idle one. A program
-that never waits gets as much processor time for a step as the step has sim time.
+that never waits gets as much processor time as sim time passes; one that waits may use more for a
+single step, because the same work takes more processor time on a busy machine.
 """
 from __future__ import annotations
 
@@ -25,6 +26,7 @@ _LONGEST_S = 60.0     # wall time of one wait, whatever the program does
 _FIRST_S = 1.0        # wall time in which a program sees the first step
 _START_S = 10.0       # processor time to start, s
 _START_SHARE = 0.25   # of the processor time of the program, at most, to start
+_MOST_SAVED_S = 0.5   # processor time that a program may use later than it was given
 _FEWEST_STEPS = 20    # until a program counts as one that never waits
 _BUSY_SHARE = 0.9     # of the steps
 
@@ -49,6 +51,8 @@ class Lockstep:
         self._sim = 0.0
         self._began: Optional[float] = None
         self._steps, self._busy_steps = 0, 0
+        self._saved_s = self._spent_s = 0.0
+        """Processor time that the program may use, and that it has used since the last step, s."""
 
     @property
     def never_waits(self) -> bool:
@@ -73,14 +77,17 @@ class Lockstep:
         if not self._program.running:
             return
         self._steps += 1
-        self._busy_steps += not self._wait(seconds)
+        self._saved_s = min(self._saved_s + seconds, _MOST_SAVED_S)
+        self._busy_steps += not self._wait(self._saved_s)
+        self._saved_s = max(0.0, self._saved_s - self._spent_s)
         self._sim += seconds
         if self._began is not None:
             time.sleep(max(0.0, self._began + self._sim - time.monotonic()))
 
     def _wait(self, processor_seconds: float) -> bool:
         """Whether the program waits now; False if its processor time is used up."""
-        until: Optional[float] = None
+        first: Optional[float] = None
+        self._spent_s = 0.0
         deadline = time.monotonic() + _LONGEST_S
         waiting, is_quiet = 0, False
         ran: List[bytes] = []
@@ -92,8 +99,9 @@ class Lockstep:
             if self._threads.any_runs():
                 waiting, is_quiet = 0, False
                 used = self._used()
-                until = used + processor_seconds if until is None else until
-                if used >= until or began > deadline:
+                first = used if first is None else first
+                self._spent_s = used - first
+                if self._spent_s >= processor_seconds or began > deadline:
                     return False
                 took = time.monotonic() - began
                 pause = max(_BUSY_LOOK_S, min(took / _LOOK_SHARE, processor_seconds))
