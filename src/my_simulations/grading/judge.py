@@ -15,6 +15,7 @@ import sys
 from dataclasses import replace
 from typing import Any, Dict, Iterator, List, Optional, Sequence
 
+from ..child_process import die_with_parent
 from ..editor.logs.replay_page import write_replay
 from ..editor.logs.world_record import LogRecord
 from ..errors import InputError, SimulationError, errors_of
@@ -47,6 +48,7 @@ _MOST_TOPIC_BYTES = 20e6
 
 def main(words: List[str]) -> int:
     """Grade; returns 0 if every check was decided."""
+    die_with_parent()     # also where no namespace ends it
     task: Dict[str, Any] = json.loads(words[1])
     assignment, _ = read_assignment(task["assignment"])
     writer = ResultWriter(task["descriptor"])

@@ -13,6 +13,8 @@ from typing import Any, Callable, Optional
 import rosmaster
 import rosmaster.threadpool
 
+from ..child_process import die_with_parent
+
 
 class PromptThreadPool(rosmaster.threadpool.MarkedThreadPool):   # type: ignore[misc]
     """A pool whose threads wait for tasks in place of looking for them.
@@ -52,5 +54,6 @@ class PromptThreadPool(rosmaster.threadpool.MarkedThreadPool):   # type: ignore[
 
 
 if __name__ == "__main__":
+    die_with_parent()
     rosmaster.threadpool.MarkedThreadPool = PromptThreadPool
     rosmaster.rosmaster_main()
