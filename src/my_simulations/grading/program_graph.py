@@ -19,6 +19,7 @@ from .program import Program
 _MASTER_S = 60.0
 _POLL_S = 0.05
 _UPKEEP_S = 1.0
+_PLUGINS_S = 30.0     # wall time
 _STEP_S = 0.01        # sim time between two looks at the program, at most
 _RATE_SHARE = 0.9     # of the wanted rate: a node needs some time to start
 
@@ -74,6 +75,8 @@ class RosGraph:
                 continue
             with self._program.suspended():
                 self._world.step(count)
+                # Else the pace of their thread would decide in which step a message is sent.
+                self._node.wait_for_plugins(_PLUGINS_S)
             self._lockstep.wait(count * size)
         if time.monotonic() > self._upkeep + _UPKEEP_S:
             self._upkeep = time.monotonic()

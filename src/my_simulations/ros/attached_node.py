@@ -62,6 +62,10 @@ class AttachedNode:
         """Keep the registration up to date; call it about once a second."""
         self._node.refresh()
 
+    def wait_for_plugins(self, seconds: float) -> bool:
+        """Wait until plugins have published all that is due, s of wall time; False if not yet."""
+        return self._node.wait_for_plugins(seconds)
+
     def watch(self, topic: str) -> None:
         """Count the messages of a topic from now on."""
         def count(message: Any) -> None:

@@ -82,6 +82,11 @@ class Node:
         """The states of the plugins (`plugins.plugin_state`), for the world editor."""
         return self._plugins.states()
 
+    def wait_for_plugins(self, seconds: float) -> bool:
+        """Wait until plugins have published all that is due, s of wall time; False if not yet."""
+        host = self._plugins.host
+        return host is None or host.barrier.wait(seconds)
+
     def advertise(self) -> None:
         """Advertise topics and services, and set parameters."""
         from .lifecycle.tcpros_handshake import parallelise_handshakes
