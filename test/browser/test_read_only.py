@@ -60,6 +60,7 @@ def test_keys_and_menus_do_not_edit(page):
     assert ("Delete" in str(shown(opened, "menuitem", ".popup"))) != read_only
     assert "Follow" in str(shown(opened, "menuitem", ".popup"))
     opened.page.keyboard.press("Escape")
+    wait_for(lambda: not shown(opened, "menuitem", ".popup"), "the end of the menu")
     opened.get("document.getElementById('view').focus()")
     opened.page.keyboard.press("t")
     opened.page.keyboard.press("m")  # the keys are handled in order
