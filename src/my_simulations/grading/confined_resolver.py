@@ -24,10 +24,22 @@ class ConfinedResolver(Resolver):
     def resolve(self, uri: str, base_dir: str = "") -> str:
         """As `Resolver.resolve`; a file elsewhere counts as missing."""
         path = super().resolve(uri, base_dir)
-        real = os.path.realpath(path)
-        if not any(contains(folder, real) for folder in self._allowed):
-            self._searched = self._searched or tuple(map(os.path.realpath, self.all_folders()))
-            if not any(contains(folder, real) for folder in self._searched):
-                raise ResourceNotFoundError(uri, reason="it lies outside of the submission and of"
-                                                        " all model and resource folders")
+        if not (self._is_in(self._allowed, path) or self._is_in(self._installed(), path)):
+            raise ResourceNotFoundError(uri, reason="it lies outside of the submission and of"
+                                                    " all model and resource folders")
         return path
+
+    def add_unlisted_folder(self, uri: str, base_dir: str) -> str:
+        """As `Resolver.add_unlisted_folder`; what is added does not become permitted."""
+        self._installed()
+        return super().add_unlisted_folder(uri, base_dir)
+
+    def _installed(self) -> Tuple[str, ...]:
+        """The folders of models, resources and packages before a file has added others."""
+        self._searched = self._searched or tuple(map(os.path.realpath, self.all_folders()))
+        return self._searched
+
+    @staticmethod
+    def _is_in(folders: Tuple[str, ...], path: str) -> bool:
+        real = os.path.realpath(path)
+        return any(contains(folder, real) for folder in folders)

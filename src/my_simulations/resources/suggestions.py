@@ -4,7 +4,7 @@ from __future__ import annotations
 import difflib
 import os
 import re
-from typing import Callable, Iterator, List, Sequence
+from typing import Callable, List, Sequence
 
 from .package_files import PACKAGE
 
@@ -12,7 +12,7 @@ _SCHEME = re.compile(r"([A-Za-z]+):/*")
 _SCHEMES = ("model", "package", "file")
 _LIKE = 0.7
 _MOST_ABOVE = 6
-"""Folders above a file in which models are looked for, if it is in no package."""
+"""Most folders from that of a file up to that of its package."""
 _MOST_CORRECTIONS = 3   # of one URI
 NO_PACKAGE = "ROS package "
 """Prefix of `ResourceNotFoundError.tried` for an unknown package."""
@@ -109,8 +109,8 @@ def unlisted_model_folder(uri: str, base_dir: str, packages: Callable[[], List[s
     """The folder whose child a `model://` URI names, near the file or in a package; "" for none.
 
     Folders of models are often listed in GAZEBO_MODEL_PATH on the machine of their authors only.
-    Searched are the folders above the file up to its package, then all packages, each with its
-    `models` folder.
+    Searched are the folders from that of the file up to its package (two for a file in no package),
+    then all packages, each with its `models` folder.
 
     Args:
         uri: the missing URI.
@@ -129,13 +129,15 @@ def unlisted_model_folder(uri: str, base_dir: str, packages: Callable[[], List[s
     return ""
 
 
-def _above(folder: str) -> Iterator[str]:
-    """A folder and those above it, up to its package."""
-    for _ in range(_MOST_ABOVE if folder else 0):
-        yield folder
-        if os.path.exists(os.path.join(folder, "package.xml")) or folder == os.path.dirname(folder):
-            return
+def _above(folder: str) -> List[str]:
+    """A folder and those above it, up to its package; two for one that is in no package."""
+    found: List[str] = []
+    while folder and folder != os.path.dirname(folder) and len(found) < _MOST_ABOVE:
+        found.append(folder)
+        if os.path.exists(os.path.join(folder, "package.xml")):
+            return found
         folder = os.path.dirname(folder)
+    return found[:2]
 
 
 def _first_missing(path: str) -> "tuple[str, str]":

@@ -99,3 +99,16 @@ def test_a_world_reads_no_files_outside_of_the_submission_and_the_models(tmp_pat
             resolver.resolve(uri, str(tmp_path / "sub"))
         with pytest.raises(ResourceNotFoundError, match="lies outside"):
             resolver.model_file(uri, str(tmp_path / "sub"))
+
+
+def test_a_world_cannot_name_a_folder_beside_the_submission_as_a_model(tmp_path):
+    for name in ("sub/own/a.dae", "private/secret.sdf"):
+        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / name).write_text("")
+    resolver = ConfinedResolver([str(tmp_path / "models")])
+    resolver.allow(str(tmp_path / "sub"))
+    assert resolver.add_unlisted_folder("model://private/secret.sdf", str(tmp_path / "sub"))
+    assert resolver.add_unlisted_folder("model://own/a.dae", str(tmp_path / "sub"))
+    with pytest.raises(ResourceNotFoundError, match="lies outside"):
+        resolver.resolve("model://private/secret.sdf", str(tmp_path / "sub"))
+    assert resolver.resolve("model://own/a.dae") == str(tmp_path / "sub" / "own" / "a.dae")

@@ -167,6 +167,13 @@ def test_models_above_the_package_of_a_file_are_not_looked_for(tmp_path, uri):
     assert Resolver().add_unlisted_folder(uri, str(tmp_path / "course" / "worlds")) == ""
 
 
+def test_only_two_folders_are_searched_for_a_file_in_no_package(tmp_path):
+    (tmp_path / "desk").mkdir()
+    (tmp_path / "desk" / "a.dae").write_text("")
+    for base, found in (("worlds", str(tmp_path)), ("course/worlds", "")):
+        assert Resolver().add_unlisted_folder("model://desk/a.dae", str(tmp_path / base)) == found
+
+
 def test_a_home_folder_that_is_there_is_used(resolver, tree):
     path = tree / "home" / ".gazebo" / "models" / "lamp" / "b.dae"
     path.parent.mkdir(parents=True)
