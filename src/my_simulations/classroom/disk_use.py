@@ -42,9 +42,10 @@ class DiskUse:
                 size, files = (int(line.split()[0]) for line in lines[:2])
                 self.used_mb = (size + files * _BYTES_PER_FILE) / 1e6
 
-    def close(self) -> None:
-        """End a measurement that goes on."""
+    def reset(self) -> None:
+        """End a measurement that goes on, and forget the last one."""
         if self._process is not None:
             self._process.kill()
             self._process.communicate()
             self._process = None
+        self.used_mb, self._begun = 0.0, float("-inf")

@@ -15,7 +15,7 @@ from ..child_process import child_environment, wait_or_kill
 from ..editor.transport.access_guard import COOKIE
 from ..grading.box import descendants
 from ..grading.permitted_variables import permitted_variables
-from ..grading.program import workspace_paths
+from ..grading.program import set_owner, workspace_paths
 from ..resources.world_lookup import WORLDS
 from ..simulator.watchdog import process_time
 from . import relay, student_box
@@ -145,8 +145,7 @@ class LocalWorld:
             process.kill()   # the namespaces end with it
         wait_or_kill(process, _END_S)
         os.close(self._activity)
-        self._disk.close()
-        self._disk = DiskUse(self._plan.home(self.student))
+        self._disk.reset()
         self.state, self.reason, self.monitor = state, reason, 0
         self.memory_mb = self.processor_s = 0.0
         self._measured = float("-inf")
@@ -178,10 +177,7 @@ def make_home(plan: ClassPlan, student: Student) -> str:
     with contextlib.suppress(FileExistsError):
         os.mkdir(home, 0o700)
         _fill_home(home, plan.submission)
-        for folder, folders, names in os.walk(home):
-            for path in (os.path.join(folder, name) for name in (*folders, *names)):
-                if os.geteuid() == 0:
-                    os.lchown(path, student.user, student.user)
+        set_owner(home, student.user)
     if os.geteuid() == 0:
         os.chown(home, student.user, student.user)
     return home

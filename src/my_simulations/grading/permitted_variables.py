@@ -3,7 +3,7 @@ from __future__ import annotations
 
 from typing import Dict, Mapping
 
-OF_ONE_PROCESS = ("MY_SIMULATIONS_PARENT", "MY_SIMULATIONS_RECORD")
+_OF_ONE_PROCESS = ("MY_SIMULATIONS_PARENT", "MY_SIMULATIONS_RECORD")
 """Variables of this package that hold for one process, not for those that it starts."""
 
 _NAMES = frozenset((
@@ -24,5 +24,5 @@ _SECRET_WORDS = ("TOKEN", "SECRET", "PASSWORD", "CREDENTIAL", "KEY")
 def permitted_variables(environment: Mapping[str, str]) -> Dict[str, str]:
     """Return the variables of Python, ROS and this package, without those named like secrets."""
     return {name: value for name, value in environment.items()
-            if (name in _NAMES or name.startswith(_PREFIXES)) and name not in OF_ONE_PROCESS
+            if (name in _NAMES or name.startswith(_PREFIXES)) and name not in _OF_ONE_PROCESS
             and not any(word in name for word in _SECRET_WORDS)}

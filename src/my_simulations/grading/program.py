@@ -127,7 +127,8 @@ class Program:
                 "bytes": self._most_bytes, "processes": limits.processes,
                 "memory_bytes": int(limits.memory_mb * 1e6),
                 "processor_seconds": int(limits.processor_seconds) + 1}
-        _set_owner(account)
+        for folder in account.owned:
+            set_owner(folder, account.user)
         with open(self._output, "ab") as output:
             self._process = subprocess.Popen(
                 [sys.executable, "-I", cell.__file__, json.dumps(spec)], cwd=folder,
@@ -288,12 +289,10 @@ def workspace_paths() -> List[str]:
     return found
 
 
-def _set_owner(account: Account) -> None:
-    """Let the program's user own the folders that it writes, where there is such a user."""
-    user = account.user
+def set_owner(top: str, user: int) -> None:
+    """Let a user own a folder and all in it, where the system permits other users."""
     with contextlib.suppress(OSError):
-        for top in account.owned:
-            os.chown(top, user, user)
-            for folder, folders, names in os.walk(top):
-                for name in (*folders, *names):
-                    os.lchown(os.path.join(folder, name), user, user)
+        os.chown(top, user, user)
+        for folder, folders, names in os.walk(top):
+            for name in (*folders, *names):
+                os.lchown(os.path.join(folder, name), user, user)

@@ -20,13 +20,12 @@ def names() -> List[str]:
 def shipped_assignment(name: str) -> str:
     """The path of an assignment file: `name` itself if there is such a file or no shipped one.
 
-    Raises:
-        CommandError: it is neither a path nor the name of a shipped one.
+    Raises CommandError: it is neither a path nor the name of a shipped one.
     """
     found = os.path.join(folder(), f"{name}.yaml")
-    if os.path.isfile(name) or not os.path.isfile(found):
-        if not os.path.exists(name) and os.path.basename(name) == name and "." not in name:
-            raise CommandError(f"there is no assignment {name!r}: it is neither a file nor one of"
-                               f" {', '.join(names())}")
-        return name
-    return found
+    if not os.path.isfile(name) and os.path.isfile(found):
+        return found
+    if not os.path.exists(name) and os.path.basename(name) == name and "." not in name:
+        raise CommandError(f"there is no assignment {name!r}: it is neither a file nor one of"
+                           f" {', '.join(names())}")
+    return name
