@@ -32,6 +32,11 @@ class HostStarter:
         """The host; None before the first model with a plugin."""
         return self._host
 
+    def wait_until_published(self, seconds: float) -> bool:
+        """Wait until plugins have published all that is due, s of wall time; False if not yet."""
+        host = self._host
+        return host is None or host.barrier.wait(seconds)
+
     def wait_until_loaded(self, model: str = "") -> List[Issue]:
         """Start the plugins of all models; return when they run.
 

@@ -122,8 +122,7 @@ class Robots:
 
         Raises CommandError: a plugin or sensor needs too long.
         """
-        host = self._starter.host if self._starter is not None else None
-        if host is not None and not host.barrier.wait(_FINISH_S):
+        if self._starter is not None and not self._starter.wait_until_published(_FINISH_S):
             raise CommandError(f"plugins or sensors have not finished within {_FINISH_S:g} s")
 
     # -- exchange ----------------------------------------------------------------------------------

@@ -84,8 +84,7 @@ class Node:
 
     def wait_for_plugins(self, seconds: float) -> bool:
         """Wait until plugins have published all that is due, s of wall time; False if not yet."""
-        host = self._plugins.host
-        return host is None or host.barrier.wait(seconds)
+        return self._plugins.wait_until_published(seconds)
 
     def advertise(self) -> None:
         """Advertise topics and services, and set parameters."""
