@@ -159,13 +159,10 @@ def test_a_robot_is_driven_by_its_topic_and_its_plugins_run_once(tmp_path):
     rows, _ = grade(tmp_path, ROBOT, {"driver": DRIVER, "other": DRIVER}, "--jobs", "2")
     assert points(rows["driver"], "moves", "odometry", "twice", "falls") == [2, 1, 0, 0]
     assert 150.0 < points(rows["driver"], "way")[0] < 700.0
-    # One command more or less, each 0.1 s, changes the way by 3 %.
-    assert points(rows["other"], "way")[0] == pytest.approx(points(rows["driver"], "way")[0],
-                                                            rel=0.1)
+    assert points(rows["other"], "way") == points(rows["driver"], "way")
 
 
-def test_programs_that_answer_messages_get_nearly_equal_marks_beside_busy_processes(tmp_path):
-    """Of some 80 programs, about ten differed from the others by up to 0.033 % of the way."""
+def test_programs_that_answer_messages_get_equal_marks_beside_busy_processes(tmp_path):
     names = ("one", "two", "three", "four")
     busy = [subprocess.Popen([sys.executable, "-c", "while True: pass"]) for _ in range(4)]
     try:
@@ -176,7 +173,7 @@ def test_programs_that_answer_messages_get_nearly_equal_marks_beside_busy_proces
             process.wait()
     for name in names:
         assert points(rows[name], "moves", "odometry") == [2, 1]
-        assert points(rows[name], "way") == pytest.approx(points(rows["one"], "way"), rel=1e-3)
+        assert points(rows[name], "way") == points(rows["one"], "way")
 
 
 def test_the_replay_contains_topics_of_the_assignment(tmp_path):

@@ -9,6 +9,7 @@ import signal
 import subprocess
 import sys
 import threading
+import time
 from dataclasses import dataclass
 from typing import Dict, Iterable, Iterator, List, Optional, Sequence, Set, Tuple
 
@@ -18,6 +19,7 @@ from . import box, cell
 from .assignment import GradeLimits
 from .permitted_variables import permitted_variables
 from .process_list import ProcessList
+from .thread_states import ThreadStates
 
 OUTPUT = "output.txt"
 _FIRST_USER = 61000
@@ -31,6 +33,8 @@ TESTS = "tests"
 
 _LOOK_S = 0.1
 _END_S = 10.0
+_STOP_S = 5.0     # wall time
+_STOP_LOOK_S = 0.0001
 _KEPT_OUTPUT = 200_000
 _LOOP_S = 2.0     # wall time in which a program prints where it is
 _LONGEST_ERROR = 300
@@ -135,6 +139,7 @@ class Program:
                 stdin=subprocess.DEVNULL, stdout=output, stderr=subprocess.STDOUT)
         self.pid = self._process.pid
         self.processes = ProcessList(self.pid)
+        self._threads = ThreadStates(self.pid, lambda: {self.pid})   # not of the cell
         self._ended = threading.Event()
         self._thread = threading.Thread(target=self._watch, name="memory", daemon=True)
         self._thread.start()
@@ -155,13 +160,21 @@ class Program:
 
     @contextlib.contextmanager
     def suspended(self) -> Iterator[None]:
-        """Stop all its processes meanwhile. Messages to them wait in their sockets."""
+        """Stop all its processes meanwhile. Messages to them wait in their sockets.
+
+        A thread stops when it runs the next time, and until one thread of a process has done so,
+        the others may answer a message: so all of them are waited for.
+        """
         stopped: Set[int] = set()
         found = set(self.processes.pids())
         while found - stopped and len(stopped) <= self._limits.processes:
             self._signal(found - stopped, signal.SIGSTOP)
             stopped |= found
             found = set(self.processes.pids())   # a process may have started another one
+        deadline = time.monotonic() + _STOP_S
+        self._threads.refresh()
+        while self._threads.any_awake() and time.monotonic() < deadline:
+            time.sleep(_STOP_LOOK_S)
         try:
             yield
         finally:
@@ -181,6 +194,7 @@ class Program:
         self._process.kill()
         self._process.wait()
         self._thread.join()
+        self._threads.close()
         self.processes.close()
 
     def output(self) -> bytes:

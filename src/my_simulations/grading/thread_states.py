@@ -55,11 +55,18 @@ class ThreadStates:
 
     def any_runs(self) -> bool:
         """Whether a known thread runs, can run or waits for a disk."""
+        return self._any_is((b"R", b"D"))
+
+    def any_awake(self) -> bool:
+        """Whether a known thread runs or sleeps, so that no signal has stopped it yet."""
+        return self._any_is((b"R", b"S"))
+
+    def _any_is(self, states: Tuple[bytes, ...]) -> bool:
         for file, _ in self._files.values():
             with contextlib.suppress(OSError):   # it has ended
                 text = os.pread(file, _BYTES, 0)
                 at = text.rfind(b")")
-                if text[at + 2:at + 3] in (b"R", b"D"):
+                if text[at + 2:at + 3] in states:
                     return True
         return False
 

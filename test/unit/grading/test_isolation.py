@@ -1,6 +1,7 @@
 """What keeps submissions from marks, secrets and each other, also where the grader is not root."""
 from __future__ import annotations
 
+import contextlib
 import json
 import os
 import socket
@@ -10,6 +11,7 @@ import tempfile
 from pathlib import Path
 
 import pytest
+from waiting import wait_for
 
 from my_simulations.grading import box
 from my_simulations.grading.assignment_file import read_assignment
@@ -17,6 +19,7 @@ from my_simulations.grading.box_process import _specification
 from my_simulations.grading.box_support import isolation
 from my_simulations.grading.confined_resolver import ConfinedResolver
 from my_simulations.grading.grader import Grader
+from my_simulations.grading.program import Program, submission_account
 from my_simulations.grading.submission import Submission, submissions_of
 from my_simulations.grading.submission_files import content_of
 from my_simulations.resources.resolver import ResourceNotFoundError
@@ -112,3 +115,25 @@ def test_a_world_cannot_name_a_folder_beside_the_submission_as_a_model(tmp_path)
     with pytest.raises(ResourceNotFoundError, match="lies outside"):
         resolver.resolve("model://private/secret.sdf", str(tmp_path / "sub"))
     assert resolver.resolve("model://own/a.dae") == str(tmp_path / "sub" / "own" / "a.dae")
+
+
+THREADS = """import threading
+for _ in range(60):
+    threading.Thread(target=threading.Event().wait, daemon=True).start()
+print("started", flush=True)
+threading.Event().wait()
+"""
+
+
+def test_a_suspended_program_can_answer_nothing(assignment, tmp_path):
+    account = submission_account(str(tmp_path), 0)
+    program = Program([sys.executable, "-c", THREADS], str(tmp_path), str(tmp_path),
+                      assignment.limits, account, {})
+    with contextlib.closing(program):
+        wait_for(lambda: b"started" in program.output(), "its threads", 60.0)
+        for _ in range(20):
+            with program.suspended():
+                states = [Path(task, "stat").read_text().rpartition(")")[2].split()[0]
+                          for pid in program.processes.pids()
+                          for task in Path(f"/proc/{pid}/task").iterdir()]
+            assert len(states) >= 61 and set(states) == {"T"}, states
