@@ -218,11 +218,16 @@ class ResidualFriction(StepHelper):
             return _FLIES
         if len(contacts) > _MOST_CONTACTS:
             return _PILED if any(each[OTHER_BODY] in self._moving for each in contacts) else _SLIDES
-        neighbours = {each[OTHER_BODY] for each in contacts} & self._moving
+        neighbours: Set[int] = set()
+        left: List[ContactPoint] = []
+        for each in contacts:   # one loop: it runs for each sliding body in each step
+            if each[OTHER_BODY] in self._moving:
+                neighbours.add(each[OTHER_BODY])
+            # Bodies with joints use another solver, which leaves no residual friction.
+            if each[LOAD] <= 0.0 and _is_left(each):
+                left.append(each)
         if len(neighbours) > 1:
             return _PILED
-        # Bodies with joints use another solver, which leaves no residual friction.
-        left = [each for each in contacts if each[LOAD] <= 0.0 and _is_left(each)]
         if neighbours and left and not neighbours.isdisjoint(seen | self._trees):
             left = [each for each in left if each[OTHER_BODY] not in neighbours]
         if left:
