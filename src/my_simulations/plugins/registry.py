@@ -30,6 +30,7 @@ BUILT_IN: Mapping[str, str] = {
     "librobotnik_force_based_move.so": "drive.force_based_move:RobotnikForceBasedMove",
     "libridgeback_ros_force_based_move.so":
         "drive.force_based_move:RidgebackForceBasedMove",
+    "libnexus_ros_force_based_move.so": "drive.force_based_move:NexusForceBasedMove",
     "libwpr_plugin.so": "drive.force_based_move:WprForceBasedMove",
     "libgazebo_ros_joint_state_publisher.so": "state.joint_state_publisher:JointStatePublisher",
     "libgazebo_ros_control.so": "control.gazebo_ros_control:GazeboRosControl",

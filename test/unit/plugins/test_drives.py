@@ -12,6 +12,7 @@ from my_simulations.plugins.context import PluginError
 from my_simulations.plugins.drive.diff_drive import DiffDrive
 from my_simulations.plugins.drive.force_based_move import (
     ForceBasedMove,
+    NexusForceBasedMove,
     RidgebackForceBasedMove,
     RobotnikForceBasedMove,
     WprForceBasedMove,
@@ -335,6 +336,17 @@ def test_a_watchdog_of_no_time_lets_a_robot_stand(library, element):
     context.deliver("cmd_vel", linear={"x": 0.3, "y": 0.0}, angular={"z": 0.0})
     context.advance(30.0)
     assert context.wrenches["base_footprint"][0] == pytest.approx((3000.0, 0.0, 0.0))
+
+
+def test_the_commands_of_nexus_have_upper_limits():
+    context = moved_by_forces(NexusForceBasedMove, "<max_x_velocity>0.5</max_x_velocity>")
+    for x, yaw, force, torque in ((0.8, 0.7, 7.5, 0.5), (0.2, 0.3, 3.0, 0.3),
+                                  (-0.8, -0.7, -12.0, -0.7)):
+        context.deliver("cmd_vel", linear={"x": x, "y": 0.9}, angular={"z": yaw})
+        context.advance(0.001)
+        found = context.wrenches["base_footprint"]
+        assert found[0] == pytest.approx((force, 7.5, 0.0))
+        assert found[1] == pytest.approx((0.0, 0.0, torque))
 
 
 def test_a_base_moved_by_forces_goes_sideways_unless_it_must_not():

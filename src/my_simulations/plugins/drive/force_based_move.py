@@ -1,8 +1,8 @@
 """libgazebo_ros_force_based_move.so (hector): forces on the base make it follow a velocity command.
 
 Parameters, defaults, topics and laws are those of hector_gazebo_plugins and of its copies
-(librobotnik_force_based_move.so, libridgeback_ros_force_based_move.so, libwpr_plugin.so), which
-differ in their watchdogs and gains: in every step a force along x and y of the base, and a torque
+(librobotnik_force_based_move.so, libridgeback_ros_force_based_move.so, libwpr_plugin.so,
+libnexus_ros_force_based_move.so), which differ in their watchdogs, gains and limits: in every step a force along x and y of the base, and a torque
 about its vertical, in proportion to its velocity error, which the engine computes. Odometry is the
 true pose relative to the initial one. Where it differs: Robotnik's robots brake when the watchdog
 has stopped them (original: they are put back to one place), and continue to publish their odometry.
@@ -13,7 +13,7 @@ import math
 from typing import Optional
 
 from ...engine.wrench_laws import VelocityForce
-from ...geometry import rpy_from_quat
+from ...geometry import Vec3, rpy_from_quat
 from ..base import Plugin
 from ..context import PluginError
 from ..parameters import namespace_or
@@ -53,6 +53,7 @@ class ForceBasedMove(Plugin):
                                   (1e-3, 1e-3, 1e-3, 1e12, 1e12, 0.01))
         self._broadcasts = p.flag("publishOdometryTf", True)
         self._sideways = p.flag("allowLateralMotion", True)
+        self._fastest = self.fastest()
         seconds = p.number(*self.watchdog)
         self._change = StepwiseChange(context, 0.0, self._follow)
         self._command = VelocityCommand(context, p.text("commandTopic", "cmd_vel"),
@@ -62,6 +63,10 @@ class ForceBasedMove(Plugin):
         hertz = p.number("odometryRate", 20.0)
         if hertz > 0.0:
             context.observe(hertz, self.publish, self._odometer.topics, transforms=self._broadcasts)
+
+    def fastest(self) -> Vec3:
+        """Upper limits of a command: m/s along x and y, rad/s about z."""
+        return (math.inf, math.inf, math.inf)
 
     def reset(self) -> None:
         self._command.stop()
@@ -85,8 +90,10 @@ class ForceBasedMove(Plugin):
 
     def _push(self) -> None:
         command = self._command
+        x, y, yaw = self._fastest
         self.context.set_wrench_law(self._base.name, VelocityForce(
-            self._gains, command.x, command.y if self._sideways else 0.0, command.yaw))
+            self._gains, min(command.x, x), min(command.y, y) if self._sideways else 0.0,
+            min(command.yaw, yaw)))
 
     def publish(self) -> None:
         """Publish odometry: truth, from where the robot began."""
@@ -123,3 +130,14 @@ class WprForceBasedMove(ForceBasedMove):
     """The copy in wpr_simulation."""
 
     usual_gains = (40000.0, 30000.0, 500.0)
+
+
+class NexusForceBasedMove(RidgebackForceBasedMove):
+    """The copy in nexus_4wd_mecanum_gazebo, whose limit along x also applies to y."""
+
+    usual_gains = (15.0, 15.0, 1.0)
+
+    def fastest(self) -> Vec3:
+        p = self.context.parameters
+        x = p.number("max_x_velocity", 0.6)
+        return (x, x, p.number("max_yaw_velocity", 0.5))
