@@ -12,7 +12,7 @@ from ..resources.resolver import Resolver, ResourceNotFoundError
 from .gazebo_materials import BUILT_IN, Paint, Rgb
 from .looks import Look
 from .material_script import ScriptMaterial
-from .script_files import materials_of, scripts_of
+from .script_files import materials_of, scripts_of, shared_material
 from .terrain_layers import terrain_layers
 
 _COLORS = ("ambient", "diffuse", "specular", "emissive")
@@ -71,6 +71,11 @@ class Materials:
         for uri in material.script_uris:
             if uri != BUILT_IN_SCRIPT:
                 folders += self._load(uri, name)
+        if name not in self._seen and name not in BUILT_IN:
+            shared = shared_material(name, self._resolver)
+            if shared is not None:
+                self._seen[name], path = shared
+                self._folders[name] = folders = [os.path.dirname(path)]
         script = self._seen.get(name)
         if name in BUILT_IN and (script is None or not folders):
             return _of_paint(name, BUILT_IN[name])

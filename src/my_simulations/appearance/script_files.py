@@ -1,12 +1,14 @@
 """Finds the material scripts of a URI and reads them; each file is read once."""
 from __future__ import annotations
 
+import contextlib
 import functools
 import os
-from typing import Dict, List, Tuple
+from typing import Dict, List, Optional, Tuple
 
 from ..resources.resolver import Resolver
 from .material_script import LARGEST, ScriptMaterial, read_materials
+from .textures import MEDIA
 
 _MOST_OF_A_FOLDER = 8 * LARGEST
 """Bytes of scripts that are read of one folder."""
@@ -21,6 +23,22 @@ def scripts_of(uri: str, resolver: Resolver, base_dir: str = "") -> Tuple[List[s
     if os.path.isdir(path):
         return _scripts_in(path), [path]
     return [path] if path.endswith(".material") else [], [os.path.dirname(path)]
+
+
+def shared_material(name: str, resolver: Resolver) -> Optional[Tuple[ScriptMaterial, str]]:
+    """A material that a script of a resource folder defines, and the script; None for none.
+
+    Gazebo reads all these scripts at its start (RenderEngine::SetupResources), so that a name is
+    enough. Scripts that cannot be read are left out.
+    """
+    for base in resolver.media_folders():
+        for media in MEDIA:
+            for script in _scripts_in(os.path.join(base, media, "materials", "scripts")):
+                with contextlib.suppress(OSError):
+                    found = materials_of(script)
+                    if name in found:
+                        return found[name], script
+    return None
 
 
 def materials_of(script: str) -> Dict[str, ScriptMaterial]:

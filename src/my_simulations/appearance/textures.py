@@ -6,7 +6,9 @@ from typing import Iterator, List, Optional
 
 from ..resources.resolver import Resolver
 
-_MEDIA = ("", "media", "Media")
+MEDIA = ("", "media", "Media")
+"""Folders in a resource folder, with `materials` inside."""
+
 _BESIDE = (os.path.join("..", "materials", "textures"), os.path.join("materials", "textures"),
            "textures", os.path.join("..", "textures"))
 
@@ -29,7 +31,7 @@ def places_of_mesh(path: str, resource_folders: List[str]) -> Iterator[str]:
 
 def _shared(name: str, resource_folders: List[str]) -> Iterator[str]:
     for base in resource_folders:
-        for media in _MEDIA:
+        for media in MEDIA:
             yield os.path.join(base, media, "materials", "textures", name)
 
 

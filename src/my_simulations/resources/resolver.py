@@ -143,6 +143,10 @@ class Resolver:
         """Folders from which relative paths start, as far as searched until now."""
         return self._resource_paths + (self._late.media if self._late else [])
 
+    def media_folders(self) -> List[str]:
+        """All resource folders, those that ROS packages export included."""
+        return list(self._all("media"))
+
     def fuel_folders(self) -> List[str]:
         """The existing caches of Fuel models."""
         return self._fuel.folders() if self._fuel is not None else []

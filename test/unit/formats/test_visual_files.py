@@ -6,6 +6,8 @@ import struct
 import pytest
 from reading import URDF_INERTIAL, codes, model_of, robot_of, sdf
 
+from my_simulations.appearance.materials import Materials
+from my_simulations.appearance.textures import TextureFiles
 from my_simulations.cli.check_model_command import check
 from my_simulations.description.shapes import Mesh
 from my_simulations.errors import InputError, Severity
@@ -263,6 +265,31 @@ def test_a_script_that_does_not_exist_is_told_with_its_line(materials):
 def test_a_material_that_no_script_defines_is_told(materials):
     issue = only(scripted(materials, name="Thing/Wod"), "material-unknown")
     assert issue.line and "Thing/Wood" in issue.hint
+
+
+@pytest.mark.parametrize("media", ["", "media"])
+def test_a_material_of_a_resource_folder_needs_only_its_name(tmp_path, media):
+    """As for `GAZEBO_RESOURCE_PATH`, or an exported `gazebo_media_path`."""
+    folder = tmp_path / media / "materials"
+    (folder / "scripts").mkdir(parents=True)
+    (folder / "textures").mkdir()
+    (folder / "scripts" / "a.material").write_text("material Thing/Other\n{\n}\n")
+    (folder / "scripts" / "thing.material").write_text(SCRIPT)
+    image = folder / "textures" / "wood.png"
+    image.write_bytes(b"png")
+    (folder / "scripts" / "gone.material").symlink_to(tmp_path / "nothing")
+    resolver = Resolver(resource_paths=[str(tmp_path)])
+    robot, issues = robot_of(f'<link name="l">{URDF_INERTIAL}<visual><geometry><box size="1 1 1"/>'
+                             '</geometry></visual></link>\n<gazebo reference="l">\n'
+                             "<material>Thing/Wood</material></gazebo>", resolver=resolver)
+    assert issues == []
+    look = Materials(resolver, TextureFiles(resolver)).resolve(robot.links[0].visuals[0].material)
+    assert look is not None and look.texture == str(image)
+    image.unlink()
+    _, issues = robot_of(f'<link name="l">{URDF_INERTIAL}<visual><geometry><box size="1 1 1"/>'
+                         '</geometry></visual></link>\n<gazebo reference="l">\n'
+                         "<material>Thing/Wood</material></gazebo>", resolver=resolver)
+    assert only(issues, "image-not-found").file == str(folder / "scripts" / "thing.material")
 
 
 def test_a_misspelt_material_of_gazebo_is_told():

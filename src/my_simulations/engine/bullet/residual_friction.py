@@ -16,7 +16,7 @@ a pile. The selection depends on the step count and their state only, so runs re
 from __future__ import annotations
 
 from math import inf
-from typing import Callable, Dict, List, Sequence, Set
+from typing import Callable, Dict, List, Sequence, Set, Tuple
 
 import pybullet
 
@@ -218,14 +218,7 @@ class ResidualFriction(StepHelper):
             return _FLIES
         if len(contacts) > _MOST_CONTACTS:
             return _PILED if any(each[OTHER_BODY] in self._moving for each in contacts) else _SLIDES
-        neighbours: Set[int] = set()
-        left: List[ContactPoint] = []
-        for each in contacts:   # one loop: it runs for each sliding body in each step
-            if each[OTHER_BODY] in self._moving:
-                neighbours.add(each[OTHER_BODY])
-            # Bodies with joints use another solver, which leaves no residual friction.
-            if each[LOAD] <= 0.0 and _is_left(each):
-                left.append(each)
+        neighbours, left = _neighbours_and_left(contacts, self._moving)
         if len(neighbours) > 1:
             return _PILED
         if neighbours and left and not neighbours.isdisjoint(seen | self._trees):
@@ -268,6 +261,22 @@ def _push(body: Body, before: Motion, impulse: Vec3, at: Vec3) -> None:
     pybullet.resetBaseVelocity(body.uid, (
         before.linear[0] + impulse[0] / part.mass, before.linear[1] + impulse[1] / part.mass,
         before.linear[2] + impulse[2] / part.mass), add(before.angular, gained))
+
+
+def _neighbours_and_left(contacts: Sequence[ContactPoint], moving: Set[int]
+                         ) -> Tuple[Set[int], List[ContactPoint]]:
+    """Return the moving bodies at contacts, and the contacts with residual friction.
+
+    Bodies with joints use another solver, which leaves none.
+    """
+    neighbours: Set[int] = set()
+    left: List[ContactPoint] = []
+    for each in contacts:   # one loop: it runs for each sliding body in each step
+        if each[OTHER_BODY] in moving:
+            neighbours.add(each[OTHER_BODY])
+        if each[LOAD] <= 0.0 and _is_left(each):
+            left.append(each)
+    return neighbours, left
 
 
 def _is_left(contact: ContactPoint) -> bool:

@@ -7,7 +7,7 @@ from typing import Any, Dict, List, Tuple
 
 from ...appearance.gazebo_materials import BUILT_IN
 from ...appearance.material_script import ScriptMaterial
-from ...appearance.script_files import materials_of, scripts_of
+from ...appearance.script_files import materials_of, scripts_of, shared_material
 from ...appearance.textures import TextureFiles
 from ...description.compare import BUILT_IN as BUILT_IN_SCRIPT
 from ...description.shapes import Material
@@ -27,8 +27,12 @@ def check_script(material: Material, element: Any, source: Source) -> None:
     """
     known, folders, complete = _read_scripts(material.script_uris, element, source)
     name = material.script_name
-    if name in known:
-        _check_texture(*known[name], folders, source)
+    found = known.get(name)
+    if found is None and name and name not in BUILT_IN:
+        found = shared_material(name, source.resolver)
+        folders = [os.path.dirname(found[1])] if found is not None else folders
+    if found is not None:
+        _check_texture(*found, folders, source)
     elif name and name not in BUILT_IN and material.script_uris and complete:
         source.warn("material-unknown", f"no material script defines {name!r}; white is shown",
                     element, closest(name, [*known, *BUILT_IN]))

@@ -2,10 +2,11 @@
 
 Parameters, defaults, topics and laws are those of hector_gazebo_plugins and of its copies
 (librobotnik_force_based_move.so, libridgeback_ros_force_based_move.so, libwpr_plugin.so,
-libnexus_ros_force_based_move.so), which differ in their watchdogs, gains and limits: in every step a force along x and y of the base, and a torque
-about its vertical, in proportion to its velocity error, which the engine computes. Odometry is the
-true pose relative to the initial one. Where it differs: Robotnik's robots brake when the watchdog
-has stopped them (original: they are put back to one place), and continue to publish their odometry.
+libnexus_ros_force_based_move.so), which differ in their watchdogs, gains and limits: in every step
+a force along x and y of the base, and a torque about its vertical, in proportion to its velocity
+error, which the engine computes. Odometry is the true pose relative to the initial one. Where it
+differs: Robotnik's robots brake when the watchdog has stopped them (original: they are put back to
+one place), and continue to publish their odometry.
 """
 from __future__ import annotations
 
