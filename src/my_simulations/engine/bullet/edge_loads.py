@@ -9,7 +9,6 @@ this load, and Coulomb's law at each edge, the Husky turns at 1.36 rad/s.
 """
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import List, Optional, Sequence, Tuple
 
 from ...description.model import Link
@@ -20,22 +19,16 @@ from .contact_points import DISTANCE, LOAD, NORMAL, PLACE, ContactPoint
 from .link_states import Motion
 
 Loads = Tuple[List[ContactPoint], List[float]]
-_Plane = Tuple[Vec3, Vec3, Vec3, float]  # two directions in it, its normal, its height along it
+Wheel = Tuple[Motion, Optional[Vec3], Sequence[ContactPoint]]
+"""Motion, axle in PyBullet's frame and all contacts; other links, as casters, have no axle."""
+_Edges = Tuple[List[Tuple[int, List[ContactPoint]]], List[float], List[float], float, float, float]
+"""Each edge's wheel and contacts; mean positions along two directions of the plane, m; the sums of
+the loads, N, and of loads times positions, N m."""
 
 _NEAR = 1e-4   # m: an edge closer to the floor carries a load
 _LYING = 0.02  # of the axle along the floor normal: a wheel tilted more has one edge
 _LEVEL = 1e-3  # m: floors with a larger height difference are not one plane
 _ALIKE = 0.999  # cosine: floors with a smaller one between their normals, likewise
-
-
-@dataclass
-class _Edge:
-    """Contacts of one edge of a wheel, and their mean position in the floor plane, m."""
-
-    wheel: int
-    contacts: List[ContactPoint]
-    x: float
-    y: float
 
 
 def axle_of(part: Part, link: Link) -> Optional[Vec3]:
@@ -52,80 +45,82 @@ def carrying(contacts: Sequence[ContactPoint]) -> Loads:
     return kept, [contact[LOAD] for contact in kept]
 
 
-def shared(wheels: Sequence[Tuple[Motion, Optional[Vec3], Sequence[ContactPoint]]]) -> List[Loads]:
+def shared(wheels: Sequence[Wheel]) -> List[Loads]:
     """Return the loaded contacts of each wheel of a body, with loads for equally stiff edges.
-
-    Args:
-        wheels: the motion, the axle in PyBullet's frame, and all contacts of each wheel; other
-            links, as casters, have no axle.
 
     If the wheels do not stand on one plane, or a load would be negative, Bullet's loads stay.
     """
-    found = [carrying(contacts) for _, _, contacts in wheels]
-    first = next((contacts[0] for contacts, _ in found if contacts), None)
-    if first is None:
-        return found
-    normal = first[NORMAL]
-    along = cross(normal, (0.0, 0.0, 1.0) if abs(normal[2]) < 0.9 else (0.0, 1.0, 0.0))
-    along = scale(along, 1.0 / norm(along))
-    plane = (along, cross(normal, along), normal, dot(first[PLACE], normal))
-    edges: List[_Edge] = []
-    moments = [0.0, 0.0, 0.0]
-    for n, (motion, axle, contacts) in enumerate(wheels):
-        axis = None if axle is None else rotate(motion.orientation, axle)
-        if axis is not None and abs(dot(axis, normal)) > _LYING:
-            return found
-        own = _edges(n, motion.position, axis, contacts, plane, moments)
-        if own is None:
-            return found
-        edges += own
-    loads = _spread(edges, *moments)
-    if loads is None:
-        return found
+    edges = _edges(wheels)
+    loads = None if edges is None else _spread(*edges[1:])
+    if edges is None or loads is None:
+        return [carrying(contacts) for _, _, contacts in wheels]
     made: List[Loads] = [([], []) for _ in wheels]
-    for edge, load in zip(edges, loads):
-        kept, parts = made[edge.wheel]
-        kept += edge.contacts
-        parts += [load / len(edge.contacts)] * len(edge.contacts)
+    for (wheel, contacts), load in zip(edges[0], loads):
+        kept, parts = made[wheel]
+        kept += contacts
+        parts += [load / len(contacts)] * len(contacts)
     return made
 
 
-def _edges(wheel: int, centre: Vec3, axis: Optional[Vec3], contacts: Sequence[ContactPoint],
-           plane: _Plane, moments: List[float]) -> Optional[List[_Edge]]:
-    """Return the edges of a wheel, or None off the plane; add its loads to `moments`.
+def _edges(wheels: Sequence[Wheel]) -> Optional[_Edges]:
+    """Return the edges on the plane of the first loaded contact; None if a wheel is not on it.
 
-    Without an axis, each contact is an edge.
+    Without an axle, each contact is an edge. It is called in many steps, so vectors are written
+    out.
     """
-    (tx, ty, tz), (sx, sy, sz), (nx, ny, nz), height = plane
-    (u, v, w), (a, b, c) = centre, axis or centre
-    count = 2 if axis is not None else len(contacts)
-    sides: List[List[ContactPoint]] = [[] for _ in range(count)]
-    xs, ys = [0.0] * count, [0.0] * count
-    for n, contact in enumerate(contacts):
-        if contact[DISTANCE] >= _NEAR:
-            continue
-        (x, y, z), (p, q, r), load = contact[PLACE], contact[NORMAL], contact[LOAD]
-        if abs(x * nx + y * ny + z * nz - height) > _LEVEL or p * nx + q * ny + r * nz < _ALIKE:
-            return None
-        side = n if axis is None else int((x - u) * a + (y - v) * b + (z - w) * c > 0.0)
-        sides[side].append(contact)
-        along, aside = x * tx + y * ty + z * tz, x * sx + y * sy + z * sz
-        xs[side] += along
-        ys[side] += aside
-        moments[0] += load
-        moments[1] += load * along
-        moments[2] += load * aside
-    return [_Edge(wheel, side, x / len(side), y / len(side))
-            for side, x, y in zip(sides, xs, ys) if side]
+    first = next((contact for _, _, contacts in wheels for contact in contacts
+                  if contact[LOAD] > 0.0 and contact[DISTANCE] <= 0.0), None)
+    if first is None:
+        return None
+    nx, ny, nz = normal = first[NORMAL]
+    along = cross(normal, (0.0, 0.0, 1.0) if abs(nz) < 0.9 else (0.0, 1.0, 0.0))
+    tx, ty, tz = along = scale(along, 1.0 / norm(along))
+    sx, sy, sz = cross(normal, along)
+    height = dot(first[PLACE], normal)
+    edges: List[Tuple[int, List[ContactPoint]]] = []
+    xs: List[float] = []
+    ys: List[float] = []
+    total = x_load = y_load = 0.0
+    for n, (motion, axle, contacts) in enumerate(wheels):
+        if axle is not None:
+            a, b, c = rotate(motion.orientation, axle)
+            if abs(a * nx + b * ny + c * nz) > _LYING:
+                return None
+            u, v, w = motion.position
+        sides: Tuple[List[ContactPoint], List[ContactPoint]] = ([], [])
+        sums = [0.0, 0.0, 0.0, 0.0]
+        for contact in contacts:
+            if contact[DISTANCE] >= _NEAR:
+                continue
+            (x, y, z), (p, q, r), load = contact[PLACE], contact[NORMAL], contact[LOAD]
+            if (abs(x * nx + y * ny + z * nz - height) > _LEVEL
+                    or p * nx + q * ny + r * nz < _ALIKE):
+                return None
+            ahead, aside = x * tx + y * ty + z * tz, x * sx + y * sy + z * sz
+            total, x_load, y_load = total + load, x_load + load * ahead, y_load + load * aside
+            if axle is None:
+                edges.append((n, [contact]))
+                xs.append(ahead)
+                ys.append(aside)
+                continue
+            side = (x - u) * a + (y - v) * b + (z - w) * c > 0.0
+            sides[side].append(contact)
+            sums[side] += ahead
+            sums[2 + side] += aside
+        for side, touching in enumerate(sides):
+            if touching:
+                edges.append((n, touching))
+                xs.append(sums[side] / len(touching))
+                ys.append(sums[2 + side] / len(touching))
+    return edges, xs, ys, total, x_load, y_load
 
 
-def _spread(edges: List[_Edge], total: float, x_load: float, y_load: float,
+def _spread(xs: List[float], ys: List[float], total: float, x_load: float, y_load: float,
             ) -> Optional[List[float]]:
     """Return the load of each edge, linear in x and y; None if there is no positive solution."""
-    count = len(edges)
+    count = len(xs)
     x0 = y0 = xx = xy = yy = 0.0
-    for edge in edges:
-        x, y = edge.x, edge.y
+    for x, y in zip(xs, ys):
         x0, y0, xx, xy, yy = x0 + x, y0 + y, xx + x * x, xy + x * y, yy + y * y
     x0, y0 = x0 / count, y0 / count
     xx, xy, yy = xx - count * x0 * x0, xy - count * x0 * y0, yy - count * y0 * y0
@@ -135,5 +130,5 @@ def _spread(edges: List[_Edge], total: float, x_load: float, y_load: float,
         return None
     p, q = (yy * x_load - xy * y_load) / span, (xx * y_load - xy * x_load) / span
     mean = total / count - p * x0 - q * y0
-    loads = [mean + p * edge.x + q * edge.y for edge in edges]
+    loads = [mean + p * x + q * y for x, y in zip(xs, ys)]
     return loads if min(loads) > 0.0 else None

@@ -290,10 +290,13 @@ class WheelFriction(StepHelper):
             keys: List[LinkKey] = []
             hung = [index for index in indices if index != BASE]
             read = dict(zip(hung, motions(uid, hung)))
-            for index in indices:
+            touching: Dict[int, Contacts] = {index: [] for index in indices}
+            for contact in pybullet.getContactPoints(bodyA=uid):
+                if contact[LINK] in touching:
+                    touching[contact[LINK]].append(contact)
+            for index, contacts in touching.items():
                 moves = read[index] if index in read else motion(uid, index)
                 key = (uid, index)
-                contacts = pybullet.getContactPoints(bodyA=uid, linkIndexA=index)
                 if key in self._slipping:
                     found[key] = moves, carrying(contacts)
                 else:
@@ -308,22 +311,21 @@ class WheelFriction(StepHelper):
                steps: int, dt: float, weight: float) -> None:
         """Compute the friction on a link in the next `steps`."""
         slide, slips = self._slides[key], key in self._slipping
-        if not slips and self._touches_others(contacts):
+        others = {(contact[OTHER_BODY], contact[OTHER_LINK]): None for contact in contacts}
+        if not slips and not self._floors.issuperset([body for body, _ in others]):
             self._restore_friction(key)
             return
         slide.acting = []
         # A wheel without contacts can land in the next step; rollers of Mecanum wheels do.
         slide.steady = not slips and (bool(contacts) or self._links[key].joint < 0)
         slide.quiet += steps
-        groups: Dict[LinkKey, Tuple[Contacts, List[float]]] = {}
-        others = [(contact[OTHER_BODY], contact[OTHER_LINK]) for contact in contacts]
-        for other in dict.fromkeys(others):
-            if other in self._links and not (slips and other in self._slipping and other < key):
-                groups[other] = (contacts, loads) if others.count(other) == len(others) else (
-                    [each for each, one in zip(contacts, others) if one == other],
-                    [each for each, one in zip(loads, others) if one == other])
         biases, slide.biases = slide.biases, {}
-        for other, (points, carried) in groups.items():
+        for other in others:
+            if other not in self._links or slips and other in self._slipping and other < key:
+                continue
+            points, carried = contacts, loads
+            if len(others) > 1:
+                points, carried = _with_other(other, contacts, loads)
             slide.biases[other] = biases.get(other, ZERO3)
             forces = self._forces(key, other, moves, points, carried, steps * dt, weight)
             slide.acting += [(contact[PLACE], force, load, other)
@@ -421,6 +423,13 @@ class WheelFriction(StepHelper):
         share = wheel.radius * abs(rate) / wheel.normal_force
         for key in self._rows[wheel.row]:
             self._links[key].slips = (share * wheel.lateral, share * wheel.longitudinal)
+
+
+def _with_other(other: LinkKey, contacts: Contacts, loads: List[float]) -> Loads:
+    """Return the contacts with one other link, and their loads."""
+    found = [(contact, load) for contact, load in zip(contacts, loads)
+             if (contact[OTHER_BODY], contact[OTHER_LINK]) == other]
+    return [contact for contact, _ in found], [load for _, load in found]
 
 
 def _combined(axes: Tuple[Vec3, Vec3], parts: Tuple[float, float]) -> Vec3:
