@@ -157,17 +157,47 @@ def test_what_is_used_before_the_first_reset_says_so(make):
         push_box.make("ansi")
 
 
-@pytest.mark.parametrize("begin", ["class Hover", "class Drive"])
-def test_an_environment_of_the_manual_passes_the_checker(begin):
+def _code_of_the_manual(begin):
     text = (REPOSITORY / "doc" / "gymnasium.md").read_text(encoding="utf-8")
     code, = (found for found in re.findall(r"```python\n(.*?)```", text, re.DOTALL)
              if begin in found)
+    return code
+
+
+@pytest.mark.parametrize("begin", ["class Hover", "class Drive"])
+def test_an_environment_of_the_manual_passes_the_checker(begin):
     names = {}
-    exec(compile(code, "doc/gymnasium.md", "exec"), names)
+    exec(compile(_code_of_the_manual(begin), "doc/gymnasium.md", "exec"), names)
     try:
         check_env(names["env"].unwrapped, skip_render_check=True)
     finally:
         names["env"].close()
+
+
+def test_the_navigation_of_the_manual_is_changed_for_another_robot_in_three_lines():
+    code = _code_of_the_manual("class Drive")
+    burger = REPOSITORY / "test" / "data" / "robots" / "burger.urdf"
+    for line, change in (('own_directory() + "/urdf/robo.urdf"', repr(str(burger))),
+                         ("2.0 * action[1]", "2.84 * action[1]"), ("< 0.18", "< 0.13")):
+        assert code.count(line) == 1
+        code = code.replace(line, change)
+    gymnasium.registry.pop("Drive-v0", None)   # by another test of this code
+    names = {}
+    exec(compile(code, "doc/gymnasium.md", "exec"), names)
+    env = names["env"]
+    try:
+        reached = 0
+        for seed in range(3):
+            seen, over = env.reset(seed=seed)[0], False
+            while not over:
+                bearing = np.arctan2(seen[361], seen[360])
+                seen, _, terminated, truncated, _ = env.step(np.array(
+                    [1.0 if abs(bearing) < 0.5 else 0.0, np.clip(bearing, -1.0, 1.0)]))
+                over = terminated or truncated
+            reached += terminated and np.hypot(*seen[360:]) < 0.2
+        assert reached == 3
+    finally:
+        env.close()
 
 
 def test_gymnasium_imports_the_package_that_a_name_begins_with():
