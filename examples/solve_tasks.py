@@ -6,10 +6,11 @@
 import math
 import sys
 
+import my_simulations.gym  # noqa: F401 (registers the environments; finds gymnasium in a workspace)
+
+# isort: split
 import gymnasium
 import numpy as np
-
-import my_simulations.gym  # noqa: F401 (registers the environments)
 
 
 class Navigate:

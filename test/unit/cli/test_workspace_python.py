@@ -11,7 +11,7 @@ import my_simulations
 from my_simulations.child_process import child_environment
 from my_simulations.errors import CommandError
 from my_simulations.workspace_packages import use_workspace_packages
-from my_simulations.workspace_python import require
+from my_simulations.workspace_python import require, require_extra
 
 
 @pytest.fixture
@@ -65,6 +65,22 @@ def test_an_import_that_fails_names_the_python_too(workspace, monkeypatch):
         my_simulations.open_world
 
 
+def test_a_module_that_no_workspace_brings_is_installed_with_the_python_that_has_the_rest(
+        workspace, monkeypatch):
+    lack(monkeypatch, "gymnasium")
+    with pytest.raises(ImportError) as told:
+        require_extra("gymnasium")
+    assert str(told.value) == (
+        f"{sys.executable} has no module 'gymnasium'; install it with {workspace} -m pip install "
+        f"gymnasium, and run the program with it: {workspace} examples/drop_test.py")
+    monkeypatch.setattr(sys, "prefix", str(workspace.parent.parent))
+    with pytest.raises(ImportError, match=f"{workspace} -m pip install gymnasium$"):
+        require_extra("gymnasium")
+    monkeypatch.setenv("CMAKE_PREFIX_PATH", "")
+    with pytest.raises(ImportError, match=f"{sys.executable} -m pip install gymnasium$"):
+        require_extra("gymnasium")
+
+
 def workspace_of_this_python(tmp_path, monkeypatch, folder):
     python = tmp_path / ".my_simulations" / "venv" / "bin" / "python3"
     python.parent.mkdir(parents=True)
@@ -100,3 +116,13 @@ def test_a_virtual_environment_of_the_user_is_left_alone(tmp_path, monkeypatch):
     monkeypatch.setattr(sys, "prefix", str(tmp_path))
     use_workspace_packages()
     assert packages not in sys.path
+
+
+def test_a_module_among_the_packages_of_a_workspace_is_found(tmp_path, monkeypatch):
+    here = f"python{sys.version_info[0]}.{sys.version_info[1]}"
+    packages = workspace_of_this_python(tmp_path, monkeypatch, here)
+    with pytest.raises(ImportError, match="-m pip install brought_by_the_user$"):
+        require_extra("brought_by_the_user")
+    with open(os.path.join(packages, "brought_by_the_user.py"), "w", encoding="utf-8"):
+        importlib.invalidate_caches()
+    require_extra("brought_by_the_user")
