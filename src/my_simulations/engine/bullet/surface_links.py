@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from math import dist
 from typing import Dict, Optional, Sequence, Tuple
 
 import pybullet
@@ -36,13 +37,20 @@ class Hinge:
     mobility: float
 
     def lever(self, moves: Motion, contacts: Sequence[ContactPoint], loads: Sequence[float],
-              ) -> Vec3:
-        """Return the velocity along the surface at the loads by the rate of the joint, m."""
+              held: float) -> Optional[Vec3]:
+        """Return the velocity along the surface at the loads by the rate of the joint, m.
+
+        None if it is at most `held`, m: a motor holds the joint against the friction.
+        """
+        centre = load_centre(contacts, loads)
+        if dist(centre, moves.position) + norm(self.pivot) <= held:
+            return None
         turn = moves.orientation
-        arm = subtract(load_centre(contacts, loads), add(moves.position, rotate(turn, self.pivot)))
+        arm = subtract(centre, add(moves.position, rotate(turn, self.pivot)))
         moved = cross(rotate(turn, self.axis), arm)
         normal = contacts[0][NORMAL]
-        return subtract(moved, scale(normal, dot(moved, normal)))
+        lever = subtract(moved, scale(normal, dot(moved, normal)))
+        return None if norm(lever) <= held else lever
 
 
 @dataclass

@@ -377,9 +377,7 @@ class WheelFriction(StepHelper):
         soft = slow[0] + ends[0], slow[1] + ends[1]
         bias = slide.biases[other]
         lever = None if one.hinge is None or two.body.moves else one.hinge.lever(
-            mine, contacts, loads)
-        if lever is not None and self._holding(one.joint) >= min(mus) * carried * norm(lever):
-            lever = None
+            mine, contacts, loads, self._holding(one.joint) / (min(mus) * carried))
         ease = 0.0 if one.hinge is None else _SOFT * dt * one.hinge.mobility
         if soft[0] == soft[1] and mus[0] == mus[1] and not any(slow) and theirs is AT_REST:
             yields = STIFF if lever is None else yielding(
