@@ -2,9 +2,9 @@
 from __future__ import annotations
 
 from math import hypot, sqrt
-from typing import List, Sequence, Tuple
+from typing import List, NamedTuple, Sequence, Tuple
 
-from ...geometry import Vec3, subtract
+from ...geometry import Vec3, dot, scale, subtract
 from .contact_points import NORMAL, PLACE, ContactPoint
 from .link_states import AT_REST, Motion
 
@@ -68,14 +68,84 @@ def limited(wanted: Tuple[float, float], mus: Tuple[float, float], soft: Tuple[f
     return left * a / (u + x) * mus[0], left * b / (v + x) * mus[1]
 
 
+def mean_velocity(moves: Motion, contacts: Sequence[ContactPoint], loads: Sequence[float]) -> Vec3:
+    """Return the velocity of a link along the surface at the centre of its loads, m/s."""
+    velocity = moves.velocity_at(load_centre(contacts, loads))
+    normal = contacts[0][NORMAL]
+    return subtract(velocity, scale(normal, dot(velocity, normal)))
+
+
+def load_centre(contacts: Sequence[ContactPoint], loads: Sequence[float]) -> Vec3:
+    """Return the mean of contact points weighted by load, m; world axes."""
+    if len(loads) == 1:
+        return contacts[0][PLACE]
+    x = y = z = 0.0
+    for contact, load in zip(contacts, loads):
+        i, j, k = contact[PLACE]
+        x, y, z = x + load * i, y + load * j, z + load * k
+    total = sum(loads)
+    return x / total, y / total, z / total
+
+
+class Yielding(NamedTuple):
+    """How the joint of a link changes the friction that ends its mean slip; N, world axes.
+
+    Friction -D v, with D the inverse of what other parts yield, would overshoot if the joint yields
+    too. So the mean slip v meets -(D - E) v, and the effort t on the joint, which would make it
+    slip in the step, is compensated.
+
+    Attributes:
+        total: the added friction: E v less the friction against the effort.
+        spared: E v.
+    """
+
+    total: Vec3
+    spared: Vec3
+
+
+STIFF = Yielding((0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
+"""Of a link whose joint does not yield."""
+
+
+def yielding(lever: Vec3, ease: float, effort: float, slip: Vec3, end: float) -> Yielding:
+    """Return the change for a joint and other parts that yield alike in both directions.
+
+    The joint yields by g u u^T, with the lever u and the ease g. With D = 1 / end, by Sherman and
+    Morrison, E = g D u u^T D / (1 + g u^T D u).
+
+    Args:
+        lever: velocity of the contact by the rate of the joint, m.
+        ease: change of the rate by a moment in the step, rad/(N m s).
+        effort: on the joint, N m.
+        slip: mean, m/s.
+        end: slip per force that friction ends, m/(N s).
+    """
+    share = ease / (end + ease * dot(lever, lever))
+    given = dot(lever, slip) / end
+    return Yielding(scale(lever, share * (given - effort)), scale(lever, share * given))
+
+
+def yielding_along(lever: Tuple[float, float], ease: float, effort: float,
+                   slip: Tuple[float, float], soft: Tuple[float, float],
+                   ) -> Tuple[Tuple[float, float], Tuple[float, float]]:
+    """Return the same along two axes with different slips per force, `soft`."""
+    u, v = lever[0] / soft[0], lever[1] / soft[1]
+    share = ease / (1.0 + ease * (u * lever[0] + v * lever[1]))
+    given = u * slip[0] + v * slip[1]
+    total, spared = share * (given - effort), share * given
+    return (u * total, v * total), (u * spared, v * spared)
+
+
 def isotropic(contacts: Sequence[ContactPoint], loads: Sequence[float], mine: Motion, bias: Vec3,
-              mu: float, soft: float, grows: float) -> Tuple[List[Vec3], float, Vec3]:
+              mu: float, soft: float, yields: Yielding, grows: float,
+              ) -> Tuple[List[Vec3], float, Vec3]:
     """Return friction by contact with something at rest, N, the mean slip, m/s, and the new bias.
 
     The law of `wheel_friction` for one coefficient and no slip, in a third of the time.
     """
     (cx, cy, cz), _, (u, v, w), (p, q, r) = mine
-    bx, by, bz = bias
+    (bx, by, bz), (tx, ty, tz), (ex, ey, ez) = bias, *yields
+    hx, hy, hz = bx + tx, by + ty, bz + tz
     total, within = sum(loads), False
     mx = my = mz = 0.0
     forces: List[Vec3] = []
@@ -87,7 +157,7 @@ def isotropic(contacts: Sequence[ContactPoint], loads: Sequence[float], mine: Mo
         i, j, k = i - away * a, j - away * b, k - away * c
         mx, my, mz = mx + load * i, my + load * j, mz + load * k
         share = load / total
-        i, j, k = share * (bx - i / soft), share * (by - j / soft), share * (bz - k / soft)
+        i, j, k = share * (hx - i / soft), share * (hy - j / soft), share * (hz - k / soft)
         size, most = sqrt(i * i + j * j + k * k), mu * load
         if size > most:
             i, j, k = i * most / size, j * most / size, k * most / size
@@ -98,7 +168,7 @@ def isotropic(contacts: Sequence[ContactPoint], loads: Sequence[float], mine: Mo
     slip = sqrt(mx * mx + my * my + mz * mz)
     if not within:
         return forces, slip, (0.0, 0.0, 0.0)
-    grown = grows / soft
-    bx, by, bz = bx - grown * mx, by - grown * my, bz - grown * mz
+    bx, by, bz = (bx - grows * (mx / soft - ex), by - grows * (my / soft - ey),
+                  bz - grows * (mz / soft - ez))
     left = min(1.0, mu * total / max(sqrt(bx * bx + by * by + bz * bz), 1e-300))
     return forces, slip, (left * bx, left * by, left * bz)

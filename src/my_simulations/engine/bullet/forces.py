@@ -74,6 +74,7 @@ class Forces(StepHelper):
         self._implicit: Dict[int, ImplicitAxes] = {}
         self._resting: Dict[int, ImplicitAxes] = {}   # dampers of bodies that are fixed at rest
         self._limits: Dict[int, Tuple[float, float]] = {}
+        self._efforts: Tuple[int, Dict[int, float]] = -1, {}   # step count, efforts by axis row
         self.servos = JointServos(self._axes, wake, release)
 
     def add(self, body: Body) -> None:
@@ -211,6 +212,7 @@ class Forces(StepHelper):
     def before(self, step: int, dt: float, gravity: Vec3) -> None:
         """Apply all forces of the step that begins at count `step`."""
         efforts: Dict[int, float] = {}
+        self._efforts = step, efforts
         if self._timed:
             self._begin_and_end(step)
             for force in self._acting.values():
@@ -230,6 +232,17 @@ class Forces(StepHelper):
             at = place(body.uid, part.index)[0]
             pybullet.applyExternalForce(body.uid, part.index, scale(gravity, -part.mass), at,
                                         pybullet.WORLD_FRAME)
+
+    def effort_on(self, row: int, step: int) -> float:
+        """Return the effort on an axis in the step that begins at count `step`, N m or N.
+
+        Efforts of motors are not included.
+        """
+        at, efforts = self._efforts
+        if at != step:
+            return 0.0
+        effort = efforts.get(row)
+        return self.servos.effort_of(row) if effort is None else effort
 
     def _apply_efforts(self, efforts: Dict[int, float]) -> None:
         """Apply efforts by row, one call per body; a call per axis takes four times as long."""

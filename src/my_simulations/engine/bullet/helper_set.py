@@ -88,8 +88,10 @@ class HelperSet:
                                         self._parameters.find_pairs)
         self._seams = SeamContacts(self._rolling, self._parameters)
         self._level = LevelSeams(lambda: self._residual.fast, self._parameters)
-        self.wheel_friction = WheelFriction(lambda row: self.motors.effort_of(row),
-                                            lambda row: self.motors.rate_of(row))
+        self.wheel_friction = WheelFriction(
+            lambda row: max(self.motors.effort_of(row), self.forces.servos.motor_strength(row)),
+            lambda row: self.motors.rate_of(row),
+            lambda row, step: self.forces.effort_on(row, step))
         self.forces = Forces(self._waker_for(BodyEvent.FORCE_APPLIED),
                              lambda rows: self.motors.yield_to(rows),
                              lambda body, axis: self.motors.restore(body, axis),

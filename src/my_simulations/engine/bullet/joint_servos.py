@@ -193,6 +193,18 @@ class JointServos:
                     uid, loops.motors.indices, pybullet.VELOCITY_CONTROL,
                     targetVelocities=loops.motors.advanced(uid, step), forces=loops.forces)
 
+    def effort_of(self, row: int) -> float:
+        """Return the effort of a servo in the last step, N m or N; 0 if it drives a motor."""
+        law = self._laws.get(row)
+        return law.last if law is not None and law.gives_effort and (
+            row not in self._yielding) else 0.0
+
+    def motor_strength(self, row: int) -> float:
+        """Return the most effort of the motor that a servo drives, N m or N; 0 for none."""
+        law = self._laws.get(row)
+        return _strength(law.servo) if law is not None and not law.gives_effort and (
+            row not in self._yielding) else 0.0
+
     def efforts(self, rows: Sequence[int]) -> Tuple[float, ...]:
         """Return the efforts on axes in the last step, N m or N; 0 without a servo or motor."""
         found: List[float] = []

@@ -155,16 +155,16 @@ class JointWrenches(BodyObserver):
         for cut in self._cuts.values():
             body = cut.body
             if body.uid not in self._seen:
-                seen = self._seen[body.uid] = _Seen(body, cut.chain)
-                owners = body.owners
-                for index, force, at in self._friction.forces_on(body.uid):
-                    note(seen.outside, owners.get(index, index), force, at)
+                self._seen[body.uid] = _Seen(body, cut.chain)
 
     def after(self, dt: float, gravity: Vec3) -> None:
         """Record the states after that step, after all helpers have acted."""
         self._dt, self._gravity = dt, gravity
         for seen in self._seen.values():
             seen.after = link_motions(seen.body)
+            owners = seen.body.owners
+            for index, force, at in self._friction.forces_on(seen.body.uid):
+                note(seen.outside, owners.get(index, index), force, at)
             for part in seen.body.parts if self._forces.wrenched_links else ():
                 force, torque = self._forces.acting_on(part.row)
                 at = seen.before[part.index].position

@@ -2,13 +2,17 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from math import dist
 from typing import Dict, Optional, Sequence, Tuple
+
+import pybullet
 
 from ...description.link_surface import dominant_collision
 from ...description.shapes import Cylinder, Surface
-from ...geometry import Vec3, dot, norm, rotate, scale, subtract
-from .bodies import Body, Part
-from .contact_points import PLACE, ContactPoint, LinkKey
+from ...geometry import Vec3, add, conjugate, cross, dot, norm, rotate, scale, subtract
+from .bodies import Axis, Body, Part
+from .contact_points import NORMAL, PLACE, ContactPoint, LinkKey
+from .contact_slip import load_centre
 from .edge_loads import axle_of
 from .extra_surfaces import first_direction
 from .link_states import AT_REST, Motion, place
@@ -16,6 +20,37 @@ from .surface_coefficients import is_direction_dependent
 
 _LEAST_MU = 1e-6
 _LEAST_MOMENT = 1e-9  # kg m^2
+
+
+@dataclass(frozen=True)
+class Hinge:
+    """The revolute joint of a link.
+
+    Attributes:
+        axis: in PyBullet's frame of the link, of length 1.
+        pivot: a point on the axis, in that frame, m.
+        mobility: of the joint, other joints free, 1/(kg m^2).
+    """
+
+    axis: Vec3
+    pivot: Vec3
+    mobility: float
+
+    def lever(self, moves: Motion, contacts: Sequence[ContactPoint], loads: Sequence[float],
+              held: float) -> Optional[Vec3]:
+        """Return the velocity along the surface at the loads by the rate of the joint, m.
+
+        None if it is at most `held`, m: a motor holds the joint against the friction.
+        """
+        centre = load_centre(contacts, loads)
+        if dist(centre, moves.position) + norm(self.pivot) <= held:
+            return None
+        turn = moves.orientation
+        arm = subtract(centre, add(moves.position, rotate(turn, self.pivot)))
+        moved = cross(rotate(turn, self.axis), arm)
+        normal = contacts[0][NORMAL]
+        lever = subtract(moved, scale(normal, dot(moved, normal)))
+        return None if norm(lever) <= held else lever
 
 
 @dataclass
@@ -29,6 +64,7 @@ class SurfaceLink:
         axle: of a wheel (`edge_loads`), or None.
         mus, slips: along and across `first`; slips in m/(N s).
         joint: row of its joint; -1 for none.
+        hinge: its joint if that is revolute.
     """
 
     body: Body
@@ -40,6 +76,7 @@ class SurfaceLink:
     mus: Tuple[float, float]
     slips: Tuple[float, float]
     joint: int
+    hinge: Optional[Hinge]
 
     @property
     def is_floor(self) -> bool:
@@ -76,16 +113,26 @@ def surface_links(body: Body) -> Dict[LinkKey, SurfaceLink]:
     """Return the links of a body that can touch something, each with the surface that counts."""
     found: Dict[LinkKey, SurfaceLink] = {}
     total = sum(part.mass for part in body.parts)
-    joints = {axis.index: axis.row for axis in body.axes}
+    joints = {axis.index: axis for axis in body.axes}
     for uid, part in body.surfaces:
         collision = dominant_collision(part.link)
         surface = Surface() if collision is None else collision.surface
         first, slips = None, (surface.slip1, surface.slip1)
-        if collision is not None and any(surface.fdir1):
+        if collision is not None and any(surface.fdir1) and (
+                surface.mu != surface.mu2 or surface.slip1 != surface.slip2):
             first, slips = first_direction(collision, part), (surface.slip1, surface.slip2)
-        joint = joints.get(part.index, -1)
+        axis = joints.get(part.index)
         mu, mu2 = surface.mu, surface.mu2 if is_direction_dependent(surface) else surface.mu
         found[uid, part.index] = SurfaceLink(
-            body, uid, part, total, first, axle_of(part, part.link) if joint >= 0 else None,
-            (max(_LEAST_MU, mu), max(_LEAST_MU, mu2)), slips, joint)
+            body, uid, part, total, first, axle_of(part, part.link) if axis is not None else None,
+            (max(_LEAST_MU, mu), max(_LEAST_MU, mu2)), slips, -1 if axis is None else axis.row,
+            None if axis is None else _hinge_of(uid, axis))
     return found
+
+
+def _hinge_of(uid: int, axis: Axis) -> Optional[Hinge]:
+    joint = pybullet.getJointInfo(uid, axis.index)
+    if joint[2] != pybullet.JOINT_REVOLUTE:
+        return None
+    centre, turn = pybullet.getDynamicsInfo(uid, axis.index)[3:5]
+    return Hinge(joint[13], rotate(conjugate(turn), scale(centre, -1.0)), axis.ease)

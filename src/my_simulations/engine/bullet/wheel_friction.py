@@ -4,14 +4,17 @@ Bullet's friction of articulated bodies depends on the heading, and has no slip 
 force (slip1, slip2; ODE's manual, "Contact"), of which Gazebo Classic 11 applies the sum of both
 surfaces to a pair. So it is reduced to a share of 0.001 for links with slip, and for links on
 joints while they slide on static bodies (figures: doc/dev/contacts.md, "Friction"). A force at each
-contact replaces it. It is computed after a step, and acts in the next one. At the slip velocity v
-it is
+contact replaces it. It is computed before a step from the contacts of the last one. At the slip
+velocity v it is
 
     F = -v / (s + h) + B,  at most mu N,
 
-with the slip s, and h such that the force ends the velocity within a few steps. B takes up what the
-other forces on the body are: it grows by a share of the force -(v + s F) / (s + h) until v = -s F.
-Without slip that holds a wheel on a slope. If mu applies along a direction and mu2 across it, M is
+with the slip s, and h such that the force ends the velocity within a few steps. If no motor holds
+the joint of the wheel, h is a tensor that includes the mobility of the joint, and the velocity that
+the effort on the joint causes in the step is added to v. So the friction on light wheels is stable,
+also under loops that are unstable in the air. B takes up what the other forces on the body are: it
+grows by a share of the force -(v + s F) / (s + h) until v = -s F. Without slip that holds a wheel
+on a slope. If mu applies along a direction and mu2 across it, M is
 the tensor of both, and the limit is |M^-1 F| = N. A fast wheel then meets -N M (M v) / |M v|: of
 all forces within this ellipse, the one that dissipates the most power.
 
@@ -43,7 +46,17 @@ from .contact_points import (
     ContactPoint,
     LinkKey,
 )
-from .contact_slip import direction_across, isotropic, limited, mean_slip, slips_along
+from .contact_slip import (
+    STIFF,
+    direction_across,
+    isotropic,
+    limited,
+    mean_slip,
+    mean_velocity,
+    slips_along,
+    yielding,
+    yielding_along,
+)
 from .edge_loads import Loads, carrying, shared
 from .extra_surfaces import anisotropy
 from .link_states import AT_REST, Motion, hung_states, motion, motions
@@ -66,7 +79,7 @@ Contacts = List[ContactPoint]
 
 
 class ActingFriction(NamedTuple):
-    """Friction on a link in the next step, N, at a contact, in world axes; and the normal force."""
+    """Friction on a link in the last step, N, at a contact, in world axes; and the normal force."""
 
     at: Vec3
     force: Vec3
@@ -97,13 +110,16 @@ class WheelFriction(StepHelper):
     Args:
         holding: returns the effort, N m, with which the motor or brake of a joint row acts.
         rate: returns the rate, rad/s, to which it drives the joint.
+        effort: returns the effort, N m, of loops, dampers and commands on a joint row in the step
+            that begins at a count.
     """
 
     # A new force or motor target does not end the sliding of a wheel.
     events = frozenset({BodyEvent.ACTIVATED, BodyEvent.MOTOR_TARGET_CHANGED})
 
-    def __init__(self, holding: Callable[[int], float], rate: Callable[[int], float]) -> None:
-        self._holding, self._rate = holding, rate
+    def __init__(self, holding: Callable[[int], float], rate: Callable[[int], float],
+                 effort: Callable[[int, int], float]) -> None:
+        self._holding, self._rate, self._effort = holding, rate, effort
         self._commanded: Set[int] = set()
         self._links: Dict[LinkKey, SurfaceLink] = {}
         self._wheels: Dict[int, Dict[int, SurfaceLink]] = {}   # links that can slide, by body
@@ -113,11 +129,12 @@ class WheelFriction(StepHelper):
         self._next: Dict[int, int] = {}                  # next computation, step count, by body
         self._slipping: Set[LinkKey] = set()
         self._fixed: Set[int] = set()                    # bodies with a fixed base
+        self._found: Dict[LinkKey, Tuple[Motion, Loads]] = {}   # for the friction of the next step
         self._rows: Dict[int, List[LinkKey]] = {}
         self._axes: Dict[int, Tuple[Body, Axis]] = {}
         self._slip_commands: Dict[int, WheelSlip] = {}
         self.body_tables = (self._links, self._wheels, self._rigs, self._floors, self._slides,
-                            self._next, self._slipping, self._fixed, self._commanded)
+                            self._next, self._slipping, self._fixed, self._commanded, self._found)
         self._cone = True
 
     # -- bodies ------------------------------------------------------------------------------------
@@ -177,6 +194,7 @@ class WheelFriction(StepHelper):
             return
         for key in [key for key in self._slides if key[0] == body.uid]:
             if key in self._slipping:
+                self._found.pop(key, None)
                 self._slides[key] = _Slide()
             else:
                 self._restore_friction(key)
@@ -185,16 +203,16 @@ class WheelFriction(StepHelper):
 
     def acting_at(self, uid: int, index: int, at: Vec3, other: LinkKey,
                   ) -> Optional[ActingFriction]:
-        """Return the friction besides Bullet's by another link near a place; None for none.
+        """Return the friction besides Bullet's in the last step by another link near a place.
 
-        Both links have moved on if it was not computed in the last step.
+        None for none. Both links have moved on if it was computed some steps ago.
         """
         slide = self._slides.get((uid, index), _Slide())
         near = [ActingFriction(*each) for each in slide.acting if each[3] == other]
         return min(near, key=lambda each: norm(subtract(each.at, at))) if near else None
 
     def forces_on(self, uid: int) -> Iterator[Tuple[int, Vec3, Vec3]]:
-        """Yield the friction on a body in the next step: link index, force, point; world axes."""
+        """Yield the friction on a body in the last step: link index, force, point; world axes."""
         for key, slide in self._slides.items():
             for at, force, _, other in slide.acting:
                 if key[0] == uid:
@@ -211,9 +229,11 @@ class WheelFriction(StepHelper):
         return next_multiple(step, EVERY) if self._cone and self._wheels else FAR
 
     def before(self, step: int, dt: float, gravity: Vec3) -> None:
+        """Compute friction for the step that begins at count `step`, where it is due; apply it."""
         for uid in sorted(self._commanded):
             self._begin(uid, norm(gravity) * dt)
         self._commanded.clear()
+        self._compute(step, dt, gravity)
         # Bullet takes the arm of a force from the link poses of the last forward kinematics. Other
         # readers request these at any time, so they are requested here in each step.
         for uid, index in {uid: index for uid, index in self._slides if index != BASE}.items():
@@ -227,24 +247,31 @@ class WheelFriction(StepHelper):
                                                 pybullet.WORLD_FRAME)
 
     def after(self, step: int, dt: float, gravity: Vec3) -> None:
-        """Compute friction after the step that began at count `step`; periodically find slides."""
+        """Find links that slide, every few steps; read the loads for the friction that is due next.
+
+        Contacts are read here: other helpers drop some of them before the next step.
+        """
         if step % EVERY == 0 and self._cone:
             seldom = step % (_SELDOM * EVERY) == 0
             for uid, wheels in self._wheels.items():
                 if seldom or uid not in self._fixed:
                     self._find_slides(uid, wheels)
-        due = {uid for uid, _ in self._slides if self._next.get(uid, step) <= step}
-        if not due:
+        due = {uid for uid, _ in self._slides if self._next.get(uid, step + 1) <= step + 1}
+        self._found.update(self._loads(due) if due else {})
+
+    def _compute(self, step: int, dt: float, gravity: Vec3) -> None:
+        """Compute the friction that is due, for the efforts of the step that begins at `step`."""
+        if not self._found:
             return
         for wheel in self._slip_commands.values():
             self._set_slip(wheel)
         weight, later = norm(gravity), next_multiple(step + 1, max(1, int(_PERIOD / dt)))
-        found = self._loads(due)
-        unsteady = {uid for uid, index in found if not self._slides[uid, index].steady}
-        for uid in due:
+        unsteady = {uid for uid, index in self._found if not self._slides[uid, index].steady}
+        for uid in {uid for uid, _ in self._found}:
             self._next[uid] = step + 1 if uid in unsteady else later
-        for key, (moves, loads) in found.items():
-            self._go_on(key, moves, *loads, self._next[key[0]] - step, dt, weight)
+        for key, (moves, loads) in list(self._found.items()):
+            self._go_on(key, moves, *loads, step, dt, weight)
+        self._found.clear()
         self._restore_quiet()
 
     def _find_slides(self, uid: int, wheels: Dict[int, SurfaceLink]) -> None:
@@ -308,9 +335,9 @@ class WheelFriction(StepHelper):
         return found
 
     def _go_on(self, key: LinkKey, moves: Motion, contacts: Contacts, loads: List[float],
-               steps: int, dt: float, weight: float) -> None:
-        """Compute the friction on a link in the next `steps`."""
-        slide, slips = self._slides[key], key in self._slipping
+               step: int, dt: float, weight: float) -> None:
+        """Compute the friction on a link from count `step` to its next computation."""
+        slide, slips, steps = self._slides[key], key in self._slipping, self._next[key[0]] - step
         others = {(contact[OTHER_BODY], contact[OTHER_LINK]): None for contact in contacts}
         if not slips and not self._floors.issuperset([body for body, _ in others]):
             self._restore_friction(key)
@@ -319,6 +346,8 @@ class WheelFriction(StepHelper):
         # A wheel without contacts can land in the next step; rollers of Mecanum wheels do.
         slide.steady = not slips and (bool(contacts) or self._links[key].joint < 0)
         slide.quiet += steps
+        effort = self._effort(self._links[key].joint, step)
+        slide.steady &= not effort   # a loop can change it in each step
         biases, slide.biases = slide.biases, {}
         for other in others:
             if other not in self._links or slips and other in self._slipping and other < key:
@@ -327,27 +356,36 @@ class WheelFriction(StepHelper):
             if len(others) > 1:
                 points, carried = _with_other(other, contacts, loads)
             slide.biases[other] = biases.get(other, ZERO3)
-            forces = self._forces(key, other, moves, points, carried, steps * dt, weight)
+            forces = self._forces(key, other, moves, points, carried, effort, steps * dt, weight)
             slide.acting += [(contact[PLACE], force, load, other)
                              for contact, force, load in zip(points, forces, carried)]
 
     def _forces(self, key: LinkKey, other: LinkKey, mine: Motion, contacts: Contacts,
-                loads: List[float], dt: float, weight: float) -> List[Vec3]:
-        """Return the friction on the first of two links at each contact; update its B."""
+                loads: List[float], effort: float, dt: float, weight: float) -> List[Vec3]:
+        """Return the friction on the first of two links at each contact; update its B.
+
+        `effort`: on the joint of the first link in this step, N m.
+        """
         one, two, slide = self._links[key], self._links[other], self._slides[key]
         theirs = motion(*other) if two.body.moves else AT_REST
         carried = sum(loads)
         mus = min(one.mus[0], two.mus[0]), min(one.mus[1], two.mus[1])
         slow = one.slips[0] + two.slips[0], one.slips[1] + two.slips[1]
-        ends = self._ends(one, two, mine, theirs, contacts, carried, dt, weight)
+        end = self._end(one, two, mine, theirs, contacts, carried, dt, weight)
+        ends = end, end
         if mus[0] != mus[1] and not any(slow):   # friction is along M (M v), also where it is least
             most = max(mus)
-            ends = ends[0] * (most / mus[0]) ** 2, ends[1] * (most / mus[1]) ** 2
+            ends = end * (most / mus[0]) ** 2, end * (most / mus[1]) ** 2
         soft = slow[0] + ends[0], slow[1] + ends[1]
         bias = slide.biases[other]
+        lever = None if one.hinge is None or two.body.moves else one.hinge.lever(
+            mine, contacts, loads, self._holding(one.joint) / (min(mus) * carried))
+        ease = 0.0 if one.hinge is None else _SOFT * dt * one.hinge.mobility
         if soft[0] == soft[1] and mus[0] == mus[1] and not any(slow) and theirs is AT_REST:
+            yields = STIFF if lever is None else yielding(
+                lever, ease, effort, mean_velocity(mine, contacts, loads), end)
             forces, size, slide.biases[other] = isotropic(
-                contacts, loads, mine, bias, mus[0], soft[0], _GROWS)
+                contacts, loads, mine, bias, mus[0], end, yields, _GROWS)
             if one.joint >= 0 and size > _HELD:
                 slide.quiet = 0
             slide.steady &= size <= _SLIDES or slide.biases[other] == ZERO3
@@ -361,36 +399,36 @@ class WheelFriction(StepHelper):
         slip = mean_slip(slips, loads)
         if one.joint >= 0 and hypot(*slip) > _HELD:
             slide.quiet = 0
+        given, spared = (0.0, 0.0), (0.0, 0.0)
+        if lever is not None:
+            given, spared = yielding_along((dot(lever, axes[0]), dot(lever, axes[1])), ease, effort,
+                                           slip, soft)
         forces, total, within = [], (0.0, 0.0), False
         for velocity, load in zip(slips, loads):
             share = load / carried
-            wanted = (share * (holds[0] - velocity[0] / soft[0]),
-                      share * (holds[1] - velocity[1] / soft[1]))
+            wanted = (share * (holds[0] + given[0] - velocity[0] / soft[0]),
+                      share * (holds[1] + given[1] - velocity[1] / soft[1]))
             parts = limited(wanted, mus, soft, load)
             within = within or parts is wanted
             forces.append(_combined(axes, parts))
             total = total[0] + parts[0], total[1] + parts[1]
         slide.steady &= not within or hypot(*slip) <= _SLIDES
         slide.biases[other] = ZERO3 if not within else _combined(axes, limited(
-            (holds[0] - _GROWS * (slip[0] + slow[0] * total[0]) / soft[0],
-             holds[1] - _GROWS * (slip[1] + slow[1] * total[1]) / soft[1]), mus, soft, carried))
+            (holds[0] - _GROWS * ((slip[0] + slow[0] * total[0]) / soft[0] - spared[0]),
+             holds[1] - _GROWS * ((slip[1] + slow[1] * total[1]) / soft[1] - spared[1])),
+            mus, soft, carried))
         return forces
 
-    def _ends(self, one: SurfaceLink, two: SurfaceLink, mine: Motion, theirs: Motion,
-              contacts: Contacts, carried: float, dt: float, weight: float) -> Tuple[float, float]:
-        """Return the slip velocity per force, m/(N s), that friction ends: along and across.
+    def _end(self, one: SurfaceLink, two: SurfaceLink, mine: Motion, theirs: Motion,
+             contacts: Contacts, carried: float, dt: float, weight: float) -> float:
+        """Return the slip velocity per force, m/(N s), that friction ends; without the joint.
 
         A body on wheels moves as the load of the wheel does; the mobility of the wheel alone is
-        much larger. Across the axle of a wheel that no motor or brake holds, it matters too.
+        much larger.
         """
         if not one.body.rigid and not two.body.moves:
-            end = _SOFT * dt * max(weight, carried / one.total) / carried
-            if one.axle is None or one.first is not None or self._holding(
-                    one.joint) >= min(one.mus[0], two.mus[0]) * carried * one.radius:
-                return end, end
-            return end, max(end, dt * one.mobility(mine, contacts))
-        alone = dt * (one.mobility(mine, contacts) + two.mobility(theirs, contacts))
-        return alone, alone
+            return _SOFT * dt * max(weight, carried / one.total) / carried
+        return dt * (one.mobility(mine, contacts) + two.mobility(theirs, contacts))
 
     # -- Bullet's friction -------------------------------------------------------------------------
 
@@ -405,6 +443,7 @@ class WheelFriction(StepHelper):
     def _restore_friction(self, key: LinkKey) -> None:
         link = self._links[key]
         del self._slides[key]
+        self._found.pop(key, None)
         pybullet.changeDynamics(*key, anisotropicFriction=anisotropy(link.mus, link.first or ZERO3))
 
     def _restore_quiet(self) -> None:
