@@ -297,6 +297,48 @@ def test_launch_files_and_rostests_are_run(tmp_path):
     assert sorted(os.listdir(tmp_path / "good")) == ["my_world.launch", "old"]
 
 
+WORLD = """<sdf version="1.6"><world name="default"><model name="ground_plane"><static>1</static>
+<link name="l"><collision name="c"><geometry><plane/></geometry></collision></link></model>
+</world></sdf>"""
+STARTED = """<launch>
+  <include file="$(find my_simulations)/launch/world.launch">
+    <arg name="world" value="$(dirname)/{}.world"/><arg name="gui" value="false"/>
+  </include>
+</launch>
+"""
+FAKE = """<launch>
+  <node name="gazebo" pkg="fake" type="gzserver" args="$(dirname)/test.world"/>
+</launch>
+"""
+PRELOADED = STARTED.format("test").replace("<launch>", """<launch>
+  <env name="PYTHONPATH" value="$(dirname):$(env PYTHONPATH)"/>""")
+
+
+def test_the_simulator_has_loaded_the_world_of_the_submission(tmp_path):
+    programs = {"good": STARTED.format("test"), "other": STARTED.format("second"), "fake": FAKE,
+                "preloaded": PRELOADED}
+    for student in programs:
+        (tmp_path / student).mkdir()
+        for name in ("test", "second"):
+            (tmp_path / student / f"{name}.world").write_text(WORLD)
+    package = tmp_path / "fake" / "fake"
+    package.mkdir()
+    (package / "package.xml").write_text(PACKAGE.format("fake"))
+    (package / "gzserver").write_text("#!/usr/bin/env python3\nimport rospy\n"
+                                      "rospy.init_node('gazebo')\nrospy.spin()\n")
+    (package / "gzserver").chmod(0o755)
+    rows, students = grade(tmp_path, """submission: {world: test.world}
+checks: [{points: 2, name: launch, launch: go.launch, world: true, seconds: 1}]
+""", programs, name="go.launch")
+    said = {student: json.loads((students / student / "results.json").read_text())["tests"][0].get(
+        "output", "") for student in programs}
+    assert {student: points(row, "launch") for student, row in rows.items()} == {
+        "good": [2], "other": [0], "fake": [0], "preloaded": [0]}, said
+    assert "runs the world second.world, not test.world of the submission" in said["other"]
+    for student in ("fake", "preloaded"):
+        assert "the node /gazebo is not the simulator" in said[student]
+
+
 FORGED = """<launch>
   <arg name="submission"/>
   <include file="$(arg submission)/go.launch"/>

@@ -145,12 +145,14 @@ class Launch(Check):
         arguments: as for roslaunch, `name:=value`.
         seconds: wall s for which the nodes must run.
         nodes: names of nodes that must be there.
+        runs_world: whether the simulator must have loaded the world file of the submission.
     """
 
     file: Tuple[str, ...] = ()
     arguments: Tuple[str, ...] = ()
     seconds: float = 5.0
     nodes: Tuple[str, ...] = ()
+    runs_world: bool = False
 
 
 @dataclass(frozen=True)

@@ -45,7 +45,7 @@ class CheckReader:
             "no_contact": (("within",), self._no_contact),
             "topic": (("type", "rate", "within"), self._topic),
             "service": (("type", "within"), self._service),
-            "launch": (("args", "seconds", "nodes"), self._launch),
+            "launch": (("args", "seconds", "nodes", "world"), self._launch),
             "rostest": (("args", "seconds"), self._rostest)}
 
     def check(self, value: Any, path: KeyPath) -> Optional[Check]:
@@ -86,12 +86,9 @@ class CheckReader:
                               (*path, "at_most")) if "at_most" in inside else None
         if "exactly" in inside:
             least = most = values.integer(inside["exactly"], (*path, "exactly"))
-        partial = inside.get("partial", False)
-        if not isinstance(partial, bool):
-            values.fault((*path, "partial"), "'partial' of a count must be true or false")
         return EntityCount(**common, kind=kind, excluded=values.names(
             inside.get("not"), (*path, "not")), shape=shape, least=least, most=most,
-            partial=partial is True)
+            partial=self._flag(inside, "partial", path))
 
     # -- the running world -----------------------------------------------------------------------
 
@@ -143,7 +140,8 @@ class CheckReader:
             arguments=values.names(inside.get("args"), (*path, "args")),
             seconds=values.number(inside.get("seconds", 5.0), (*path, "seconds"), above=0.0,
                                   most=_MOST_S),
-            nodes=values.names(inside.get("nodes"), (*path, "nodes")))
+            nodes=values.names(inside.get("nodes"), (*path, "nodes")),
+            runs_world=self._flag(inside, "world", path))
 
     def _rostest(self, inside: Fields, path: KeyPath, common: Fields) -> Check:
         values = self._values
@@ -160,6 +158,12 @@ class CheckReader:
             self._values.fault(path, "'within' is missing: s of sim time", code="grade-key")
         return self._values.number(inside.get("within", 0.0), (*path, "within"), least=0.0,
                                    most=_MOST_S)
+
+    def _flag(self, inside: Fields, key: str, path: KeyPath) -> bool:
+        value = inside.get(key, False)
+        if not isinstance(value, bool):
+            self._values.fault((*path, key), f"'{key}' of this check must be true or false")
+        return value is True
 
     def _type(self, inside: Fields, path: KeyPath) -> str:
         return self._values.text(inside["type"], (*path, "type")) if "type" in inside else ""

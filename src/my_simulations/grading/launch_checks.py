@@ -6,19 +6,29 @@ import os
 import re
 import shutil
 import time
-from typing import List, Sequence, Tuple
+from dataclasses import replace
+from typing import List, Optional, Sequence, Tuple
 
 from ..child_process import wait_or_kill
 from ..errors import InputError
+from ..resources.resolver import Resolver
 from ..ros.lifecycle import master_api
 from ..studies.junit import results_below
 from ..studies.scenario_files import declared_arguments
 from .assignment import Assignment, Launch, Rostest
+from .file_checks import read_world_file
+from .launched_world import (
+    PROPERTIES,
+    SIMULATOR,
+    different_world,
+    model_names,
+    simulator_command,
+)
 from .mark import CheckResult, GradingError, result
 from .program import TESTS, Program, submission_account, tester_account
 from .program_graph import free_port, graph_environment, start_master
 from .rostest_parts import STARTED, split_rostest
-from .submission import matching, reason_for_no_match
+from .submission import listed, matching, reason_for_no_match
 
 _POLL_S = 0.1
 _START_S = 120.0      # until all nodes are there
@@ -59,8 +69,11 @@ class LaunchChecks:
         words = ["roslaunch", "-p", str(port), os.path.join(self._folder, name),
                  *check.arguments]
         with contextlib.closing(self._program(words, uri)) as program:
-            missing = self._wait_for_nodes(program, uri, check.nodes)
+            nodes = (*check.nodes, *((SIMULATOR,) if check.runs_world else ()))
+            missing = self._wait_for_nodes(program, uri, nodes)
             fault = _fault(program)
+            if check.runs_world and not (missing or fault):
+                fault = self._other_world(program, uri)
             until = time.monotonic() + check.seconds
             while not (missing or fault) and time.monotonic() < until:
                 time.sleep(_POLL_S)
@@ -71,6 +84,40 @@ class LaunchChecks:
         if missing:
             return result(check, 0.0, f"no node {missing} within {_START_S:g} s", name)
         return result(check, 1.0)
+
+    def _other_world(self, program: Program, uri: str) -> str:
+        """Why the simulator does not run the world of the submission; "" if it does."""
+        patterns = self._assignment.form.world
+        name = matching(self._folder, patterns)
+        if not name:
+            return reason_for_no_match(self._folder, patterns, self._unreadable)
+        fault = different_world(simulator_command(program, uri, self._scratch),
+                                self._folder, name)
+        if fault:
+            return fault
+        loaded = self._loaded_models(program, uri)
+        if loaded is None:
+            return _fault(program) or f"{SIMULATOR} did not load its world within {_START_S:g} s"
+        world = read_world_file(self._folder, name, Resolver.from_environment()).world
+        lost = [model.name for model in world.models if model.name not in loaded] if world else []
+        return f"the simulator has not loaded {listed(lost)} of {name}" if lost else ""
+
+    def _loaded_models(self, launched: Program, uri: str) -> Optional[List[str]]:
+        """The models of the running simulator; None if it does not answer in time."""
+        account = tester_account(self._scratch, self._slot)
+        account = replace(account, output=f"{account.output}.models")
+        until = time.monotonic() + _START_S
+        while launched.running and time.monotonic() < until:
+            with contextlib.suppress(OSError):
+                if master_api.call(uri, "lookupService", _CALLER, PROPERTIES):
+                    break
+            time.sleep(_POLL_S)
+        with contextlib.closing(Program(["rosservice", "call", PROPERTIES], account.temporary,
+                                        self._scratch, self._assignment.limits, account,
+                                        graph_environment(uri))) as asking:
+            while asking.running and time.monotonic() < until:
+                time.sleep(_POLL_S)
+            return model_names(asking.output())
 
     def rostest(self, check: Rostest) -> CheckResult:
         """Run a rostest of the assignment; its argument `submission` is the folder, if declared.

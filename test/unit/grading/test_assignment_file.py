@@ -89,6 +89,7 @@ def test_all_kinds_of_checks_are_read(tmp_path):
     ("{points: 1, no_contact: [a], within: 1}", "must name two models"),
     ("{points: 1, service: /go, within: 1}", "'checks.1.type' must be text"),
     ("{points: 1, rostest: none.test}", "there is no file"),
+    ("{points: 1, launch: a.launch, world: b.world}", "'world' of this check must be true"),
 ])
 def test_faults_of_checks_have_their_lines(tmp_path, check, message):
     found = faults(tmp_path, "submission: {world: a.world}\nchecks:\n"
@@ -128,6 +129,8 @@ def test_faults_of_the_file_are_named(tmp_path):
     assert "'checks' must be a list" in faults(tmp_path, "lab: a\n")[0][2]
     assert faults(tmp_path, "lab: a\nchecks:\n  - {points: 1, check_model: strict}\n") == [
         (3, "grade-key", "'check_model strict' needs a world")]
+    assert faults(tmp_path, "checks:\n  - {points: 1, launch: a.launch, world: true}\n") == [
+        (2, "grade-key", "'world' of 'launch a.launch' needs the world file of the submission")]
     twice = "  - {points: 1, check_model: strict, name: a}\n"
     assert "two checks have the name 'a'" in faults(
         tmp_path, "submission: {world: a.world}\nchecks:\n" + 2 * twice)[0][2]
