@@ -89,6 +89,8 @@ def test_all_kinds_of_checks_are_read(tmp_path):
     ("{points: 1, no_contact: [a], within: 1}", "must name two models"),
     ("{points: 1, service: /go, within: 1}", "'checks.1.type' must be text"),
     ("{points: 1, rostest: none.test}", "there is no file"),
+    ("{points: 1, topic: /a, type: String, within: 1}", "'String' is not a message type"),
+    ("{points: 1, topic: '/a b', within: 1}", "'/a b' is not a name of ROS"),
     ("{points: 1, launch: a.launch, world: b.world}", "'world' of this check must be true"),
 ])
 def test_faults_of_checks_have_their_lines(tmp_path, check, message):
@@ -96,6 +98,35 @@ def test_faults_of_checks_have_their_lines(tmp_path, check, message):
                              "  - {points: 1, check_model: strict}\n  - " + check + "\n")
     assert [line for line, _, text in found if message in text] == [4], found
     assert all(code.startswith("grade-") or code == "file-not-found" for _, code, _ in found)
+
+
+TYPE = "submission: {{world: a.world}}\nchecks:\n  - {{points: 1, {}, within: 1}}\n"
+
+
+@pytest.mark.parametrize("check, message", [
+    ("topic: /a, type: std_msgs/Strnig", "the package std_msgs has no message type"),
+    ("topic: /a, type: std_srvs/Empty", "the package std_srvs has no message type"),
+    ("topic: /a, type: nothing_msgs/String", "the message type nothing_msgs/String cannot be"),
+    ("service: /a, type: std_msgs/String", "the package std_msgs has no service type"),
+    ("service: /a, type: std_srvs/Emtpy", "the package std_srvs has no service type"),
+])
+def test_types_that_ros_does_not_know_are_errors(tmp_path, check, message):
+    pytest.importorskip("genpy")
+    (line, code, text), = faults(tmp_path, TYPE.format(check))
+    assert (line, code) == (3, "grade-type") and text.startswith(message)
+
+
+@pytest.mark.parametrize("check, known", [
+    ("topic: /a, type: std_msgs/String", True),
+    ("topic: /a, type: ackermann_msgs/AckermannDrive", True),
+    ("service: /a, type: std_srvs/Empty", True), ("service: /a, type: std_srvs/Emtpy", False),
+    ("topic: /a, type: own_msgs/Thing", False)])
+def test_types_that_cannot_be_looked_up_are_warnings(tmp_path, monkeypatch, check, known):
+    monkeypatch.setattr("importlib.util.find_spec", lambda name: None)
+    (tmp_path / "lab.yaml").write_text(TYPE.format(check))
+    _, issues = read_assignment(str(tmp_path / "lab.yaml"))
+    assert [(issue.code, issue.line) for issue in issues] == (
+        [] if known else [("grade-type-unknown", 3)])
 
 
 def test_model_files_of_a_submission_are_named_by_patterns(tmp_path):
