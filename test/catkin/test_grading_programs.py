@@ -116,7 +116,7 @@ TEST = """<launch>
 """
 
 
-def grade(folder, text, programs, *words, name="go.py"):
+def grade(folder, text, programs, *words, name="go.py", status=0):
     """Grade programs by name; returns their rows and the folder of the students."""
     (folder / "lab.yaml").write_text(text)
     for student, program in programs.items():
@@ -124,7 +124,7 @@ def grade(folder, text, programs, *words, name="go.py"):
         (folder / student / name).write_text(program)
     done = subprocess.run([*GRADE, "lab.yaml", *programs, "--out", "marks", *words], cwd=folder,
                           text=True, timeout=SECONDS, capture_output=True)
-    assert done.returncode == 0, done.stderr
+    assert done.returncode == status, done.stderr
     with open(folder / "marks" / "marks.csv", newline="") as stream:
         rows = {row["student"]: row for row in csv.DictReader(stream)}
     return rows, folder / "marks" / "students"
@@ -276,6 +276,18 @@ def test_an_interrupt_ends_all_programs(tmp_path):
     assert process.wait(SECONDS) == 130, process.stderr.read()
     process.stderr.close()
     wait_for(lambda: not any(Path(f"/proc/{pid}").exists() for pid in pids), "its end", SECONDS)
+
+
+def test_a_submission_that_takes_too_long_has_the_output_and_the_replay_until_then(tmp_path):
+    text = QUICK.replace("name: talks", "name: long").replace("rate: 20, within: 0.3",
+                                                              "within: 1000")
+    program = TALK.replace("rate = rospy", 'print("started", flush=True)\nrate = rospy')
+    rows, students = grade(tmp_path, "limits: {seconds: 8}\n" + text, {"late": program}, status=1)
+    mark = json.loads((students / "late" / "mark.json").read_text())
+    assert mark["status"] == "timed out" and points(rows["late"], "moved", "long") == [0, 0]
+    assert mark["results"][1]["reason"] == "not finished within 8 s of wall time"
+    assert (students / "late" / "output.txt").read_text().splitlines() == ["started"]
+    assert {"replay.html", "picture.png"} <= set(mark["files"])
 
 
 def test_launch_files_and_rostests_are_run(tmp_path):

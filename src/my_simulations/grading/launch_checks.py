@@ -7,7 +7,7 @@ import re
 import shutil
 import time
 from dataclasses import replace
-from typing import List, Optional, Sequence, Tuple
+from typing import List, Optional, Sequence, Tuple, Union
 
 from ..child_process import wait_or_kill
 from ..errors import InputError
@@ -48,17 +48,27 @@ class LaunchChecks:
         scratch: folder of the box.
         slot: number of the slot.
         unreadable: files of the submission that were left out because they cannot be read.
+        until: `time.monotonic()` at which all checks end.
     """
 
     def __init__(self, assignment: Assignment, scratch: str, slot: int,
-                 unreadable: Sequence[str]) -> None:
+                 unreadable: Sequence[str], until: float) -> None:
         self._assignment = assignment
         self._scratch = scratch
         self._folder = os.path.join(scratch, "submission")
         self._slot = slot
         self._unreadable = unreadable
+        self._until = until
 
-    def launch(self, check: Launch) -> CheckResult:
+    def decide(self, check: Union[Launch, Rostest]) -> CheckResult:
+        """Decide a check; the result is meaningless once the time is over."""
+        return self._launch(check) if isinstance(check, Launch) else self._rostest(check)
+
+    def _ending(self, seconds: float) -> float:
+        """The time after so many seconds, or the end of all checks."""
+        return min(time.monotonic() + seconds, self._until)
+
+    def _launch(self, check: Launch) -> CheckResult:
         """Start a launch file; it passes if its nodes run for the time of the check."""
         name = matching(self._folder, check.file)
         if not name:
@@ -74,7 +84,7 @@ class LaunchChecks:
             fault = _fault(program)
             if check.runs_world and not (missing or fault):
                 fault = self._other_world(program, uri)
-            until = time.monotonic() + check.seconds
+            until = self._ending(check.seconds)
             while not (missing or fault) and time.monotonic() < until:
                 time.sleep(_POLL_S)
                 fault = _fault(program)
@@ -106,7 +116,7 @@ class LaunchChecks:
         """The models of the running simulator; None if it does not answer in time."""
         account = tester_account(self._scratch, self._slot)
         account = replace(account, output=f"{account.output}.models")
-        until = time.monotonic() + _START_S
+        until = self._ending(_START_S)
         while launched.running and time.monotonic() < until:
             with contextlib.suppress(OSError):
                 if master_api.call(uri, "lookupService", _CALLER, PROPERTIES):
@@ -119,7 +129,7 @@ class LaunchChecks:
                 time.sleep(_POLL_S)
             return model_names(asking.output())
 
-    def rostest(self, check: Rostest) -> CheckResult:
+    def _rostest(self, check: Rostest) -> CheckResult:
         """Run a rostest of the assignment; its argument `submission` is the folder, if declared.
 
         The nodes of the file run as the submission. The tests run as another user, whose files
@@ -158,7 +168,7 @@ class LaunchChecks:
                                     *package_folders(self._folder)])
         environment = {**graph_environment(uri), "ROS_PACKAGE_PATH": packages,
                        "ROS_TEST_RESULTS_DIR": results}
-        until = time.monotonic() + check.seconds
+        until = self._ending(check.seconds)
         with contextlib.closing(Program(command, folder, self._scratch, self._assignment.limits,
                                         account, environment)) as program:
             while program.running and time.monotonic() < until:
@@ -200,10 +210,9 @@ class LaunchChecks:
                 os.chmod(path, 0o755 if os.access(path, os.X_OK) else 0o644)
         return copies[0], copies[1]
 
-    @staticmethod
-    def _wait_for_start(program: Program, uri: str) -> str:
+    def _wait_for_start(self, program: Program, uri: str) -> str:
         """Wait until the nodes of a rostest are being started; why they are not, or ""."""
-        until = time.monotonic() + _START_S
+        until = self._ending(_START_S)
         while time.monotonic() < until:
             is_running = program.running
             with contextlib.suppress(OSError):
@@ -224,7 +233,7 @@ class LaunchChecks:
     def _wait_for_nodes(self, program: Program, uri: str, nodes: Sequence[str]) -> str:
         """The first node that does not come; "" if all are there."""
         waiting = list(nodes)
-        until = time.monotonic() + _START_S
+        until = self._ending(_START_S)
         is_up = False
         while (waiting or not is_up) and program.running and time.monotonic() < until:
             with contextlib.suppress(OSError):

@@ -185,10 +185,7 @@ class Program:
 
     def output(self) -> bytes:
         """The end of what it has printed."""
-        with open(self._output, "rb") as stream:
-            size = stream.seek(0, os.SEEK_END)
-            stream.seek(max(0, size - _KEPT_OUTPUT))
-            return stream.read()
+        return end_of_output(self._output)
 
     def why_ended(self) -> str:
         """What became of it, for a reason; "" while it runs."""
@@ -239,6 +236,14 @@ class Program:
                 self.excess = f"the program used more memory than {self._limits.memory_mb:g} MB"
                 self._process.kill()
                 return
+
+
+def end_of_output(path: str) -> bytes:
+    """The end of a file that programs have printed to. Raises OSError."""
+    with open(path, "rb") as stream:
+        size = stream.seek(0, os.SEEK_END)
+        stream.seek(max(0, size - _KEPT_OUTPUT))
+        return stream.read()
 
 
 def python_error(output: str, folder: str) -> Optional[PythonError]:

@@ -100,7 +100,7 @@ def test_results_and_files_come_through_in_pieces(assignment, tmp_path):
     writer.result(result(assignment.checks[0], 0.5, "why", "f", 2))
     writer.file("replay.html", b"line\nline\n\0")
     writer.note("a note")
-    writer.end()
+    writer.end(True)
     with os.fdopen(receiving, "rb") as stream:
         data = stream.read()
     reader = ResultReader(str(tmp_path / "anna"), assignment.checks)
