@@ -204,6 +204,20 @@ def test_each_lost_point_has_the_line_of_the_fault_of_the_program(tmp_path):
     assert "&gt; 0.1; pose.box.x is " in pages["idle"]
 
 
+def test_a_program_that_ends_is_mentioned_only_if_points_are_lost(tmp_path):
+    text = f"""submission: {{run: go.py}}
+world: worlds/empty.world
+{MODELS}checks:
+  - {{points: 1, name: talks, topic: /chat, type: std_msgs/String, within: 1.5}}
+"""
+    talk = TALK.replace("while not rospy.is_shutdown():", "for _ in range(20):")
+    silent = talk.replace("chat.", "None and ")
+    _, students = grade(tmp_path, text, {"good": talk, "silent": silent})
+    notes = {name: json.loads((students / name / "mark.json").read_text())["notes"]
+             for name in ("good", "silent")}
+    assert notes == {"good": [], "silent": ["the program ended during the run, without an error"]}
+
+
 def test_a_script_that_an_archive_has_changed_runs(tmp_path):
     line = "rosparam set /gazebo/changed 1; rostopic pub -r 30 /chat std_msgs/String here\n"
     rows, students = grade(tmp_path, QUICK.replace("go.py", "go.sh"), {
@@ -296,13 +310,16 @@ def test_launch_files_and_rostests_are_run(tmp_path):
     (tmp_path / "good" / "old").mkdir(parents=True)
     (tmp_path / "good" / "old" / "my_world.launch").write_text("<launch/>")
     rows, students = grade(tmp_path, LAUNCH, {
-        "good": launch, "broken": launch.replace("empty_world.launch", "nothing.launch")},
+        "good": launch, "broken": launch.replace("empty_world.launch", "nothing.launch"),
+        "self": "<launch><include file='$(dirname)/my_world.launch'/></launch>"},
         name="my_world.launch")
     assert points(rows["good"], "launch", "test") == [2, 2]
     assert points(rows["broken"], "launch", "test") == [0, 2]
     found = json.loads((students / "broken" / "results.json").read_text())["tests"]
     assert "nothing.launch" in found[0]["output"]
     assert found[1]["output"].startswith("1 of 2 tests passed")
+    own = json.loads((students / "self" / "mark.json").read_text())["results"][0]
+    assert own["reason"] == "my_world.launch includes itself, directly or by another file"
     assert ("my_world.launch was graded, which has the fewest folders and then the first name;"
             " the submission contains more files that fit my_world.launch: old/my_world.launch"
             ) in (students / "good" / "index.html").read_text()

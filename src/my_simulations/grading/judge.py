@@ -127,10 +127,10 @@ class Judge:
         for check in self._assignment.of(Launch, Rostest):
             if isinstance(check, Launch):
                 self._note(ambiguity(self._folder, check.file))
-            found = launches.decide(check) if self._in_time else None
+            decided = launches.decide(check) if self._in_time else None
             self._in_time = self._in_time and time.monotonic() < self._until
-            if found is not None and self._in_time:
-                self._writer.result(found)
+            if decided is not None and self._in_time:
+                self._writer.result(decided)
 
     def _check_running_world(self, name: str, file: Optional[WorldFile]) -> None:
         """Decide the checks of the running world if its files parse."""
@@ -195,6 +195,8 @@ class Judge:
                 if graph.busy:
                     place = program.interrupted_at()
                 self._explain(results, graph.busy or (ended if place else ""), place)
+                if program.status == 0 and all(found.passed for found in results):
+                    ended = ""      # a program that has done its task may end
                 for note in (ended, graph.busy, graph.refused):
                     self._note(note)
 

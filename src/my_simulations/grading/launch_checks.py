@@ -3,7 +3,6 @@ from __future__ import annotations
 
 import contextlib
 import os
-import re
 import shutil
 import time
 from dataclasses import replace
@@ -17,6 +16,7 @@ from ..studies.junit import results_below
 from ..studies.scenario_files import declared_arguments
 from .assignment import Assignment, Launch, Rostest
 from .file_checks import read_world_file
+from .launch_output import LaunchFault, last_line, launch_fault
 from .launched_world import (
     PROPERTIES,
     SIMULATOR,
@@ -35,9 +35,6 @@ _START_S = 120.0      # until all nodes are there
 _END_S = 20.0         # roslaunch gives its nodes 15 s to end, then 2 s
 _LARGEST = 5 << 20     # bytes of a file beside a test
 _CALLER = "/grade"
-_DIED = re.compile(r"^.*(?:has died|cannot launch|Invalid <|RLException|error loading).*$",
-                   re.MULTILINE | re.IGNORECASE)
-_COLOUR = re.compile(r"\x1b\[[0-9;]*m|\x1b\][^\x07]*\x07")
 
 
 class LaunchChecks:
@@ -81,36 +78,38 @@ class LaunchChecks:
         with contextlib.closing(self._program(words, uri)) as program:
             nodes = (*check.nodes, *((SIMULATOR,) if check.runs_world else ()))
             missing = self._wait_for_nodes(program, uri, nodes)
-            fault = _fault(program)
+            fault = _fault(program, self._folder)
             if check.runs_world and not (missing or fault):
                 fault = self._other_world(program, uri)
             until = self._ending(check.seconds)
             while not (missing or fault) and time.monotonic() < until:
                 time.sleep(_POLL_S)
-                fault = _fault(program)
+                fault = _fault(program, self._folder)
             self._end(program)
         if fault:
-            return result(check, 0.0, fault, name)
+            return result(check, 0.0, fault.message, fault.file or name, fault.line)
         if missing:
             return result(check, 0.0, f"no node {missing} within {_START_S:g} s", name)
         return result(check, 1.0)
 
-    def _other_world(self, program: Program, uri: str) -> str:
-        """Why the simulator does not run the world of the submission; "" if it does."""
+    def _other_world(self, program: Program, uri: str) -> Optional[LaunchFault]:
+        """Why the simulator does not run the world of the submission; None if it does."""
         patterns = self._assignment.form.world
         name = matching(self._folder, patterns)
         if not name:
-            return reason_for_no_match(self._folder, patterns, self._unreadable)
+            return LaunchFault(reason_for_no_match(self._folder, patterns, self._unreadable))
         fault = different_world(simulator_command(program, uri, self._scratch),
                                 self._folder, name)
         if fault:
-            return fault
+            return LaunchFault(fault)
         loaded = self._loaded_models(program, uri)
         if loaded is None:
-            return _fault(program) or f"{SIMULATOR} did not load its world within {_START_S:g} s"
+            return _fault(program, self._folder) or LaunchFault(
+                f"{SIMULATOR} did not load its world within {_START_S:g} s")
         world = read_world_file(self._folder, name, Resolver.from_environment()).world
         lost = [model.name for model in world.models if model.name not in loaded] if world else []
-        return f"the simulator has not loaded {listed(lost)} of {name}" if lost else ""
+        return LaunchFault(f"the simulator has not loaded {listed(lost)} of {name}"
+                           ) if lost else None
 
     def _loaded_models(self, launched: Program, uri: str) -> Optional[List[str]]:
         """The models of the running simulator; None if it does not answer in time."""
@@ -175,7 +174,7 @@ class LaunchChecks:
                 time.sleep(_POLL_S)
             timed_out = program.running
             self._end(program)
-            last = _last_line(program)
+            last = last_line(program.output())
         found = results_below(results)
         shutil.rmtree(results, ignore_errors=True)
         if timed_out:
@@ -219,7 +218,8 @@ class LaunchChecks:
                 if master_api.call(uri, "hasParam", _CALLER, STARTED):
                     return ""
             if not is_running:
-                return _fault(program)
+                fault = _fault(program, self._folder)
+                return fault.message if fault else ""
             time.sleep(_POLL_S)
         return f"the nodes did not start within {_START_S:g} s"
 
@@ -263,20 +263,9 @@ def package_folders(folder: str) -> List[str]:
     return sorted(found)
 
 
-def _plain_output(program: Program) -> str:
-    return _COLOUR.sub("", program.output().decode("utf-8", "replace"))
-
-
-def _fault(program: Program) -> str:
-    """What went wrong in the output, or that it has ended; "" for nothing."""
-    found = _DIED.search(_plain_output(program))
-    if found is not None:
-        return found[0].strip()[:500]
-    if not program.running:
-        return f"{program.why_ended()}: {_last_line(program)}"
-    return ""
-
-
-def _last_line(program: Program) -> str:
-    lines = [line.strip() for line in _plain_output(program).splitlines() if line.strip()]
-    return lines[-1][:500] if lines else "no output"
+def _fault(program: Program, folder: str) -> Optional[LaunchFault]:
+    """What went wrong in the output, or that the program has ended; None for nothing."""
+    found = launch_fault(program.output(), folder)
+    if found is not None or program.running:
+        return found
+    return LaunchFault(f"{program.why_ended()}: {last_line(program.output())}")

@@ -195,9 +195,11 @@ class Program:
         if status == 128 + signal.SIGXCPU:
             most = self._limits.processor_seconds
             return f"the program used more processor time than {most:g} s"
-        error = self.error if status else None
+        if status == 0:
+            return "the program ended during the run, without an error"
+        error = self.error
         text = str(error) if error is not None else ""
-        if status and os.path.getsize(self._output) >= self._most_bytes:
+        if os.path.getsize(self._output) >= self._most_bytes:
             text = f"its output has reached {self._most_bytes * 1e-6:g} MB"
         return f"the program ended with status {status}" + (f": {text}" if text else "")
 

@@ -155,6 +155,13 @@ def test_topics_and_numbers_of_them_are_recorded(tmp_path):
         (3, "grade-key", "'record' needs a program: worlds alone have no topics")]
 
 
+def test_faults_of_the_file_are_in_the_order_of_its_lines(tmp_path):
+    checks = "  - {points: 1, check_model: strict, name: a}\n" * 2 + "  - {points: 1, count: cat}\n"
+    text = "lab: a\nchecks:\n" + checks + "lab2: a\nrecord: [/a]\n"
+    lines = [line for line, _, _ in faults(tmp_path, text)]
+    assert len(set(lines)) > 3 and lines == sorted(lines)
+
+
 def test_faults_of_the_file_are_named(tmp_path):
     assert "a mapping" in faults(tmp_path, "- 1\n")[0][2]
     assert "'checks' must be a list" in faults(tmp_path, "lab: a\n")[0][2]
