@@ -36,6 +36,7 @@ from .final_picture import PICTURE, final_picture
 from .launch_checks import LaunchChecks, package_folders
 from .mark import CheckResult, GradingError, result
 from .program import OUTPUT, Program, PythonError, end_of_output, submission_account
+from .program_choice import choose_program
 from .program_graph import RosGraph, graph_environment
 from .result_stream import ResultWriter
 from .submission import all_matching, ambiguity, listed, matching, reason_for_no_match
@@ -151,11 +152,11 @@ class Judge:
             self._refuse_timed(self._why_missing(self._assignment.form.world))
             return
         patterns = self._assignment.form.run
-        program = matching(self._folder, patterns)
+        program, note = choose_program(self._folder, patterns)
         if patterns and not program:
             self._refuse_timed(self._why_missing(patterns))
             return
-        self._note(ambiguity(self._folder, patterns))
+        self._note(note)
         log = os.path.join(self._own, "state.log")
         try:
             # With a program, the node of the graph runs the plugins of robots.
