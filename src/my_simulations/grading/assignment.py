@@ -186,8 +186,8 @@ class GradeLimits:
 
     Attributes:
         seconds: wall s for everything.
-        processor_seconds: of each process of the submission, s.
-        memory_mb: of each process of the submission.
+        processor_seconds: of all processes of a program or launch file together, s.
+        memory_mb: of all processes of a program or launch file together.
         processes: processes and threads of the submission at a time.
         file_mb: of each file, and of all files together.
         replay_mb: of the replay; a larger one is left out, with a note.

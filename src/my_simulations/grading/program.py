@@ -1,4 +1,4 @@
-"""Starts the program of a submission in its cell, and watches its memory."""
+"""Starts the program of a submission in its cell, and watches its memory and processor time."""
 from __future__ import annotations
 
 import contextlib
@@ -17,7 +17,7 @@ from ..simulator.watchdog import resident_bytes
 from . import box, cell
 from .assignment import GradeLimits
 from .permitted_variables import permitted_variables
-from .process_list import ProcessList
+from .process_list import ProcessList, processor_seconds
 
 OUTPUT = "output.txt"
 _FIRST_USER = 61000
@@ -106,7 +106,7 @@ class Program:
     Attributes:
         pid: of the cell.
         processes: those of the program, below the cell.
-        watcher: thread id of the thread that watches the memory.
+        watcher: thread id of the thread that watches memory and processor time.
         excess: why it was killed; "" if it was not.
     """
 
@@ -136,7 +136,7 @@ class Program:
         self.pid = self._process.pid
         self.processes = ProcessList(self.pid)
         self._ended = threading.Event()
-        self._thread = threading.Thread(target=self._watch, name="memory", daemon=True)
+        self._thread = threading.Thread(target=self._watch, name="limits", daemon=True)
         self._thread.start()
 
     @property
@@ -193,8 +193,7 @@ class Program:
         if self.excess or status is None:
             return self.excess
         if status == 128 + signal.SIGXCPU:
-            most = self._limits.processor_seconds
-            return f"the program used more processor time than {most:g} s"
+            return self._slow
         if status == 0:
             return "the program ended during the run, without an error"
         error = self.error
@@ -202,6 +201,10 @@ class Program:
         if os.path.getsize(self._output) >= self._most_bytes:
             text = f"its output has reached {self._most_bytes * 1e-6:g} MB"
         return f"the program ended with status {status}" + (f": {text}" if text else "")
+
+    @property
+    def _slow(self) -> str:
+        return f"the program used more processor time than {self._limits.processor_seconds:g} s"
 
     @property
     def error(self) -> Optional[PythonError]:
@@ -232,12 +235,14 @@ class Program:
     def _watch(self) -> None:
         self.watcher = threading.get_native_id()
         most = self._limits.memory_mb * 1e6
-        while self.running and not self._ended.wait(_LOOK_S):
-            used = sum(map(resident_bytes, box.descendants(self.pid)))
-            if used > most:
+        while not self.excess and self.running and not self._ended.wait(_LOOK_S):
+            found = box.descendants(self.pid)
+            if sum(map(resident_bytes, found)) > most:
                 self.excess = f"the program used more memory than {self._limits.memory_mb:g} MB"
-                self._process.kill()
-                return
+            elif processor_seconds(found) > self._limits.processor_seconds:
+                self.excess = self._slow
+        if self.excess:
+            self._process.kill()
 
 
 def end_of_output(path: str) -> bytes:
