@@ -68,6 +68,10 @@ _TABLE: Tuple[Tuple[str, Tuple[Tuple[str, str, str, str], ...]], ...] = (
          "checks have one name.", "Use the keys of doc/grading.md."),
         ("grade-value", ERROR, "A value of an assignment file has the wrong type or is out of "
          "range.", "Write a value of the expected type."),
+        ("grade-type", ERROR, "An assignment file names a type of messages or services that does "
+         "not exist.", "Write a type such as std_msgs/String; `rosmsg list` prints all."),
+        ("grade-type-unknown", WARNING, "An assignment file names a type of messages or services "
+         "that cannot be looked up without ROS.", "Source the workspace that defines the type."),
         ("grade-expression", ERROR, "A condition or a partial mark of an assignment file is not "
          "understood.", "Use the signals and functions of doc/studies.md."),
     )),

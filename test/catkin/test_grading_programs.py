@@ -116,7 +116,7 @@ TEST = """<launch>
 """
 
 
-def grade(folder, text, programs, *words, name="go.py"):
+def grade(folder, text, programs, *words, name="go.py", status=0):
     """Grade programs by name; returns their rows and the folder of the students."""
     (folder / "lab.yaml").write_text(text)
     for student, program in programs.items():
@@ -124,7 +124,7 @@ def grade(folder, text, programs, *words, name="go.py"):
         (folder / student / name).write_text(program)
     done = subprocess.run([*GRADE, "lab.yaml", *programs, "--out", "marks", *words], cwd=folder,
                           text=True, timeout=SECONDS, capture_output=True)
-    assert done.returncode == 0, done.stderr
+    assert done.returncode == status, done.stderr
     with open(folder / "marks" / "marks.csv", newline="") as stream:
         rows = {row["student"]: row for row in csv.DictReader(stream)}
     return rows, folder / "marks" / "students"
@@ -201,6 +201,20 @@ def test_each_lost_point_has_the_line_of_the_fault_of_the_program(tmp_path):
     assert "&gt; 0.1; pose.box.x is " in pages["idle"]
 
 
+def test_a_program_that_ends_is_mentioned_only_if_points_are_lost(tmp_path):
+    text = f"""submission: {{run: go.py}}
+world: worlds/empty.world
+{MODELS}checks:
+  - {{points: 1, name: talks, topic: /chat, type: std_msgs/String, within: 1.5}}
+"""
+    talk = TALK.replace("while not rospy.is_shutdown():", "for _ in range(20):")
+    silent = talk.replace("chat.", "None and ")
+    _, students = grade(tmp_path, text, {"good": talk, "silent": silent})
+    notes = {name: json.loads((students / name / "mark.json").read_text())["notes"]
+             for name in ("good", "silent")}
+    assert notes == {"good": [], "silent": ["the program ended during the run, without an error"]}
+
+
 def test_a_script_that_an_archive_has_changed_runs(tmp_path):
     line = "rosparam set /gazebo/changed 1; rostopic pub -r 30 /chat std_msgs/String here\n"
     rows, students = grade(tmp_path, QUICK.replace("go.py", "go.sh"), {
@@ -275,23 +289,80 @@ def test_an_interrupt_ends_all_programs(tmp_path):
     wait_for(lambda: not any(Path(f"/proc/{pid}").exists() for pid in pids), "its end", SECONDS)
 
 
+def test_a_submission_that_takes_too_long_has_the_output_and_the_replay_until_then(tmp_path):
+    text = QUICK.replace("name: talks", "name: long").replace("rate: 20, within: 0.3",
+                                                              "within: 1000")
+    program = TALK.replace("rate = rospy", 'print("started", flush=True)\nrate = rospy')
+    rows, students = grade(tmp_path, "limits: {seconds: 8}\n" + text, {"late": program}, status=1)
+    mark = json.loads((students / "late" / "mark.json").read_text())
+    assert mark["status"] == "timed out" and points(rows["late"], "moved", "long") == [0, 0]
+    assert mark["results"][1]["reason"] == "not finished within 8 s of wall time"
+    assert (students / "late" / "output.txt").read_text().splitlines() == ["started"]
+    assert {"replay.html", "picture.png"} <= set(mark["files"])
+
+
 def test_launch_files_and_rostests_are_run(tmp_path):
     (tmp_path / "lab.test").write_text(TEST)
     launch = (REPOSITORY / "launch" / "my_world.launch").read_text()
     (tmp_path / "good" / "old").mkdir(parents=True)
     (tmp_path / "good" / "old" / "my_world.launch").write_text("<launch/>")
     rows, students = grade(tmp_path, LAUNCH, {
-        "good": launch, "broken": launch.replace("empty_world.launch", "nothing.launch")},
+        "good": launch, "broken": launch.replace("empty_world.launch", "nothing.launch"),
+        "self": "<launch><include file='$(dirname)/my_world.launch'/></launch>"},
         name="my_world.launch")
     assert points(rows["good"], "launch", "test") == [2, 2]
     assert points(rows["broken"], "launch", "test") == [0, 2]
     found = json.loads((students / "broken" / "results.json").read_text())["tests"]
     assert "nothing.launch" in found[0]["output"]
     assert found[1]["output"].startswith("1 of 2 tests passed")
+    own = json.loads((students / "self" / "mark.json").read_text())["results"][0]
+    assert own["reason"] == "my_world.launch includes itself, directly or by another file"
     assert ("my_world.launch was graded, which has the fewest folders and then the first name;"
             " the submission contains more files that fit my_world.launch: old/my_world.launch"
             ) in (students / "good" / "index.html").read_text()
     assert sorted(os.listdir(tmp_path / "good")) == ["my_world.launch", "old"]
+
+
+WORLD = """<sdf version="1.6"><world name="default"><model name="ground_plane"><static>1</static>
+<link name="l"><collision name="c"><geometry><plane/></geometry></collision></link></model>
+</world></sdf>"""
+STARTED = """<launch>
+  <include file="$(find my_simulations)/launch/world.launch">
+    <arg name="world" value="$(dirname)/{}.world"/><arg name="gui" value="false"/>
+  </include>
+</launch>
+"""
+FAKE = """<launch>
+  <node name="gazebo" pkg="fake" type="gzserver" args="$(dirname)/test.world"/>
+</launch>
+"""
+PRELOADED = STARTED.format("test").replace("<launch>", """<launch>
+  <env name="PYTHONPATH" value="$(dirname):$(env PYTHONPATH)"/>""")
+
+
+def test_the_simulator_has_loaded_the_world_of_the_submission(tmp_path):
+    programs = {"good": STARTED.format("test"), "other": STARTED.format("second"), "fake": FAKE,
+                "preloaded": PRELOADED}
+    for student in programs:
+        (tmp_path / student).mkdir()
+        for name in ("test", "second"):
+            (tmp_path / student / f"{name}.world").write_text(WORLD)
+    package = tmp_path / "fake" / "fake"
+    package.mkdir()
+    (package / "package.xml").write_text(PACKAGE.format("fake"))
+    (package / "gzserver").write_text("#!/usr/bin/env python3\nimport rospy\n"
+                                      "rospy.init_node('gazebo')\nrospy.spin()\n")
+    (package / "gzserver").chmod(0o755)
+    rows, students = grade(tmp_path, """submission: {world: test.world}
+checks: [{points: 2, name: launch, launch: go.launch, world: true, seconds: 1}]
+""", programs, name="go.launch")
+    said = {student: json.loads((students / student / "results.json").read_text())["tests"][0].get(
+        "output", "") for student in programs}
+    assert {student: points(row, "launch") for student, row in rows.items()} == {
+        "good": [2], "other": [0], "fake": [0], "preloaded": [0]}, said
+    assert "runs the world second.world, not test.world of the submission" in said["other"]
+    for student in ("fake", "preloaded"):
+        assert "the node /gazebo is not the simulator" in said[student]
 
 
 FORGED = """<launch>

@@ -145,12 +145,14 @@ class Launch(Check):
         arguments: as for roslaunch, `name:=value`.
         seconds: wall s for which the nodes must run.
         nodes: names of nodes that must be there.
+        runs_world: whether the simulator must have loaded the world file of the submission.
     """
 
     file: Tuple[str, ...] = ()
     arguments: Tuple[str, ...] = ()
     seconds: float = 5.0
     nodes: Tuple[str, ...] = ()
+    runs_world: bool = False
 
 
 @dataclass(frozen=True)
@@ -184,8 +186,8 @@ class GradeLimits:
 
     Attributes:
         seconds: wall s for everything.
-        processor_seconds: of each process of the submission, s.
-        memory_mb: of each process of the submission.
+        processor_seconds: of all processes of a program or launch file together, s.
+        memory_mb: of all processes of a program or launch file together.
         processes: processes and threads of the submission at a time.
         file_mb: of each file, and of all files together.
         replay_mb: of the replay; a larger one is left out, with a note.

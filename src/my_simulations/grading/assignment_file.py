@@ -12,6 +12,7 @@ from .assignment import (
     Check,
     EntityCount,
     GradeLimits,
+    Launch,
     SubmissionForm,
     Timed,
     ValidFile,
@@ -55,7 +56,7 @@ class _AssignmentReader(AssignmentValues):
         if form.world and world:
             self.fault(("world",), "the world is that of the submission or that of the assignment,"
                                    " not both", code="grade-key")
-        checks = self._checks(top.get("checks"), bool(form.world or world), bool(form.run))
+        checks = self._checks(top.get("checks"), bool(form.world or world), form)
         services = top.get("services", _READ if top.get("models") else _ALL)
         if services not in (_READ, _ALL):
             self.fault(("services",), f"'services' must be {_READ} or {_ALL}, is {services!r}")
@@ -94,7 +95,7 @@ class _AssignmentReader(AssignmentValues):
                                ("limits", "processes"), 1, 10000)
         return GradeLimits(processes=processes, **numbers)
 
-    def _checks(self, value: Any, world: bool, program: bool) -> Tuple[Check, ...]:
+    def _checks(self, value: Any, world: bool, form: SubmissionForm) -> Tuple[Check, ...]:
         if not isinstance(value, list) or not value:
             self.fault(("checks",), f"'checks' must be a list of checks, is {kind_of(value)}")
             return ()
@@ -106,7 +107,10 @@ class _AssignmentReader(AssignmentValues):
             if check is not None and not world and _needs_world(check):
                 self.fault(path, f"'{check.name}' needs a world",
                            "add submission: {world: NAME}, or world: FILE", "grade-key")
-            if isinstance(check, Timed) and check.within == 0.0 and program:
+            if isinstance(check, Launch) and check.runs_world and not form.world:
+                self.fault((*path, "world"), f"'world' of '{check.name}' needs the world file of"
+                           " the submission", "add submission: {world: NAME}", "grade-key")
+            if isinstance(check, Timed) and check.within == 0.0 and form.run:
                 self.fault(path, f"'{check.name}' of a program needs 'within', s of sim time",
                            code="grade-key")
         names = [check.name for check in found if check is not None]

@@ -16,13 +16,14 @@ from ..child_process import child_command, child_environment, signal_name, wait_
 from ..errors import SimulationError
 from . import box
 from .assignment import Assignment
-from .mark import FAILED, GRADED, TIMED_OUT, CheckResult, Mark, without_result
+from .mark import FAILED, GRADED, TIMED_OUT, CheckResult, Mark, late_reason, without_result
 from .permitted_variables import permitted_variables
 from .result_stream import ResultReader
 from .submission import Submission
 from .submission_files import Content, content_of
 
 _END_S = 10.0
+_PAGES_S = 90.0        # after the time of a submission, to end its programs and write its replay
 _LOOK_S = 0.2
 _KEPT_OUTPUT = 20000   # characters of the end of the output
 
@@ -65,7 +66,7 @@ def _specification(assignment: Assignment, submission: Submission, slot: int,
             "descriptor": sending, "unreadable": content.unreadable}
     environment = {**permitted_variables(child_environment()), "PYTHONDONTWRITEBYTECODE": "1",
                    "HOME": os.path.expanduser("~")}
-    return {"parent": os.getpid(), "seconds": assignment.limits.seconds,
+    return {"parent": os.getpid(), "seconds": assignment.limits.seconds + _PAGES_S,
             "command": child_command("grading.judge", json.dumps(task)),
             "environment": environment, "scratch": scratch,
             "bytes": int(assignment.limits.file_mb * 1e6), "copy": content.files,
@@ -125,9 +126,8 @@ def _mark(assignment: Assignment, submission: Submission, reader: ResultReader, 
           output: str) -> Mark:
     results: List[CheckResult] = reader.results
     status, reason = GRADED, "the check was not reached"
-    if not reader.ended and code == box.TIMED_OUT:
-        status = TIMED_OUT
-        reason = f"not finished within {assignment.limits.seconds:g} s"
+    if reader.timed_out or not reader.ended and code == box.TIMED_OUT:
+        status, reason = TIMED_OUT, late_reason(assignment)
     elif not reader.ended:
         status = FAILED
         ending = signal_name(code - 128) if code > 128 else f"status {code}"

@@ -8,7 +8,8 @@ SPECIFICATION is JSON:
     user      user id that the program gets where the system permits it
     private   folders that the program must not see
     needed    files and folders that it must reach, also below folders of other users
-    bytes, memory_bytes, processor_seconds, processes   limits of each process of the program
+    bytes, memory_bytes, processor_seconds   limits of each process of the program
+    processes  limit of processes and threads of its user
 
 Run as a file, it imports the standard library alone, and box.py beside it. Processes outside of
 the cell do not exist for the program; it has no capabilities and cannot gain any. When the first

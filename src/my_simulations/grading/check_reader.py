@@ -20,11 +20,13 @@ from .assignment import (
     ValidFile,
 )
 from .assignment_values import AssignmentValues
+from .type_lookup import MESSAGE, SERVICE, type_fault
 
 SHAPES = ("box", "sphere", "cylinder", "plane", "mesh", "capsule", "ellipsoid", "cone",
           "heightmap", "polyline")
 _COMMON = ("points", "name")
 _MOST_S = 3600.0
+_ROS_NAME = re.compile(r"/?[A-Za-z]\w*(/\w+)*\Z")
 _MEASURED = re.compile(r"\{([^{}]*)\}")
 
 Fields = Dict[str, Any]
@@ -45,7 +47,7 @@ class CheckReader:
             "no_contact": (("within",), self._no_contact),
             "topic": (("type", "rate", "within"), self._topic),
             "service": (("type", "within"), self._service),
-            "launch": (("args", "seconds", "nodes"), self._launch),
+            "launch": (("args", "seconds", "nodes", "world"), self._launch),
             "rostest": (("args", "seconds"), self._rostest)}
 
     def check(self, value: Any, path: KeyPath) -> Optional[Check]:
@@ -86,12 +88,9 @@ class CheckReader:
                               (*path, "at_most")) if "at_most" in inside else None
         if "exactly" in inside:
             least = most = values.integer(inside["exactly"], (*path, "exactly"))
-        partial = inside.get("partial", False)
-        if not isinstance(partial, bool):
-            values.fault((*path, "partial"), "'partial' of a count must be true or false")
         return EntityCount(**common, kind=kind, excluded=values.names(
             inside.get("not"), (*path, "not")), shape=shape, least=least, most=most,
-            partial=partial is True)
+            partial=self._flag(inside, "partial", path))
 
     # -- the running world -----------------------------------------------------------------------
 
@@ -125,14 +124,14 @@ class CheckReader:
         return TopicRate(
             **common, within=self._within(inside, path, needed=True),
             topic=self._ros_name(inside["topic"], (*path, "topic")),
-            type_name=self._type(inside, path),
+            type_name=self._type(inside, path, MESSAGE) if "type" in inside else "",
             rate=self._values.number(inside.get("rate", 0.0), (*path, "rate"), least=0.0))
 
     def _service(self, inside: Fields, path: KeyPath, common: Fields) -> Check:
         return ServiceAnswer(
             **common, within=self._within(inside, path, needed=True),
             service=self._ros_name(inside["service"], (*path, "service")),
-            type_name=self._values.text(inside.get("type"), (*path, "type")))
+            type_name=self._type(inside, path, SERVICE))
 
     # -- programs of ROS -------------------------------------------------------------------------
 
@@ -143,7 +142,8 @@ class CheckReader:
             arguments=values.names(inside.get("args"), (*path, "args")),
             seconds=values.number(inside.get("seconds", 5.0), (*path, "seconds"), above=0.0,
                                   most=_MOST_S),
-            nodes=values.names(inside.get("nodes"), (*path, "nodes")))
+            nodes=values.names(inside.get("nodes"), (*path, "nodes")),
+            runs_world=self._flag(inside, "world", path))
 
     def _rostest(self, inside: Fields, path: KeyPath, common: Fields) -> Check:
         values = self._values
@@ -161,11 +161,27 @@ class CheckReader:
         return self._values.number(inside.get("within", 0.0), (*path, "within"), least=0.0,
                                    most=_MOST_S)
 
-    def _type(self, inside: Fields, path: KeyPath) -> str:
-        return self._values.text(inside["type"], (*path, "type")) if "type" in inside else ""
+    def _flag(self, inside: Fields, key: str, path: KeyPath) -> bool:
+        value = inside.get(key, False)
+        if not isinstance(value, bool):
+            self._values.fault((*path, key), f"'{key}' of this check must be true or false")
+        return value is True
+
+    def _type(self, inside: Fields, path: KeyPath, sort: str) -> str:
+        path = (*path, "type")
+        kind = self._values.text(inside.get("type"), path)
+        fault = type_fault(kind, sort) if kind else None
+        if fault is not None and fault.is_certain:
+            self._values.fault(path, fault.message, fault.hint, "grade-type")
+        elif fault is not None:
+            self._values.advise(path, fault.message, fault.hint, "grade-type-unknown")
+        return kind
 
     def _ros_name(self, value: Any, path: KeyPath) -> str:
         name = self._values.text(value, path)
+        if name and not _ROS_NAME.match(name):
+            self._values.fault(path, f"{name!r} is not a name of ROS", "a name has letters, digits,"
+                               " _ and /, such as /scan")
         return name if name.startswith("/") else f"/{name}"
 
     def _one_of(self, value: Any, path: KeyPath, known: Tuple[str, ...]) -> str:

@@ -1,6 +1,7 @@
 """Checks of files: the faults of a world file and its entities, and model files that parse."""
 from __future__ import annotations
 
+import math
 import os
 from dataclasses import dataclass, replace
 from typing import Callable, Dict, List, Optional, Sequence
@@ -98,7 +99,8 @@ def check_files(assignment: Assignment, file: "WorldFile | None", missing: str
 
 
 def _valid(check: ValidFile, file: WorldFile) -> CheckResult:
-    faults = errors_of(strictly(file.issues) if check.strict else file.issues)
+    faults = sorted(errors_of(strictly(file.issues) if check.strict else file.issues),
+                    key=lambda one: one.line or math.inf)
     if not faults and file.world is None:
         return result(check, 0.0, NO_WORLD, file.name)
     if not faults:

@@ -18,6 +18,7 @@ from .assignment import Assignment
 from .box_process import GradingStoppedError, contains, grade_in_box
 from .mark import FAILED, GRADED, Mark, all_failed, mark_of
 from .program import workspace_paths
+from .slots import reserved_slots
 from .submission import Submission, content_key, size_of
 from .submission_files import SubmissionError
 from .unpacking import unpacked
@@ -54,8 +55,6 @@ class Grader:
         self._told = told
         self._stop = threading.Event()
         self._slots: "queue.Queue[int]" = queue.Queue()
-        for slot in range(jobs):
-            self._slots.put(slot)
         self._base = self._key_of_assignment()
         try:
             os.makedirs(os.path.join(self._out, STUDENTS), exist_ok=True)
@@ -65,11 +64,16 @@ class Grader:
     def run(self, submissions: Sequence[Submission]) -> List[Mark]:
         """The marks of all submissions, in order.
 
-        Raises KeyboardInterrupt: after all boxes have ended; marks so far are kept.
+        Raises:
+            KeyboardInterrupt: after all boxes have ended; marks so far are kept.
+            CommandError: there are no user ids for the submissions.
         """
         hidden = [self._out, *(submission.path for submission in submissions),
                   *self._folders_of(submissions)]
-        with ThreadPoolExecutor(self._jobs, "grader") as pool:
+        with reserved_slots(self._jobs) as slots, ThreadPoolExecutor(self._jobs, "grader") as pool:
+            self._slots = queue.Queue()
+            for slot in slots:
+                self._slots.put(slot)
             waiting = [pool.submit(self._grade, one, hidden) for one in submissions]
             try:
                 return [one.result() for one in waiting]

@@ -12,6 +12,7 @@ import contextlib
 import json
 import os
 import sys
+import time
 from dataclasses import replace
 from typing import Any, Dict, Iterator, List, Optional, Sequence
 
@@ -34,7 +35,8 @@ from .file_checks import (
 from .final_picture import PICTURE, final_picture
 from .launch_checks import LaunchChecks, package_folders
 from .mark import CheckResult, GradingError, result
-from .program import OUTPUT, Program, PythonError, submission_account
+from .program import OUTPUT, Program, PythonError, end_of_output, submission_account
+from .program_choice import choose_program
 from .program_graph import RosGraph, graph_environment
 from .result_stream import ResultWriter
 from .submission import all_matching, ambiguity, listed, matching, reason_for_no_match
@@ -55,8 +57,8 @@ def main(words: List[str]) -> int:
     os.environ["ROS_HOME"] = os.path.join(task["scratch"], "judge", ".ros")
     os.environ.pop("ROS_LOG_DIR", None)
     writer.isolation(os.environ.get("BOX_ISOLATION", ""))
-    Judge(assignment, task["scratch"], task["slot"], task["unreadable"], writer).run()
-    writer.end()
+    in_time = Judge(assignment, task["scratch"], task["slot"], task["unreadable"], writer).run()
+    writer.end(in_time)
     return 0
 
 
@@ -93,12 +95,21 @@ class Judge:
         self._own = os.path.join(scratch, "judge")
         self._unreadable = unreadable
         self._writer = writer
+        self._in_time = True
+        self._until = time.monotonic() + assignment.limits.seconds
         self._resolver = ConfinedResolver.from_environment()
         self._resolver.allow(self._folder, self._own, *map(os.path.dirname, (
             path for path in (assignment.world, *(model.file for model in assignment.models))
             if path)))
 
-    def run(self) -> None:
+    def run(self) -> bool:
+        """Send all results and files; returns whether the time was enough for all checks."""
+        self._decide_checks()
+        with contextlib.suppress(FileNotFoundError):    # no program has run
+            self._writer.file(OUTPUT, end_of_output(os.path.join(self._own, OUTPUT)))
+        return self._in_time
+
+    def _decide_checks(self) -> None:
         form = self._assignment.form
         file: Optional[WorldFile] = None
         name = matching(self._folder, form.world) if form.world else ""
@@ -112,12 +123,15 @@ class Judge:
             self._writer.result(found)
         if self._assignment.of(Timed):
             self._check_running_world(name, file)
-        launches = LaunchChecks(self._assignment, self._scratch, self._slot, self._unreadable)
-        for launch in self._assignment.of(Launch):
-            self._note(ambiguity(self._folder, launch.file))
-            self._writer.result(launches.launch(launch))
-        for test in self._assignment.of(Rostest):
-            self._writer.result(launches.rostest(test))
+        launches = LaunchChecks(self._assignment, self._scratch, self._slot, self._unreadable,
+                                self._until)
+        for check in self._assignment.of(Launch, Rostest):
+            if isinstance(check, Launch):
+                self._note(ambiguity(self._folder, check.file))
+            decided = launches.decide(check) if self._in_time else None
+            self._in_time = self._in_time and time.monotonic() < self._until
+            if decided is not None and self._in_time:
+                self._writer.result(decided)
 
     def _check_running_world(self, name: str, file: Optional[WorldFile]) -> None:
         """Decide the checks of the running world if its files parse."""
@@ -138,11 +152,11 @@ class Judge:
             self._refuse_timed(self._why_missing(self._assignment.form.world))
             return
         patterns = self._assignment.form.run
-        program = matching(self._folder, patterns)
+        program, note = choose_program(self._folder, patterns)
         if patterns and not program:
             self._refuse_timed(self._why_missing(patterns))
             return
-        self._note(ambiguity(self._folder, patterns))
+        self._note(note)
         log = os.path.join(self._own, "state.log")
         try:
             # With a program, the node of the graph runs the plugins of robots.
@@ -167,22 +181,25 @@ class Judge:
     def _decide(self, world: OpenWorld, name: str, file: str, record: ThinnedRecorder) -> None:
         """Run the world, with the program `file` if the assignment asks for one."""
         if not file:
-            WorldRun(self._assignment, world, name).run(record, self._writer.result)
+            self._in_time = WorldRun(self._assignment, world, name, self._until).run(
+                record, self._writer.result)
             return
         with contextlib.closing(RosGraph(self._assignment, world, self._resolver)) as graph:
             with contextlib.closing(self._program(file, graph.uri)) as program:
                 graph.run(program)
                 results: List[CheckResult] = []
                 with self._recorded_topics(world, graph, record.record):
-                    WorldRun(self._assignment, world, name, graph).run(
+                    run = WorldRun(self._assignment, world, name, self._until, graph)
+                    self._in_time = run.run(
                         record, lambda found: self._add_result(results, found))
                 ended, place = program.why_ended(), program.error if program.status else None
                 if graph.busy:
                     place = program.interrupted_at()
                 self._explain(results, graph.busy or (ended if place else ""), place)
+                if program.status == 0 and all(found.passed for found in results):
+                    ended = ""      # a program that has done its task may end
                 for note in (ended, graph.busy, graph.refused):
                     self._note(note)
-                self._writer.file(OUTPUT, program.output())
 
     def _add_result(self, results: List[CheckResult], found: CheckResult) -> None:
         results.append(found)

@@ -3,31 +3,38 @@ from __future__ import annotations
 
 import contextlib
 import os
-import re
 import shutil
 import time
-from typing import List, Sequence, Tuple
+from dataclasses import replace
+from typing import List, Optional, Sequence, Tuple, Union
 
 from ..child_process import wait_or_kill
 from ..errors import InputError
+from ..resources.resolver import Resolver
 from ..ros.lifecycle import master_api
 from ..studies.junit import results_below
 from ..studies.scenario_files import declared_arguments
 from .assignment import Assignment, Launch, Rostest
+from .file_checks import read_world_file
+from .launch_output import LaunchFault, last_line, launch_fault
+from .launched_world import (
+    PROPERTIES,
+    SIMULATOR,
+    different_world,
+    model_names,
+    simulator_command,
+)
 from .mark import CheckResult, GradingError, result
 from .program import TESTS, Program, submission_account, tester_account
 from .program_graph import free_port, graph_environment, start_master
 from .rostest_parts import STARTED, split_rostest
-from .submission import matching, reason_for_no_match
+from .submission import listed, matching, reason_for_no_match
 
 _POLL_S = 0.1
 _START_S = 120.0      # until all nodes are there
 _END_S = 20.0         # roslaunch gives its nodes 15 s to end, then 2 s
 _LARGEST = 5 << 20     # bytes of a file beside a test
 _CALLER = "/grade"
-_DIED = re.compile(r"^.*(?:has died|cannot launch|Invalid <|RLException|error loading).*$",
-                   re.MULTILINE | re.IGNORECASE)
-_COLOUR = re.compile(r"\x1b\[[0-9;]*m|\x1b\][^\x07]*\x07")
 
 
 class LaunchChecks:
@@ -38,17 +45,27 @@ class LaunchChecks:
         scratch: folder of the box.
         slot: number of the slot.
         unreadable: files of the submission that were left out because they cannot be read.
+        until: `time.monotonic()` at which all checks end.
     """
 
     def __init__(self, assignment: Assignment, scratch: str, slot: int,
-                 unreadable: Sequence[str]) -> None:
+                 unreadable: Sequence[str], until: float) -> None:
         self._assignment = assignment
         self._scratch = scratch
         self._folder = os.path.join(scratch, "submission")
         self._slot = slot
         self._unreadable = unreadable
+        self._until = until
 
-    def launch(self, check: Launch) -> CheckResult:
+    def decide(self, check: Union[Launch, Rostest]) -> CheckResult:
+        """Decide a check; the result is meaningless once the time is over."""
+        return self._launch(check) if isinstance(check, Launch) else self._rostest(check)
+
+    def _ending(self, seconds: float) -> float:
+        """The time after so many seconds, or the end of all checks."""
+        return min(time.monotonic() + seconds, self._until)
+
+    def _launch(self, check: Launch) -> CheckResult:
         """Start a launch file; it passes if its nodes run for the time of the check."""
         name = matching(self._folder, check.file)
         if not name:
@@ -59,20 +76,59 @@ class LaunchChecks:
         words = ["roslaunch", "-p", str(port), os.path.join(self._folder, name),
                  *check.arguments]
         with contextlib.closing(self._program(words, uri)) as program:
-            missing = self._wait_for_nodes(program, uri, check.nodes)
-            fault = _fault(program)
-            until = time.monotonic() + check.seconds
+            nodes = (*check.nodes, *((SIMULATOR,) if check.runs_world else ()))
+            missing = self._wait_for_nodes(program, uri, nodes)
+            fault = _fault(program, self._folder)
+            if check.runs_world and not (missing or fault):
+                fault = self._other_world(program, uri)
+            until = self._ending(check.seconds)
             while not (missing or fault) and time.monotonic() < until:
                 time.sleep(_POLL_S)
-                fault = _fault(program)
+                fault = _fault(program, self._folder)
             self._end(program)
         if fault:
-            return result(check, 0.0, fault, name)
+            return result(check, 0.0, fault.message, fault.file or name, fault.line)
         if missing:
             return result(check, 0.0, f"no node {missing} within {_START_S:g} s", name)
         return result(check, 1.0)
 
-    def rostest(self, check: Rostest) -> CheckResult:
+    def _other_world(self, program: Program, uri: str) -> Optional[LaunchFault]:
+        """Why the simulator does not run the world of the submission; None if it does."""
+        patterns = self._assignment.form.world
+        name = matching(self._folder, patterns)
+        if not name:
+            return LaunchFault(reason_for_no_match(self._folder, patterns, self._unreadable))
+        fault = different_world(simulator_command(program, uri, self._scratch),
+                                self._folder, name)
+        if fault:
+            return LaunchFault(fault)
+        loaded = self._loaded_models(program, uri)
+        if loaded is None:
+            return _fault(program, self._folder) or LaunchFault(
+                f"{SIMULATOR} did not load its world within {_START_S:g} s")
+        world = read_world_file(self._folder, name, Resolver.from_environment()).world
+        lost = [model.name for model in world.models if model.name not in loaded] if world else []
+        return LaunchFault(f"the simulator has not loaded {listed(lost)} of {name}"
+                           ) if lost else None
+
+    def _loaded_models(self, launched: Program, uri: str) -> Optional[List[str]]:
+        """The models of the running simulator; None if it does not answer in time."""
+        account = tester_account(self._scratch, self._slot)
+        account = replace(account, output=f"{account.output}.models")
+        until = self._ending(_START_S)
+        while launched.running and time.monotonic() < until:
+            with contextlib.suppress(OSError):
+                if master_api.call(uri, "lookupService", _CALLER, PROPERTIES):
+                    break
+            time.sleep(_POLL_S)
+        with contextlib.closing(Program(["rosservice", "call", PROPERTIES], account.temporary,
+                                        self._scratch, self._assignment.limits, account,
+                                        graph_environment(uri))) as asking:
+            while asking.running and time.monotonic() < until:
+                time.sleep(_POLL_S)
+            return model_names(asking.output())
+
+    def _rostest(self, check: Rostest) -> CheckResult:
         """Run a rostest of the assignment; its argument `submission` is the folder, if declared.
 
         The nodes of the file run as the submission. The tests run as another user, whose files
@@ -111,14 +167,14 @@ class LaunchChecks:
                                     *package_folders(self._folder)])
         environment = {**graph_environment(uri), "ROS_PACKAGE_PATH": packages,
                        "ROS_TEST_RESULTS_DIR": results}
-        until = time.monotonic() + check.seconds
+        until = self._ending(check.seconds)
         with contextlib.closing(Program(command, folder, self._scratch, self._assignment.limits,
                                         account, environment)) as program:
             while program.running and time.monotonic() < until:
                 time.sleep(_POLL_S)
             timed_out = program.running
             self._end(program)
-            last = _last_line(program)
+            last = last_line(program.output())
         found = results_below(results)
         shutil.rmtree(results, ignore_errors=True)
         if timed_out:
@@ -153,17 +209,17 @@ class LaunchChecks:
                 os.chmod(path, 0o755 if os.access(path, os.X_OK) else 0o644)
         return copies[0], copies[1]
 
-    @staticmethod
-    def _wait_for_start(program: Program, uri: str) -> str:
+    def _wait_for_start(self, program: Program, uri: str) -> str:
         """Wait until the nodes of a rostest are being started; why they are not, or ""."""
-        until = time.monotonic() + _START_S
+        until = self._ending(_START_S)
         while time.monotonic() < until:
             is_running = program.running
             with contextlib.suppress(OSError):
                 if master_api.call(uri, "hasParam", _CALLER, STARTED):
                     return ""
             if not is_running:
-                return _fault(program)
+                fault = _fault(program, self._folder)
+                return fault.message if fault else ""
             time.sleep(_POLL_S)
         return f"the nodes did not start within {_START_S:g} s"
 
@@ -177,7 +233,7 @@ class LaunchChecks:
     def _wait_for_nodes(self, program: Program, uri: str, nodes: Sequence[str]) -> str:
         """The first node that does not come; "" if all are there."""
         waiting = list(nodes)
-        until = time.monotonic() + _START_S
+        until = self._ending(_START_S)
         is_up = False
         while (waiting or not is_up) and program.running and time.monotonic() < until:
             with contextlib.suppress(OSError):
@@ -207,20 +263,9 @@ def package_folders(folder: str) -> List[str]:
     return sorted(found)
 
 
-def _plain_output(program: Program) -> str:
-    return _COLOUR.sub("", program.output().decode("utf-8", "replace"))
-
-
-def _fault(program: Program) -> str:
-    """What went wrong in the output, or that it has ended; "" for nothing."""
-    found = _DIED.search(_plain_output(program))
-    if found is not None:
-        return found[0].strip()[:500]
-    if not program.running:
-        return f"{program.why_ended()}: {_last_line(program)}"
-    return ""
-
-
-def _last_line(program: Program) -> str:
-    lines = [line.strip() for line in _plain_output(program).splitlines() if line.strip()]
-    return lines[-1][:500] if lines else "no output"
+def _fault(program: Program, folder: str) -> Optional[LaunchFault]:
+    """What went wrong in the output, or that the program has ended; None for nothing."""
+    found = launch_fault(program.output(), folder)
+    if found is not None or program.running:
+        return found
+    return LaunchFault(f"{program.why_ended()}: {last_line(program.output())}")

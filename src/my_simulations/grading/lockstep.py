@@ -37,7 +37,7 @@ class Lockstep:
     Args:
         program: the program.
         judge: process id of the process that steps the world.
-        processor_seconds: that each process of the program may use in all.
+        processor_seconds: that the program may use in all.
     """
 
     def __init__(self, program: Program, judge: int, processor_seconds: float) -> None:

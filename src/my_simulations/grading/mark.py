@@ -44,6 +44,11 @@ class CheckResult:
         return self.points >= self.most
 
 
+def late_reason(assignment: Assignment) -> str:
+    """Why checks have no points that were not decided in time."""
+    return f"not finished within {assignment.limits.seconds:g} s of wall time"
+
+
 def result(check: Check, share: float, reason: str = "", file: str = "", line: int = 0
            ) -> CheckResult:
     """The result of a check that gives a share of its points, 0..1; rounded to 0.01 points.

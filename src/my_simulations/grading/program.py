@@ -1,4 +1,4 @@
-"""Starts the program of a submission in its cell, and watches its memory."""
+"""Starts the program of a submission in its cell, and watches its memory and processor time."""
 from __future__ import annotations
 
 import contextlib
@@ -18,7 +18,7 @@ from ..simulator.watchdog import resident_bytes
 from . import box, cell
 from .assignment import GradeLimits
 from .permitted_variables import permitted_variables
-from .process_list import ProcessList
+from .process_list import ProcessList, processor_seconds
 from .thread_states import ThreadStates
 
 OUTPUT = "output.txt"
@@ -110,7 +110,7 @@ class Program:
     Attributes:
         pid: of the cell.
         processes: those of the program, below the cell.
-        watcher: thread id of the thread that watches the memory.
+        watcher: thread id of the thread that watches memory and processor time.
         excess: why it was killed; "" if it was not.
     """
 
@@ -141,7 +141,7 @@ class Program:
         self.processes = ProcessList(self.pid)
         self._threads = ThreadStates(self.pid, lambda: {self.pid})   # not of the cell
         self._ended = threading.Event()
-        self._thread = threading.Thread(target=self._watch, name="memory", daemon=True)
+        self._thread = threading.Thread(target=self._watch, name="limits", daemon=True)
         self._thread.start()
 
     @property
@@ -199,10 +199,7 @@ class Program:
 
     def output(self) -> bytes:
         """The end of what it has printed."""
-        with open(self._output, "rb") as stream:
-            size = stream.seek(0, os.SEEK_END)
-            stream.seek(max(0, size - _KEPT_OUTPUT))
-            return stream.read()
+        return end_of_output(self._output)
 
     def why_ended(self) -> str:
         """What became of it, for a reason; "" while it runs."""
@@ -210,13 +207,18 @@ class Program:
         if self.excess or status is None:
             return self.excess
         if status == 128 + signal.SIGXCPU:
-            most = self._limits.processor_seconds
-            return f"the program used more processor time than {most:g} s"
-        error = self.error if status else None
+            return self._slow
+        if status == 0:
+            return "the program ended during the run, without an error"
+        error = self.error
         text = str(error) if error is not None else ""
-        if status and os.path.getsize(self._output) >= self._most_bytes:
+        if os.path.getsize(self._output) >= self._most_bytes:
             text = f"its output has reached {self._most_bytes * 1e-6:g} MB"
         return f"the program ended with status {status}" + (f": {text}" if text else "")
+
+    @property
+    def _slow(self) -> str:
+        return f"the program used more processor time than {self._limits.processor_seconds:g} s"
 
     @property
     def error(self) -> Optional[PythonError]:
@@ -247,12 +249,22 @@ class Program:
     def _watch(self) -> None:
         self.watcher = threading.get_native_id()
         most = self._limits.memory_mb * 1e6
-        while self.running and not self._ended.wait(_LOOK_S):
-            used = sum(map(resident_bytes, box.descendants(self.pid)))
-            if used > most:
+        while not self.excess and self.running and not self._ended.wait(_LOOK_S):
+            found = box.descendants(self.pid)
+            if sum(map(resident_bytes, found)) > most:
                 self.excess = f"the program used more memory than {self._limits.memory_mb:g} MB"
-                self._process.kill()
-                return
+            elif processor_seconds(found) > self._limits.processor_seconds:
+                self.excess = self._slow
+        if self.excess:
+            self._process.kill()
+
+
+def end_of_output(path: str) -> bytes:
+    """The end of a file that programs have printed to. Raises OSError."""
+    with open(path, "rb") as stream:
+        size = stream.seek(0, os.SEEK_END)
+        stream.seek(max(0, size - _KEPT_OUTPUT))
+        return stream.read()
 
 
 def python_error(output: str, folder: str) -> Optional[PythonError]:

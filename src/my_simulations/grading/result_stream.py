@@ -4,7 +4,7 @@
 {"note": "..."}            a remark
 {"isolation": "..."}       how the box is isolated
 {"file": NAME, "size": N}  followed by N bytes
-{"end": true}              everything was checked
+{"end": true}              nothing follows; false if the time was not enough for all checks
 """
 from __future__ import annotations
 
@@ -44,9 +44,9 @@ class ResultWriter:
         self._stream.write(content)
         self._stream.flush()
 
-    def end(self) -> None:
-        """Send that everything was checked."""
-        self._line({"end": True})
+    def end(self, in_time: bool) -> None:
+        """Send that nothing follows, and whether the time was enough for all checks."""
+        self._line({"end": in_time})
         self._stream.close()
 
     def _line(self, value: Dict[str, Any]) -> None:
@@ -65,6 +65,7 @@ class ResultReader:
         results, notes, isolation: as received.
         files: names of files, which are in the folder.
         ended: whether the end was received.
+        timed_out: whether the time was not enough for all checks.
     """
 
     def __init__(self, folder: str, checks: Sequence[Check]) -> None:
@@ -73,7 +74,7 @@ class ResultReader:
         self.notes: List[str] = []
         self.isolation = ""
         self.files: List[str] = []
-        self.ended = False
+        self.ended = self.timed_out = False
         self._folder = folder
         self._waiting = b""
         self._file = ("", 0)
@@ -124,7 +125,7 @@ class ResultReader:
                 raise ValueError(value["file"])
             self._file = (value["file"], int(value["size"]))
         else:
-            self.ended = bool(value["end"])
+            self.ended, self.timed_out = True, not value["end"]
 
     def _write(self, name: str, content: bytes) -> None:
         os.makedirs(self._folder, exist_ok=True)

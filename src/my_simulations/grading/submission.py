@@ -5,6 +5,7 @@ import fnmatch
 import hashlib
 import os
 from dataclasses import dataclass
+from itertools import chain
 from typing import Dict, List, Sequence
 
 from ..errors import CommandError
@@ -95,12 +96,12 @@ def matching(folder: str, patterns: Sequence[str]) -> str:
 
 def all_matching(folder: str, patterns: Sequence[str]) -> List[str]:
     """All files of a submission that fit one of the patterns, in the order of `matching`."""
-    return list(dict.fromkeys(name for found in _by_pattern(folder, patterns) for name in found))
+    return list(dict.fromkeys(chain.from_iterable(files_by_pattern(folder, patterns))))
 
 
 def ambiguity(folder: str, patterns: Sequence[str]) -> str:
     """Which file `matching` has chosen, if others fit the same pattern; "" if none does."""
-    for pattern, found in zip(patterns, _by_pattern(folder, patterns)):
+    for pattern, found in zip(patterns, files_by_pattern(folder, patterns)):
         if len(found) > 1:
             return (f"{found[0]} was graded, which has the fewest folders and then the first name;"
                     f" the submission contains more files that fit {pattern}: {listed(found[1:])}")
@@ -127,7 +128,8 @@ def listed(names: Sequence[str]) -> str:
     return ", ".join(names[:_SHOWN_FILES]) + (f" and {more} more" if more > 0 else "")
 
 
-def _by_pattern(folder: str, patterns: Sequence[str]) -> List[List[str]]:
+def files_by_pattern(folder: str, patterns: Sequence[str]) -> List[List[str]]:
+    """The files that fit each pattern, in the order of `matching`."""
     names = sorted((relative for relative, _ in content_of(folder).files
                     if not os.path.basename(relative).startswith(".")),
                    key=lambda name: (name.count(os.sep), name))

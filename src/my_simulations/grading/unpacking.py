@@ -13,13 +13,15 @@ from .submission import ARCHIVES, Submission
 from .submission_files import MOST_FILES, content_of
 
 _SECONDS = 120.0
+_MOST_ARCHIVES = 2   # in each other
 
 
 @contextlib.contextmanager
 def unpacked(submission: Submission, folder: str, most_bytes: int) -> Iterator[Submission]:
     """Provide the content of a submission, which is unpacked if it is an archive.
 
-    An archive is a submission if it is handed in itself, or as the only file of a folder.
+    An archive is a submission if it is handed in itself, or as the only file of a folder. If it
+    contains one archive only, as learning platforms pack uploads, that one is unpacked, too.
 
     Args:
         submission: the submission as it was handed in.
@@ -30,16 +32,23 @@ def unpacked(submission: Submission, folder: str, most_bytes: int) -> Iterator[S
     Raises:
         ArchiveError: the archive is damaged, too large, encrypted, or writes outside of its folder.
     """
-    archive = archive_of(submission)
-    if not archive:
+    with contextlib.ExitStack() as ending:
+        until = time.monotonic() + _SECONDS
+        for _ in range(_MOST_ARCHIVES):
+            archive = archive_of(submission)
+            if not archive:
+                break
+            above = ending.enter_context(tempfile.TemporaryDirectory(prefix=".unpacked_",
+                                                                     dir=folder))
+            path = os.path.join(above, "files")
+            extract(_kind_of(archive), archive, path,
+                    Limits(files=MOST_FILES, unpacked_bytes=most_bytes), until, skips_links=True)
+            submission = Submission(submission.student, path)
         yield submission
-        return
-    kind = next(kind for ending, kind in ARCHIVES.items() if archive.lower().endswith(ending))
-    with tempfile.TemporaryDirectory(prefix=".unpacked_", dir=folder) as above:
-        path = os.path.join(above, "files")
-        extract(kind, archive, path, Limits(files=MOST_FILES, unpacked_bytes=most_bytes),
-                time.monotonic() + _SECONDS, skips_links=True)
-        yield Submission(submission.student, path)
+
+
+def _kind_of(archive: str) -> str:
+    return next(kind for ending, kind in ARCHIVES.items() if archive.lower().endswith(ending))
 
 
 def archive_of(submission: Submission) -> str:

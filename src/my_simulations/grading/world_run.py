@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import math
+import time
 from typing import Any, Callable, Dict, List, Optional, Protocol, Sequence
 
 import numpy as np
@@ -19,7 +20,7 @@ from .assignment import (
     Timed,
     TopicRate,
 )
-from .mark import CheckResult, result
+from .mark import CheckResult, late_reason, result
 
 _SHOWN = 3   # decimals of a length, m
 _MOST_MEASURED = 6
@@ -49,20 +50,26 @@ class WorldRun:
         assignment: the assignment.
         world: the open world, before its first step.
         name: name of the world file in the submission; "" for that of the assignment.
+        until: `time.monotonic()` at which the run ends, if it has not ended before.
         graph: the ROS graph; None for a world that runs alone.
     """
 
-    def __init__(self, assignment: Assignment, world: OpenWorld, name: str,
+    def __init__(self, assignment: Assignment, world: OpenWorld, name: str, until: float,
                  graph: Optional[Graph] = None) -> None:
         self._assignment = assignment
         self._world = world
         self._name = name
+        self._until = until
         self._graph = graph
         self._readers: Dict[str, SignalReader] = {}
         self._faults: Dict[str, str] = {}
 
-    def run(self, recorder: Optional[Recorder], done: Callable[[CheckResult], None]) -> None:
-        """Make the steps of the longest check; `done` gets each result as soon as it is decided."""
+    def run(self, recorder: Optional[Recorder], done: Callable[[CheckResult], None]) -> bool:
+        """Make the steps of the longest check; `done` gets each result as soon as it is decided.
+
+        Returns:
+            False if the time ended before all checks were decided.
+        """
         checks = sorted(self._assignment.of(Timed), key=lambda check: float(check.within))
         size = self._world.step_size
         period = max(1, round(self._assignment.sample / size))
@@ -75,15 +82,21 @@ class WorldRun:
                 while checks and made >= round(checks[0].within / size):
                     done(self._decided(checks[0]))
                     del checks[0]
+                if checks and time.monotonic() > self._until:
+                    self._end(checks, late_reason(self._assignment), done)
+                    return False
                 if checks:
                     steps = min(period, max(1, round(checks[0].within / size) - made))
                     self._step(steps)
                     made += steps
             except SimulationError as fault:
-                for check in checks:
-                    reason = f"the simulation ended after {made * size:g} s: {fault}"
-                    done(result(check, 0.0, reason, self._name))
-                return
+                self._end(checks, f"the simulation ended after {made * size:g} s: {fault}", done)
+        return True
+
+    def _end(self, checks: List[Timed], reason: str, done: Callable[[CheckResult], None]) -> None:
+        """Give no points for the checks that are left, which are removed."""
+        while checks:
+            done(result(checks.pop(0), 0.0, reason, self._name))
 
     def _step(self, steps: int) -> None:
         if self._graph is None:

@@ -40,6 +40,7 @@ def read_document(file: str, make: "Callable[[Source, str], Reader]",
     reader = make(source, os.path.dirname(path))
     reader.issues += issues
     found = build(reader, tree, path)
+    reader.issues.sort(key=lambda issue: issue.line or math.inf)
     if found is None or errors_of(reader.issues):
         raise InputError(reader.issues)
     return found, reader.issues

@@ -89,12 +89,44 @@ def test_all_kinds_of_checks_are_read(tmp_path):
     ("{points: 1, no_contact: [a], within: 1}", "must name two models"),
     ("{points: 1, service: /go, within: 1}", "'checks.1.type' must be text"),
     ("{points: 1, rostest: none.test}", "there is no file"),
+    ("{points: 1, topic: /a, type: String, within: 1}", "'String' is not a message type"),
+    ("{points: 1, topic: '/a b', within: 1}", "'/a b' is not a name of ROS"),
+    ("{points: 1, launch: a.launch, world: b.world}", "'world' of this check must be true"),
 ])
 def test_faults_of_checks_have_their_lines(tmp_path, check, message):
     found = faults(tmp_path, "submission: {world: a.world}\nchecks:\n"
                              "  - {points: 1, check_model: strict}\n  - " + check + "\n")
     assert [line for line, _, text in found if message in text] == [4], found
     assert all(code.startswith("grade-") or code == "file-not-found" for _, code, _ in found)
+
+
+TYPE = "submission: {{world: a.world}}\nchecks:\n  - {{points: 1, {}, within: 1}}\n"
+
+
+@pytest.mark.parametrize("check, message", [
+    ("topic: /a, type: std_msgs/Strnig", "the package std_msgs has no message type"),
+    ("topic: /a, type: std_srvs/Empty", "the package std_srvs has no message type"),
+    ("topic: /a, type: nothing_msgs/String", "the message type nothing_msgs/String cannot be"),
+    ("service: /a, type: std_msgs/String", "the package std_msgs has no service type"),
+    ("service: /a, type: std_srvs/Emtpy", "the package std_srvs has no service type"),
+])
+def test_types_that_ros_does_not_know_are_errors(tmp_path, check, message):
+    pytest.importorskip("genpy")
+    (line, code, text), = faults(tmp_path, TYPE.format(check))
+    assert (line, code) == (3, "grade-type") and text.startswith(message)
+
+
+@pytest.mark.parametrize("check, known", [
+    ("topic: /a, type: std_msgs/String", True),
+    ("topic: /a, type: ackermann_msgs/AckermannDrive", True),
+    ("service: /a, type: std_srvs/Empty", True), ("service: /a, type: std_srvs/Emtpy", False),
+    ("topic: /a, type: own_msgs/Thing", False)])
+def test_types_that_cannot_be_looked_up_are_warnings(tmp_path, monkeypatch, check, known):
+    monkeypatch.setattr("importlib.util.find_spec", lambda name: None)
+    (tmp_path / "lab.yaml").write_text(TYPE.format(check))
+    _, issues = read_assignment(str(tmp_path / "lab.yaml"))
+    assert [(issue.code, issue.line) for issue in issues] == (
+        [] if known else [("grade-type-unknown", 3)])
 
 
 def test_model_files_of_a_submission_are_named_by_patterns(tmp_path):
@@ -123,11 +155,20 @@ def test_topics_and_numbers_of_them_are_recorded(tmp_path):
         (3, "grade-key", "'record' needs a program: worlds alone have no topics")]
 
 
+def test_faults_of_the_file_are_in_the_order_of_its_lines(tmp_path):
+    checks = "  - {points: 1, check_model: strict, name: a}\n" * 2 + "  - {points: 1, count: cat}\n"
+    text = "lab: a\nchecks:\n" + checks + "lab2: a\nrecord: [/a]\n"
+    lines = [line for line, _, _ in faults(tmp_path, text)]
+    assert len(set(lines)) > 3 and lines == sorted(lines)
+
+
 def test_faults_of_the_file_are_named(tmp_path):
     assert "a mapping" in faults(tmp_path, "- 1\n")[0][2]
     assert "'checks' must be a list" in faults(tmp_path, "lab: a\n")[0][2]
     assert faults(tmp_path, "lab: a\nchecks:\n  - {points: 1, check_model: strict}\n") == [
         (3, "grade-key", "'check_model strict' needs a world")]
+    assert faults(tmp_path, "checks:\n  - {points: 1, launch: a.launch, world: true}\n") == [
+        (2, "grade-key", "'world' of 'launch a.launch' needs the world file of the submission")]
     twice = "  - {points: 1, check_model: strict, name: a}\n"
     assert "two checks have the name 'a'" in faults(
         tmp_path, "submission: {world: a.world}\nchecks:\n" + 2 * twice)[0][2]

@@ -1,6 +1,8 @@
 """Checks of world files, without running them."""
 from __future__ import annotations
 
+import re
+
 import pytest
 
 from my_simulations.grading.assignment_file import read_assignment
@@ -67,6 +69,14 @@ def test_faults_of_a_file_are_told_with_line(tmp_path):
                               "{points: 1, count: model, at_least: 1}")
     assert (broken.points, counted.points) == (0, 0)
     assert counted.reason.startswith("the world file cannot be read: ")
+
+
+def test_faults_of_a_file_are_in_the_order_of_its_lines(tmp_path):
+    text = models("a", "b", "c").replace("<box>", "\n<box>").replace("1 1 1", "1 one 1")
+    text = text.replace("<world", "\n<world").replace("<link", "<pose>a</pose>\n<link")
+    found, = results(tmp_path, text, "{points: 1, check_model: strict}")
+    lines = [found.line, *map(int, re.findall(r"; line (\d+):", found.reason))]
+    assert len(lines) == 4 and lines == sorted(lines), found.reason
 
 
 def test_a_wrong_end_tag_leaves_no_points_for_the_content(tmp_path):

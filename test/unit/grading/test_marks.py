@@ -14,6 +14,7 @@ from my_simulations.grading.lists import write_lists
 from my_simulations.grading.mark import GRADED, TIMED_OUT, CheckResult, Mark, mark_of, result
 from my_simulations.grading.pages import write_pages
 from my_simulations.grading.program import PythonError, loop_place, python_error
+from my_simulations.grading.program_choice import choose_program
 from my_simulations.grading.result_stream import ResultReader, ResultWriter
 from my_simulations.grading.submission import (
     all_matching,
@@ -100,7 +101,7 @@ def test_results_and_files_come_through_in_pieces(assignment, tmp_path):
     writer.result(result(assignment.checks[0], 0.5, "why", "f", 2))
     writer.file("replay.html", b"line\nline\n\0")
     writer.note("a note")
-    writer.end()
+    writer.end(True)
     with os.fdopen(receiving, "rb") as stream:
         data = stream.read()
     reader = ResultReader(str(tmp_path / "anna"), assignment.checks)
@@ -160,6 +161,28 @@ def test_names_in_another_case_and_hidden_files(tmp_path):
         "no x.py or y.py; it contains ._a.py, Go.PY, b.py, e/go.py")
     (tmp_path / "empty").mkdir()
     assert reason_for_no_match(str(tmp_path / "empty"), ("x.py",)).endswith("it is empty")
+
+
+NODE, MAIN = "import rospy\nrospy.init_node('a')\n", 'if __name__ == "__main__":\n    main()\n'
+
+
+@pytest.mark.parametrize("files, chosen, reason", [
+    ({"a.py": "x = 1", "b/c.py": NODE}, "b/c.py", "because it calls init_node"),
+    ({"a.py": "# rospy.init_node()", "b.py": MAIN}, "b.py", "because it has a main program"),
+    ({"a.py": NODE, "b.py": MAIN}, "a.py", "because it calls init_node"),
+    ({"a.py": NODE, "b.py": NODE + MAIN}, "b.py", "because it calls init_node and has a main"),
+    ({"a.py": NODE, "b.py": NODE}, "a.py", "which has the fewest folders and then the first name"),
+    ({"a.py": "", "b.py": ""}, "a.py", "which has the fewest folders and then the first name"),
+    ({"a.py": NODE, "go.py": ""}, "go.py", ""), ({"a.py": ""}, "a.py", ""),
+    ({"a.txt": ""}, "", "")])
+def test_the_program_is_the_file_that_starts_a_node(tmp_path, files, chosen, reason):
+    for name, text in files.items():
+        (tmp_path / name).parent.mkdir(exist_ok=True)
+        (tmp_path / name).write_text(text)
+    found = choose_program(str(tmp_path), ("go.py", "*.py"))
+    assert found.name == chosen
+    assert found.note.startswith(f"{chosen} was run, {reason}" if reason else "")
+    assert bool(found.note) == bool(reason)
 
 
 def test_the_error_of_a_program_has_its_file_and_line():

@@ -79,6 +79,25 @@ def test_an_archive_as_the_only_file_of_a_folder_is_the_submission(tmp_path):
         assert found is submission
 
 
+def test_an_archive_in_an_archive_is_unpacked_once(tmp_path):
+    inner = [tmp_path / f"{number}.zip" for number in range(3)]
+    write_zip(inner[0], ("lab/go.py", "go"))
+    for outer, one in zip(inner[1:], inner):
+        write_zip(outer, ("upload/lab.zip", one.read_bytes()))
+    assert content_of(inner[1], tmp_path / "out")[1] == {"lab/go.py": "go"}
+    (submission,) = submissions_of([str(inner[2])])
+    with unpacked(submission, str(tmp_path), MOST_BYTES) as found:
+        assert [name for name, _ in files_of(found.path).files] == ["upload/lab.zip"]
+
+
+def test_an_archive_in_an_archive_that_does_harm_is_refused(tmp_path):
+    write_zip(tmp_path / "bomb.zip", ("go.py", bytes(MOST_BYTES + 1)))
+    write_zip(tmp_path / "dora.zip", ("bomb.zip", (tmp_path / "bomb.zip").read_bytes()))
+    with pytest.raises(ArchiveError, match="1048576 bytes"):
+        content_of(tmp_path / "dora.zip", tmp_path / "out")
+    assert os.listdir(tmp_path / "out") == []
+
+
 @pytest.mark.parametrize("name, content, reason", [
     ("go.py", bytes(MOST_BYTES + 1), "more than 20000 files or 1048576 bytes"),
     ("../go.py", b"", "outside its folder"), ("/tmp/go.py", b"", "outside its folder"),

@@ -114,7 +114,7 @@ def test_a_fault_is_told_with_its_line_and_key(tmp_path, text, line, xpath, said
 
 def test_all_faults_are_told_at_once(tmp_path):
     found = faults(tmp_path, "duration: 0\nsample: x\nvary:\n  m: {set: 3}\n")
-    assert [line for line, _, _ in found] == [4, 4, 1, 2]
+    assert [line for line, _, _ in found] == [1, 2, 4, 4]
 
 
 def test_values_at_their_bounds_are_taken(tmp_path):
