@@ -278,7 +278,7 @@ def test_a_unit_shape_has_gazebos_size_and_inertia(case):
         assert made.sim.states.model_state("unit_box")[0].position == (0.0, 0.0, 0.5)
         await browser.until(lambda: browser.model("unit_box"))
         material = browser.model("unit_box")["links"][0]["visuals"][0]["material"]
-        assert material["diffuse"] == [0.7, 0.7, 0.7, 1.0]
+        assert material["diffuse"] == material["ambient"] == [0.93, 0.62, 0.33, 1.0]
 
     made.browse(insert)
 

@@ -12,6 +12,7 @@ import {FaceSnap} from './face_snap.js';
 import {hiddenFrom} from './first_look.js';
 import {Forces} from './force_arrows.js';
 import {Lights} from './light_views.js';
+import {mountLookSwitch} from './look_switch.js';
 import {Manipulator} from './manipulator.js';
 import {Materials} from './materials.js';
 import {Measure} from './measure.js';
@@ -123,6 +124,7 @@ export class View {
     this.#measure = new Measure({...shared, selector});
     this.#cube = new OrientationCube(element, actions);
     this.#readout = readout(element);
+    mountLookSwitch(element, {store, actions});
     this.#preview = new Preview(shared);
     this.#placer = new Placer(shared);
     this.#pointer = new Pointer({...shared, manipulator: this.#manipulator,

@@ -5,7 +5,7 @@ import os
 from dataclasses import replace
 from typing import Collection, Dict, List, Optional, Sequence, Tuple, Union
 
-from ...description.compare import BUILT_IN
+from ...appearance.palette import SHAPE_COLORS
 from ...description.flatten import flattened
 from ...description.light import Light
 from ...description.model import Inertial, Link, Model
@@ -40,13 +40,18 @@ _SHAPES: Dict[str, Tuple[Geometry, Vec3]] = {
 
 
 def simple_shape(shape: str) -> Model:
-    """Gazebo's unit box, sphere or cylinder of 1 kg, standing on the ground."""
+    """Gazebo's unit box, sphere or cylinder of 1 kg in a color, standing on the ground."""
     geometry, (ixx, iyy, izz) = _SHAPES[shape]
-    grey = Material(script_uris=[BUILT_IN], script_name="Gazebo/Grey")
     link = Link("link", inertial=Inertial(1.0, ixx=ixx, iyy=iyy, izz=izz),
                 collisions=[Collision("collision", geometry)],
-                visuals=[Visual("visual", geometry, material=grey)])
+                visuals=[Visual("visual", geometry, material=shape_material(shape))])
     return Model(f"unit_{shape}", Pose((0.0, 0.0, 0.5)), links=[link])
+
+
+def shape_material(shape: str) -> Material:
+    """The color of a shape that the editor inserts; files, cameras and the view have it alike."""
+    color = SHAPE_COLORS[shape]
+    return Material(ambient=color, diffuse=color)
 
 
 def entity_of_text(text: str, resolver: Resolver, source: Optional[str] = None,
