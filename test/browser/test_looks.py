@@ -225,6 +225,7 @@ def test_a_large_mesh_is_drawn_with_fewer_triangles_without_a_graphics_card(node
                " pose: [0, 0, 1, 0, 0, 0, 1]}})")
     editor.until("editor.view.meshTriangles > 0 && editor.view.waiting === 0", "the mesh")
     assert len(ball.faces) > 300000
+    assert any("stl_worker" in worker.url for worker in editor.page.workers), "the page goes on"
     assert 10000 < editor.get("editor.view.meshTriangles") < 120000
     bounds = editor.get("(({min, max}) => [...min, ...max])(editor.view.bounds('large'))")
     assert bounds == pytest.approx([-1.0, -1.0, 0.0, 1.0, 1.0, 2.0], abs=0.03)

@@ -93,8 +93,8 @@ export class View {
     // Before the models are built again.
     store.listen('overlays', () => meshes.simplify(store.overlays.scene.simplifiedMeshes));
     meshes.onArrived = () => stage.invalidate();
-    meshes.onCount = counted((done, of) => store.emit('loading', {
-      type: 'loading', title: 'Loading meshes and textures', text: '', done, of}));
+    meshes.onCount = counted((done, of, text) => store.emit('loading', {
+      type: 'loading', title: 'Loading meshes and textures', text, done, of}));
     const materials = new Materials(meshes.manager);
     const stock = {meshes, materials};
     this.#gallery = new Gallery(stage, connection);
