@@ -239,9 +239,9 @@ export class View {
   /** What the measure tool says, for tests. */
   get measured() { return this.#measure.texts; }
 
-  /** Places the pending entity in the middle of the view, for use without a mouse. */
-  placeInMiddle() {
-    this.#placer.putInMiddle();
+  /** Places the pending entity where it is seen, or in the middle of the view for use without a mouse. */
+  placeHere() {
+    this.#placer.putHere();
   }
 
   flyTo(view: import('../camera_math.js').View) {

@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import os
+import re
 from dataclasses import replace
 from typing import Collection, Dict, List, Optional, Sequence, Tuple, Union
 
@@ -32,6 +33,8 @@ from .model_parts import free_name
 
 Entity = Union[Model, Light]
 
+_NAMED = re.compile(r"<(model|light|robot)\s[^>]*?\bname\s*=\s*(['\"])(.{1,100}?)\2")
+
 _SHAPES: Dict[str, Tuple[Geometry, Vec3]] = {
     "box": (Box((1.0, 1.0, 1.0)), (1 / 6, 1 / 6, 1 / 6)),
     "sphere": (Sphere(0.5), (0.1, 0.1, 0.1)),
@@ -60,7 +63,7 @@ def entity_of_text(text: str, resolver: Resolver, source: Optional[str] = None,
 
     `source` is the name of the file that the text is from; issues name it.
     """
-    entity, issues = read_entity(text, resolver, _file_name(source) or "<inserted text>")
+    entity, issues = read_entity(text, resolver, _file_name(source) or _inserted(text))
     return _usable(entity, issues)
 
 
@@ -90,6 +93,12 @@ def entities_of_text(text: str, resolver: Resolver, source: Optional[str] = None
 def _file_name(source: Optional[str]) -> str:
     """The name alone: it says where a text is from, and opens no folder of this machine."""
     return os.path.basename((source or "").replace("\\", "/"))
+
+
+def _inserted(text: str) -> str:
+    """Where issues about a text without a file are: its first model or light, by name."""
+    found = _NAMED.search(text)
+    return f"<inserted {found.group(1)} {found.group(3)}>" if found else "<inserted text>"
 
 
 def _usable(entity: Entity, issues: List[Issue]) -> Tuple[Entity, List[Issue]]:
