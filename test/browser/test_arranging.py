@@ -89,7 +89,7 @@ def test_a_command_is_found_by_a_part_of_its_name(editor):
     editor.page.keyboard.press("Enter")
     dialog.wait_for(state="detached")
     editor.until("editor.store.placing?.shape === 'cylinder'", "the cylinder at the mouse")
-    editor.page.locator(".hint-line").get_by_text("place in the middle").wait_for()
+    editor.page.locator(".hint-line").get_by_text("Enter place").wait_for()
     editor.page.keyboard.press("Escape")
     editor.page.keyboard.press("Control+k")
     dialog.get_by_role("combobox").fill("grid")

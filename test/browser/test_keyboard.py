@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import json
+import math
 import os
 from xml.etree import ElementTree
 
@@ -142,3 +143,25 @@ def test_a_room_with_a_door_is_drawn(hands, editor):
     door = [link for link in editor.model("by_keys")["links"] if len(link["collisions"]) > 1]
     assert len(door) == 1, "one wall has an opening"
     editor.until("document.activeElement !== document.body", "a focus in the world")
+
+
+def test_enter_places_a_shape_where_it_is_seen(editor):
+    editor.button("Box").click()
+    editor.until("editor.store.mode === 'insert'", "the box that is placed")
+    x, y = editor.pixel((2.0, -1.0, 0.0))
+    editor.page.mouse.move(x - 40, y - 25)
+    editor.page.mouse.move(x, y, steps=5)
+    editor.page.keyboard.press("Enter")
+    editor.until("editor.store.selection.join() === 'unit_box'", "the box")
+    assert editor.model("unit_box")["pose"][:2] == approx((2.0, -1.0), abs=0.05)
+
+
+def test_enter_places_a_second_shape_beside_the_first(editor):
+    for name in ("unit_box", "unit_box_0"):
+        editor.button("Box").press("Enter")
+        editor.until("editor.store.mode === 'insert'", "the box that is placed")
+        editor.page.keyboard.press("Enter")
+        editor.until(f"editor.store.selection.join() === '{name}'", name)
+    first, second = (editor.model(name)["pose"] for name in ("unit_box", "unit_box_0"))
+    assert math.dist(first[:2], second[:2]) > 1.0
+    assert first[2] == second[2]

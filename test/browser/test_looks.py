@@ -225,6 +225,7 @@ def test_a_large_mesh_is_drawn_with_fewer_triangles_without_a_graphics_card(node
                " pose: [0, 0, 1, 0, 0, 0, 1]}})")
     editor.until("editor.view.meshTriangles > 0 && editor.view.waiting === 0", "the mesh")
     assert len(ball.faces) > 300000
+    assert any("stl_worker" in worker.url for worker in editor.page.workers), "the page goes on"
     assert 10000 < editor.get("editor.view.meshTriangles") < 120000
     bounds = editor.get("(({min, max}) => [...min, ...max])(editor.view.bounds('large'))")
     assert bounds == pytest.approx([-1.0, -1.0, 0.0, 1.0, 1.0, 2.0], abs=0.03)
@@ -297,26 +298,37 @@ def test_a_texture_is_repeated_by_its_size_and_upright(node, editor):
     assert seen == ["red", "blue", "red", "blue"]
 
 
-def test_the_colors_of_the_view_are_those_of_cameras_if_the_user_wants(editor):
-    name = editor.place("Box", (0.0, 0.0, 0.0))
-    editor.page.keyboard.press("Escape")
+def test_the_view_says_when_its_sky_is_not_that_of_cameras(editor):
+    switch = editor.page.locator(".look-switch")
 
-    def switch():
-        editor.page.get_by_role("menuitem", name="View", exact=True).click()
-        editor.page.get_by_role("menuitemcheckbox", name="Colors as in Cameras").click()
-
-    def corner_and_box():
+    def corner():
         clip = editor.page.locator("#view").bounding_box()
         image = Image.open(io.BytesIO(editor.settled_picture(clip))).convert("RGB")
-        width, height = image.size
-        return image.getpixel((width // 3, 4)), image.getpixel((width // 2, height // 2))
+        return image.getpixel((image.width // 3, 4))
 
-    background, box = corner_and_box()
-    assert box[0] > box[2] + 30 and background[2] > background[0] + 2
-    switch()
-    for red, green, blue in corner_and_box():
-        assert max(red, green, blue) - min(red, green, blue) < 6
-    switch()   # the page and its world serve other tests
+    assert switch.inner_text() == "Sky of the editor"
+    assert switch.get_attribute("aria-pressed") == "false"
+    red, _, blue = corner()
+    assert blue > red + 2
+    switch.click()
+    editor.until("document.querySelector('.look-switch').textContent === 'Sky as in cameras'",
+                 "what the switch says")
+    assert max(corner()) - min(corner()) < 6
+    switch.click()   # the page and its world serve other tests
+
+
+def test_the_view_the_properties_and_the_file_have_the_same_color_of_a_box(editor):
+    name = editor.place("Box", (0.0, 0.0, 0.0))
+    editor.page.keyboard.press("Escape")
+    clip = editor.page.locator("#view").bounding_box()
+    image = Image.open(io.BytesIO(editor.settled_picture(clip))).convert("RGB")
+    red, _, blue = image.getpixel((image.width // 2, image.height // 2))
+    assert red > blue + 30
+    material = editor.model(name)["links"][0]["visuals"][0]["material"]
+    assert material["diffuse"] == pytest.approx([0.93, 0.62, 0.33, 1.0])
+    editor.row(name).click()
+    field = editor.page.locator(".properties input[type=color]").first
+    assert field.input_value() == "#ed9e54"
     editor.get(f"editor.actions.edit({{kind: 'delete', names: ['{name}']}})")
     editor.until(f"!editor.store.model('{name}')", "the box is gone")
 

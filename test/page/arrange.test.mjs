@@ -93,6 +93,9 @@ test('the command search knows menus, tools and keys, each once', () => {
   assert.ok(!titles.includes('Duplicate'), 'nothing is selected');
   assert.equal(matching(commands, 'spot ins')[0].title, 'Insert spot light');
   assert.equal(matching(commands, 'pl')[0].title, 'Plot');
+  const undo = {title: 'Undo: Insert unit_box', group: 'Edit', keys: '', run() {}};
+  assert.equal(matching([undo, ...commands], 'box')[0].title, 'Insert box');
+  assert.equal(matching([undo, ...commands], 'undo')[0], undo);
   assert.deepEqual(matching(commands, 'no such thing'), []);
 });
 

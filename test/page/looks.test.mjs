@@ -3,31 +3,10 @@ import {test} from 'node:test';
 import {first, FIRST_PITCHES, forward, HOME, originScale, right, up} from '../../web/js/camera_math.js';
 import {groundHeight} from '../../web/js/view/ground.js';
 import {nameTurns} from '../../web/js/view/orientation_cube.js';
-import {tinted} from '../../web/js/view/tints.js';
 import {near} from './near.mjs';
 import {model} from './scene.mjs';
 
 const still = [0, 0, 0.5, 0, 0, 0, 1];
-
-test('a plain grey box is tinted, what somebody has painted is not', () => {
-  const grey = model('a', 1, still);
-  const [visual] = grey.links[0].visuals;
-  const shown = tinted(grey, visual);
-  assert.notDeepEqual(shown.material.diffuse, visual.material.diffuse);
-  assert.equal(visual.material.diffuse[0], 0.7, 'the document keeps its grey');
-  const red = {...visual, material: {...visual.material, diffuse: [1, 0, 0, 1]}};
-  assert.equal(tinted(grey, red), red);
-});
-
-test('grounds, walls, robots and meshes keep their grey', () => {
-  const grey = model('a', 1, still);
-  const [visual] = grey.links[0].visuals;
-  assert.equal(tinted({...grey, static: true}, visual), visual);
-  assert.equal(tinted({...grey, links: [grey.links[0], grey.links[0]]}, visual), visual);
-  assert.notEqual(tinted({...grey, links: [grey.links[0], grey.links[0]]}, visual, true), visual, 'while it is built');
-  const mesh = {...visual, geometry: {type: 'mesh', uri: 'a.dae'}};
-  assert.equal(tinted(grey, mesh), mesh);
-});
 
 test('the ground is the highest level plane of a static model', () => {
   const ground = (z, turn = [0, 0, 0, 1]) => {

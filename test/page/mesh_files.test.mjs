@@ -4,6 +4,8 @@ import './with_plain_three.mjs';
 
 const {coarse, limitFor} = await import('../../web/js/view/coarse_mesh.js');
 const {fillNormals} = await import('../../web/js/view/facet_normals.js');
+const {parseStl} = await import('../../web/js/view/stl.js');
+const {bodyOf} = await import('../../web/js/view/response_body.js');
 const {Meshes, asGazeboReads} = await import('../../web/js/view/mesh_files.js');
 
 test('a picture that is missing is told by its name, also where that has a bare %', () => {
@@ -100,4 +102,45 @@ test('a mesh is closed that surrounds a volume and faces outwards', () => {
     ['both sides', twice, false]]) {
     for (const limit of [300, 2000]) assert.equal(coarse(mesh, mesh, null, limit).closed, closed, name);
   }
+});
+
+/** A binary STL file. @param facets  twelve numbers each: normal, three corners */
+function binaryStl(facets) {
+  const view = new DataView(new ArrayBuffer(84 + 50 * facets.length));
+  view.setUint32(80, facets.length, true);
+  facets.forEach((numbers, facet) => numbers.forEach((number, at) =>
+    view.setFloat32(84 + 50 * facet + 4 * at, number, true)));
+  return view.buffer;
+}
+
+test('binary and text STL files have the same facets', () => {
+  const facet = [0, 0, 1, 0, 0, 0, 2, 0, 0, 0, 2, 0.5];
+  const text = `solid a\n facet normal 0 0 1.0\n outer loop\n vertex 0 0 0\n vertex 2e0 0 0
+    vertex 0 +2 .5\n endloop\n endfacet\nendsolid\nsolid b\nendsolid`;
+  const read = [binaryStl([facet]), new TextEncoder().encode(text).buffer].map(parseStl);
+  for (const {position, normal} of read) {
+    assert.deepEqual([...position], facet.slice(3));
+    assert.deepEqual([...normal], [0, 0, 1, 0, 0, 1, 0, 0, 1]);
+  }
+});
+
+test('an STL file that ends too early is refused, also one that says it is binary by its header', () => {
+  const whole = binaryStl([[0, 0, 1, 0, 0, 0, 2, 0, 0, 0, 2, 0]]);
+  assert.throws(() => parseStl(whole.slice(0, 100)), /ends before the last of its 1 triangles/);
+  new Uint8Array(whole).set(new TextEncoder().encode('solid'));
+  assert.equal(parseStl(whole).position.length, 9, 'the size decides');
+});
+
+test('the bytes of a large answer are counted while they arrive', async () => {
+  const chunk = new Uint8Array(700000).fill(7);
+  const answer = (chunks, size) => new Response(new ReadableStream({start(stream) {
+    for (let at = 0; at < chunks; at += 1) stream.enqueue(chunk);
+    stream.close();
+  }}), {headers: {'Content-Length': size}});
+  const told = [];
+  const content = await bodyOf(answer(3, 2100000), (...counts) => told.push(counts));
+  assert.equal(new Uint8Array(content).filter((byte) => byte === 7).length, 2100000);
+  assert.deepEqual(told[0], [0, 2100000]);
+  assert.equal(told.reduce((sum, [loaded]) => sum + loaded, 0), 2100000);
+  await assert.rejects(bodyOf(answer(2, 2100000), () => {}), /ended after 1400000 of 2100000 bytes/);
 });

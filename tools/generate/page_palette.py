@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
-"""Write web/js/view/palette.ts, the page's copy of my_simulations.appearance.palette."""
+"""Write web/js/palette.ts, the page's copy of my_simulations.appearance.palette."""
 from __future__ import annotations
 
 import pathlib
 import sys
 
 REPOSITORY = pathlib.Path(__file__).resolve().parents[2]
-MODULE = REPOSITORY / "web" / "js" / "view" / "palette.ts"
+MODULE = REPOSITORY / "web" / "js" / "palette.ts"
 HEAD = """/**
  * Numbers of looks that the page and the cameras share. Written by tools/generate/page_palette.py
  * from src/my_simulations/appearance/palette.py: edit that file, not this one.
@@ -22,6 +22,11 @@ def module() -> str:
     lines = [f"export const GREY = [{', '.join(f'{part:g}' for part in palette.GREY)}];"]
     lines += [f"export const {name} = {getattr(palette, name):g};"
               for name in ("GROUND", "DULLEST", "SHININESS")]
+    shapes = [f"  {name}: [{', '.join(f'{part:g}' for part in color)}],"
+              for name, color in palette.SHAPE_COLORS.items()]
+    lines += ["", "/** Of the shapes that the editor inserts, r, g, b, a. */",
+              "export const SHAPE_COLORS: Record<string, number[]> = Object.freeze({",
+              *shapes, "});"]
     sky = [f"  {name}: 0x{value:06x}," for name, value in palette.SKY._asdict().items()]
     lines += ["", "export const SKY = Object.freeze({", *sky, "});", "",
               "/** GLSL: the colour of the sky, linear, in a direction. */",

@@ -50,7 +50,7 @@ export const HOTKEYS: readonly Hotkey[] = Object.freeze([
   {keys: 'Ctrl held', title: 'Snap to 1 m or 45 degrees', group: 'Tools'},
   {keys: 'Shift held', title: 'World frame; uniform scale', group: 'Tools'},
   {keys: 'Ctrl+click', title: 'Add to or remove from selection', group: 'Tools'},
-  {keys: 'Enter', title: 'Place what is being inserted in the middle of the view', group: 'Tools', action: 'placeInMiddle'},
+  {keys: 'Enter', title: 'Place what is being inserted where it is seen, or in the middle of the view', group: 'Tools', action: 'placeHere'},
   {keys: 'Space', title: 'Play or pause', group: 'Time', action: 'togglePlay'},
   {keys: 'Drag', title: 'Pan (FPS control: look around)', group: 'Camera'},
   {keys: 'Shift+drag, middle drag', title: 'Orbit around the point under the cursor',

@@ -47,8 +47,8 @@ export function insertActions({store, ask, edit, dialog, view}: ActionParts) {
     insertMade({sdf, model}: {sdf: string, model: Model}) {
       store.setPlacing({kind: 'model', document: model, op: (pose) => ({kind: 'insert', sdf, pose})});
     },
-    /** Places the pending entity in the middle of the view. */
-    placeInMiddle: () => view()?.placeInMiddle(),
+    /** Places the pending entity where it is seen, or in the middle of the view for use without a mouse. */
+    placeHere: () => view()?.placeHere(),
     /**
      * Inserts the entity that follows the mouse.
      * @param pose  in the world

@@ -1,4 +1,5 @@
 /** What the tool bar adds: descriptions for the ghosts. The simulator makes the real ones. */
+import {SHAPE_COLORS} from './palette.js';
 import type {Geometry, Light, Material, Model} from './protocol.js';
 
 export type ShapeName = 'box'|'sphere'|'cylinder';
@@ -13,9 +14,9 @@ const GEOMETRIES: Record<ShapeName, Geometry> = {
   cylinder: {type: 'cylinder', radius: 0.5, length: 1},
 };
 
-/** Gazebo/Grey. */
-const GREY: Material = {name: 'Gazebo/Grey', ambient: [0.3, 0.3, 0.3, 1], diffuse: [0.7, 0.7, 0.7, 1],
-  specular: [0.01, 0.01, 0.01, 1], emissive: [0, 0, 0, 1], transparency: 0, lighting: true};
+/** The material that the simulator gives to a new shape. */
+export const shapeMaterial = (shape: string): Material => ({name: '', ambient: SHAPE_COLORS[shape],
+  diffuse: SHAPE_COLORS[shape], specular: null, emissive: null, texture: null, transparency: 0, lighting: true});
 
 const origin = () => [0, 0, 0, 0, 0, 0, 1];
 
@@ -35,7 +36,7 @@ export function shapeModel(shape: ShapeName): Model {
       id: 0, name: 'link', pose: origin(), gravity: true, kinematic: false, linear_decay: 0,
       angular_decay: 0, collisions: [], sensors: [],
       inertial: {mass: 1, pose: origin(), ixx, ixy: 0, ixz: 0, iyy, iyz: 0, izz},
-      visuals: [{name: 'visual', pose: origin(), geometry: GEOMETRIES[shape], material: GREY,
+      visuals: [{name: 'visual', pose: origin(), geometry: GEOMETRIES[shape], material: shapeMaterial(shape),
         cast_shadows: true, transparency: 0, laser_retro: 0}],
     }],
   };

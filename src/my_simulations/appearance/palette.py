@@ -1,6 +1,6 @@
 """Numbers of looks that the editor's page and the cameras share.
 
-The page gets them as a module: tools/generate/page_palette.py writes web/js/view/palette.ts, and a
+The page gets them as a module: tools/generate/page_palette.py writes web/js/palette.ts, and a
 test compares it.
 """
 from __future__ import annotations
@@ -10,6 +10,13 @@ from typing import Dict, NamedTuple, Tuple
 
 GREY = (0.7, 0.7, 0.7, 1.0)
 """Of what has no material."""
+
+SHAPE_COLORS: Dict[str, Tuple[float, float, float, float]] = {
+    "box": (0.93, 0.62, 0.33, 1.0), "sphere": (0.36, 0.62, 0.87, 1.0),
+    "cylinder": (0.45, 0.73, 0.51, 1.0), "capsule": (0.66, 0.56, 0.83, 1.0),
+    "cone": (0.85, 0.47, 0.50, 1.0), "ellipsoid": (0.35, 0.70, 0.72, 1.0),
+}
+"""Of the shapes that the editor inserts, by type. They are easier to tell apart than grey ones."""
 
 GROUND = 0.8
 """How bright planes are: on a ground of the same grey, objects would have no outlines."""

@@ -1,4 +1,4 @@
-"""Warnings about a model that was just spawned."""
+"""Warnings about models that were just spawned or moved."""
 from __future__ import annotations
 
 from dataclasses import replace
@@ -12,6 +12,8 @@ from ..formats.loading_advice import UNKNOWN, Written, advice_issues
 from ..geometry import IDENTITY, Pose, Twist
 from .entity import Entity
 from .simulator import Simulator
+
+_INSIDE = "starts-inside"
 
 NEIGHBOURS = 64
 """Most models for which overlaps are checked, so that spawning stays fast."""
@@ -57,3 +59,11 @@ def arrival_advice(simulator: Simulator, name: str, meshes: Optional[MeshTable],
         models = [_as_it_stands(entity, snapshot.link) for new in entities
                   if new.model.name == name for entity in _near(new, entities, snapshot)]
     return advice_issues(models, {name: meshes or {}}, written, only=name)
+
+
+def overlap_advice(simulator: Simulator, names: Sequence[str]) -> List[Issue]:
+    """Warnings about overlaps of models with others; none for more than `NEIGHBOURS` names."""
+    if len(names) > NEIGHBOURS:
+        return []
+    return [issue for name in names if simulator.models.has(name)
+            for issue in arrival_advice(simulator, name, None) if issue.code == _INSIDE]

@@ -278,7 +278,7 @@ def test_a_unit_shape_has_gazebos_size_and_inertia(case):
         assert made.sim.states.model_state("unit_box")[0].position == (0.0, 0.0, 0.5)
         await browser.until(lambda: browser.model("unit_box"))
         material = browser.model("unit_box")["links"][0]["visuals"][0]["material"]
-        assert material["diffuse"] == [0.7, 0.7, 0.7, 1.0]
+        assert material["diffuse"] == material["ambient"] == [0.93, 0.62, 0.33, 1.0]
 
     made.browse(insert)
 
@@ -339,6 +339,37 @@ def test_the_models_of_a_file_keep_their_names_and_its_faults_name_it(case):
                 ("bad.sdf", 3)
 
     made.browse(drop)
+
+
+def test_a_model_that_is_put_inside_of_another_is_warned_about(case):
+    made = case(box("shelf", (0.0, 0.0, 0.5)), box("desk", (3.0, 0.0, 0.5)))
+
+    async def move(browser):
+        def warned():
+            return [push["issue"]["message"] for push in browser.pushes if push["type"] == "issue"]
+
+        await browser.edit("move", poses={"desk": [1.5, 0, 0.5, 0, 0, 0, 1]})
+        await browser.edit("insert", shape="box", pose=[-2, 0, 0.5, 0, 0, 0, 1])
+        assert warned() == []
+        await browser.edit("move", poses={"desk": [0.7, 0, 0.5, 0, 0, 0, 1]})
+        await browser.until(lambda: any("300 mm or more inside" in one for one in warned()))
+        await browser.edit("insert", shape="box", name="c", pose=[-0.9, 0, 0.5, 0, 0, 0, 1])
+        await browser.until(lambda: any("'c::link'" in one for one in warned()))
+
+    made.browse(move)
+
+
+def test_faults_of_a_text_without_a_file_name_what_was_inserted(case):
+    made = case()
+    bad = "<sdf version='1.7'>\n<model name='b c'>\n<link name='l'><inertial><mass>x</mass>" \
+          "</inertial></link></model></sdf>"
+
+    async def insert(browser):
+        with pytest.raises(Refused) as refused:
+            await browser.edit("insert", sdf=bad)
+        assert refused.value.issues[0]["file"] == "<inserted model b c>"
+
+    made.browse(insert)
 
 
 def test_a_model_with_nested_ones_is_copied_with_them(case):

@@ -1,5 +1,5 @@
 /** The shapes that links are made of: descriptions for the ghosts. The simulator makes the real ones. */
-import {shapeModel} from '../new_entities.js';
+import {shapeMaterial, shapeModel} from '../new_entities.js';
 import type {Geometry, Model, SolidShape} from '../protocol.js';
 
 /** With the height at which they stand on the ground, m. */
@@ -18,7 +18,7 @@ export const SOLID_SHAPES = Object.keys(SOLIDS) as SolidShape[];
 export function solidModel(shape: SolidShape): Model {
   const model = shapeModel('box');
   const {geometry, height} = SOLIDS[shape];
-  model.links[0].visuals[0].geometry = geometry;
+  Object.assign(model.links[0].visuals[0], {geometry, material: shapeMaterial(shape)});
   model.pose = [0, 0, height, 0, 0, 0, 1];
   return model;
 }

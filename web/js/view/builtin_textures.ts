@@ -1,5 +1,5 @@
 /** Built-in textures drawn by the page: no image files are needed for them. */
-import {PATTERNS} from './palette.js';
+import {PATTERNS} from '../palette.js';
 
 function random(seed: number) {
   let state = seed;

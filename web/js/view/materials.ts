@@ -6,7 +6,7 @@ import {
 import {colorOf} from './three_convert.js';
 import {frontsFirst} from './fronts_first.js';
 import {patternCanvas} from './builtin_textures.js';
-import {DULLEST, GREY, GROUND, SHININESS} from './palette.js';
+import {DULLEST, GREY, GROUND, SHININESS} from '../palette.js';
 import {terrainMaterial} from './terrain_material.js';
 import type {Color, LoadingManager, Material, Texture} from 'three';
 

@@ -1,30 +1,21 @@
 /** Mesh files, each read once. Coordinates stay as the file has them, in metres; z is up. */
 import {faultText} from '../ui/dialog.js';
 import {frontsFirst} from './fronts_first.js';
-import {movingForm} from './merged_mesh.js';
 import {
   BufferAttribute, BufferGeometry, Camera, DoubleSide, Light, LoadingManager, Mesh, MeshPhongMaterial,
   MeshStandardMaterial, SkinnedMesh,
 } from 'three';
-import {coarse, limitFor} from './coarse_mesh.js';
-import {fillNormals} from './facet_normals.js';
-import type {Color, Material, Matrix4, Object3D, Texture} from 'three';
+import {disposeOf, simplified, stlGeometry} from './simplified_mesh.js';
+import {limitFor} from './coarse_mesh.js';
+import {bodyOf} from './response_body.js';
+import {readStl} from './stl.js';
+import {StlReader} from './stl_reader.js';
+import type {Color, Material, Object3D, Texture} from 'three';
 import type {Geometry} from '../protocol.js';
+import type {MeshPart} from './simplified_mesh.js';
 
 /** A file that holds a mesh; `fallback`: the simulator's form of it, STL. */
 export type MeshSource = {url: string, format?: string|null|undefined, fallback?: string|null|undefined};
-
-export interface MeshPart {
-  geometry: BufferGeometry;
-  /** the file's own: a three material or, for groups, a list */
-  material: Material|Material[];
-  /** file frame from part */
-  matrix: Matrix4;
-  /** of the part and the nodes above it */
-  names: string[];
-  /** it is the mesh in one, its parts have no names */
-  whole?: boolean;
-}
 
 const plainMaterial = new MeshPhongMaterial({color: 0xc8c8c8, specular: 0x0d0d0d,
   side: DoubleSide});
@@ -32,9 +23,13 @@ const paintedMaterial = new MeshPhongMaterial({vertexColors: true, specular: 0x0
   side: DoubleSide});
 
 async function bytes(url: string, manager: LoadingManager) {
+  return bodyOf(await answerOf(url, manager), () => {});
+}
+
+async function answerOf(url: string, manager: LoadingManager) {
   const response = await fetch(manager.resolveURL(url));
   if (!response.ok) throw new Error(`${url}: ${response.status} ${response.statusText}`);
-  return response.arrayBuffer();
+  return response;
 }
 
 const text = async (url: string, manager: LoadingManager) =>
@@ -93,14 +88,6 @@ async function readCollada(url: string, manager: LoadingManager) {
   return read.scene;
 }
 
-async function readStl(url: string, manager: LoadingManager) {
-  const [{STLLoader}, content] = await Promise.all([
-    import('three/addons/loaders/STLLoader.js'), bytes(url, manager)]);
-  const geometry = new STLLoader().parse(content);
-  fillNormals(geometry.attributes.position.array, geometry.attributes.normal.array);
-  return new Mesh(geometry, plainMaterial);
-}
-
 /** The simulator's form of PLY files. */
 async function readPly(url: string, manager: LoadingManager) {
   const [{PLYLoader}, content] = await Promise.all([
@@ -110,9 +97,10 @@ async function readPly(url: string, manager: LoadingManager) {
 }
 
 async function readTerrain(url: string, manager: LoadingManager) {
-  const [{sharedCorners}, read] = await Promise.all([import('./terrain_grid.js'), readStl(url, manager)]);
-  const found = sharedCorners(read.geometry.attributes.position.array as Float32Array);
-  if (!found) return read;
+  const [{sharedCorners}, content] = await Promise.all([import('./terrain_grid.js'), bytes(url, manager)]);
+  const read = readStl(content, null);
+  const found = read.facets && sharedCorners(read.facets.position);
+  if (!found) return new Mesh(stlGeometry(read), plainMaterial);
   const {position, normal, uv, index} = found;
   const geometry = new BufferGeometry().setAttribute('position', new BufferAttribute(position, 3))
     .setAttribute('normal', new BufferAttribute(normal, 3))
@@ -162,7 +150,7 @@ async function readBvh(url: string, manager: LoadingManager) {
 }
 
 const READERS: Record<string, (url: string, manager: LoadingManager) =>
-    Promise<Object3D>> = {dae: readCollada, stl: readStl, obj: readObj, glb: readGltf, gltf: readGltf,
+    Promise<Object3D>> = {dae: readCollada, obj: readObj, glb: readGltf, gltf: readGltf,
   terrain: readTerrain, bvh: readBvh, ply: readPly};
 
 function formatOf({format, url}: MeshSource) {
@@ -236,38 +224,6 @@ function figureOf(root: Object3D) {
   return root;
 }
 
-/**
- * A geometry with fewer triangles; null where the limit allows all of them, or it has textures, colours, several
- * materials or bones.
- */
-function coarser({attributes, groups, index}: BufferGeometry, limit: number): BufferGeometry|null {
-  const plain = !groups.length && Object.keys(attributes).every((name) => name === 'position' || name === 'normal');
-  const {position, normal} = attributes;
-  if (!plain || !(position instanceof BufferAttribute) || !(normal instanceof BufferAttribute)) return null;
-  const found = coarse(position.array, normal.array, index?.array ?? null, limit);
-  if (!found) return null;
-  const geometry = new BufferGeometry().setAttribute('position', new BufferAttribute(found.position, 3))
-    .setAttribute('normal', new BufferAttribute(found.normal, 3))
-    .setIndex(new BufferAttribute(found.index, 1));
-  geometry.userData.closed = found.closed;
-  return geometry;
-}
-
-/** A part with a simplified geometry, and a plainer one for pictures of a moving scene. */
-function simplified(part: MeshPart, files: number): MeshPart {
-  const simple = coarser(part.geometry, limitFor(files));
-  if (simple) part.geometry.dispose();
-  const geometry = simple ?? part.geometry;
-  const moving = coarser(geometry, limitFor(files, {moving: true}));
-  if (moving) geometry.userData.moving = moving;
-  return {...part, geometry};
-}
-
-function disposeOf({geometry}: MeshPart) {
-  movingForm(geometry).dispose();
-  geometry.dispose();
-}
-
 export class Meshes {
   onProblem;
   /** Whether large meshes are simplified, for browsers without a graphics card. */
@@ -278,6 +234,9 @@ export class Meshes {
   /** How many are there, of how many. */
   #textures = [0, 0];
   #meshes = [0, 0];
+  /** Of large files: loaded, and all. */
+  #bytes = [0, 0];
+  #stl;
   #waiting: (() => void)[] = [];
   #files: Map<string, Promise<MeshPart[]>> = new Map();
   #ready: Map<string, MeshPart[]> = new Map();
@@ -288,6 +247,7 @@ export class Meshes {
    */
   constructor(onProblem: (problem: string) => void, resolveUrl?: (url: string) => string) {
     this.onProblem = onProblem;
+    this.#stl = new StlReader({alone: Boolean(resolveUrl)});
     if (resolveUrl) this.manager.setURLModifier(resolveUrl);
     const told: Set<string> = new Set();
     this.manager.onStart = () => { this.#busy = true; };
@@ -311,10 +271,12 @@ export class Meshes {
   onArrived = () => {};
 
   /** Called with how many meshes and pictures there are, of how many. */
-  onCount = (_done: number, _of: number) => {};
+  onCount = (_done: number, _of: number, _bytes: string) => {};
 
   #count() {
-    this.onCount(this.#meshes[0] + this.#textures[0], this.#meshes[1] + this.#textures[1]);
+    const [loaded, size] = this.#bytes.map((count) => Math.round(count / 1e6));
+    this.onCount(this.#meshes[0] + this.#textures[0], this.#meshes[1] + this.#textures[1],
+      size ? `${loaded} of ${size} MB` : '');
   }
 
   /** Triangles of all meshes that are there. */
@@ -358,6 +320,7 @@ export class Meshes {
     const parts = known ?? this.#readSomehow(geometry, partsOf)
       .then(({found, whole}) => {
         this.#meshes[0] += 1;
+        if (this.#meshes[0] === this.#meshes[1]) this.#bytes = [0, 0];
         this.#count();
         const ready = (found ?? []).map((part) => (whole ? {...part, whole} : part))
           .map((part) => (this.#simplified ? simplified(part, this.#meshes[1]) : part));
@@ -392,10 +355,22 @@ export class Meshes {
   }
 
   async #read(geometry: MeshSource) {
+    if (formatOf(geometry) === 'stl') return this.#readStl(geometry.url);
     const reader = READERS[formatOf(geometry)];
-    if (!reader) throw new Error(`unsupported format; supported: ${Object.keys(READERS).join(', ')}`);
-    if (formatOf(geometry) !== 'stl') await this.#withTga();
+    if (!reader) throw new Error(`unsupported format; supported: stl, ${Object.keys(READERS).join(', ')}`);
+    await this.#withTga();
     return reader(geometry.url, this.manager);
+  }
+
+  async #readStl(url: string) {
+    const content = await bodyOf(await answerOf(url, this.manager), (loaded, size) => {
+      this.#bytes[0] += loaded;
+      this.#bytes[1] += size;
+      this.#count();
+    });
+    const files = this.#meshes[1];
+    const limits = this.#simplified ? {rest: limitFor(files), moving: limitFor(files, {moving: true})} : null;
+    return new Mesh(stlGeometry(await this.#stl.read(content, limits)), plainMaterial);
   }
 
   async #withTga() {

@@ -5,7 +5,6 @@ import {compose, displacement, inverse} from '../pose.js';
 import {ModelView, radiusOf} from './link_views.js';
 import {matrixOf} from './three_convert.js';
 import {boxOf, visualParts} from './shape_meshes.js';
-import {tinted} from './tints.js';
 import type {Batches} from './batches.js';
 import type {LinkView} from './link_views.js';
 import type {Model, Visual} from '../protocol.js';
@@ -268,9 +267,7 @@ export class Models {
       linkView.radius = 0;
       this.#moveLink(view, linkView);
     };
-    const seen = this.#store.overlays.scene.cameraColors ? visual
-      : tinted(view.document, visual, this.#store.modelEditing?.name === name);
-    const parts = visualParts(seen, this.#stock, look);
+    const parts = visualParts(visual, this.#stock, look);
     if (!(parts instanceof Promise)) add(parts);
     else {
       parts.then((ready) => {

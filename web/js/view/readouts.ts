@@ -16,12 +16,12 @@ export function readout(parent: HTMLElement) {
 }
 
 /** Returns a function that reports progress after a delay of `SLOW_FILES`, and then the end. */
-export function counted(tell: (done: number, of: number) => void) {
+export function counted(tell: (done: number, of: number, bytes: string) => void) {
   let timer: ReturnType<typeof setTimeout>|undefined;
-  let news: [number, number] = [0, 0];
+  let news: [number, number, string] = [0, 0, ''];
   let shown = false;
-  return (done: number, of: number) => {
-    news = [done, of];
+  return (done: number, of: number, bytes: string) => {
+    news = [done, of, bytes];
     if (done < of) {
       timer ??= setTimeout(() => {
         timer = undefined;
@@ -32,7 +32,7 @@ export function counted(tell: (done: number, of: number) => void) {
     }
     clearTimeout(timer);
     timer = undefined;
-    if (shown) tell(done, of);
+    if (shown) tell(done, of, bytes);
     shown = false;
   };
 }

@@ -12,6 +12,7 @@ import {FaceSnap} from './face_snap.js';
 import {hiddenFrom} from './first_look.js';
 import {Forces} from './force_arrows.js';
 import {Lights} from './light_views.js';
+import {mountLookSwitch} from './look_switch.js';
 import {Manipulator} from './manipulator.js';
 import {Materials} from './materials.js';
 import {Measure} from './measure.js';
@@ -92,8 +93,8 @@ export class View {
     // Before the models are built again.
     store.listen('overlays', () => meshes.simplify(store.overlays.scene.simplifiedMeshes));
     meshes.onArrived = () => stage.invalidate();
-    meshes.onCount = counted((done, of) => store.emit('loading', {
-      type: 'loading', title: 'Loading meshes and textures', text: '', done, of}));
+    meshes.onCount = counted((done, of, text) => store.emit('loading', {
+      type: 'loading', title: 'Loading meshes and textures', text, done, of}));
     const materials = new Materials(meshes.manager);
     const stock = {meshes, materials};
     this.#gallery = new Gallery(stage, connection);
@@ -123,6 +124,7 @@ export class View {
     this.#measure = new Measure({...shared, selector});
     this.#cube = new OrientationCube(element, actions);
     this.#readout = readout(element);
+    mountLookSwitch(element, {store, actions});
     this.#preview = new Preview(shared);
     this.#placer = new Placer(shared);
     this.#pointer = new Pointer({...shared, manipulator: this.#manipulator,
@@ -237,9 +239,9 @@ export class View {
   /** What the measure tool says, for tests. */
   get measured() { return this.#measure.texts; }
 
-  /** Places the pending entity in the middle of the view, for use without a mouse. */
-  placeInMiddle() {
-    this.#placer.putInMiddle();
+  /** Places the pending entity where it is seen, or in the middle of the view for use without a mouse. */
+  placeHere() {
+    this.#placer.putHere();
   }
 
   flyTo(view: import('../camera_math.js').View) {

@@ -8,7 +8,8 @@ import {sourceOf} from './mesh_files.js';
 import {Materials} from './materials.js';
 import type {BufferGeometry, Material} from 'three';
 import type {Capsule, Geometry, Plane, Polyline} from '../protocol.js';
-import type {MeshPart, Meshes} from './mesh_files.js';
+import type {Meshes} from './mesh_files.js';
+import type {MeshPart} from './simplified_mesh.js';
 import type {Pose7} from '../pose.js';
 import type {Variant} from './materials.js';
 

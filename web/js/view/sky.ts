@@ -3,7 +3,7 @@ import {
   Color, DoubleSide, LatheGeometry, Mesh, ShaderMaterial, SphereGeometry, Vector2, Vector3,
 } from 'three';
 import {colorOf} from './three_convert.js';
-import {SKY, SKY_COLOR} from './palette.js';
+import {SKY, SKY_COLOR} from '../palette.js';
 import type {BufferGeometry} from 'three';
 import type {Scene as SceneSettings, Sky} from '../protocol.js';
 

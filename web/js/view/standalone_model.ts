@@ -3,7 +3,6 @@ import {Group} from 'three';
 import {free} from './markers.js';
 import {place} from './three_convert.js';
 import {meshOf, visualParts} from './shape_meshes.js';
-import {tinted} from './tints.js';
 import type {Model} from '../protocol.js';
 import type {Part, Stock} from './shape_meshes.js';
 
@@ -29,7 +28,7 @@ export function standaloneModel(model: Model, stock: Stock, look: {opacity?: num
           linkGroup.add(mesh);
         }
       };
-      const parts = visualParts(tinted(model, visual), stock, look);
+      const parts = visualParts(visual, stock, look);
       if (parts instanceof Promise) waits.push(parts.then(add));
       else add(parts);
     }

@@ -3,7 +3,7 @@
  * size and begins at a height. Source: appearance/terrain_layers.py.
  */
 import {Color, DoubleSide, MeshLambertMaterial} from 'three';
-import {GREY} from './palette.js';
+import {GREY} from '../palette.js';
 import {colorOf} from './three_convert.js';
 import type {Texture} from 'three';
 import type {TerrainLayer} from '../protocol.js';

@@ -34,6 +34,7 @@ from ...simulator.operations import (
     pose_of,
 )
 from ...simulator.simulator import Simulator
+from ...simulator.spawn_advice import overlap_advice
 from ..scene.plain_json import pose_of as pose_from
 from ..transport.protocol import Protocol
 from . import history_labels
@@ -72,7 +73,7 @@ class EditRequests:
         resolver: finds what texts and URIs name.
         history: remembers.
         protocol: says which operations there are.
-        report: receives warnings about inserted entities.
+        report: receives warnings about inserted and moved entities.
         dragged: poses from before a drag that a move ends, by name; forgets them.
     """
 
@@ -94,6 +95,8 @@ class EditRequests:
         """
         label, operation, value = self._planned(op, 0)
         self._history.do(label, operation, author)
+        for issue in overlap_advice(self._world, _arrived(op, value)):
+            self._report(issue)
         return value
 
     def copy(self, names: List[str]) -> str:
@@ -342,6 +345,15 @@ class _Deferred:
                 back.apply(world)
             raise
         return Group(tuple(reversed(done)))
+
+
+def _arrived(op: Dict[str, Any], value: Dict[str, Any]) -> List[str]:
+    """Names of the models and lights that an operation has put at a new place."""
+    if op["kind"] == "move":
+        return list(op["poses"])
+    if op["kind"] in ("insert", "paste"):
+        return value.get("names") or [value["name"]]
+    return []
 
 
 def _as_one(parts: List[Operation]) -> Operation:

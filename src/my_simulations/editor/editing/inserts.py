@@ -2,10 +2,11 @@
 from __future__ import annotations
 
 import os
+import re
 from dataclasses import replace
 from typing import Collection, Dict, List, Optional, Sequence, Tuple, Union
 
-from ...description.compare import BUILT_IN
+from ...appearance.palette import SHAPE_COLORS
 from ...description.flatten import flattened
 from ...description.light import Light
 from ...description.model import Inertial, Link, Model
@@ -32,6 +33,8 @@ from .model_parts import free_name
 
 Entity = Union[Model, Light]
 
+_NAMED = re.compile(r"<(model|light|robot)\s[^>]*?\bname\s*=\s*(['\"])(.{1,100}?)\2")
+
 _SHAPES: Dict[str, Tuple[Geometry, Vec3]] = {
     "box": (Box((1.0, 1.0, 1.0)), (1 / 6, 1 / 6, 1 / 6)),
     "sphere": (Sphere(0.5), (0.1, 0.1, 0.1)),
@@ -40,13 +43,18 @@ _SHAPES: Dict[str, Tuple[Geometry, Vec3]] = {
 
 
 def simple_shape(shape: str) -> Model:
-    """Gazebo's unit box, sphere or cylinder of 1 kg, standing on the ground."""
+    """Gazebo's unit box, sphere or cylinder of 1 kg in a color, standing on the ground."""
     geometry, (ixx, iyy, izz) = _SHAPES[shape]
-    grey = Material(script_uris=[BUILT_IN], script_name="Gazebo/Grey")
     link = Link("link", inertial=Inertial(1.0, ixx=ixx, iyy=iyy, izz=izz),
                 collisions=[Collision("collision", geometry)],
-                visuals=[Visual("visual", geometry, material=grey)])
+                visuals=[Visual("visual", geometry, material=shape_material(shape))])
     return Model(f"unit_{shape}", Pose((0.0, 0.0, 0.5)), links=[link])
+
+
+def shape_material(shape: str) -> Material:
+    """The color of a shape that the editor inserts; files, cameras and the view have it alike."""
+    color = SHAPE_COLORS[shape]
+    return Material(ambient=color, diffuse=color)
 
 
 def entity_of_text(text: str, resolver: Resolver, source: Optional[str] = None,
@@ -55,7 +63,7 @@ def entity_of_text(text: str, resolver: Resolver, source: Optional[str] = None,
 
     `source` is the name of the file that the text is from; issues name it.
     """
-    entity, issues = read_entity(text, resolver, _file_name(source) or "<inserted text>")
+    entity, issues = read_entity(text, resolver, _file_name(source) or _inserted(text))
     return _usable(entity, issues)
 
 
@@ -85,6 +93,12 @@ def entities_of_text(text: str, resolver: Resolver, source: Optional[str] = None
 def _file_name(source: Optional[str]) -> str:
     """The name alone: it says where a text is from, and opens no folder of this machine."""
     return os.path.basename((source or "").replace("\\", "/"))
+
+
+def _inserted(text: str) -> str:
+    """Where issues about a text without a file are: its first model or light, by name."""
+    found = _NAMED.search(text)
+    return f"<inserted {found.group(1)} {found.group(3)}>" if found else "<inserted text>"
 
 
 def _usable(entity: Entity, issues: List[Issue]) -> Tuple[Entity, List[Issue]]:

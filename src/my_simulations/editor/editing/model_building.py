@@ -24,8 +24,9 @@ from ...resources.resolver import Resolver, ResourceNotFoundError
 from ...simulator.operations import AddModel, EditModel, Operation
 from ...simulator.simulator import Simulator
 from ..scene.plain_json import pose_of as pose_from
+from ..scene.scene_json import NAMES
 from . import model_parts as parts
-from .inserts import checked, entity_of_text, entity_of_uri, used_names
+from .inserts import checked, entity_of_text, entity_of_uri, shape_material, used_names
 from .model_parts import free_name
 from .part_inertia import inertial_of
 from .property_path import made
@@ -90,7 +91,8 @@ class ModelBuilding:
 
     def _add_shape(self, op: Dict[str, Any]) -> Planned:
         model, link = self._link(op["link"])
-        changed = parts.with_shape(link, self._geometry(op), _grey(), op["part"])
+        geometry = self._geometry(op)
+        changed = parts.with_shape(link, geometry, _material(geometry), op["part"])
         return self._edited(f"Add {op['part']} to {op['link']}", model,
                             _with_link(model, link, changed), op["link"])
 
@@ -247,14 +249,18 @@ def _pose(op: Dict[str, Any]) -> Optional[Pose]:
     return Pose(pose.position, normalised(pose.orientation))
 
 
-def _grey() -> Material:
-    return Material(script_uris=[BUILT_IN], script_name="Gazebo/Grey")
+def _material(geometry: Geometry) -> Optional[Material]:
+    """The color of a new shape; None for a mesh, whose file has its own."""
+    if isinstance(geometry, Mesh):
+        return None
+    if isinstance(geometry, Polyline):
+        return Material(script_uris=[BUILT_IN], script_name="Gazebo/Grey")
+    return shape_material(NAMES[type(geometry)])
 
 
 def _solid_link(name: str, geometry: Geometry, pose: Pose) -> Link:
     """A link of 1 kg."""
-    paint = None if isinstance(geometry, Mesh) else _grey()
-    link = parts.with_shape(Link(name, pose), geometry, paint)
+    link = parts.with_shape(Link(name, pose), geometry, _material(geometry))
     return replace(link, inertial=inertial_of(link.collisions, mass=1.0))
 
 

@@ -42,12 +42,20 @@ export function commandsOf(page: Page): Command[] {
   return found;
 }
 
-/** The commands whose name or group has all typed words; those first whose name begins so. */
+/**
+ * The commands whose name or group has all typed words; those first whose name begins so, then those with words
+ * that begin so. What follows a colon, as in "Undo: Insert unit_box", is not the command's own name.
+ */
 export function matching(commands: Command[], typed: string) {
   const words = typed.toLowerCase().split(/\s+/).filter(Boolean);
   const fitting = commands.filter(({title, group}) =>
     words.every((word) => `${title} ${group}`.toLowerCase().includes(word)));
-  const late = ({title}: Command) => Number(!title.toLowerCase().startsWith(words[0] ?? ''));
+  const late = ({title}: Command) => {
+    const own = title.toLowerCase().split(':')[0];
+    if (own.startsWith(words[0] ?? '')) return 0;
+    const starts = own.split(/[^\p{L}\p{N}]+/u);
+    return words.every((word) => starts.some((start) => start.startsWith(word))) ? 1 : 2;
+  };
   return fitting.sort((a, b) => late(a) - late(b));
 }
 

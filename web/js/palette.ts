@@ -8,6 +8,16 @@ export const GROUND = 0.8;
 export const DULLEST = 0.02;
 export const SHININESS = 30;
 
+/** Of the shapes that the editor inserts, r, g, b, a. */
+export const SHAPE_COLORS: Record<string, number[]> = Object.freeze({
+  box: [0.93, 0.62, 0.33, 1],
+  sphere: [0.36, 0.62, 0.87, 1],
+  cylinder: [0.45, 0.73, 0.51, 1],
+  capsule: [0.66, 0.56, 0.83, 1],
+  cone: [0.85, 0.47, 0.5, 1],
+  ellipsoid: [0.35, 0.7, 0.72, 1],
+});
+
 export const SKY = Object.freeze({
   day_zenith: 0x3f78c0,
   day_horizon: 0xc9dcec,

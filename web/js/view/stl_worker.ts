@@ -1,0 +1,15 @@
+/** Reads STL files beside the page, which goes on meanwhile. */
+import {buffersOf, readStl} from './stl.js';
+import type {Limits} from './stl.js';
+
+export type Asked = {id: number, content: ArrayBuffer, limits: Limits|null};
+
+addEventListener('message', ({data}: MessageEvent<Asked>) => {
+  const {id, content, limits} = data;
+  try {
+    const found = readStl(content, limits);
+    postMessage({id, found}, {transfer: buffersOf(found)});
+  } catch (error) {
+    postMessage({id, fault: error instanceof Error ? error.message : String(error)});
+  }
+});
