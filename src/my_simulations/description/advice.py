@@ -350,6 +350,6 @@ def _may_touch(one: Collision, other: Collision) -> bool:
 
 
 def _inside(mover: str, still: str, depth: float, collision: Collision) -> Fault:
-    return Fault("starts-inside", f"{mover!r} starts {depth * 1000:.3g} mm or more inside"
-                 f" {still!r}", collision, Severity.WARNING,
-                 "move one of them; they will be pushed apart")
+    length = f"{depth * 1000:.3g} mm" if depth < 0.9995 else f"{depth:.3g} m"
+    return Fault("starts-inside", f"{mover!r} starts {length} or more inside {still!r}", collision,
+                 Severity.WARNING, "move one of them; they will be pushed apart")
