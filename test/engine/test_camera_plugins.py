@@ -115,6 +115,22 @@ def test_a_running_world_leaves_late_pictures_out_and_goes_on(case):
     until(lambda: one.graph.on("cam/image_raw"), "a picture")
     late = [issue for issue in one.issues if "late" in issue.message]
     assert len(late) == 1 and "left out" in late[0].message
+    assert "sensor 'cam'" in late[0].message
+
+
+def test_three_depth_cameras_that_are_late_are_named_while_the_world_goes_on(case):
+    large = CAMERA.replace("<width>160</width>", "<width>1600</width>").replace(
+        "<height>120</height>", "<height>1200</height>").format(rate=1000)
+    names = [f"cam{n}" for n in range(3)]
+    one = case("".join(large.replace("cam<", f"{name}<").replace('"cam"', f'"{name}"')
+                       for name in names))
+    one.sim.clock.unpause()
+    begun = one.sim.clock.sim_ns
+    until(lambda: all(any(f"sensor '{name}' are late" in issue.message for issue in one.issues)
+                      for name in names), "the late cameras are not named")
+    until(lambda: one.sim.clock.sim_ns - begun > 10 ** 9, "the world stands")
+    for name in names:
+        until(lambda topic=f"{name}/points": one.graph.on(topic), f"{name}: a cloud")
 
 
 def test_a_killed_sensing_process_costs_what_was_asked_and_nothing_else(case):

@@ -46,13 +46,14 @@ class SensingRequests:
         wake: causes the inbox to be processed.
         warn: reports a warning to the user.
         answered: called when a scan or pictures are complete or have failed.
+        sensor: name for warnings about streams without a name.
     """
 
     def __init__(self, scene: SceneSensing, inbox: Deque[Callable[[], None]],
                  wake: Callable[[], None], warn: Callable[[str], None],
-                 answered: Callable[[], None] = lambda: None) -> None:
+                 answered: Callable[[], None] = lambda: None, sensor: str = "") -> None:
         self._scene, self._inbox, self._wake, self._warn = scene, inbox, wake, warn
-        self._answered = answered
+        self._answered, self._sensor = answered, sensor
         self._scan: Optional[_Scan] = None
         self._shots: Dict[str, _PictureRequest] = {}
         self._unsent: Dict[str, Deque[None]] = {}
@@ -143,7 +144,7 @@ class SensingRequests:
             _wait_for(unsent)
         if stream in self._shots or (unsent and not queue):
             if stream not in self._shots or not self._shots[stream].first:
-                self._report_skipped()
+                self._report_skipped(stream or self._sensor)
             return False
         futures = self._scene.render(
             [(mount, view.camera, view.outputs) for mount, view in views], ns, rows)
@@ -178,13 +179,13 @@ class SensingRequests:
         shot.call(found, shot.ns)
         return True
 
-    def _report_skipped(self) -> None:
+    def _report_skipped(self, sensor: str) -> None:
         self._left_out += 1
         now = time.monotonic()
         if now - self._told >= _AGAIN_S:
             self._told = now
-            self._warn(f"pictures are late, this machine draws slower than the camera's rate: "
-                       f"{self._left_out} left out so far; physics goes on")
+            self._warn(f"pictures of sensor '{sensor}' are late, this machine draws slower than "
+                       f"the sensor's rate: {self._left_out} left out so far; physics continues")
 
     def _report_fault(self, what: str, fault: Exception) -> None:
         text = f"{what} left out: {fault or 'it took too long'}"

@@ -86,7 +86,8 @@ class SimulatedContext(GraphUser):
         self._held = False
         self._world_changes: List[ScheduledCall] = []
         self.sensing = SensingRequests(shared.scene, self.inbox, wake, self.warn,
-                                       lambda: self.observations.request_step(self))
+                                       lambda: self.observations.request_step(self),
+                                       "" if found.sensor is None else found.sensor.name)
 
     # -- for the host ----------------------------------------------------------------------------
 

@@ -36,7 +36,8 @@ class Case:
 
     def __init__(self, cold=False):
         self.sensing, self.inbox, self.said, self.seen = Sensing(), deque(), [], []
-        self.requests = SensingRequests(self.sensing, self.inbox, lambda: None, self.said.append)
+        self.requests = SensingRequests(self.sensing, self.inbox, lambda: None, self.said.append,
+                                        sensor="eye")
         self.again = 0
         if not cold:
             self.shoot(0)
@@ -126,7 +127,7 @@ def test_pictures_of_one_moment_are_handed_over_together():
 def test_a_late_picture_leaves_others_out_and_this_is_told_once():
     case = Case()
     assert [case.shoot(ns) for ns in (1, 2, 3)] == [True, False, False]
-    assert len(case.said) == 1 and "late" in case.said[0]
+    assert len(case.said) == 1 and "pictures of sensor 'eye' are late" in case.said[0]
     case.sensing.asked[0][0].set_result("picture")
     assert case.shoot(4) and len(case.sensing.asked) == 2
     assert case.seen == [(["picture"], 1)]
