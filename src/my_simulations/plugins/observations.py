@@ -54,6 +54,19 @@ def queries_of(reads: Reads, rows: ModelRows) -> Tuple[Command, ...]:
     return tuple(queries)
 
 
+class PartLayout(NamedTuple):
+    """What a part of a record contains.
+
+    Attributes:
+        links, axes: indices of links and joint axes, by row.
+        queries: the commands whose values follow.
+    """
+
+    links: Dict[int, int]
+    axes: Dict[int, int]
+    queries: Tuple[Command, ...]
+
+
 class Observation:
     """A call at the steps of a rate.
 
@@ -85,8 +98,7 @@ class Observation:
         self._last: Optional[SimTimeStep] = None   # of its rate; no step after it was left out
         self.rule: Optional[RecordRule] = None
         self._asked = 1   # of single steps
-        self._links: Dict[int, int] = {}
-        self._axes: Dict[int, int] = {}
+        self._layout = PartLayout({}, {}, ())
 
     def end(self) -> None:
         self.ended = True
@@ -119,8 +131,8 @@ class Observation:
         links, axes, queries = self.owner.observed(self.reads)
         self.rule = RecordRule(self.number, self._rate, links, axes, self.reads.world, queries,
                                wanted, self._asked if self.is_single else 0)
-        self._links = {row: n for n, row in enumerate(links)}
-        self._axes = {row: n for n, row in enumerate(axes)}
+        self._layout = PartLayout({row: n for n, row in enumerate(links)},
+                                  {row: n for n, row in enumerate(axes)}, queries)
 
     def begin(self, time_step: Optional[SimTimeStep]) -> None:
         """Count the steps that are left out from a moment on."""
@@ -140,9 +152,10 @@ class Observation:
         return (last is None or last.clock_sets != time_step.clock_sets
                 or self._rate.after(last.step, time_step.clock) < time_step.step)
 
-    def places(self) -> Tuple[Dict[int, int], Dict[int, int]]:
-        """Return the indices of links and joint axes in a part of a record, by row."""
-        return self._links, self._axes
+    @property
+    def layout(self) -> "PartLayout":
+        """Of its parts of records; kept for records that arrive after its last subscriber left."""
+        return self._layout
 
 
 class Observations:
@@ -219,8 +232,8 @@ class StepView:
 
     def show(self, record: StepRecord, part: Part, observation: Observation) -> None:
         """Show the step of a record, as far as an observation reads it."""
-        self._record, self._part, (self._links, self._axes) = record, part, observation.places()
-        self._queries = observation.rule.queries if observation.rule is not None else ()
+        self._record, self._part = record, part
+        self._links, self._axes, self._queries = observation.layout
         self._found, self._answers = {}, {}
 
     def show_now(self) -> None:
