@@ -126,6 +126,23 @@ def test_a_cart_built_by_mouse_loads_without_a_warning_and_its_wheels_turn(launc
             joint_name=f"cart::{name}").position[0] > 0.5, f"turns of {wheel}")
 
 
+def test_the_palette_shows_its_headings_and_save_in_a_small_window(browser, node, editor):
+    page = browser.open(node.url, size=(1280, 620))
+    page.page.keyboard.press("Control+m")
+    page.button("Link: box").click()
+    page.click((1.0, 1.0, 0.0))
+    page.until("editor.store.modelEditing?.name", "the model")
+    cut = page.get("[...document.querySelectorAll('.model-palette h3')].filter((one) =>"
+                   " one.scrollHeight > one.clientHeight).map((one) => one.textContent)")
+    save = page.page.locator(".model-palette .primary").bounding_box()
+    palette = page.page.locator(".model-palette").bounding_box()
+    assert cut == []
+    assert save["y"] + save["height"] <= palette["y"] + palette["height"]
+    faults = page.faults
+    page.close()
+    assert faults == []
+
+
 def test_a_link_is_moved_by_its_handles_and_back_by_undo(editor):
     editor.page.keyboard.press("Control+m")
     link = add_link(editor, "box", (0.0, 0.0, 0.0))
