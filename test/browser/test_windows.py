@@ -257,6 +257,17 @@ def from_top(editor):
     return editor.get("editor.view.camera.position")
 
 
+def test_a_request_that_takes_long_is_shown_until_it_is_answered(open_page):
+    editor = open_page.first
+    asked = "{id: 1e6, type: 'edit', fields: {op: {kind: 'delete', names: ['a', 'b']}}}"
+    editor.get(f"editor.connection.emit('asked', {asked})")
+    note = editor.page.locator(".connection-note")
+    note.get_by_text("Deleting 2 models…").wait_for()
+    assert note.get_by_role("progressbar").is_visible()
+    editor.get("editor.connection.emit('answered', {id: 1e6})")
+    note.wait_for(state="hidden")
+
+
 def test_a_bookmark_brings_the_camera_back(open_page):
     editor = open_page.first
     above = from_top(editor)

@@ -57,6 +57,22 @@ test('the page greets first, and is connected when it is answered', async () => 
   assert.equal(connection.connected, true);
 });
 
+test('what is asked and what is answered or lost is told', async () => {
+  const {connection, socket} = await connected();
+  const told = [];
+  for (const event of ['asked', 'answered']) {
+    connection.addEventListener(event, ({detail: {id, type = ''}}) => told.push(`${event} ${id} ${type}`.trim()));
+  }
+  const first = connection.request('save', {});
+  const second = connection.request('undo', {});
+  const [, {id: one}, {id: two}] = socket.sent;
+  socket.push({type: 'reply', id: one, ok: true, value: 1});
+  await first;
+  socket.drop();
+  await assert.rejects(second);
+  assert.deepEqual(told, [`asked ${one} save`, `asked ${two} undo`, `answered ${one}`, `answered ${two}`]);
+});
+
 test('answers find their requests in any order', async () => {
   const {connection, socket} = await connected();
   const first = connection.request('step', {steps: 1});

@@ -54,6 +54,15 @@ test('a model is where its first link carries it', () => {
   near(store.worldPose('c'), [5, 1, 0, 0, 0, 0, 1]);
 });
 
+test('models that go have left the selection before others hear of each', () => {
+  const store = opened();
+  store.select(['a', 'b']);
+  const selected = [];
+  store.listen('entity', () => selected.push([...store.selection]));
+  store.receive({type: 'change', revision: 2, models: {a: null, b: null}});
+  assert.deepEqual(selected, [[], []]);
+});
+
 test('a model that goes leaves the selection and its poses', () => {
   const store = opened();
   store.select(['a', 'b']);

@@ -17,7 +17,13 @@ export interface ConnectionEvents {
   /** what the simulator pushed */
   message: Push|{type: 'issue', issue: Issue};
   frame: ArrayBuffer;
+  /** a request was sent */
+  asked: AskedRequest;
+  /** it was answered, or its answer is lost */
+  answered: {id: number};
 }
+
+export type AskedRequest = {id: number, type: keyof Requests, fields?: Requests[keyof Requests]['fields']|undefined};
 
 /** Sends a request; the promise is of the reply's value, and rejects with RequestError. */
 export type RequestFunction = <T extends keyof Requests>(type: T, fields?: Requests[T]['fields'])
@@ -144,6 +150,7 @@ export class Connection extends Emitter<ConnectionEvents> {
         // The server's replies are checked against the protocol in its tests.
         resolve: resolve as (value: unknown) => void, reject,
       });
+      this.emit('asked', {id, type, fields});
       socket.send(JSON.stringify({type, id, ...((fields ?? {}) as object)}));
     });
   }
@@ -198,6 +205,7 @@ export class Connection extends Emitter<ConnectionEvents> {
     }
     const waiting = this.#waiting.get(message.id);
     this.#waiting.delete(message.id);
+    this.emit('answered', {id: message.id});
     if (message.ok) waiting?.resolve(message.value);
     else waiting?.reject(new RequestError(message.issues ?? []));
   }
@@ -215,7 +223,10 @@ export class Connection extends Emitter<ConnectionEvents> {
       severity: 'error', code: 'connection-lost',
       message: 'Connection to the simulator lost before it replied.',
     }]);
-    for (const {reject} of this.#waiting.values()) reject(lost);
+    for (const [id, {reject}] of this.#waiting) {
+      this.emit('answered', {id});
+      reject(lost);
+    }
     this.#waiting.clear();
     if (this.connected) {
       this.connected = false;

@@ -115,7 +115,8 @@ export class Store extends WorldStore {
 
   /** What has gone is no longer selected. */
   override dropGone() {
-    const left = this.selection.filter((name) => this.entity(name));
+    const models = new Set(this.document?.models.map(({name}) => name));
+    const left = this.selection.filter((name) => models.has(name) || this.entity(name));
     if (left.length !== this.selection.length) this.#setSelection(left);
   }
 

@@ -150,9 +150,10 @@ export class WorldStore extends Emitter<StoreEvents> {
       const renamed = renamedModel(this.document.models, linkNames(model), before);
       this.modelGone(model.name, renamed?.name ?? null);
     }
+    // First: with thousands of them selected, each change would look at all of these.
+    this.dropGone();
     for (const detail of changed) this.emit('entity', detail);
     if (order) this.emit('order');
-    this.dropGone();
   }
 
   #sort(order: string[]) {
@@ -163,10 +164,10 @@ export class WorldStore extends Emitter<StoreEvents> {
   }
 
   #reindex(name: string, model: Model|null) {
-    const before = [...this.#owners].filter(([, owner]) => owner.name === name);
-    for (const [id] of before) this.#owners.delete(id);
+    const before = [...this.#owners].flatMap(([id, owner]) => (owner.name === name ? [id] : []));
+    for (const id of before) this.#owners.delete(id);
     if (model) this.#index(model);
-    for (const [id] of before) if (!this.#owners.has(id)) this.poses.delete(id);
+    for (const id of before) if (!this.#owners.has(id)) this.poses.delete(id);
   }
 
   #index(model: Model) {

@@ -134,8 +134,7 @@ export function mountToolBar(element: HTMLElement, page: Page) {
     };
     undo.title = title('undo', 'Undo', 'Ctrl+Z');
     redo.title = title('redo', 'Redo', 'Shift+Ctrl+Z');
-    const wholes = store.selection.filter((name) => store.entity(name)?.kind !== 'link');
-    copy.disabled = !wholes.length;
+    copy.disabled = !store.selection.some((name) => store.entity(name)?.kind !== 'link');
     paste.disabled = !store.clipboard;
     align.disabled = store.selection.length < 2;
     const placing = store.placing;

@@ -202,6 +202,7 @@ export class View {
     this.#stage.onBeforeDraw = (now, full) => {
       this.#markFirstPicture();
       this.#models.catchUp();
+      this.#boxes.catchUp();
       if (batches.prepare(!full)) this.#stage.owe();
       const moving = this.#rig.advance(now);
       this.#forces.update();

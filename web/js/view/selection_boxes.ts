@@ -13,6 +13,7 @@ export class SelectionBoxes {
   #models;
   #stage;
   #boxes: LineSegments[] = [];
+  #stale = false;
 
   constructor({store, models, stage}: ViewParts) {
     this.#store = store;
@@ -29,11 +30,13 @@ export class SelectionBoxes {
 
   /** Centres of the boxes that are seen, for tests. */
   get places() {
+    this.catchUp();
     return this.#boxes.filter(({visible}) => visible).map(({position}) => position.toArray());
   }
 
   /** Fits the boxes to what is selected now. */
   update() {
+    this.#stale = false;
     const {selection} = this.#store;
     for (const box of this.#boxes.splice(selection.length)) this.#stage.scene.remove(box);
     while (this.#boxes.length < selection.length) {
@@ -50,8 +53,15 @@ export class SelectionBoxes {
   follow(ids: Set<number>|null) {
     const {selection} = this.#store;
     if (!selection.length) return;
-    if (ids && !selection.some((name) => this.#touches(name, ids))) return;
-    this.update();
+    if (!ids) {
+      this.#stale = true;
+      this.#stage.invalidate();
+    } else if (selection.some((name) => this.#touches(name, ids))) this.update();
+  }
+
+  /** Before a picture: after thousands of changes the boxes are fitted once. */
+  catchUp() {
+    if (this.#stale) this.update();
   }
 
   #touches(name: string, ids: Set<number>) {
