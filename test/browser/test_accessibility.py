@@ -175,6 +175,67 @@ def test_the_dialogs_of_the_building_editor(editor):
     close_dialog(editor)
 
 
+def test_the_import_of_a_floor_plan(editor):
+    Sheet(editor).open()
+    open_button(editor, "Import")
+    close_dialog(editor)
+
+
+def test_the_questions_before_a_file_or_a_model_is_replaced(editor, node):
+    with_box(editor)
+    with open(os.path.join(node.typed, "there.world"), "w", encoding="utf-8") as there:
+        there.write("<sdf version='1.6'><world name='default'/></sdf>")
+    editor.page.keyboard.press("Control+Shift+s")
+    dialog = editor.page.get_by_role("dialog", name="Save World As")
+    editor.until("getSelection().toString() !== ''", "the suggested name, selected")
+    editor.page.keyboard.type("there.world")
+    dialog.get_by_role("button", name="Save", exact=True).click()
+    editor.page.get_by_role("dialog", name="Overwrite the file?").wait_for()
+    check(editor)
+    close_dialog(editor)
+    close_dialog(editor)
+    block = trimesh.creation.box((1.0, 1.0, 1.0)).export(file_type="stl")
+    for question in (None, "Replace the model?"):
+        drop(editor, "replaced.stl", block, (0.0, 0.0, 0.0))
+        dialog = editor.page.get_by_role("dialog").first
+        dialog.wait_for()
+        dialog.locator(".primary").click()
+        if question:
+            editor.page.get_by_role("dialog", name=question).wait_for()
+            check(editor)
+            close_dialog(editor)
+            close_dialog(editor)
+        else:
+            dialog.wait_for(state="detached")
+
+
+def test_other_users_and_the_dialog_of_the_own_name(editor, node, browser):
+    other = browser.open(node.url)
+    editor.page.get_by_role("group", name="Who is here").wait_for()
+    check(editor)
+    editor.page.locator("#people button").last.click()
+    editor.page.get_by_role("dialog", name="Your name").wait_for()
+    check(editor)
+    close_dialog(editor)
+    faults = other.faults
+    other.close()
+    assert faults == []
+
+
+def test_the_offers_to_restore_changes(editor):
+    editor.get("editor.store.emit('autosave', {found: true, file: 'a.world', time: 1e9})")
+    editor.page.get_by_role("dialog", name="Restore unsaved changes?").wait_for()
+    check(editor)
+    close_dialog(editor)
+    editor.get("(() => { const ask = editor.connection.request.bind(editor.connection);"
+               "editor.connection.request = (type, fields) => type === 'autosave' ? Promise.resolve("
+               "{entries: [{name: 'a', file: '/a.world', time: 1e9, discarded: true}]})"
+               " : ask(type, fields); })()")
+    editor.get("editor.store.emit('dialog', {name: 'recover'})")
+    editor.page.get_by_role("button", name="Recover /a.world").wait_for()
+    check(editor)
+
+
 def test_a_menu(editor):
     editor.page.get_by_role("menuitem", name="Edit").click()
     check(editor)

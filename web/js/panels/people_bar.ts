@@ -39,8 +39,9 @@ export function mountPeople(element: HTMLElement, {store}: Page) {
     element.hidden = others.length === 0;
     const own = people.find(({number}) => number === me);
     fill(element,
-      ...others.map((person) => h('span', {
-        class: 'person',
+      ...others.map((person) => h('button', {
+        type: 'button',
+        class: 'plain person',
         title: `${person.name} ${doing(person)}`,
         style: `--person: ${colorOf(person)}`,
         onclick: () => {
