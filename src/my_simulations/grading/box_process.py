@@ -135,4 +135,4 @@ def _mark(assignment: Assignment, submission: Submission, reader: ResultReader, 
         reason = f"the grading process ended with {ending}: {last[0]}"[:500]
     return Mark(submission.student, status,
                 without_result(assignment.checks, results, reason), reader.notes,
-                sorted(reader.files), reader.isolation)
+                sorted(reader.files), reader.isolation, library=reader.library)

@@ -2,7 +2,7 @@
 from __future__ import annotations
 
 import os
-from typing import Tuple
+from typing import Any, Dict, List, Tuple
 
 from ..resources.resolver import Resolver, ResourceNotFoundError
 from .box_process import contains
@@ -12,10 +12,22 @@ class ConfinedResolver(Resolver):
     """Finds files in given folders and in those of models, resources and packages.
 
     The judge may be root: a world must not show files that its author cannot read.
+
+    Attributes:
+        looked_up: absolute paths of files that were found, and of those that do not exist, in
+            the order in which they were searched.
     """
 
     _allowed: Tuple[str, ...] = ()
     _searched: Tuple[str, ...] = ()
+
+    def __init__(self, *arguments: Any, **more: Any) -> None:
+        super().__init__(*arguments, **more)
+        self._looked_up: Dict[str, None] = {}
+
+    @property
+    def looked_up(self) -> List[str]:
+        return list(self._looked_up)
 
     def allow(self, *folders: str) -> None:
         """Permit all files below folders."""
@@ -23,10 +35,21 @@ class ConfinedResolver(Resolver):
 
     def resolve(self, uri: str, base_dir: str = "") -> str:
         """As `Resolver.resolve`; a file elsewhere counts as missing."""
-        path = super().resolve(uri, base_dir)
+        try:
+            path = super().resolve(uri, base_dir)
+        except ResourceNotFoundError as missing:
+            self._looked_up.update(dict.fromkeys(filter(os.path.isabs, missing.tried)))
+            raise
         if not (self._is_in(self._allowed, path) or self._is_in(self._installed(), path)):
             raise ResourceNotFoundError(uri, reason="it lies outside of the submission and of"
                                                     " all model and resource folders")
+        self._looked_up[path] = None
+        return path
+
+    def model_file(self, uri: str, base_dir: str = "") -> str:
+        """As `Resolver.model_file`."""
+        path = super().model_file(uri, base_dir)
+        self._looked_up[path] = None
         return path
 
     def add_unlisted_folder(self, uri: str, base_dir: str) -> str:

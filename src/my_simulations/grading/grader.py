@@ -8,12 +8,13 @@ import shutil
 import threading
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
-from typing import Callable, List, Optional, Sequence, Tuple
+from typing import Callable, Dict, List, Optional, Sequence, Tuple
 
 from .. import __version__
 from ..errors import CommandError
 from ..resources.database.archive import ArchiveError
 from ..simulator.safe_file import write_atomically
+from ..studies.provenance import digest_of_file
 from .assignment import Assignment
 from .box_process import GradingStoppedError, contains, grade_in_box
 from .mark import FAILED, GRADED, Mark, all_failed, mark_of
@@ -53,6 +54,7 @@ class Grader:
         self._jobs = jobs
         self._namespaces = namespaces
         self._told = told
+        self._digests: Dict[str, str] = {}
         self._stop = threading.Event()
         self._slots: "queue.Queue[int]" = queue.Queue()
         self._base = self._key_of_assignment()
@@ -156,9 +158,16 @@ class Grader:
         with contextlib.suppress(OSError, ValueError, TypeError, KeyError):
             with open(os.path.join(self.folder_of(student), MARK), encoding="utf-8") as stream:
                 mark = mark_of(stream.read())
-            if mark.key == key and mark.status != FAILED:
+            if mark.key == key and mark.status != FAILED and all(
+                    self._digest(path) == digest for path, digest in mark.library):
                 return mark
         return None
+
+    def _digest(self, path: str) -> str:
+        """The digest of a file, which many submissions may include."""
+        if path not in self._digests:
+            self._digests[path] = digest_of_file(path)
+        return self._digests[path]
 
     def _key_of_assignment(self) -> str:
         """Of all that decides a mark besides the submission."""

@@ -22,8 +22,10 @@ from ..editor.logs.world_record import LogRecord
 from ..errors import InputError, SimulationError, errors_of
 from ..python_api import OpenWorld
 from ..python_api.robots import RobotOptions
+from ..studies.provenance import digest_of_file
 from .assignment import Assignment, Launch, Rostest, Timed
 from .assignment_file import read_assignment
+from .box_process import contains
 from .confined_resolver import ConfinedResolver
 from .file_checks import (
     NO_WORLD,
@@ -107,6 +109,8 @@ class Judge:
         self._decide_checks()
         with contextlib.suppress(FileNotFoundError):    # no program has run
             self._writer.file(OUTPUT, end_of_output(os.path.join(self._own, OUTPUT)))
+        self._writer.library([(path, digest_of_file(path)) for path in self._resolver.looked_up
+                              if not contains(self._scratch, path)])
         return self._in_time
 
     def _decide_checks(self) -> None:

@@ -73,6 +73,8 @@ class Mark:
         files: names of further files in the folder of the student, such as `replay.html`.
         isolation: how the submission was kept apart.
         key: hash of submission, assignment and program version.
+        library: path and digest of each other file on which it depends, such as an included model.
+            A file that does not exist has a digest, too.
     """
 
     student: str
@@ -82,6 +84,7 @@ class Mark:
     files: List[str] = field(default_factory=list)
     isolation: str = ""
     key: str = ""
+    library: List[List[str]] = field(default_factory=list)
 
     @property
     def points(self) -> float:

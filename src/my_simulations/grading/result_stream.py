@@ -4,6 +4,7 @@
 {"note": "..."}            a remark
 {"isolation": "..."}       how the box is isolated
 {"file": NAME, "size": N}  followed by N bytes
+{"library": [[PATH, DIGEST], ...]}  other files on which the mark depends
 {"end": true}              nothing follows; false if the time was not enough for all checks
 """
 from __future__ import annotations
@@ -12,13 +13,14 @@ import json
 import os
 import re
 from dataclasses import asdict
-from typing import Any, Dict, List, Sequence
+from typing import Any, Dict, List, Sequence, Tuple
 
 from .assignment import Check
 from .mark import CheckResult
 
 _MOST_BYTES = 200 << 20
 _LONGEST_LINE = 1 << 16
+_MOST_PER_LINE = 10    # paths, each of 4096 bytes at most
 _ROUNDING = 0.005      # of points
 _NAME = re.compile(r"[\w][\w.-]{0,60}\Z")
 
@@ -38,6 +40,11 @@ class ResultWriter:
     def isolation(self, text: str) -> None:
         """Send how the box is isolated."""
         self._line({"isolation": text})
+
+    def library(self, files: Sequence[Tuple[str, str]]) -> None:
+        """Send paths and digests of files outside of the submission."""
+        for at in range(0, len(files), _MOST_PER_LINE):
+            self._line({"library": files[at:at + _MOST_PER_LINE]})
 
     def file(self, name: str, content: bytes) -> None:
         self._line({"file": name, "size": len(content)})
@@ -62,7 +69,7 @@ class ResultReader:
         checks: the checks that can have results.
 
     Attributes:
-        results, notes, isolation: as received.
+        results, notes, isolation, library: as received.
         files: names of files, which are in the folder.
         ended: whether the end was received.
         timed_out: whether the time was not enough for all checks.
@@ -74,6 +81,7 @@ class ResultReader:
         self.notes: List[str] = []
         self.isolation = ""
         self.files: List[str] = []
+        self.library: List[List[str]] = []
         self.ended = self.timed_out = False
         self._folder = folder
         self._waiting = b""
@@ -120,6 +128,8 @@ class ResultReader:
             self.notes.append(str(value["note"]))
         elif "isolation" in value:
             self.isolation = str(value["isolation"])
+        elif "library" in value:
+            self.library += [[str(path), str(digest)] for path, digest in value["library"]]
         elif "file" in value:
             if not _NAME.match(value["file"]):
                 raise ValueError(value["file"])

@@ -102,6 +102,10 @@ def test_a_world_reads_no_files_outside_of_the_submission_and_the_models(tmp_pat
             resolver.resolve(uri, str(tmp_path / "sub"))
         with pytest.raises(ResourceNotFoundError, match="lies outside"):
             resolver.model_file(uri, str(tmp_path / "sub"))
+    with pytest.raises(ResourceNotFoundError):
+        resolver.resolve("model://stone/a.dae")
+    assert resolver.looked_up == [str(tmp_path / name) for name in (
+        "sub/own.dae", "models/rock/a.dae", "models/stone/a.dae")]
 
 
 def test_a_world_cannot_name_a_folder_beside_the_submission_as_a_model(tmp_path):
