@@ -34,6 +34,7 @@ world: worlds/empty.world
   - {{points: 2, name: talks, topic: /chat, type: std_msgs/String, rate: 20, within: 2}}
   - {{points: 1, name: type, topic: /chat, type: std_msgs/Int32, within: 2}}
   - {{points: 1, name: answers, service: /go, type: std_srvs/Empty, within: 2}}
+  - {{points: 1, name: missing, service: /missing, type: std_srvs/Empty, within: 2}}
 """
 SERVICE = 'rospy.Service("/go", Empty, lambda _: EmptyResponse())'
 GO, HALF = (box_program(f"min({goal}, state.pose.position.x + 0.05)", SERVICE)
@@ -147,11 +148,12 @@ def points(row, *names):
 @pytest.mark.parametrize("words", [(), ("--no-isolation",)], ids=["isolated", "ordinary"])
 def test_a_program_is_marked_for_what_it_does_in_sim_time(tmp_path, words):
     rows, students = grade(tmp_path, DRIVE, {"good": GO, "half": HALF}, *words)
-    names = ("goal", "talks", "type", "answers")
-    assert points(rows["good"], *names) == [4, 2, 0, 1], students
-    assert points(rows["half"], *names) == [2, 2, 0, 1]
+    names = ("goal", "talks", "type", "answers", "missing")
+    assert points(rows["good"], *names) == [4, 2, 0, 1, 0], students
+    assert points(rows["half"], *names) == [2, 2, 0, 1, 0]
     said = json.loads((students / "half" / "results.json").read_text())["tests"]
     assert "% of the points" in said[0]["output"] and "std_msgs/String" in said[2]["output"]
+    assert said[4]["output"].startswith("no node offers the service /missing")
     assert 'id="data"' in (students / "good" / "replay.html").read_text(encoding="utf-8")
 
 

@@ -193,7 +193,8 @@ class Judge:
                 graph.run(program)
                 results: List[CheckResult] = []
                 with self._recorded_topics(world, graph, record.record):
-                    run = WorldRun(self._assignment, world, name, self._until, graph)
+                    # What the world does is a matter of the program: no place in the world file.
+                    run = WorldRun(self._assignment, world, "", self._until, graph)
                     self._in_time = run.run(
                         record, lambda found: self._add_result(results, found))
                 ended, place = program.why_ended(), program.error if program.status else None

@@ -20,7 +20,7 @@ class LaunchFault(NamedTuple):
 
     Attributes:
         message: what is wrong.
-        file: path in the submission; "" if it is unknown.
+        file: path in the submission; "" for the launch file that was started.
         line: in that file, from 1; 0 if it is unknown.
     """
 
@@ -45,8 +45,8 @@ def launch_fault(output: bytes, folder: str) -> Optional[LaunchFault]:
     file = os.path.relpath(files[-1], folder) if files else ""
     if "maximum recursion depth" in found[2] and files:
         return LaunchFault(f"{file} includes itself, directly or by another file", file)
-    line = _LINE.search(found[2])
-    return LaunchFault(found[2].strip()[:_LONGEST], file, int(line[1]) if line and file else 0)
+    line = _LINE.search(found[2]) if "XML syntax" in found[2] else None
+    return LaunchFault(found[2].strip()[:_LONGEST], file, int(line[1]) if line else 0)
 
 
 def last_line(output: bytes) -> str:

@@ -11,12 +11,14 @@ from ..child_process import child_command, child_environment, wait_or_kill
 from ..editor.topic_source import TopicSource
 from ..python_api import OpenWorld
 from ..resources.resolver import Resolver
+from ..ros.lifecycle import master_api
 from .assignment import Assignment, ServiceAnswer, Timed, TopicRate
 from .lockstep import Lockstep
 from .mark import CheckResult, GradingError, result
 from .program import Program
 
 _MASTER_S = 60.0
+_CALLER = "/grade"
 _POLL_S = 0.05
 _UPKEEP_S = 1.0
 _PLUGINS_S = 30.0     # wall time
@@ -125,11 +127,20 @@ class RosGraph:
     def _answer(self, check: ServiceAnswer) -> CheckResult:
         answer = self._node.call_result(check.service)
         if answer is None:
-            return result(check, 0.0, self._with_end(
-                f"the service {check.service} did not answer within {check.within:g} s"))
+            reason = (f"the service {check.service} did not answer within {check.within:g} s"
+                      if self._offers(check.service)
+                      else f"no node offers the service {check.service}")
+            return result(check, 0.0, self._with_end(reason))
         if answer:
             return result(check, 0.0, f"the service {check.service} failed: {answer}")
         return result(check, 1.0)
+
+    def _offers(self, service: str) -> bool:
+        """Whether a node of the graph offers a service."""
+        try:
+            return bool(master_api.call(self.uri, "lookupService", _CALLER, service))
+        except OSError:
+            return False
 
     def _with_end(self, reason: str) -> str:
         end = self._program.why_ended() if self._program is not None else ""

@@ -17,6 +17,8 @@ TRACEBACK = "\x1b[31mThe traceback for the exception was written to the log file
     ("RLException: " + FILE + OTHER + "Invalid roslaunch XML syntax: mismatched tag: line 3,"
      " column 2", LaunchFault("Invalid roslaunch XML syntax: mismatched tag: line 3, column 2",
                               "b.launch", 3)),
+    ("RLException: Invalid roslaunch XML syntax: mismatched tag: line 29, column 4", LaunchFault(
+        "Invalid roslaunch XML syntax: mismatched tag: line 29, column 4", "", 29)),
     ("RLException: Invalid <arg> tag: 'line 2'", LaunchFault("Invalid <arg> tag: 'line 2'")),
     ("\x1b[31mERROR: cannot launch node of type [a/b]: a\nROS path", LaunchFault(
         "ERROR: cannot launch node of type [a/b]: a")),
