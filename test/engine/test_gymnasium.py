@@ -351,6 +351,7 @@ RANDOM = Randomisation(friction=(0.5, 1.5), mass=(0.5, 2.0), gravity=(0.9, 1.1),
     ({"sensor_noise": ("low", 1.0)}, "sensor_noise must be a finite number, is 'low'"),
     ({"colour": 2.0}, "colour must be between 0 and 1"),
     ({"textures": "wood.png"}, "textures is a list of names"),
+    ({"models": (3,)}, r"models is a list of names, not \(3,\)"),
 ])
 def test_a_randomisation_that_is_not_possible_is_refused(wrong, told):
     with pytest.raises(CommandError, match=told):
@@ -364,6 +365,13 @@ def _drawn(world):
     return (link.collisions[0].surface.mu, link.inertial.mass, link.inertial.ixx,
             world.simulator.physics.gravity[2], link.visuals[0].material.diffuse,
             laser.ray.noise.stddev, world.simulator.lights.all()[0].diffuse)
+
+
+def test_models_that_the_world_does_not_have_are_not_randomised():
+    env = push_box.make(randomisation=Randomisation(mass=(0.5, 2.0), models=("boxx",)))
+    with pytest.raises(CommandError, match="unknown model 'boxx'; did you mean box?"):
+        env.reset(seed=1)
+    env.close()
 
 
 def test_each_episode_draws_other_values_and_a_seed_draws_them_again():

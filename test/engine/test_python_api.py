@@ -208,6 +208,16 @@ def test_values_that_are_no_numbers_are_refused(values):
     (lambda world: world.render([0, 0, 1], outputs="rgb"), r"a list such as \['rgb'\], not 'rgb'"),
     (lambda world: world.cast_rays("up", [0, 0, 1]), "arrays of numbers"),
     (lambda world: my_simulations.open_world(objects="MY_OBJECT"), "a list of names, not"),
+    (lambda world: world.robot(3), "the name of a robot must be text, is 3"),
+    (lambda world: world.publish(None, {}), "the name of a topic must be text, is None"),
+    (lambda world: world.topics[3], "the name of a topic must be text, is 3"),
+    (lambda world: world.call(3), "the name of a service must be text, is 3"),
+    (lambda world: world.spawn({}), "path or the text of a URDF or SDF, not {}"),
+    (lambda world: world.attach("grip", 3, "pendulum::rod"), "name of the parent must be text"),
+    (lambda world: WorldChoice(models=[("pendulum", PENDULUM)]),
+     r"a name, a document and a Pose, not \('pendulum', "),
+    (lambda world: my_simulations.open_world(plugins=["libfoo.so"]),
+     "a dictionary of classes by library, not"),
     (lambda world: my_simulations.open_world(parameters=[1]), "a dictionary or a YAML file, not"),
 ])
 def test_wrong_arguments_are_named(world, call, told):
@@ -381,6 +391,17 @@ def test_a_renamed_model_can_still_let_go(world):
     assert models.detach("a::grip")
     with pytest.raises(CommandError, match="to itself"):
         models.attach("c", "b::link", "b::link")
+
+
+def test_a_joint_that_attaches_something_attaches_nothing_else(world):
+    for name in "abc":
+        world.spawn(BALL.replace("ball", name), name)
+    world.attach("grip", "a::link", "b::link")
+    with pytest.raises(CommandError, match="the joint 'grip' attaches 'b::link' to 'a::link': "
+                                           "detach it, or choose another name"):
+        world.attach("grip", "a::link", "c::link")
+    world.detach("grip")
+    world.attach("grip", "a::link", "c::link")
 
 
 def test_what_was_attached_does_not_come_back_with_a_deleted_model(world):

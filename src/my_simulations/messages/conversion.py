@@ -89,6 +89,10 @@ def _of_message(made: Type[Message], converts: List[Tuple[str, Convert]]) -> Con
     blanks: List[Callable[[], Any]] = [_blank(convert, one) for (_, convert), one in zip(
         converts, made.DEFINITION.fields)]
 
+    def refused(value: Any) -> MessageFieldError:
+        return MessageFieldError(f"{value!r:.60} is not a {made.KIND}: give a message or a"
+                                 " dictionary of its fields")
+
     def convert(value: Any) -> Any:
         copy = made.__new__(made)
         if isinstance(value, Mapping):
@@ -102,8 +106,9 @@ def _of_message(made: Type[Message], converts: List[Tuple[str, Convert]]) -> Con
             if len(vars(value)) != len(names):
                 _check_names(vars(value), names, made.KIND)
         elif isinstance(value, (int, float, str, bytes, list, tuple)):
-            raise MessageFieldError(f"{value!r:.60} is not a {made.KIND}: give a message or a"
-                                    " dictionary of its fields")
+            raise refused(value)
+        elif not all(hasattr(value, name) for name in names):
+            raise refused(value)
         for name, convert_field in converts:
             setattr(copy, name, convert_field(getattr(value, name)))
         return copy
@@ -132,7 +137,7 @@ def _blank(convert: Convert, one: Field) -> Callable[[], Any]:
 def _simple(kind: str) -> Any:
     """The conversion of a value that is no message; None for messages."""
     if kind == "float64":
-        return float
+        return _number
     if kind == "float32":
         pack = struct.Struct("=f")
         return lambda value: pack.unpack(pack.pack(value))[0]
@@ -141,7 +146,19 @@ def _simple(kind: str) -> Any:
     if kind in ("time", "duration"):
         made = Time if kind == "time" else Duration
         return lambda value: made(*_seconds(value))
-    return {"bool": bool, "string": _text}.get(kind)
+    return {"bool": _truth, "string": _text}.get(kind)
+
+
+def _number(value: Any) -> float:
+    if isinstance(value, (str, bytes)):
+        raise TypeError("it must be a number")
+    return float(value)
+
+
+def _truth(value: Any) -> bool:
+    if value is None or isinstance(value, (str, bytes)):
+        raise TypeError("it must be true or false")
+    return bool(value)
 
 
 def _integer(pack: struct.Struct) -> Convert:
@@ -184,6 +201,8 @@ def _numpy_array(one: Field) -> Convert:
     def convert(value: Any) -> np.ndarray:
         if isinstance(value, (bytes, bytearray, memoryview)):
             found = np.frombuffer(value, dtype).copy()
+        elif isinstance(value, (str, Mapping)):
+            raise TypeError("it must be a list of numbers")
         else:
             found = np.array(value, dtype).reshape(-1)
         _check_length(one, len(found))

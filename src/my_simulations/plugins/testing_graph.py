@@ -97,13 +97,20 @@ class FakeGraph:
     def deliver(self, topic: str, **fields: Any) -> None:
         """Deliver a message on a topic; dictionaries become nested messages.
 
-        Raises MessageFieldError for fields that its type does not have.
+        Raises MessageFieldError for fields that its type does not have, and PluginError if the
+        plugin does not subscribe to it.
         """
+        if topic not in self._heard:
+            raise PluginError(f"the plugin does not subscribe to {topic!r}; it subscribes to"
+                              f" {', '.join(sorted(self._heard)) or 'nothing'}")
         self._heard[topic](fields)
 
     def call(self, service: str, **fields: Any) -> Any:
-        """Call a service; return the response. Raises MessageFieldError as `deliver`."""
+        """Call a service; return the response. Raises as `deliver`."""
         response = Message()
+        if service not in self.services:
+            raise PluginError(f"the plugin does not offer {service!r}; it offers"
+                              f" {', '.join(sorted(self.services)) or 'no service'}")
         self.services[service](fields, response)
         return response
 

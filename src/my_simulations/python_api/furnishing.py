@@ -45,6 +45,8 @@ class Furnisher:
         self._judge(issues)
         for name, file, pose in choice.models:
             self.spawn(simulator, file, name, pose, choice.alter_model, choice.namespace)
+        for name in choice.expected_models:
+            simulator.models.get(name)
 
     def spawn(self, simulator: Simulator, document: Text, name: Optional[str], pose: Pose,
               alter: WorldEdit, namespace: str) -> str:

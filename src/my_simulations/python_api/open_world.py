@@ -33,7 +33,7 @@ from .readings import (
     link_readings,
     model_readings,
 )
-from .robots import Plugins, RobotOptions, Robots
+from .robots import Plugins, RobotOptions, Robots, classes_of
 from .world_changes import FilePath, WorldChanges
 from .world_choice import WorldChoice
 from .world_pictures import Photographer, Picture, camera_pose
@@ -84,9 +84,8 @@ def open_world(world: FilePath = "worlds/empty.world", *, seed: int = 0, profile
         raise CommandError(f"objects are a list of names, not {objects!r}")
     choice = WorldChoice(os.fspath(world), whole_number(seed, "seed"), profile, tuple(objects),
                          os.fspath(object_list))
-    classes = {} if isinstance(plugins, bool) else dict(plugins)
-    robots = RobotOptions(plugins is not False, sensors, classes, read_parameters(parameters),
-                          isolate)
+    robots = RobotOptions(plugins is not False, sensors, classes_of(plugins),
+                          read_parameters(parameters), isolate)
     return OpenWorld(choice, resolver=resolver, log=log, engine=engine, robots=robots)
 
 

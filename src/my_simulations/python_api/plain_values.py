@@ -44,6 +44,13 @@ def twist_of(values: Sequence[float]) -> Twist:
     return Twist(vector_of(numbers[:3], "linear"), vector_of(numbers[3:], "angular"))
 
 
+def name_of(value: Any, what: str) -> str:
+    """Text; `what` names it. Raises CommandError."""
+    if not isinstance(value, str):
+        raise CommandError(f"{what} must be text, is {value!r}")
+    return value
+
+
 def number_of(value: Any, what: str) -> float:
     """A finite number; `what` names it. Raises CommandError."""
     try:

@@ -38,7 +38,8 @@ class Randomisation:
         colour: the most by which red, green and blue of each visual change, 0 to 1.
         textures: URIs of images; each visual gets one of them.
         sensor_noise: factor of all standard deviations of the sensors' noise.
-        models: names of the models that change; () for all.
+        models: names of the models that change; () for all. A world without one of them cannot be
+            opened: UnknownEntityError.
     """
 
     friction: Range = _SAME
@@ -56,8 +57,9 @@ class Randomisation:
         if not 0.0 <= number_of(self.colour, "colour") <= 1.0:
             raise CommandError(f"colour must be between 0 and 1, is {self.colour!r}")
         for name in ("textures", "models"):
-            if isinstance(getattr(self, name), str):
-                raise CommandError(f"{name} is a list of names, not {getattr(self, name)!r}")
+            values = getattr(self, name)
+            if isinstance(values, str) or not all(isinstance(value, str) for value in values):
+                raise CommandError(f"{name} is a list of names, not {values!r}")
 
     def apply(self, choice: WorldChoice, random: np.random.Generator) -> WorldChoice:
         """Return a choice whose world and models are drawn; equal generators draw the same."""
@@ -69,7 +71,8 @@ class Randomisation:
         def alter(world: World) -> World:
             return self._world(choice.alter(world), seed)
 
-        return replace(choice, alter=alter, alter_model=alter_model)
+        return replace(choice, alter=alter, alter_model=alter_model,
+                       expected_models=(*choice.expected_models, *self.models))
 
     def _world(self, world: World, seed: int) -> World:
         random = np.random.default_rng([seed, 0])

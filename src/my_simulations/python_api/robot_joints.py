@@ -10,7 +10,7 @@ from ..geometry import IDENTITY, ZERO3, Pose, compose, inverse
 from ..simulator.simulator import Simulator
 from .joint_limits import JointLimits, drive_within_limits, limits_of, move_within_limits
 from .kinematics import Chain, InverseKinematics, Target
-from .plain_values import limit_of, nanoseconds_of, numbers_by_name, pose_of, vector_of
+from .plain_values import limit_of, name_of, nanoseconds_of, numbers_by_name, pose_of, vector_of
 from .readings import JointReadings, NamedRows, joint_readings, link_readings
 
 
@@ -26,7 +26,7 @@ class Robot:
     """
 
     def __init__(self, whole: Callable[[], Simulator], name: str) -> None:
-        self._running_simulator, self.name = whole, name
+        self._running_simulator, self.name = whole, name_of(name, "the name of a robot")
         whole().models.get(name)
 
     @property

@@ -8,6 +8,7 @@ from ..errors import CommandError, Issue
 from ..resources.ros_packages import PackageIndex
 from ..simulator.scene_sensing import SceneSensing
 from ..simulator.simulator import Simulator
+from .plain_values import name_of
 
 if TYPE_CHECKING:
     from ..messages.message_types import Message
@@ -38,6 +39,16 @@ class RobotOptions(NamedTuple):
     classes: Mapping[str, str] = {}
     parameters: Mapping[str, Any] = {}
     isolate: bool = False
+
+
+def classes_of(plugins: Plugins) -> Mapping[str, str]:
+    """Return the further classes of plugins, by library. Raises CommandError."""
+    if isinstance(plugins, bool):
+        return {}
+    if not isinstance(plugins, Mapping):
+        raise CommandError("plugins are True, False or a dictionary of classes by library, not"
+                           f" {plugins!r}")
+    return dict(plugins)
 
 
 class Robots:
@@ -131,13 +142,13 @@ class Robots:
         """Send a message to the plugins. Raises CommandError."""
         self._require_plugins()
         self.wait_until_loaded()
-        self.graph.publish_once(topic, message)
+        self.graph.publish_once(name_of(topic, "the name of a topic"), message)
 
     def call(self, service: str, request: Any) -> Message:
         """Ask a service of a plugin. Raises CommandError."""
         self._require_plugins()
         self.wait_until_loaded()
-        return self.graph.call(service, request)
+        return self.graph.call(name_of(service, "the name of a service"), request)
 
     def services(self) -> Dict[str, str]:
         """The types of the services by name."""

@@ -7,6 +7,7 @@ from typing import Any, Callable, Deque, Dict, Iterator, List, Mapping, Optional
 from ..errors import CommandError
 from ..messages.message_types import Message
 from ..plugins.local_graph import LocalGraph, resolve_name
+from .plain_values import name_of, number_of
 
 _KEPT = 1000      # messages for `take`
 _PATIENCE_S = 10.0
@@ -67,6 +68,7 @@ class Topic:
         Args:
             seconds: of sim time; CommandError if no message has arrived by then.
         """
+        number_of(seconds, "the time to wait")
         before = self._count
         for _ in range(max(1, round(seconds / self._step_size()))):
             self._advance(1)
@@ -107,7 +109,7 @@ class Topics(Mapping[str, Topic]):
         self._open: Dict[str, Topic] = {}
 
     def __getitem__(self, name: str) -> Topic:
-        full = resolve_name(name)
+        full = resolve_name(name_of(name, "the name of a topic"))
         if full not in self._open or self._open[full].is_closed:
             kinds = self.kinds()
             if full not in kinds:

@@ -12,6 +12,7 @@ from .furnishing import Furnisher
 from .joint_limits import drive_within_limits, move_within_limits
 from .plain_values import (
     limit_of,
+    name_of,
     nanoseconds_of,
     number_of,
     pose_of,
@@ -50,6 +51,9 @@ class WorldChanges:
         Raises:
             InputError: the document has no usable model.
         """
+        if not isinstance(document, (str, bytes, os.PathLike)):
+            raise CommandError("the document of a model is the path or the text of a URDF or SDF,"
+                               f" not {document!r}")
         text = os.fspath(document)  # which leaves texts as they are
         name = self._furnisher.spawn(self._running_simulator(), text, name, pose_of(pose),
                                      lambda model: model, namespace)
@@ -145,8 +149,16 @@ class WorldChanges:
             name: of the fixed joint, for `detach`.
             parent: the link, as `model::link`; or `world`.
             child: a link of another model.
+
+        Raises CommandError, also while a joint of that name attaches something.
         """
-        self._running_simulator().models.attach(name, parent, child)
+        for value, what in ((name, "joint"), (parent, "parent"), (child, "child")):
+            name_of(value, f"the name of the {what}")
+        models = self._running_simulator().models
+        for one in models.attachments(name):
+            raise CommandError(f"the joint '{name}' attaches '{one.child}' to '{one.parent}':"
+                               " detach it, or choose another name")
+        models.attach(name, parent, child)
 
     def detach(self, name: str) -> None:
         """Remove a joint that `attach` has made."""

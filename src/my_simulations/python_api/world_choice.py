@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from typing import Callable, Tuple
 
 from ..description.world import World
+from ..errors import CommandError
 from ..geometry import Pose
 from .object_placement import WorldEdit
 
@@ -20,6 +21,9 @@ class WorldChoice:
             as it is.
         alter_model: the same for each object and model; `Model.pose` is its place.
         namespace: of the plugins of `models`, see `OpenWorld.spawn`.
+        expected_models: names of models that the world must then have.
+
+    Raises CommandError if `models` has another form.
     """
 
     world: str = "worlds/empty.world"
@@ -31,3 +35,10 @@ class WorldChoice:
     alter: Callable[[World], World] = lambda world: world
     alter_model: WorldEdit = lambda model: model
     namespace: str = ""
+    expected_models: Tuple[str, ...] = ()
+
+    def __post_init__(self) -> None:
+        for one in self.models:
+            if not isinstance(one, (tuple, list)) or len(one) != 3 or not isinstance(one[2], Pose):
+                raise CommandError("each of the models is a name, a document and a Pose, not"
+                                   f" {one!r:.80}")

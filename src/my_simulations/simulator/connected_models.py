@@ -97,6 +97,10 @@ class ConnectedModels(KnownModels):
             session.call(Batch((DisconnectModels((name,)), command)))
             self._links = self._links.with_joint(wanted, name)
 
+    def attachments(self, name: str) -> List[Joint]:
+        """Return the joints between models of that name."""
+        return self._links.joint(name)
+
     def detach(self, name: str) -> bool:
         """Take away a joint between models; returns whether there was one of that name."""
         with self._session.structure_lock:

@@ -98,6 +98,8 @@ def test_a_misspelt_attribute_is_found(user):
     ("std_msgs/UInt8", {"data": 256}), ("std_msgs/Int32", {"data": 1.5}),
     ("sensor_msgs/Imu", {"orientation_covariance": [0.0] * 8}),
     ("std_msgs/String", {"data": 3}), ("sensor_msgs/JointState", {"name": "joint"}),
+    ("std_msgs/Float64", {"data": "1.5"}), ("std_msgs/Bool", {"data": "False"}),
+    ("std_msgs/Float64", None), ("sensor_msgs/JointState", {"position": "12"}),
 ])
 def test_values_that_ros_cannot_send_are_refused(user, kind, fields):
     with pytest.raises(MessageFieldError):

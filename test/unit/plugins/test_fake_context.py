@@ -33,8 +33,22 @@ def test_unknown_fields_and_wrong_values_are_refused():
     context.subscribe("speed", "std_msgs/Float64", lambda heard: None)
     with pytest.raises(MessageFieldError, match="no field 'value'"):
         context.deliver("speed", value=1.0)
-    with pytest.raises(MessageFieldError, match="data cannot be 'fast'"):
-        context.deliver("speed", data="fast")
+    for wrong in ("fast", "3"):
+        with pytest.raises(MessageFieldError, match=f"data cannot be '{wrong}': it must be a nu"):
+            context.deliver("speed", data=wrong)
+    with pytest.raises(MessageFieldError, match="None is not a nav_msgs/Odometry"):
+        topic.publish(None)
+
+
+def test_what_the_plugin_does_not_offer_is_named():
+    context = FakeContext()
+    with pytest.raises(PluginError, match="not subscribe to 'sped'; it subscribes to nothing"):
+        context.deliver("sped", data=1.0)
+    context.subscribe("speed", "std_msgs/Float64", lambda heard: None)
+    with pytest.raises(PluginError, match="not subscribe to 'sped'; it subscribes to speed"):
+        context.deliver("sped", data=1.0)
+    with pytest.raises(PluginError, match="does not offer 'on'; it offers no service"):
+        context.call("on", data=True)
 
 
 def test_a_service_is_called_with_its_types():
