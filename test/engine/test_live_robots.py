@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from waiting import until
 
 import my_simulations
 from my_simulations.errors import CommandError, EngineLostError
@@ -328,6 +329,40 @@ class Faulty(Plugin):
         world.step(500)
         assert world.time == pytest.approx(0.5)
         assert any(told in issue.message for issue in world.issues), world.issues
+
+
+@pytest.mark.parametrize("then", ["", "raise ValueError"])
+def test_a_process_that_a_plugin_forks_ends_with_the_call(tmp_path, monkeypatch, then):
+    (tmp_path / "forking_plugin.py").write_text(f"""
+import os
+from my_simulations.plugins.base import Plugin
+
+class Forking(Plugin):
+    forked = []
+
+    def load(self):
+        self.context.every(10.0, self.fork)
+
+    def fork(self):
+        if not self.forked:
+            self.forked.append(os.fork())
+            if not self.forked[0]:
+                {then or "return"}
+""")
+    monkeypatch.syspath_prepend(str(tmp_path))
+    model = ('<sdf version="1.6"><model name="m"><link name="l"/><plugin name="p"'
+             ' filename="libforking.so"/></model></sdf>')
+    with my_simulations.open_world(plugins={"libforking.so": "forking_plugin:Forking"}) as world:
+        world.spawn(model)
+        world.step(500)
+        (child,) = sys.modules["forking_plugin"].Forking.forked
+        try:
+            until(lambda: os.waitpid(child, os.WNOHANG)[0] == child)
+        except BaseException:
+            os.kill(child, signal.SIGKILL)
+            raise
+        assert world.time == pytest.approx(0.5) and not world.issues
+    sys.modules.pop("forking_plugin")
 
 
 def test_an_isolated_plugin_publishes_and_hears(tmp_path, monkeypatch):

@@ -15,6 +15,7 @@ from __future__ import annotations
 
 import contextlib
 import ctypes
+import os
 import sys
 import threading
 import time
@@ -111,7 +112,7 @@ class CallWatch:
 
     def run(self, subject: Any, limits: CallLimits, call: Callable[..., Any],
             *arguments: Any) -> None:
-        """Make a call.
+        """Make a call. A process that it has forked ends where the call returns or raises.
 
         Raises:
             CallOverdue: the call had to be ended; its text is the reason.
@@ -122,11 +123,13 @@ class CallWatch:
             self._watcher = threading.Thread(target=self._watch, name="plugin-watch", daemon=True)
             self._watcher.start()
         mine = _Call(subject, limits)
-        self._call = mine
+        self._call, process = mine, os.getpid()
         try:
             try:
                 call(*arguments)
             finally:
+                if os.getpid() != process:   # else a second host would go on beside this one
+                    os._exit(1)
                 self._finish(mine)
         except CallOverdue:
             with self._lock:
