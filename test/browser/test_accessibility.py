@@ -228,7 +228,8 @@ def test_the_offers_to_restore_changes(editor):
     check(editor)
     close_dialog(editor)
     editor.get("(() => { const ask = editor.connection.request.bind(editor.connection);"
-               "editor.connection.request = (type, fields) => type === 'autosave' ? Promise.resolve("
+               "editor.connection.request = (type, fields) => type === 'autosave'"
+               " ? Promise.resolve("
                "{entries: [{name: 'a', file: '/a.world', time: 1e9, discarded: true}]})"
                " : ask(type, fields); })()")
     editor.get("editor.store.emit('dialog', {name: 'recover'})")
