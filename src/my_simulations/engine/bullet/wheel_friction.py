@@ -4,19 +4,8 @@ Bullet's friction of articulated bodies depends on the heading, and has no slip 
 force (slip1, slip2; ODE's manual, "Contact"), of which Gazebo Classic 11 applies the sum of both
 surfaces to a pair. So it is reduced to a share of 0.001 for links with slip, and for links on
 joints while they slide on static bodies (figures: doc/dev/contacts.md, "Friction"). A force at each
-contact replaces it. It is computed before a step from the contacts of the last one. At the slip
-velocity v it is
-
-    F = -v / (s + h) + B,  at most mu N,
-
-with the slip s, and h such that the force ends the velocity within a few steps. If no motor holds
-the joint of the wheel, h is a tensor that includes the mobility of the joint, and the velocity that
-the effort on the joint causes in the step is added to v. So the friction on light wheels is stable,
-also under loops that are unstable in the air. B takes up what the other forces on the body are: it
-grows by a share of the force -(v + s F) / (s + h) until v = -s F. Without slip that holds a wheel
-on a slope. If mu applies along a direction and mu2 across it, M is
-the tensor of both, and the limit is |M^-1 F| = N. A fast wheel then meets -N M (M v) / |M v|: of
-all forces within this ellipse, the one that dissipates the most power.
+contact replaces it, by the law of `link_friction`. It is computed before a step from the contacts
+of the last one.
 
 While all links of a body without slip are held, or slide with all friction, it is computed every
 few steps only. Once all links of a body that have no slip have stopped sliding, they get Bullet's
@@ -30,7 +19,7 @@ from typing import Callable, Dict, Iterable, Iterator, List, NamedTuple, Optiona
 
 import pybullet
 
-from ...geometry import ZERO3, Vec3, cross, dot, norm, scale, subtract
+from ...geometry import ZERO3, Vec3, cross, norm, scale, subtract
 from ..body_plan import BASE
 from ..drive_commands import WheelSlip
 from .bodies import Axis, Body
@@ -46,19 +35,10 @@ from .contact_points import (
     ContactPoint,
     LinkKey,
 )
-from .contact_slip import (
-    STIFF,
-    direction_across,
-    isotropic,
-    limited,
-    mean_slip,
-    mean_velocity,
-    slips_along,
-    yielding,
-    yielding_along,
-)
+from .contact_slip import direction_across, mean_slip, slips_along
 from .edge_loads import Loads, carrying, shared
 from .extra_surfaces import anisotropy
+from .link_friction import Drive, link_friction
 from .link_states import AT_REST, Motion, hung_states, motion, motions
 from .step_helper import FAR, StepHelper, next_multiple
 from .surface_links import SurfaceLink, surface_links
@@ -71,8 +51,6 @@ _SLIDES = 2e-3       # m/s of slip: links at rest stay below it
 _HELD = 5e-4         # m/s of slip: a link below it is at rest
 _QUIET = 32          # steps at rest until Bullet's friction holds a body again
 _PERIOD = 4e-3       # s between two computations of the friction on a link that goes on sliding
-_SOFT = 1.5          # steps of braking: a slip that would end sooner is reduced in proportion
-_GROWS = 1.0 / 16.0  # share of the missing force by which B grows in a step
 _LEFT = (1e-3, 1e-3) # shares of Bullet's friction that stay
 
 Contacts = List[ContactPoint]
@@ -355,80 +333,16 @@ class WheelFriction(StepHelper):
             points, carried = contacts, loads
             if len(others) > 1:
                 points, carried = _with_other(other, contacts, loads)
-            slide.biases[other] = biases.get(other, ZERO3)
-            forces = self._forces(key, other, moves, points, carried, effort, steps * dt, weight)
+            link = self._links[key]
+            forces, bias, slip, within = link_friction(
+                link, self._links[other], moves, (points, carried), biases.get(other, ZERO3),
+                Drive(effort, self._holding(link.joint)), steps * dt, weight)
+            slide.biases[other] = bias
+            if link.joint >= 0 and slip > _HELD:
+                slide.quiet = 0
+            slide.steady &= not within or slip <= _SLIDES
             slide.acting += [(contact[PLACE], force, load, other)
                              for contact, force, load in zip(points, forces, carried)]
-
-    def _forces(self, key: LinkKey, other: LinkKey, mine: Motion, contacts: Contacts,
-                loads: List[float], effort: float, dt: float, weight: float) -> List[Vec3]:
-        """Return the friction on the first of two links at each contact; update its B.
-
-        `effort`: on the joint of the first link in this step, N m.
-        """
-        one, two, slide = self._links[key], self._links[other], self._slides[key]
-        theirs = motion(*other) if two.body.moves else AT_REST
-        carried = sum(loads)
-        mus = min(one.mus[0], two.mus[0]), min(one.mus[1], two.mus[1])
-        slow = one.slips[0] + two.slips[0], one.slips[1] + two.slips[1]
-        end = self._end(one, two, mine, theirs, contacts, carried, dt, weight)
-        ends = end, end
-        if mus[0] != mus[1] and not any(slow):   # friction is along M (M v), also where it is least
-            most = max(mus)
-            ends = end * (most / mus[0]) ** 2, end * (most / mus[1]) ** 2
-        soft = slow[0] + ends[0], slow[1] + ends[1]
-        bias = slide.biases[other]
-        lever = None if one.hinge is None or two.body.moves else one.hinge.lever(
-            mine, contacts, loads, self._holding(one.joint) / (min(mus) * carried))
-        ease = 0.0 if one.hinge is None else _SOFT * dt * one.hinge.mobility
-        if soft[0] == soft[1] and mus[0] == mus[1] and not any(slow) and theirs is AT_REST:
-            yields = STIFF if lever is None else yielding(
-                lever, ease, effort, mean_velocity(mine, contacts, loads), end)
-            forces, size, slide.biases[other] = isotropic(
-                contacts, loads, mine, bias, mus[0], end, yields, _GROWS)
-            if one.joint >= 0 and size > _HELD:
-                slide.quiet = 0
-            slide.steady &= size <= _SLIDES or slide.biases[other] == ZERO3
-            return forces
-        normal = contacts[0][NORMAL]
-        along = one.direction(mine, normal) or two.direction(theirs, normal) or (
-            direction_across(normal))
-        axes = along, cross(normal, along)
-        holds = dot(bias, axes[0]), dot(bias, axes[1])
-        slips = slips_along(contacts, axes, mine, theirs)
-        slip = mean_slip(slips, loads)
-        if one.joint >= 0 and hypot(*slip) > _HELD:
-            slide.quiet = 0
-        given, spared = (0.0, 0.0), (0.0, 0.0)
-        if lever is not None:
-            given, spared = yielding_along((dot(lever, axes[0]), dot(lever, axes[1])), ease, effort,
-                                           slip, soft)
-        forces, total, within = [], (0.0, 0.0), False
-        for velocity, load in zip(slips, loads):
-            share = load / carried
-            wanted = (share * (holds[0] + given[0] - velocity[0] / soft[0]),
-                      share * (holds[1] + given[1] - velocity[1] / soft[1]))
-            parts = limited(wanted, mus, soft, load)
-            within = within or parts is wanted
-            forces.append(_combined(axes, parts))
-            total = total[0] + parts[0], total[1] + parts[1]
-        slide.steady &= not within or hypot(*slip) <= _SLIDES
-        slide.biases[other] = ZERO3 if not within else _combined(axes, limited(
-            (holds[0] - _GROWS * ((slip[0] + slow[0] * total[0]) / soft[0] - spared[0]),
-             holds[1] - _GROWS * ((slip[1] + slow[1] * total[1]) / soft[1] - spared[1])),
-            mus, soft, carried))
-        return forces
-
-    def _end(self, one: SurfaceLink, two: SurfaceLink, mine: Motion, theirs: Motion,
-             contacts: Contacts, carried: float, dt: float, weight: float) -> float:
-        """Return the slip velocity per force, m/(N s), that friction ends; without the joint.
-
-        A body on wheels moves as the load of the wheel does; the mobility of the wheel alone is
-        much larger.
-        """
-        if not one.body.rigid and not two.body.moves:
-            return _SOFT * dt * max(weight, carried / one.total) / carried
-        return dt * (one.mobility(mine, contacts) + two.mobility(theirs, contacts))
 
     # -- Bullet's friction -------------------------------------------------------------------------
 
@@ -469,9 +383,3 @@ def _with_other(other: LinkKey, contacts: Contacts, loads: List[float]) -> Loads
     found = [(contact, load) for contact, load in zip(contacts, loads)
              if (contact[OTHER_BODY], contact[OTHER_LINK]) == other]
     return [contact for contact, _ in found], [load for _, load in found]
-
-
-def _combined(axes: Tuple[Vec3, Vec3], parts: Tuple[float, float]) -> Vec3:
-    (a, b, c), (u, v, w) = axes
-    x, y = parts
-    return x * a + y * u, x * b + y * v, x * c + y * w

@@ -1,0 +1,168 @@
+"""The friction on a link by another one: Coulomb's law, with slip, and with a joint that yields.
+
+At the slip velocity v it is
+
+    F = -v / (s + h) + B,  at most mu N,
+
+with the slip s, and h such that the force ends the velocity within a few steps. If no motor holds
+the joint of the link, h is a tensor that includes the mobility of the joint, and the velocity that
+the effort on the joint causes in the step is added to v. So the friction on light wheels is stable,
+also under loops that are unstable in the air. B takes up what the other forces on the body are: it
+grows by a share of the force -(v + s F) / (s + h) until v = -s F. Without slip that holds a wheel
+on a slope. If mu applies along a direction and mu2 across it, M is the tensor of both, and the
+limit is |M^-1 F| = N. A fast wheel then meets -N M (M v) / |M v|: of all forces within this
+ellipse, the one that dissipates the most power.
+"""
+from __future__ import annotations
+
+from math import hypot
+from typing import List, NamedTuple, Tuple
+
+from ...geometry import ZERO3, Vec3, cross, dot
+from .contact_points import NORMAL
+from .contact_slip import (
+    STIFF,
+    direction_across,
+    isotropic,
+    limited,
+    mean_slip,
+    mean_velocity,
+    slips_along,
+    yielding,
+    yielding_along,
+)
+from .edge_loads import Loads
+from .link_states import AT_REST, Motion, motion
+from .surface_links import SurfaceLink
+
+_SOFT = 1.5          # steps of braking: a slip that would end sooner is reduced in proportion
+_GROWS = 1.0 / 16.0  # share of the missing force by which B grows in a step
+
+
+class Drive(NamedTuple):
+    """What acts on the joint of a link in a step, N m.
+
+    Attributes:
+        effort: of loops, dampers and commands.
+        held: with which its motor or brake holds a rate.
+    """
+
+    effort: float
+    held: float
+
+
+class LinkFriction(NamedTuple):
+    """Friction on a link.
+
+    Attributes:
+        forces: at each contact, N, world axes.
+        bias: the new B, N, world axes.
+        slip: mean, m/s.
+        within: whether it is below Coulomb's limit at some contact.
+    """
+
+    forces: List[Vec3]
+    bias: Vec3
+    slip: float
+    within: bool
+
+
+class _Law(NamedTuple):
+    """Coefficients along and across the first direction.
+
+    Attributes:
+        mus: friction.
+        slow: slip, m/(N s).
+        soft: the same and the slip per force that friction ends.
+    """
+
+    mus: Tuple[float, float]
+    slow: Tuple[float, float]
+    soft: Tuple[float, float]
+
+
+def link_friction(one: SurfaceLink, two: SurfaceLink, mine: Motion, loaded: Loads, bias: Vec3,
+                  drive: Drive, dt: float, weight: float) -> LinkFriction:
+    """Return the friction on the first of two links.
+
+    Args:
+        one: the link.
+        two: the other one.
+        mine: motion of the first one.
+        loaded: its contacts with the second one, and their loads, N.
+        bias: B, N, world axes.
+        drive: what acts on the joint of the first one.
+        dt: until the next computation, s.
+        weight: gravity, m/s^2.
+    """
+    contacts, loads = loaded
+    theirs = motion(two.uid, two.part.index) if two.body.moves else AT_REST
+    mus = min(one.mus[0], two.mus[0]), min(one.mus[1], two.mus[1])
+    slow = one.slips[0] + two.slips[0], one.slips[1] + two.slips[1]
+    end = _end(one, two, mine, theirs, loaded, dt, weight)
+    lever = None if one.hinge is None or two.body.moves else one.hinge.lever(
+        mine, contacts, loads, drive.held / (min(mus) * sum(loads)))
+    ease = 0.0 if one.hinge is None else _SOFT * dt * one.hinge.mobility
+    if mus[0] == mus[1] and not any(slow) and theirs is AT_REST:
+        yields = STIFF if lever is None else yielding(
+            lever, ease, drive.effort, mean_velocity(mine, contacts, loads), end)
+        forces, slip, bias = isotropic(contacts, loads, mine, bias, mus[0], end, yields, _GROWS)
+        return LinkFriction(forces, bias, slip, bias != ZERO3)
+    ends = end, end
+    if mus[0] != mus[1] and not any(slow):   # friction is along M (M v), also where it is least
+        most = max(mus)
+        ends = end * (most / mus[0]) ** 2, end * (most / mus[1]) ** 2
+    law = _Law(mus, slow, (slow[0] + ends[0], slow[1] + ends[1]))
+    normal = contacts[0][NORMAL]
+    along = one.direction(mine, normal) or two.direction(theirs, normal) or (
+        direction_across(normal))
+    axes = along, cross(normal, along)
+    slips = slips_along(contacts, axes, mine, theirs)
+    given, spared = (0.0, 0.0), (0.0, 0.0)
+    if lever is not None:
+        given, spared = yielding_along((dot(lever, axes[0]), dot(lever, axes[1])), ease,
+                                       drive.effort, mean_slip(slips, loads), law.soft)
+    return _along_axes(axes, slips, loads, bias, law, given, spared)
+
+
+def _along_axes(axes: Tuple[Vec3, Vec3], slips: List[Tuple[float, float]], loads: List[float],
+                bias: Vec3, law: _Law, given: Tuple[float, float], spared: Tuple[float, float],
+                ) -> LinkFriction:
+    """Return the friction for slips along two axes; `given`, `spared`: see `Yielding`."""
+    mus, slow, soft = law
+    holds = dot(bias, axes[0]), dot(bias, axes[1])
+    slip, carried = mean_slip(slips, loads), sum(loads)
+    forces, total, within = [], (0.0, 0.0), False
+    for velocity, load in zip(slips, loads):
+        share = load / carried
+        wanted = (share * (holds[0] + given[0] - velocity[0] / soft[0]),
+                  share * (holds[1] + given[1] - velocity[1] / soft[1]))
+        parts = limited(wanted, mus, soft, load)
+        within = within or parts is wanted
+        forces.append(_combined(axes, parts))
+        total = total[0] + parts[0], total[1] + parts[1]
+    bias = ZERO3 if not within else _combined(axes, limited(
+        (holds[0] - _GROWS * ((slip[0] + slow[0] * total[0]) / soft[0] - spared[0]),
+         holds[1] - _GROWS * ((slip[1] + slow[1] * total[1]) / soft[1] - spared[1])),
+        mus, soft, carried))
+    return LinkFriction(forces, bias, hypot(*slip), within)
+
+
+def _end(one: SurfaceLink, two: SurfaceLink, mine: Motion, theirs: Motion, loaded: Loads,
+         dt: float, weight: float) -> float:
+    """Return the slip velocity per force, m/(N s), that friction ends; without the joint.
+
+    A body on wheels moves as the load of the wheel does; the mobility of the wheel alone is much
+    larger.
+    """
+    contacts, loads = loaded
+    if not one.body.rigid and not two.body.moves:
+        carried = sum(loads)
+        return _SOFT * dt * max(weight, carried / one.total) / carried
+    return dt * (one.mobility(mine, contacts) + two.mobility(theirs, contacts))
+
+
+def _combined(axes: Tuple[Vec3, Vec3], parts: Tuple[float, float]) -> Vec3:
+    (a, b, c), (u, v, w) = axes
+    x, y = parts
+    return x * a + y * u, x * b + y * v, x * c + y * w
