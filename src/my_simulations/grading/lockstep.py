@@ -11,7 +11,7 @@ import contextlib
 import os
 import threading
 import time
-from typing import Callable, List, Optional, Set
+from typing import Callable, Optional, Set
 
 from .program import Program
 from .thread_states import ThreadStates
@@ -20,8 +20,6 @@ _LOOK_S = 0.0005
 _BUSY_LOOK_S = 0.002
 _LOOK_SHARE = 0.1     # of the time, at most, is spent on looking
 _STUCK_LOOKS = 400    # all wait, but bytes stay unread
-_RESTLESS_LOOKS = 20  # all wait, but some thread wakes up again and again
-_QUIET_LOOKS = 2      # are enough without namespaces, where each look takes long
 _LONGEST_S = 60.0     # wall time of one wait, whatever the program does
 _FIRST_S = 1.0        # wall time in which a program sees the first step
 _START_S = 10.0       # processor time to start, s
@@ -47,7 +45,6 @@ class Lockstep:
         self._threads = ThreadStates(judge, lambda: {main, program.watcher})
         self._has_network = "network" in os.environ.get("BOX_ISOLATION", "").split(",")
         """Of its own: all its connections are those of the program and the world."""
-        self._most_looks = _RESTLESS_LOOKS if self._has_network else _QUIET_LOOKS
         self._sim = 0.0
         self._began: Optional[float] = None
         self._steps, self._busy_steps = 0, 0
@@ -90,7 +87,6 @@ class Lockstep:
         self._spent_s = 0.0
         deadline = time.monotonic() + _LONGEST_S
         waiting, is_quiet = 0, False
-        ran: List[bytes] = []
         pause = _LOOK_S
         self._threads.refresh()
         while self._program.running:
@@ -108,10 +104,8 @@ class Lockstep:
                 continue
             waiting, pause = waiting + 1, _LOOK_S
             has_started = self._threads.refresh()   # such threads are looked at the next time
-            ran, before = self._threads.run_times(), ran
-            # Threads are looked at one after the other, and work could be handed on meanwhile.
-            stood = ran == before or waiting >= self._most_looks
-            if waiting >= _STUCK_LOOKS or is_quiet and stood and not has_started:
+            # Two looks: threads are looked at one after the other, and hand work to each other.
+            if waiting >= _STUCK_LOOKS or is_quiet and not has_started:
                 return True
             is_quiet = not self._bytes_under_way()
         return True

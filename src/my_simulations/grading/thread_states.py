@@ -3,7 +3,7 @@ from __future__ import annotations
 
 import contextlib
 import os
-from typing import Callable, Dict, List, Set, Tuple
+from typing import Callable, Dict, Set, Tuple
 
 from .process_list import ProcessList
 
@@ -22,7 +22,8 @@ class ThreadStates:
         self._root = root
         self._processes = ProcessList(root)
         self._ignored = ignored
-        self._files: Dict[Tuple[int, int], Tuple[int, int]] = {}
+        self._files: Dict[Tuple[int, int], int] = {}
+        """By process and thread id."""
 
     def refresh(self) -> bool:
         """Find threads that have started, and forget those that have ended.
@@ -39,18 +40,11 @@ class ThreadStates:
                 found |= {(pid, int(name)) for name in os.listdir(f"/proc/{pid}/task")
                           if int(name) not in ignored}
         for gone in self._files.keys() - found:
-            for file in self._files.pop(gone):
-                os.close(file)
+            os.close(self._files.pop(gone))
         new = found - self._files.keys()
         for pid, thread in new:
             with contextlib.suppress(OSError):
-                state = os.open(f"/proc/{pid}/task/{thread}/stat", os.O_RDONLY)
-                try:
-                    runs = os.open(f"/proc/{pid}/task/{thread}/schedstat", os.O_RDONLY)
-                except OSError:
-                    os.close(state)
-                    raise
-                self._files[pid, thread] = state, runs
+                self._files[pid, thread] = os.open(f"/proc/{pid}/task/{thread}/stat", os.O_RDONLY)
         return bool(new)
 
     def any_runs(self) -> bool:
@@ -62,21 +56,13 @@ class ThreadStates:
         return self._any_is((b"R", b"S"))
 
     def _any_is(self, states: Tuple[bytes, ...]) -> bool:
-        for file, _ in self._files.values():
+        for file in self._files.values():
             with contextlib.suppress(OSError):   # it has ended
                 text = os.pread(file, _BYTES, 0)
                 at = text.rfind(b")")
                 if text[at + 2:at + 3] in states:
                     return True
         return False
-
-    def run_times(self) -> List[bytes]:
-        """How long and how often each known thread has run (proc(5), schedstat)."""
-        found = []
-        for _, file in self._files.values():
-            with contextlib.suppress(OSError):   # it has ended
-                found.append(os.pread(file, _BYTES, 0))
-        return found
 
     def sockets(self) -> Set[str]:
         """The inodes of the sockets of all known processes, as in `/proc/net/tcp`."""
@@ -91,7 +77,6 @@ class ThreadStates:
 
     def close(self) -> None:
         self._processes.close()
-        for files in self._files.values():
-            for file in files:
-                os.close(file)
+        for file in self._files.values():
+            os.close(file)
         self._files.clear()
