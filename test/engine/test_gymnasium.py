@@ -282,6 +282,41 @@ def test_another_number_of_seeds_than_of_environments_is_refused(seeds):
     together.close()
 
 
+class _Own(push_box.PushBox):
+    def __init__(self, **attributes):
+        super().__init__()
+        vars(self).update(attributes)
+
+
+@pytest.mark.parametrize(("make", "told"), [
+    (lambda: WorldEnv(push_box.PushBox), r"an object, not a class: PushBox\(\)"),
+    (lambda: WorldEnv(View()), "the task View has no choice, period, action_space, "),
+    (lambda: WorldEnv(_Own(choice="lab_room.world")), "is a WorldChoice, not 'lab_room.world'"),
+    (lambda: WorldEnv(_Own(period=0)), "a number of s above 0, not 0"),
+    (lambda: WorldEnv(_Own(), robots={"plugins": False}), "robots are RobotOptions, not {"),
+    (lambda: WorldEnv(_Own(), randomisation={"mass": (1, 2)}), "is a Randomisation, not {"),
+    (lambda: my_simulations.gym.WorldVectorEnv(push_box.make), "takes a list of functions"),
+    (lambda: my_simulations.gym.WorldVectorEnv([push_box.make()]), "takes a list of functions"),
+    (lambda: my_simulations.gym.WorldVectorEnv([]), "needs one function at least"),
+])
+def test_what_is_no_task_and_no_list_of_makers_is_named(make, told):
+    with pytest.raises((TypeError, ValueError), match=told):
+        make()
+
+
+def test_an_evaluation_and_a_number_of_actions_are_needed():
+    envs = my_simulations.gym.WorldVectorEnv(
+        [lambda: WorldEnv(_Own(evaluate=lambda world, action: 1.0))])
+    try:
+        envs.reset(seed=1)
+        with pytest.raises(ValueError, match="1 environments need as many actions, not 2"):
+            envs.step(np.zeros((2, 2)))
+        with pytest.raises(TypeError, match="evaluate of _Own returns an Evaluation, not 1.0"):
+            envs.step(np.zeros((1, 2)))
+    finally:
+        envs.close()
+
+
 def test_environments_are_closed_when_one_of_several_cannot_be_made():
     class Closing(gymnasium.Env):
         closed = False

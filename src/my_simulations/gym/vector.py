@@ -18,9 +18,16 @@ class WorldVectorEnv(VectorEnv[Any, Any, Any]):
 
     Args:
         makers: make the environments, whose spaces are equal.
+
+    Raises TypeError if it is no list of functions, and ValueError for none.
     """
 
     def __init__(self, makers: Sequence[Callable[[], "gymnasium.Env[Any, Any]"]]) -> None:
+        if callable(makers) or not all(map(callable, makers)):
+            raise TypeError("WorldVectorEnv takes a list of functions that make environments, such"
+                            f" as [make] * 8, not {makers!r:.80}")
+        if not makers:
+            raise ValueError("WorldVectorEnv needs one function at least")
         self.envs: List["gymnasium.Env[Any, Any]"] = []
         try:
             for make in makers:
@@ -61,9 +68,14 @@ class WorldVectorEnv(VectorEnv[Any, Any, Any]):
             [info for _, info in found])
 
     def step(self, actions: Any) -> Tuple[Any, np.ndarray, np.ndarray, np.ndarray, Dict[str, Any]]:
-        """Step all environments; see gymnasium.vector.VectorEnv.step."""
-        found = list(self._threads.map(self._step, self.envs, iterate(self.action_space, actions),
-                                       list(self._over)))
+        """Step all environments; see gymnasium.vector.VectorEnv.step.
+
+        Raises ValueError for another number of actions than of environments.
+        """
+        given = list(iterate(self.action_space, actions))
+        if len(given) != self.num_envs:
+            raise ValueError(f"{self.num_envs} environments need as many actions, not {len(given)}")
+        found = list(self._threads.map(self._step, self.envs, given, list(self._over)))
         rewards = np.array([one[1] for one in found], dtype=np.float64)
         terminated = np.array([one[2] for one in found], dtype=bool)
         truncated = np.array([one[3] for one in found], dtype=bool)

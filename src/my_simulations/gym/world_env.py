@@ -80,6 +80,8 @@ class WorldEnv(gymnasium.Env[Any, Any]):
         robots: which plugins of the world's robots run.
         randomisation: properties drawn for each episode, from the seed of `reset`.
 
+    Raises TypeError and ValueError for arguments of other types.
+
     Attributes:
         viewer: the page of `render_mode` "human"; else None.
     """
@@ -92,6 +94,11 @@ class WorldEnv(gymnasium.Env[Any, Any]):
         if render_mode not in (None, *self.metadata["render_modes"]):
             raise ValueError("render_mode is 'human', 'rgb_array' or None, not"
                              f" '{render_mode}'")
+        _check_task(task)
+        if not isinstance(robots, RobotOptions):
+            raise TypeError(f"robots are RobotOptions, not {robots!r:.80}")
+        if not isinstance(randomisation, (Randomisation, type(None))):
+            raise TypeError(f"randomisation is a Randomisation, not {randomisation!r:.80}")
         self.task = task
         self.render_mode = render_mode
         self._robots, self._randomisation = robots, randomisation
@@ -138,6 +145,9 @@ class WorldEnv(gymnasium.Env[Any, Any]):
                 self.viewer.wait_for_real_time(self.task.period)
             self._last = self.task.observe(world)
             judged = self.task.evaluate(world, action)
+            if not isinstance(judged, Evaluation):
+                raise TypeError(f"evaluate of {type(self.task).__name__} returns an Evaluation, not"
+                                f" {judged!r:.80}")
         except EngineLostError as fault:
             return self._last, 0.0, False, True, {"fault": str(fault)}
         return self._last, float(judged.reward), judged.terminated, False, judged.info
@@ -157,6 +167,20 @@ class WorldEnv(gymnasium.Env[Any, Any]):
         if self._world is not None:
             self._world.close()
             self._world = None
+
+
+def _check_task(task: Task) -> None:
+    """Raise TypeError or ValueError for what is no task."""
+    if isinstance(task, type):
+        raise TypeError(f"the task is an object, not a class: {task.__name__}()")
+    missing = [name for name in (*Task.__annotations__, "begin", "act", "observe", "evaluate")
+               if not hasattr(task, name)]
+    if missing:
+        raise TypeError(f"the task {type(task).__name__} has no {', '.join(missing)}")
+    if not isinstance(task.choice, WorldChoice):
+        raise TypeError(f"the choice of a task is a WorldChoice, not {task.choice!r:.80}")
+    if not isinstance(task.period, (int, float)) or not task.period > 0.0:
+        raise ValueError(f"the period of a task is a number of s above 0, not {task.period!r}")
 
 
 def symmetric_box(bounds: Sequence[float]) -> gymnasium.spaces.Box:
