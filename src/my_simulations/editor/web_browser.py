@@ -41,9 +41,11 @@ def show(url: str, program: str) -> None:
     if is_private(sys.stdout):
         _write(sys.stdout, f"{program}: the world editor is at {full_url}")
     else:
+        page = address_file.page(full_url)
+        hint = f"open {page}, which leads there, or run gzclient, where ROS runs" if page else (
+            "run gzclient in a terminal for the address with the token")
         _write(sys.stdout, f"{program}: the world editor is at"
-               f" {address_file.without_token(full_url)}; others can read this output, so run"
-               " gzclient in a terminal for the address with the token")
+               f" {address_file.without_token(full_url)}; others can read this output, so {hint}")
     if not has_display():
         return
     import webbrowser

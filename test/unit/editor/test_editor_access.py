@@ -133,6 +133,7 @@ def test_output_that_others_can_read_gets_no_token(monkeypatch, tmp_path, mode, 
         web_browser.show("http://127.0.0.1:1/", "gzclient")
     assert ("secret" in path.read_text()) == told
     assert "gzclient: the world editor is at http://127.0.0.1:1/" in path.read_text()
+    assert (f"open {address_file.page('http://127.0.0.1:1/')}," in path.read_text()) != told
 
 
 def test_a_browser_is_started_without_the_token_in_its_command_line(monkeypatch, tmp_path):

@@ -83,8 +83,8 @@ class Guard:
             return "pages of other sites may not use this server"
         shown = (request.query.get("token", ""), request.cookies.get(_cookie(request), ""))
         if self.token and not any(map(self._is_token, shown)):
-            return ("the token is missing or wrong; run gzclient, or use the whole address that it "
-                    "prints")
+            return ("the token is missing or wrong; use the whole address that the simulator, or "
+                    "gzclient, prints")
         return ""
 
     def _is_token(self, shown: str) -> bool:
