@@ -402,9 +402,13 @@ def _drawn(world):
             laser.ray.noise.stddev, world.simulator.lights.all()[0].diffuse)
 
 
-def test_models_that_the_world_does_not_have_are_not_randomised():
-    env = push_box.make(randomisation=Randomisation(mass=(0.5, 2.0), models=("boxx",)))
-    with pytest.raises(CommandError, match="unknown model 'boxx'; did you mean box?"):
+@pytest.mark.parametrize(("wrong", "told"), [
+    ({"mass": (0.5, 2.0), "models": ("boxx",)}, r"unknown model 'boxx'; did you mean box\?"),
+    ({"textures": ("wodo.png",)}, "'wodo.png' was not found: searched "),
+])
+def test_models_and_textures_that_do_not_exist_are_refused(wrong, told):
+    env = push_box.make(randomisation=Randomisation(**wrong))
+    with pytest.raises(CommandError, match=told):
         env.reset(seed=1)
     env.close()
 

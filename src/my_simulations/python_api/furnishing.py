@@ -5,9 +5,10 @@ from dataclasses import replace
 from typing import Optional, Sequence
 
 from ..description.plugin_namespace import with_namespace
-from ..errors import InputError, Issue, errors_of, grouped
+from ..errors import CommandError, InputError, Issue, errors_of, grouped
 from ..formats.reading import LoadedWorld, Text
 from ..geometry import Pose, compose
+from ..resources.resolver import ResourceNotFoundError
 from ..simulator.simulator import Simulator
 from .kept_files import FileCache, Log
 from .object_placement import WorldEdit
@@ -27,7 +28,17 @@ class Furnisher:
         self._log = log
 
     def load(self, choice: WorldChoice) -> LoadedWorld:
-        """The world of a choice. Raises InputError if it cannot be used."""
+        """The world of a choice.
+
+        Raises:
+            InputError: it cannot be used.
+            CommandError: a file that the choice expects does not exist.
+        """
+        for uri in choice.expected_files:
+            try:
+                self._files.resolver.resolve(uri)
+            except ResourceNotFoundError as missing:
+                raise CommandError(str(missing)) from None
         loaded = self._files.world(choice, self._log)
         return replace(loaded, world=choice.alter(loaded.world))
 

@@ -36,10 +36,11 @@ class Randomisation:
         gravity: factor of gravity.
         light: factor of the brightness of each light.
         colour: the most by which red, green and blue of each visual change, 0 to 1.
-        textures: URIs of images; each visual gets one of them.
+        textures: URIs or paths of images; each visual gets one of them.
         sensor_noise: factor of all standard deviations of the sensors' noise.
-        models: names of the models that change; () for all. A world without one of them cannot be
-            opened: UnknownEntityError.
+        models: names of the models that change; () for all.
+
+    A world that lacks one of the models or textures cannot be opened: CommandError.
     """
 
     friction: Range = _SAME
@@ -72,7 +73,8 @@ class Randomisation:
             return self._world(choice.alter(world), seed)
 
         return replace(choice, alter=alter, alter_model=alter_model,
-                       expected_models=(*choice.expected_models, *self.models))
+                       expected_models=(*choice.expected_models, *self.models),
+                       expected_files=(*choice.expected_files, *self.textures))
 
     def _world(self, world: World, seed: int) -> World:
         random = np.random.default_rng([seed, 0])

@@ -22,6 +22,7 @@ class WorldChoice:
         alter_model: the same for each object and model; `Model.pose` is its place.
         namespace: of the plugins of `models`, see `OpenWorld.spawn`.
         expected_models: names of models that the world must then have.
+        expected_files: URIs of files that must exist.
 
     Raises CommandError if `models` has another form.
     """
@@ -36,6 +37,7 @@ class WorldChoice:
     alter_model: WorldEdit = lambda model: model
     namespace: str = ""
     expected_models: Tuple[str, ...] = ()
+    expected_files: Tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         for one in self.models:
