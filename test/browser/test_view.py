@@ -3,22 +3,10 @@ from __future__ import annotations
 
 import math
 
-import pytest
 from free_ports import free_port
 from gazebo_msgs.srv import GetModelState
 from pytest import approx
 from support import wait_for
-
-
-@pytest.fixture
-def editor(node, visit):
-    """A page on a world with nothing but ground and sun."""
-    page = visit(node.url)
-    page.get("(async () => { await editor.actions.newWorld({discard: true}); })()")
-    page.until("editor.store.document.models.every(({name}) => name === 'ground_plane')",
-               "an empty world")
-    yield page
-    assert page.faults == []
 
 
 def insert(editor, name, pose, shape="box"):
