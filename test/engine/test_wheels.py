@@ -10,7 +10,7 @@ from conftest import Lab, ground, inertial_of_box, slab
 from laws import Laws
 
 from my_simulations.description.model import Inertial, Joint, JointAxis, Link, Model
-from my_simulations.description.shapes import Box, Collision, Cylinder, Surface
+from my_simulations.description.shapes import Box, Collision, Cylinder, Sphere, Surface
 from my_simulations.engine.commands import ReadContacts
 from my_simulations.engine.drive_commands import JointMotor, SetMotors
 from my_simulations.engine.timed_forces import AddTimedForces, TimedEffort
@@ -159,3 +159,34 @@ def test_a_wheel_of_many_shapes_stays_one_body(lab: Lab):
     body = lab.load(car, (0, 0, 0.1))
     lab.seconds(0.5)
     assert abs(lab.pose(body).position[2] - 0.1) < 1e-3
+
+
+@pytest.mark.parametrize("step_size", [0.001, 0.002, 0.005])
+@pytest.mark.parametrize("mu", [1.0, 10.0, 100.0])
+def test_a_light_base_with_a_tall_mast_drives_upright(lab: Lab, laws: Laws, mu: float,
+                                                      step_size: float):
+    """Friction at its wheels turns it as easily as it shifts it, and mu N limits nothing."""
+    lab.configure(step_size=step_size)
+    lab.load(ground(100.0))
+    radius, high = 0.05, 0.7
+    links = [Link("link", Pose((0, 0, 0.1)),
+                  Inertial(1.2, Pose((-0.1, 0, 0)), 3.5e-3, 0, 0, 5e-3, 0, 5e-3),
+                  [Collision("c", Sphere(0.03), Pose((-0.25, 0, -0.07)), surface=Surface(mu=0.0))]),
+             Link("mast", Pose((-0.07, 0.07, high)),
+                  Inertial(2.4, Pose(), 0.07, 0, 0, 0.07, 0, 5e-4))]
+    joints = [Joint("mount", "fixed", "link", "mast")]
+    for n, y in enumerate((0.17, -0.17)):
+        links.append(Link(f"w{n}", Pose((0, y, radius), LYING),
+                          Inertial(0.05, Pose(), 1e-3, 0, 0, 1e-3, 0, 1e-3),
+                          [Collision("c", Cylinder(radius, 0.025), surface=Surface(mu=mu))]))
+        joints.append(Joint(f"j{n}", "revolute", "link", f"w{n}", axis=JointAxis((0, 0, 1))))
+    base = lab.load(Model("base", links=links, joints=joints))
+    lab.seconds(0.5)
+    for speed in [0.02 * n for n in range(1, 11)] + [0.2] * 90:
+        lab.apply(SetMotors(tuple(JointMotor(lab.joint_rows[base, f"j{n}"], speed / radius, 1e3)
+                                  for n in range(2))))
+        lab.steps(round(0.02 / step_size))
+        x, y = lab.pose(base).orientation[:2]
+        laws.at_most("a light base with a tall mast drives: tilt, rad", 2 * math.hypot(x, y), 0.05)
+    laws.near("a light base with a tall mast drives for 2 s: way, m", lab.pose(base).position[0],
+              0.02 * sum(min(0.02 * n, 0.2) for n in range(1, 101)), rel=0.03)

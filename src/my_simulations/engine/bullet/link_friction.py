@@ -16,7 +16,7 @@ ellipse, the one that dissipates the most power.
 from __future__ import annotations
 
 from math import hypot
-from typing import List, NamedTuple, Tuple
+from typing import List, NamedTuple, Optional, Tuple
 
 from ...geometry import ZERO3, Vec3, cross, dot
 from .contact_points import NORMAL
@@ -33,22 +33,25 @@ from .contact_slip import (
 )
 from .edge_loads import Loads
 from .link_states import AT_REST, Motion, motion
-from .surface_links import SurfaceLink
+from .surface_links import ContactMobility, SurfaceLink
 
 _SOFT = 1.5          # steps of braking: a slip that would end sooner is reduced in proportion
 _GROWS = 1.0 / 16.0  # share of the missing force by which B grows in a step
 
 
 class Drive(NamedTuple):
-    """What acts on the joint of a link in a step, N m.
+    """What acts on a link in a step besides contacts.
 
     Attributes:
-        effort: of loops, dampers and commands.
-        held: with which its motor or brake holds a rate.
+        effort: of loops, dampers and commands on its joint, N m.
+        held: with which a motor or brake holds the rate of its joint, N m.
+        mobility: of its body at the contacts, without that joint; None for a rigid body, and on
+            a body that moves.
     """
 
     effort: float
     held: float
+    mobility: Optional[ContactMobility]
 
 
 class LinkFriction(NamedTuple):
@@ -99,7 +102,7 @@ def link_friction(one: SurfaceLink, two: SurfaceLink, mine: Motion, loaded: Load
     theirs = motion(two.uid, two.part.index) if two.body.moves else AT_REST
     mus = min(one.mus[0], two.mus[0]), min(one.mus[1], two.mus[1])
     slow = one.slips[0] + two.slips[0], one.slips[1] + two.slips[1]
-    end = _end(one, two, mine, theirs, loaded, dt, weight)
+    end = _end(one, two, mine, theirs, loaded, drive.mobility, dt, weight)
     lever = None if one.hinge is None or two.body.moves else one.hinge.lever(
         mine, contacts, loads, drive.held / (min(mus) * sum(loads)))
     ease = 0.0 if one.hinge is None else _SOFT * dt * one.hinge.mobility
@@ -149,17 +152,17 @@ def _along_axes(axes: Tuple[Vec3, Vec3], slips: List[Tuple[float, float]], loads
 
 
 def _end(one: SurfaceLink, two: SurfaceLink, mine: Motion, theirs: Motion, loaded: Loads,
-         dt: float, weight: float) -> float:
+         mobility: Optional[ContactMobility], dt: float, weight: float) -> float:
     """Return the slip velocity per force, m/(N s), that friction ends; without the joint.
 
-    A body on wheels moves as the load of the wheel does; the mobility of the wheel alone is much
-    larger.
+    A body on wheels moves as a rigid body of which the wheel bears its load; the mobility of the
+    wheel alone is much larger.
     """
     contacts, loads = loaded
-    if not one.body.rigid and not two.body.moves:
-        carried = sum(loads)
-        return _SOFT * dt * max(weight, carried / one.total) / carried
-    return dt * (one.mobility(mine, contacts) + two.mobility(theirs, contacts))
+    if mobility is None:
+        return dt * (one.mobility(mine, contacts) + two.mobility(theirs, contacts))
+    rigid = max(_SOFT / one.total, mobility.rigid)
+    return dt * (rigid * max(1.0, weight * one.total / sum(loads)) + _SOFT * mobility.chain)
 
 
 def _combined(axes: Tuple[Vec3, Vec3], parts: Tuple[float, float]) -> Vec3:

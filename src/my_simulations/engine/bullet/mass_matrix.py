@@ -78,6 +78,20 @@ class MassMatrix:
             + np.einsum("ki,kfi,kgi->fg", self._moments, spins, spins))
         return matrix
 
+    def jacobian(self, index: int, point: np.ndarray) -> np.ndarray:
+        """Return the velocity of a point of a link, by its index, by each freedom: (3, count)."""
+        _, pivots, turned = self._where()
+        axes = np.einsum("fij,fj->fi", turned[self._owners], self._local)
+        lever = np.array(point) - pivots[self._owners]
+        moved = np.where(self._turns[:, None], np.cross(axes, lever), axes)
+        found: np.ndarray = (moved * self._moves[index + 1][:, None]).T
+        return found
+
+    def centre(self) -> np.ndarray:
+        """Return the centre of mass of the body, m; world axes."""
+        found: np.ndarray = self._masses @ self._where()[0] / self._masses.sum()
+        return found
+
     def balanced(self) -> Set[int]:
         """Indices of the axes that turn, alone, a link that is round about them, such as a wheel.
 

@@ -3,8 +3,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from math import dist
-from typing import Dict, Optional, Sequence, Tuple
+from typing import Callable, Dict, List, NamedTuple, Optional, Sequence, Tuple
 
+import numpy as np
 import pybullet
 
 from ...description.link_surface import dominant_collision
@@ -12,10 +13,11 @@ from ...description.shapes import Cylinder, Surface
 from ...geometry import Vec3, add, conjugate, cross, dot, norm, rotate, scale, subtract
 from .bodies import Axis, Body, Part
 from .contact_points import NORMAL, PLACE, ContactPoint, LinkKey
-from .contact_slip import load_centre
+from .contact_slip import direction_across, load_centre
 from .edge_loads import axle_of
 from .extra_surfaces import first_direction
 from .link_states import AT_REST, Motion, place
+from .mass_matrix import MassMatrix
 from .surface_coefficients import is_direction_dependent
 
 _LEAST_MU = 1e-6
@@ -107,6 +109,57 @@ class SurfaceLink:
             return 0.0
         arm = max(norm(subtract(contact[PLACE], moves.position)) for contact in contacts)
         return 1.0 / self.part.mass + arm * arm / max(_LEAST_MOMENT, min(self.part.moments))
+
+
+class ContactMobility(NamedTuple):
+    """The mobility of a body at a contact, along the surface; its largest values, 1/kg.
+
+    Attributes:
+        rigid: as if all joints were locked, where all contacts of the body slip alike: along one
+            direction, in which it also tilts, or turning about the normal.
+        chain: what the joints between the base and the link of the contact add.
+    """
+
+    rigid: float
+    chain: float
+
+
+def contact_mobility(link: SurfaceLink, contact: ContactPoint, holds: Callable[[int, float], bool],
+                     ) -> ContactMobility:
+    """Return the mobility of a body at a contact of a link in the present configuration.
+
+    Without the joint of the link itself if it is a hinge. `holds` returns whether the motor or
+    brake of a joint row, at a distance, m, from the contact, holds against the friction.
+    """
+    matrix = MassMatrix(link.uid)
+    masses, index = matrix.now(), link.part.index
+    at, normal = np.array(contact[PLACE]), np.array(contact[NORMAL])
+    along = direction_across(contact[NORMAL])
+    surface = np.array((along, cross(contact[NORMAL], along)))
+    base = 0 if link.body.base is None else 6
+
+    def most(point: np.ndarray, freedoms: List[int]) -> float:
+        moved = (surface @ matrix.jacobian(index, point))[:, freedoms]
+        inverse = np.linalg.pinv(masses[np.ix_(freedoms, freedoms)])
+        return float(np.linalg.eigvalsh(moved @ inverse @ moved.T)[-1])
+
+    rigid = 1.0 / link.total
+    if base:
+        arm = at - matrix.centre()
+        high = normal * (arm @ normal)
+        turning = normal @ np.linalg.pinv(masses[:base, :base])[:3, :3] @ normal
+        rigid = max(most(at - arm + high, list(range(base))), float(
+            turning * ((arm - high) @ (arm - high))))
+    moved = matrix.jacobian(index, at)
+    free = [place for axis in link.body.axes for place in (matrix.places.get(axis.index),)
+            if place is not None and moved[:, place].any()
+            and not (link.hinge is not None and axis.index == index)
+            and not holds(axis.row, float(np.linalg.norm(moved[:, place])))]
+    if not free:
+        return ContactMobility(rigid, 0.0)
+    locked = list(range(base))
+    return ContactMobility(rigid, max(0.0, most(at, locked + free) - (
+        most(at, locked) if locked else 0.0)))
 
 
 def surface_links(body: Body) -> Dict[LinkKey, SurfaceLink]:

@@ -41,7 +41,7 @@ from .extra_surfaces import anisotropy
 from .link_friction import Drive, link_friction
 from .link_states import AT_REST, Motion, hung_states, motion, motions
 from .step_helper import FAR, StepHelper, next_multiple
-from .surface_links import SurfaceLink, surface_links
+from .surface_links import ContactMobility, SurfaceLink, contact_mobility, surface_links
 
 EVERY = 16
 """Steps between two checks for sliding links."""
@@ -108,11 +108,13 @@ class WheelFriction(StepHelper):
         self._slipping: Set[LinkKey] = set()
         self._fixed: Set[int] = set()                    # bodies with a fixed base
         self._found: Dict[LinkKey, Tuple[Motion, Loads]] = {}   # for the friction of the next step
+        self._mobilities: Dict[LinkKey, ContactMobility] = {}
         self._rows: Dict[int, List[LinkKey]] = {}
         self._axes: Dict[int, Tuple[Body, Axis]] = {}
         self._slip_commands: Dict[int, WheelSlip] = {}
         self.body_tables = (self._links, self._wheels, self._rigs, self._floors, self._slides,
-                            self._next, self._slipping, self._fixed, self._commanded, self._found)
+                            self._next, self._slipping, self._fixed, self._commanded, self._found,
+                            self._mobilities)
         self._cone = True
 
     # -- bodies ------------------------------------------------------------------------------------
@@ -333,10 +335,12 @@ class WheelFriction(StepHelper):
             points, carried = contacts, loads
             if len(others) > 1:
                 points, carried = _with_other(other, contacts, loads)
-            link = self._links[key]
+            link, under = self._links[key], self._links[other]
+            mobility = None if link.body.rigid or under.body.moves else (
+                self._mobility(link, points[0], min(link.mus) * weight))
             forces, bias, slip, within = link_friction(
-                link, self._links[other], moves, (points, carried), biases.get(other, ZERO3),
-                Drive(effort, self._holding(link.joint)), steps * dt, weight)
+                link, under, moves, (points, carried), biases.get(other, ZERO3),
+                Drive(effort, self._holding(link.joint), mobility), steps * dt, weight)
             slide.biases[other] = bias
             if link.joint >= 0 and slip > _HELD:
                 slide.quiet = 0
@@ -344,11 +348,31 @@ class WheelFriction(StepHelper):
             slide.acting += [(contact[PLACE], force, load, other)
                              for contact, force, load in zip(points, forces, carried)]
 
+    def _mobility(self, link: SurfaceLink, contact: ContactPoint, share: float) -> ContactMobility:
+        """Return the mobility of a body at a contact; computed once, when the link is taken.
+
+        `share`: of the mass that is the largest friction at the contact, N/kg.
+        """
+        key = link.uid, link.part.index
+        found = self._mobilities.get(key)
+        if found is None:
+            found = contact_mobility(
+                link, contact,
+                lambda row, lever: self._holding(row) >= share * link.total * lever)
+            # Equal wheels of a body meet equal friction.
+            rigid = next((each.rigid for (uid, _), each in self._mobilities.items()
+                          if uid == link.uid), found.rigid)
+            self._mobilities[key] = found = found._replace(rigid=rigid)
+        return found
+
     # -- Bullet's friction -------------------------------------------------------------------------
 
     def _take(self, key: LinkKey) -> None:
         """Replace Bullet's friction on a link from the next step on."""
         link = self._links[key]
+        if not any(uid == key[0] for uid, _ in self._slides):
+            for other in [other for other in self._mobilities if other[0] == key[0]]:
+                del self._mobilities[other]   # its joints may have moved
         self._slides.setdefault(key, _Slide())
         self._next.pop(key[0], None)
         pybullet.changeDynamics(*key, anisotropicFriction=anisotropy(
