@@ -6,7 +6,7 @@ import {sectionsOf, valueAt} from '../../web/js/panels/property_sections.js';
 import {defaultFields, pluginFields} from '../../web/js/panels/plugin_fields.js';
 import {withSensorState} from '../../web/js/panels/plugin_states.js';
 import {modelOf, rowOf, worldRows} from '../../web/js/panels/world_rows.js';
-import {driveHints} from '../../web/js/panels/hint_line.js';
+import {driveHints, hintsOf} from '../../web/js/panels/hint_line.js';
 import {searched} from '../../web/js/panels/insert_tab.js';
 import {drivenJoints} from '../../web/js/panels/joints_panel.js';
 import {box, light, world} from './fake_simulator.mjs';
@@ -280,4 +280,12 @@ test('the hints of a selected robot that the arrow keys drive begin with them', 
   assert.deepEqual(driveHints(robot, false)[0], ['↑ ↓ ← →', 'drive taxi']);
   assert.deepEqual(driveHints({name: 'box', plugins: []}, false), []);
   assert.deepEqual(driveHints(undefined, true), []);
+});
+
+test('the hints name each key once, and the space bar by what it does now', () => {
+  const drive = [['Space', 'play, then'], ['↑ ↓ ← →', 'drive car']];
+  const standing = hintsOf('select', drive, true);
+  assert.deepEqual(standing.filter(([keys]) => keys === 'Space'), [['Space', 'play, then']]);
+  assert.ok(hintsOf('select', [], false).some(([keys, what]) => keys === 'Space' && what === 'pause'));
+  assert.ok(hintsOf('select', [], true).some(([keys, what]) => keys === 'Space' && what === 'play'));
 });

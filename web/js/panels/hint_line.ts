@@ -41,6 +41,11 @@ export function driveHints(model: Pick<Model, 'name'|'plugins'>|undefined, pause
     : [['↑ ↓ ← →', `drive ${model.name}`], ['Shift', 'faster']];
 }
 
+/** Those of a mode after those of a robot, each key once. Pure. */
+export const hintsOf = (mode: Mode, first: Hints, paused: boolean): Hints => [...first,
+  ...BY_MODE[mode].filter(([keys]) => !first.some(([known]) => known === keys))
+    .map(([keys, what]): [string, string] => [keys, keys === 'Space' && !paused ? 'pause' : what])];
+
 /** @param element  what the line lies in */
 export function mountHints(element: HTMLElement, store: Store) {
   if (remembered.get('hints-closed', false)) return;
@@ -54,9 +59,9 @@ export function mountHints(element: HTMLElement, store: Store) {
       }}, icon('close')));
   let shown = '';
   const show = () => {
-    const rows = touch && store.mode === 'select' ? TOUCH : [
-      ...store.mode === 'select' ? driveHints(modelOfSelection(store), store.stats.paused) : [],
-      ...BY_MODE[store.mode]];
+    const {paused} = store.stats;
+    const rows = touch && store.mode === 'select' ? TOUCH
+      : hintsOf(store.mode, store.mode === 'select' ? driveHints(modelOfSelection(store), paused) : [], paused);
     const text = rows.flat().join('\n');
     if (text === shown) return;
     shown = text;

@@ -72,7 +72,7 @@ export function readStl(content: ArrayBuffer, limits: Limits|null): ReadStl {
   return {facets: simple ? null : facets, simple, moving};
 }
 
-/** The buffers of what was read, which a worker gives away. */
+/** The buffers of what was read, which a worker transfers to the page. */
 export const buffersOf = ({facets, simple, moving}: ReadStl): ArrayBuffer[] =>
   [facets, simple, moving].flatMap((one) => (one ? Object.values(one) : []))
     .flatMap((one) => (ArrayBuffer.isView(one) ? [one.buffer as ArrayBuffer] : []));

@@ -1,4 +1,4 @@
-/** Reads STL files in a worker where there is one, and here else. */
+/** Reads STL files in a worker; without workers it reads them in the page. */
 import {readStl} from './stl.js';
 import type {Limits, ReadStl} from './stl.js';
 import type {Asked} from './stl_worker.js';
@@ -19,7 +19,7 @@ export class StlReader {
     this.#alone = alone || !hasWorker();
   }
 
-  /** @param content  is given away */
+  /** @param content  is transferred to the worker */
   async read(content: ArrayBuffer, limits: Limits|null): Promise<ReadStl> {
     if (this.#alone) return readStl(content, limits);
     const worker = this.#worker ??= this.#start();

@@ -1,4 +1,4 @@
-/** Reads STL files beside the page, which goes on meanwhile. */
+/** Reads STL files in a worker, so that the page responds meanwhile. */
 import {buffersOf, readStl} from './stl.js';
 import type {Limits} from './stl.js';
 

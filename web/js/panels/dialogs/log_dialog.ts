@@ -9,7 +9,7 @@ import type {Page} from '../panels.js';
 export function logsDialog({store, actions}: Page): Promise<unknown> {
   const name = h('input', {
     type: 'text',
-    placeholder: 'name (default: date and time)',
+    placeholder: 'default: date and time',
     'aria-label': 'Log name',
     spellcheck: 'false',
   });

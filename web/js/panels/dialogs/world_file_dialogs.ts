@@ -124,7 +124,7 @@ class FolderList {
             'aria-pressed': String(path === root || path.startsWith(`${root}/`)),
           },
           icon('folder', 15),
-          h('span', {class: 'label', text: labels[at]}),
+          h('span', {class: 'label'}, ...labels[at].split(/(?<=\/)/).flatMap((part) => [part, h('wbr')])),
         ),
       ),
     );
