@@ -18,6 +18,8 @@ from waiting import wait_for
 
 from my_simulations.grading import box, cell
 from my_simulations.grading.box_support import isolation
+from my_simulations.grading.program import submission_account
+from my_simulations.grading.slots import reserved_slots
 
 REPOSITORY = Path(__file__).resolve().parents[2]
 GRADE = [sys.executable, str(REPOSITORY / "scripts" / "grade")]
@@ -268,11 +270,13 @@ def test_a_program_reaches_what_it_needs_below_a_closed_folder_and_nothing_else(
     code = "import os\nprint([open(name).read() for name in {!r}], os.listdir({!r}))"
     spec = {"parent": os.getpid(), "command": ["/usr/bin/python3", "-c", code.format(
                 wanted, str(closed))],   # that of the workspace may be below a closed folder
-            "environment": dict(os.environ), "cwd": "/", "user": 61000,
+            "environment": dict(os.environ), "cwd": "/", "user": 0,
             "private": [str(tmp_path / "judge")], "needed": [str(closed / "ws"), wanted[1]],
             "bytes": 1 << 20, "memory_bytes": 1 << 30, "processor_seconds": 20, "processes": 50}
-    done = subprocess.run([sys.executable, "-I", cell.__file__, json.dumps(spec)],
-                          capture_output=True, text=True, timeout=SECONDS)
+    with reserved_slots(1) as slots:
+        spec["user"] = submission_account(str(tmp_path), slots[0]).user
+        done = subprocess.run([sys.executable, "-I", cell.__file__, json.dumps(spec)],
+                              capture_output=True, text=True, timeout=SECONDS)
     assert done.stdout.startswith("['there', 'one']"), done.stderr
     if os.getuid() == 0:
         assert sorted(ast.literal_eval(done.stdout.partition("] ")[2])) == ["one.txt", "ws"]

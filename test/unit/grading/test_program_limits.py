@@ -1,15 +1,18 @@
 """Limits of all processes of a program together."""
 from __future__ import annotations
 
+import os
 import sys
 from contextlib import closing
 
 from waiting import wait_for
 
+from my_simulations.grading import box
 from my_simulations.grading.assignment import GradeLimits
 from my_simulations.grading.program import Program, submission_account
+from my_simulations.grading.slots import reserved_slots
 
-SECONDS = 120.0
+SECONDS = 60.0
 FORKS = """import os
 for _ in range(4):
     if os.fork() == 0:
@@ -28,8 +31,12 @@ def test_the_processor_time_of_all_processes_of_a_program_counts(tmp_path):
     (scratch / "submission").mkdir(parents=True)
     (scratch / "submission" / "go.py").write_text(FORKS)
     limits = GradeLimits(processor_seconds=2.0)
-    account = submission_account(str(scratch), 0)
-    with closing(Program([sys.executable, "go.py"], str(scratch / "submission"), str(scratch),
-                         limits, account, {})) as program:
+    with reserved_slots(1) as slots, closing(Program(
+            [sys.executable, "go.py"], str(scratch / "submission"), str(scratch), limits,
+            submission_account(str(scratch), slots[0]), {})) as program:
+        pids = wait_for(lambda: (found := box.descendants(program.pid))[5:] and found,
+                        "the processes", SECONDS)
         wait_for(lambda: not program.running, "the end of the program", SECONDS)
         assert program.why_ended() == "the program used more processor time than 2 s"
+        wait_for(lambda: not any(os.path.exists(f"/proc/{pid}") for pid in pids), "their end",
+                 SECONDS)
