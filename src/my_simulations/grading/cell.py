@@ -82,6 +82,8 @@ def _inside(spec: Dict[str, Any], isolated: bool, box: Any) -> int:
         os.setgid(spec["user"])
         os.setuid(spec["user"])
     drop_capabilities(box.LIBC)
+    # Another user clears it (prctl(2)).
+    box.LIBC.prctl(_PR_SET_PDEATHSIG, signal.SIGKILL, 0, 0, 0)
     process = subprocess.Popen(spec["command"], env=spec["environment"], cwd=spec["cwd"],
                                stdin=subprocess.DEVNULL, start_new_session=True)
     while True:

@@ -186,13 +186,9 @@ class Program:
             with contextlib.suppress(ProcessLookupError, PermissionError):
                 os.kill(pid, number)
 
-    def _kill(self) -> None:
-        """Kill all its processes; without its parent, the cell would run on as another user."""
-        self._signal(box.descendants(self.pid), signal.SIGKILL)
-
     def close(self) -> None:
         self._ended.set()
-        self._kill()
+        self._signal(box.descendants(self.pid), signal.SIGKILL)
         with contextlib.suppress(subprocess.TimeoutExpired):
             self._process.wait(_END_S)
         self._process.kill()
@@ -260,7 +256,7 @@ class Program:
             elif processor_seconds(found) > self._limits.processor_seconds:
                 self.excess = self._slow
         if self.excess:
-            self._kill()
+            self._process.kill()
 
 
 def end_of_output(path: str) -> bytes:

@@ -4,6 +4,7 @@ from __future__ import annotations
 import contextlib
 import json
 import os
+import signal
 import socket
 import subprocess
 import sys
@@ -20,6 +21,7 @@ from my_simulations.grading.box_support import isolation
 from my_simulations.grading.confined_resolver import ConfinedResolver
 from my_simulations.grading.grader import Grader
 from my_simulations.grading.program import Program, submission_account
+from my_simulations.grading.slots import reserved_slots
 from my_simulations.grading.submission import Submission, submissions_of
 from my_simulations.grading.submission_files import content_of
 from my_simulations.resources.resolver import ResourceNotFoundError
@@ -129,15 +131,28 @@ threading.Event().wait()
 """
 
 
-def test_a_suspended_program_can_answer_nothing(assignment, tmp_path):
-    account = submission_account(str(tmp_path), 0)
-    program = Program([sys.executable, "-c", THREADS], str(tmp_path), str(tmp_path),
-                      assignment.limits, account, {})
-    with contextlib.closing(program):
-        wait_for(lambda: b"started" in program.output(), "its threads", 60.0)
-        for _ in range(20):
-            with program.suspended():
-                states = [Path(task, "stat").read_text().rpartition(")")[2].split()[0]
-                          for pid in program.processes.pids()
-                          for task in Path(f"/proc/{pid}/task").iterdir()]
-            assert len(states) >= 61 and set(states) == {"T"}, states
+@pytest.fixture
+def program(assignment, tmp_path):
+    """A running program with 61 threads."""
+    with reserved_slots(1) as slots, contextlib.closing(Program(
+            [sys.executable, "-c", THREADS], str(tmp_path), str(tmp_path), assignment.limits,
+            submission_account(str(tmp_path), slots[0]), {})) as found:
+        wait_for(lambda: b"started" in found.output(), "its threads", 60.0)
+        yield found
+
+
+def test_a_suspended_program_can_answer_nothing(program):
+    for _ in range(20):
+        with program.suspended():
+            states = [Path(task, "stat").read_text().rpartition(")")[2].split()[0]
+                      for pid in program.processes.pids()
+                      for task in Path(f"/proc/{pid}/task").iterdir()]
+        assert len(states) >= 61 and set(states) == {"T"}, states
+
+
+def test_a_program_ends_with_its_cell(program):
+    running = program.processes.pids()
+    assert running
+    os.kill(program.pid, signal.SIGKILL)
+    wait_for(lambda: not any(os.path.exists(f"/proc/{pid}") for pid in running),
+             "the end of its processes", 60.0)
