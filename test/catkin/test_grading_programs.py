@@ -163,8 +163,8 @@ def test_a_robot_is_driven_by_its_topic_and_its_plugins_run_once(tmp_path):
     rows, _ = grade(tmp_path, ROBOT, {"driver": DRIVER, "other": DRIVER}, "--jobs", "2")
     assert points(rows["driver"], "moves", "odometry", "twice", "falls") == [2, 1, 0, 0]
     assert 150.0 < points(rows["driver"], "way")[0] < 700.0
-    # One command more or less, each 0.1 s: it depends on when the first one finds its subscriber.
-    assert points(rows["other"], "way") == pytest.approx(points(rows["driver"], "way"), abs=31.0)
+    # Also the first command, which is published before a subscriber has connected, is lost in both.
+    assert points(rows["other"], "way") == points(rows["driver"], "way")
 
 
 def test_programs_that_answer_messages_get_equal_marks_beside_busy_processes(tmp_path):

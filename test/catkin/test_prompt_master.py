@@ -6,6 +6,7 @@ import threading
 import pytest
 import rosmaster.threadpool
 
+from my_simulations.grading.held_notices import HeldNotices
 from my_simulations.grading.prompt_master import PromptThreadPool
 
 SECONDS = 60.0
@@ -41,3 +42,20 @@ def test_tasks_of_one_node_run_one_after_the_other(pool):
     assert first_runs.wait(SECONDS) and other.wait(SECONDS) and not second_ran.is_set()
     may_end.set()
     assert second_ran.wait(SECONDS)
+
+
+def test_held_tasks_run_in_their_order_once_they_are_permitted(pool):
+    notices = HeldNotices()
+    held = PromptThreadPool(3, notices.descriptors)
+    assert not notices.permit()
+    ran, done = [], threading.Event()
+    held.queue_task("a", ran.append, (1,))
+    held.queue_task("a", ran.append, (2,))
+    held.queue_task("a", done.set, ())
+    assert not done.wait(0.2) and ran == []
+    assert notices.permit() and done.wait(SECONDS)
+    assert ran == [1, 2] and not notices.permit()
+    done.clear()
+    held.queue_task("a", done.set, ())
+    assert notices.permit() and done.wait(SECONDS)
+    notices.close()

@@ -36,10 +36,13 @@ class Lockstep:
         program: the program.
         judge: process id of the process that steps the world.
         processor_seconds: that the program may use in all.
+        permit: lets the ROS master send notices, once the program waits; returns whether there
+            were any.
     """
 
-    def __init__(self, program: Program, judge: int, processor_seconds: float) -> None:
-        self._program = program
+    def __init__(self, program: Program, judge: int, processor_seconds: float,
+                 permit: Callable[[], bool]) -> None:
+        self._program, self._permit = program, permit
         self._start_seconds = min(_START_S, _START_SHARE * processor_seconds)
         main = threading.get_native_id()
         self._threads = ThreadStates(judge, lambda: {main, program.watcher})
@@ -98,6 +101,7 @@ class Lockstep:
                 first = used if first is None else first
                 self._spent_s = used - first
                 if self._spent_s >= processor_seconds or began > deadline:
+                    self._permit()
                     return False
                 took = time.monotonic() - began
                 pause = max(_BUSY_LOOK_S, min(took / _LOOK_SHARE, processor_seconds))
@@ -106,8 +110,12 @@ class Lockstep:
             has_started = self._threads.refresh()   # such threads are looked at the next time
             # Two looks: threads are looked at one after the other, and hand work to each other.
             if waiting >= _STUCK_LOOKS or is_quiet and not has_started:
-                return True
+                if not self._permit():
+                    return True
+                waiting, is_quiet = 0, False
+                continue
             is_quiet = not self._bytes_under_way()
+        self._permit()
         return True
 
     def close(self) -> None:

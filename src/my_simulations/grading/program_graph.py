@@ -13,6 +13,7 @@ from ..python_api import OpenWorld
 from ..resources.resolver import Resolver
 from ..ros.lifecycle import master_api
 from .assignment import Assignment, ServiceAnswer, Timed, TopicRate
+from .held_notices import HeldNotices
 from .lockstep import Lockstep
 from .mark import CheckResult, GradingError, result
 from .program import Program
@@ -41,7 +42,8 @@ class RosGraph:
     def __init__(self, assignment: Assignment, world: OpenWorld, resolver: Resolver) -> None:
         self._assignment = assignment
         self._world = world
-        self.uri, self._master = start_master()
+        self._notices = HeldNotices()
+        self.uri, self._master = start_master(self._notices)
         os.environ.update(graph_environment(self.uri))
         from ..ros.attached_node import AttachedNode  # rospy: only programs need it
 
@@ -58,7 +60,8 @@ class RosGraph:
             self._node.call(check.service, check.type_name)
         self._program = program
         self._lockstep = Lockstep(program, os.getpid(),
-                                  self._assignment.limits.processor_seconds)
+                                  self._assignment.limits.processor_seconds,
+                                  self._notices.permit)
         self._lockstep.start(lambda: self._world.step(1))
 
     def step(self, steps: int) -> None:
@@ -153,6 +156,7 @@ class RosGraph:
         self._node.close()
         self._master.terminate()
         wait_or_kill(self._master, _MASTER_S)
+        self._notices.close()
 
 
 def graph_environment(uri: str) -> "dict[str, str]":
@@ -160,13 +164,19 @@ def graph_environment(uri: str) -> "dict[str, str]":
     return {"ROS_MASTER_URI": uri, "ROS_IP": "127.0.0.1", "ROS_HOSTNAME": "127.0.0.1"}
 
 
-def start_master() -> "tuple[str, subprocess.Popen[bytes]]":
-    """Start a ROS master on a free port; returns its URI and process. Raises GradingError."""
+def start_master(notices: Optional[HeldNotices] = None
+                 ) -> "tuple[str, subprocess.Popen[bytes]]":
+    """Start a ROS master on a free port; returns its URI and process.
+
+    `notices` permits its notices of publishers; None to send them at once. Raises GradingError.
+    """
     port = free_port()
+    held = () if notices is None else notices.descriptors
+    hold = ["--hold", *map(str, held)] if held else []
     process = subprocess.Popen(
-        child_command("grading.prompt_master", "--core", "-p", str(port)),
+        child_command("grading.prompt_master", *hold, "--core", "-p", str(port)),
         env=child_environment(), stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
-        stderr=subprocess.DEVNULL)
+        stderr=subprocess.DEVNULL, pass_fds=held)
     until = time.monotonic() + _MASTER_S
     while time.monotonic() < until and process.poll() is None:
         with socket.socket() as probe:

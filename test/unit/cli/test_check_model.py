@@ -93,11 +93,12 @@ def test_unlike_friction_of_one_link_is_told_with_the_one_that_holds(found):
     assert found(crowded.replace("<static>0", "<static>1")) == []
 
 
-@pytest.mark.parametrize("pose, depth", [("0 0 0.4 0 0 0", "100"), ("0 0 0.5 0.785398 0 0", "207"),
-                                         ("0 0 -3 0 0 0", "3.5e+03")])
+@pytest.mark.parametrize("pose, depth", [("0 0 0.4 0 0 0", "100 mm"),
+                                         ("0 0 0.5 0.785398 0 0", "207 mm"),
+                                         ("0 0 -3 0 0 0", "3.5 m")])
 def test_a_box_in_the_ground_is_reported(found, pose, depth):
     (issue,) = found(GROUND, solid("b", pose))
-    assert issue.code == "starts-inside" and f"{depth} mm" in issue.message
+    assert issue.code == "starts-inside" and f" {depth} or more" in issue.message
     assert issue.severity is Severity.WARNING and issue.line == 3
     assert issue.xpath == "/sdf/world/model[2]/link/collision"
 
