@@ -68,7 +68,7 @@ def test_a_drag_beside_everything_shifts_the_view_and_selects_nothing(editor):
     insert(editor, "box", standing(0, 0))
     x, y = pixel_of(editor, "box")
     drag(editor, (x + 250, y + 150), (x + 350, y + 150))
-    assert pixel_of(editor, "box")[0] > x + 40
+    wait_for(lambda: pixel_of(editor, "box")[0] > x + 40, "a shifted view")
     assert editor.get("editor.store.selection") == []
 
 
@@ -237,6 +237,7 @@ def test_copy_and_paste_by_keys_and_a_click(editor):
     editor.page.keyboard.press("Control+c")
     editor.until("Boolean(editor.store.clipboard)", "the copy")
     editor.page.keyboard.press("Control+v")
+    editor.until("Boolean(editor.store.placing)", "the ghost")
     editor.click((2.0, 1.0, 0.0))
     editor.until("editor.store.selection[0] === 'box_clone'", "the clone")
     assert editor.model("box_clone")["pose"][:3] == approx([2, 1, 0.5], abs=0.02)

@@ -34,7 +34,7 @@ def main() -> None:
     """Write the list."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("files", nargs="+", type=Path)
-    parser.add_argument("--seconds", type=float, default=3.0)
+    parser.add_argument("--seconds", type=float, default=2.0)
     words = parser.parse_args()
     lines = [line for file in words.files
              for line in file.read_text(encoding="utf-8", errors="replace").splitlines()]

@@ -89,11 +89,11 @@ def test_costly_tests_are_read_from_the_output_of_a_complete_run(tmp_path):
         "[5/9] rostest world ... 3 ok (20 s, processor 9.0 s)\n"
         "[6/9] rostest many ... 30 ok (20 s, processor 9.0 s)\n"
         "[7/9] test/unit 1/2 ... 30 ok (20 s, processor 90.0 s)\n"
-        "    3.00 test/a/test_b.py::test_c[no token]\n   2.99 test/a/test_b.py::test_d\n")
+        "    2.00 test/a/test_b.py::test_c[no token]\n   1.99 test/a/test_b.py::test_d\n")
     subprocess.run([sys.executable, str(generate / "costly_tests.py"), "output"], cwd=tmp_path,
                    check=True, stdout=subprocess.DEVNULL)
     lines = (tmp_path / "test" / "costly_tests.txt").read_text().splitlines()
-    assert lines[2:] == ["9.0 rostest world", "3.0 test/a/test_b.py::test_c[no token]"]
+    assert lines[2:] == ["9.0 rostest world", "2.0 test/a/test_b.py::test_c[no token]"]
 
 
 def test_the_list_of_costly_tests_names_tests_that_exist():
