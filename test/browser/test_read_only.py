@@ -15,12 +15,13 @@ BOX = """<sdf version="1.6"><model name="box"><link name="link"><collision name=
 
 
 @pytest.fixture(params=[True, False], ids=["read-only", "editable"])
-def page(request, browser):
+def page(request, browser, tmp_path):
     """The page of a world with a box, and whether it is read-only."""
     with open_world("worlds/empty.world") as world:
         world.spawn(BOX, "box")
         server = EditorServer(world.simulator, Resolver.from_environment(),
-                              EditorOptions(read_only=request.param))
+                              EditorOptions(read_only=request.param,
+                                            cache_dir=str(tmp_path)))
         opened = browser.open(server.url)
         opened.until("'readOnly' in editor.store && editor.store.connected", "the greeting")
         yield opened, request.param
