@@ -283,7 +283,7 @@ class WheelFriction(StepHelper):
                     self._take((uid, index))
 
     def _touches_others(self, contacts: Contacts) -> bool:
-        return any(contact[OTHER_BODY] not in self._floors for contact in contacts)
+        return not self._floors.issuperset([contact[OTHER_BODY] for contact in contacts])
 
     def _loads(self, due: Set[int]) -> Dict[LinkKey, Tuple[Motion, Loads]]:
         """Return motion and loads of each sliding link; wheels of a body share their load."""
@@ -318,24 +318,25 @@ class WheelFriction(StepHelper):
                step: int, dt: float, weight: float) -> None:
         """Compute the friction on a link from count `step` to its next computation."""
         slide, slips, steps = self._slides[key], key in self._slipping, self._next[key[0]] - step
-        others = {(contact[OTHER_BODY], contact[OTHER_LINK]): None for contact in contacts}
-        if not slips and not self._floors.issuperset([body for body, _ in others]):
+        if not slips and self._touches_others(contacts):
             self._restore_friction(key)
             return
+        link = self._links[key]
         slide.acting = []
         # A wheel without contacts can land in the next step; rollers of Mecanum wheels do.
-        slide.steady = not slips and (bool(contacts) or self._links[key].joint < 0)
+        slide.steady = not slips and (bool(contacts) or link.joint < 0)
         slide.quiet += steps
-        effort = self._effort(self._links[key].joint, step)
+        effort = self._effort(link.joint, step)
         slide.steady &= not effort   # a loop can change it in each step
         biases, slide.biases = slide.biases, {}
+        others = {(contact[OTHER_BODY], contact[OTHER_LINK]): None for contact in contacts}
         for other in others:
             if other not in self._links or slips and other in self._slipping and other < key:
                 continue
             points, carried = contacts, loads
             if len(others) > 1:
                 points, carried = _with_other(other, contacts, loads)
-            link, under = self._links[key], self._links[other]
+            under = self._links[other]
             mobility = None if link.body.rigid or under.body.moves else (
                 self._mobility(link, points[0], min(link.mus) * weight))
             forces, bias, slip, within = link_friction(
