@@ -19,7 +19,7 @@ class LaunchFault(NamedTuple):
     """A fault of a launch file.
 
     Attributes:
-        message: what is wrong.
+        message: the fault.
         file: path in the submission; "" for the launch file that was started.
         line: in that file, from 1; 0 if it is unknown.
     """
