@@ -69,6 +69,11 @@ class OtherPackage(flow.ToolCase, unittest.TestCase):
         self.assertIn("has no object list in package 'my_simulations'", text)
         self.assertIn("package:=PACKAGE", text)
 
+    def test_a_world_outside_of_all_packages_needs_no_list(self):
+        with tempfile.TemporaryDirectory() as folder:
+            text = self.run_here("upload_objects.py", "--world", f"{folder}/house.world")
+        self.assertEqual(text.strip(), "upload_objects.py: world 'house' has no object list")
+
     def edit_list(self, old, new):
         """Change the list, and wait until its time shows it."""
         path = os.path.join(self.package, "config/theirs/object_locations.yaml")

@@ -44,13 +44,19 @@ def _upload(options: argparse.Namespace, remappings: Sequence[str]) -> int:
     parameters = client.Parameters(remappings)
     node = client.full_name(options.gazebo_namespace, remappings)
     name = world_name(options.world) or _running_world(parameters, options, node)
-    package = options.package or _package_of_world(parameters, options, node, name)
+    file = "" if options.package else _world_file(parameters, options, node, name)
+    package = options.package or _package_of_world(file, name)
     found = upload(parameters, name, package)
+    issues = found.issues
     if found.file:
         print(f"{NAME}: world '{name}': {found.objects} objects, {found.groups} groups from "
               f"{os.path.dirname(found.file)}", flush=True)
-    client.show(found.issues)
-    return client.FAILED if client.has_errors(found.issues) else client.OK
+    elif file and not package_of(file):
+        # A world that is saved outside of all packages needs no list.
+        issues = [issue for issue in issues if issue.code != "no-object-list"]
+        print(f"{NAME}: world '{name}' has no object list", flush=True)
+    client.show(issues)
+    return client.FAILED if client.has_errors(issues) else client.OK
 
 
 def _running_world(parameters: client.Parameters, options: argparse.Namespace, node: str) -> str:
@@ -61,10 +67,9 @@ def _running_world(parameters: client.Parameters, options: argparse.Namespace, n
         "start the simulator, or give the world with world_name:=NAME"))
 
 
-def _package_of_world(parameters: client.Parameters, options: argparse.Namespace, node: str,
-                      name: str) -> str:
+def _package_of_world(file: str, name: str) -> str:
     """The package that contains the world's file, unless only this package has a list for it."""
-    package = package_of(_world_file(parameters, options, node, name))
+    package = package_of(file)
     find = package_finder()
     folder = find(package) if package else None
     if folder is None:

@@ -276,13 +276,14 @@ def test_my_world_has_the_lab_sheets_arguments_and_passes_them_on():
     root = ElementTree.parse(ROOT / "launch" / "my_world.launch").getroot()
     assert {arg.get("name"): arg.get("default") for arg in root.findall("arg")} == {
         "debug": "false", "gui": "true", "pause": "false",
-        "world": "$(find my_simulations)/world/empty_world.world", "x": "0", "y": "0", "z": "0"}
+        "world": "$(find my_simulations)/world/empty_world.world", "robot": "true",
+        "x": "0", "y": "0", "z": "0"}
     sheet = root.find("include[@file='$(find gazebo_ros)/launch/empty_world.launch']")
     assert {arg.get("name"): arg.get("value") for arg in sheet} == {
         "world_name": "$(arg world)", "debug": "$(arg debug)", "gui": "$(arg gui)",
         "paused": "$(arg pause)", "use_sim_time": "true", "extensions": "true"}
     params = {p.get("name"): p.get("value") or p.get("command") for p in root.findall("param")}
     assert params["robot_description"] == "cat '$(find my_simulations)/urdf/robo.urdf'"
-    assert params["gazebo/spawn_robot"] == "true"
+    assert params["gazebo/spawn_robot"] == "$(arg robot)"
     assert [params[f"gazebo/robot_{axis}"] for axis in "xyz"] == [
         "$(arg x)", "$(arg y)", "$(arg z)"]
