@@ -6,7 +6,7 @@ import {inPolygon, isSimple, labelPoint, nearest, signedArea} from '../../web/js
 import {hitOf, itemsWithin, wallNear} from '../../web/js/building/hit_test.js';
 import {add, emptyPlan} from '../../web/js/building/plan.js';
 import {outlineOf, roomsOf} from '../../web/js/building/rooms.js';
-import {snapEnd, snapStart} from '../../web/js/building/wall_snap.js';
+import {snapEnd, snapFirst, snapStart} from '../../web/js/building/wall_snap.js';
 
 const close = (found, wanted, slack = 1e-6) =>
   assert.ok(Math.abs(found - wanted) <= slack, `${found} is not ${wanted}`);
@@ -109,6 +109,13 @@ test('a wall ends on the middle line of a wall in its way, and starts on one und
   assert.equal(snapEnd([4, 0], [4.2, 1], {walls: there}).on, 'grid');
   assert.deepEqual(snapStart([4.08, 1.234], {walls: there}), [4, 1.234]);
   assert.deepEqual(snapStart([4.3, 1], {walls: there}), [4.3, 1]);
+});
+
+test('the first wall starts on the grid of 0.25 m, unless it starts on another wall or snapping is off', () => {
+  const there = walls([[4, -5], [4, 5]]);
+  assert.deepEqual(snapFirst([1.526, -2.113]), [1.5, -2]);
+  assert.deepEqual(snapFirst([4.08, 1.234], {walls: there}), [4, 1.234]);
+  assert.deepEqual(snapFirst([1.526, -2.113], {free: true}), [1.526, -2.113]);
 });
 
 test('polygons that cross themselves are told', () => {

@@ -209,6 +209,17 @@ test('painting shows on hovering and paints one thing', () => {
   assert.equal(session.tool.name, 'select');
 });
 
+test('painting goes on while Shift is held', () => {
+  const session = withRoom();
+  session.tool = new PaintTool(session, {texture: 'Gazebo/Bricks'});
+  for (const at of [[2, 0], [3.85, 1.5]]) {
+    session.tool.press({...mouse(...at), shift: true});
+    assert.equal(session.tool.name, 'paint');
+  }
+  const textures = session.history.plan.levels[0].walls.map(({texture}) => texture);
+  assert.equal(textures.filter((one) => one === 'Gazebo/Bricks').length, 2);
+});
+
 test('a line over a known length scales the floor plan', () => {
   const session = opened();
   let drawn = null;

@@ -6,7 +6,7 @@ import {
   DEFAULTS, GROUND_FLOOR_THICKNESS, add, attached, detached, outerLength, withLevel,
 } from './plan.js';
 import {roomsOf} from './rooms.js';
-import {snapEnd, snapPolar, snapStart} from './wall_snap.js';
+import {snapEnd, snapFirst, snapPolar, snapStart} from './wall_snap.js';
 import {Tool} from './tool.js';
 import type {FloorImage, Plan} from '../protocol.js';
 import type {Mouse} from './tool.js';
@@ -26,7 +26,7 @@ export class WallTool extends Tool {
   override press(mouse: Mouse) {
     const {session} = this;
     if (!this.#from) {
-      this.#first = this.#from = snapStart(mouse.point, {walls: session.level.walls, free: mouse.shift});
+      this.#first = this.#from = snapFirst(mouse.point, {walls: session.level.walls, free: mouse.shift});
       this.#say();
     } else {
       this.#put(this.#from, this.#end(this.#from, mouse).point);
@@ -37,7 +37,7 @@ export class WallTool extends Tool {
   override move(mouse: Mouse) {
     const {session} = this;
     if (!this.#from) {
-      const point = snapStart(mouse.point, {walls: session.level.walls, free: mouse.shift});
+      const point = snapFirst(mouse.point, {walls: session.level.walls, free: mouse.shift});
       session.draft = {mark: point};
     } else {
       const {point, on} = this.#end(this.#from, mouse);

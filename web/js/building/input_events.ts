@@ -219,7 +219,7 @@ export function listenToView(view: HTMLElement|null, {session, actions}: {sessio
     if (!(session.tool instanceof PaintTool) || event.button !== 0 || !down) return;
     if (Math.hypot(event.clientX - down[0], event.clientY - down[1]) > 4) return;
     const found = shown ?? target(event);
-    if (found) session.tool.paint(found.level, found.ref);
+    if (found) session.tool.paint(found.level, found.ref, event.shiftKey);
   };
   const away = (event: MouseEvent) => {
     if (session.tool.name !== 'paint') return;

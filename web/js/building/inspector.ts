@@ -97,7 +97,10 @@ function inspect({title, fields, values, apply}: {title: string, fields: Inspect
   };
   const dialog = new Dialog({
     title, name: 'inspector', modal: false,
-    content: inputs.map(({field, element}) => labelled(field.label, element)),
+    content: inputs.map(({field, element}) => {
+      element.title ||= field.hint ?? '';
+      return labelled(field.label, element);
+    }),
     buttons: [{title: 'Cancel'}, {title: 'Apply', run: () => { take(); return false; }},
       {title: 'OK', primary: true, run: () => take() && 'ok'}],
   });

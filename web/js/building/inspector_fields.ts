@@ -24,6 +24,7 @@ export interface InspectorField {
   min?: number;
   max?: number;
   choices?: [string, string][];
+  hint?: string;
 }
 
 const size = (name: string, label: string): InspectorField =>
@@ -46,7 +47,8 @@ export function fieldsOf(kind: Kind, item: AnyItem): InspectorField[] {
   switch (kind) {
     case 'walls': return [
       place('startX', 'Start x'), place('startY', 'Start y'), place('endX', 'End x'),
-      place('endY', 'End y'), size('length', 'Length'), size('height', 'Height'),
+      place('endY', 'End y'), {...size('length', 'Length'),
+        hint: 'From outer face to outer face: the distance of the ends and the thickness.'}, size('height', 'Height'),
       size('thickness', 'Thickness'), ...LOOK];
     case 'windows': case 'doors': return [
       ...(!('wall' in item) || item.wall === null

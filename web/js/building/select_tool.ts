@@ -181,11 +181,11 @@ function alongBy(wall: Wall, by: Point) {
   return by[0] * Math.cos(yaw) + by[1] * Math.sin(yaw);
 }
 
-/** Paints the wall, stairs or floor that is clicked, here or in the 3D view, once. */
+/** Paints the wall, stairs or floor that is clicked, here or in the 3D view: once, with Shift further ones. */
 export class PaintTool extends Tool {
   look;
   override name = 'paint';
-  override hint = 'Click a wall, floor or stairs, here or in the 3D view, to apply the look.';
+  override hint = 'Click a wall, floor or stairs, here or in the 3D view, to apply the look. Hold Shift to paint several.';
 
   /** What is shown painted. */
   #hovered = '';
@@ -198,7 +198,7 @@ export class PaintTool extends Tool {
   override press(mouse: Mouse) {
     const {session} = this;
     const target = this.#target(mouse);
-    if (target) this.paint(session.at, target);
+    if (target) this.paint(session.at, target, mouse.shift);
   }
 
   override move(mouse: Mouse) { this.hover(this.session.at, this.#target(mouse)); }
@@ -212,11 +212,12 @@ export class PaintTool extends Tool {
     session.preview(ref ? update(session.history.plan, at, ref, this.look) : null);
   }
 
-  paint(at: number, ref: Ref) {
+  /** With `goesOn` the tool stays active. */
+  paint(at: number, ref: Ref, goesOn = false) {
     const {session} = this;
     session.commit(update(session.history.plan, at, ref, this.look),
       `set ${this.look.texture ? 'texture' : 'color'} of ${NAMES[ref.kind]}`);
-    session.endTool();
+    if (!goesOn) session.endTool();
   }
 
   override cancel() {

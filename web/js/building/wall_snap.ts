@@ -1,9 +1,10 @@
 /** Where the end of a wall goes while it is drawn or dragged. */
-import {crossing, direction, distance, nearest, polar, tidyPoint} from './plane_geometry.js';
+import {crossing, direction, distance, nearest, polar, same, tidyPoint} from './plane_geometry.js';
 import type {Point} from './plane_geometry.js';
 import type {Wall} from '../protocol.js';
 
 export const SNAP_ANGLE = Math.PI / 12;
+/** Metres between the places where walls on free ground start, and between their lengths. */
 const SNAP_LENGTH = 0.25;
 const ENDS: readonly ('start'|'end')[] = Object.freeze(['start', 'end']);
 /** Metres within which an end is drawn to another one, and an opening to a wall. */
@@ -72,7 +73,14 @@ function onWall(from: Point, point: Point, walls: Wall[]) {
   return best;
 }
 
-/** The start of a wall: on another end, else in the middle of a wall that is there, else as it is. */
+/** The start of a wall: on another end, else in the middle of a wall that is there, else on the grid. */
+export function snapFirst(point: Point, options: {walls?: Wall[], free?: boolean} = {}) {
+  const start = snapStart(point, options);
+  return options.free || !same(start, tidyPoint(point)) ? start : tidyPoint([
+    Math.round(point[0] / SNAP_LENGTH) * SNAP_LENGTH, Math.round(point[1] / SNAP_LENGTH) * SNAP_LENGTH]);
+}
+
+/** A corner: on the end of a wall, else in the middle of a wall that is there, else as it is. */
 export function snapStart(point: Point, {walls = [], free = false}: {walls?: Wall[],
     free?: boolean} = {}) {
   if (free) return tidyPoint(point);
