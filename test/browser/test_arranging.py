@@ -1,6 +1,8 @@
 """Copies, arrays, hidden and locked models, and the search for commands."""
 from __future__ import annotations
 
+import json
+
 from pytest import approx
 from support import wait_for
 
@@ -79,6 +81,48 @@ def test_hidden_and_locked_models_are_passed_over_by_the_mouse(editor):
     editor.until("editor.view.bounds('unit_box') !== null", "the box again")
     editor.click(middle)
     editor.until("editor.store.selection.join() === 'unit_box'", "the box under the mouse")
+
+
+def test_a_drag_on_a_locked_model_moves_nothing_behind_it(editor):
+    for name, x in (("front", 0.0), ("behind", -1.5)):
+        editor.get(f"editor.actions.edit({{kind: 'insert', shape: 'box', name: '{name}',"
+                   f" pose: [{x}, 0, 0.5, 0, 0, 0, 1]}})")
+    editor.until("['front', 'behind'].every((one) => editor.view.bounds(one))", "both boxes")
+    editor.get("editor.actions.lock(['front'])")
+    editor.get("editor.store.setOverlay('locked', null, 'behind')")
+    before = {name: editor.model(name)["pose"] for name in ("front", "behind")}
+    editor.page.keyboard.press("t")
+    editor.drag((0.0, 0.0, 0.5), (0.0, 1.0, 0.5))
+    editor.frame()
+    assert {name: editor.model(name)["pose"] for name in before} == before
+
+
+def test_all_means_no_ground(editor):
+    with_box(editor)
+    editor.page.keyboard.press("Escape")
+    editor.page.locator("#view").focus()
+    editor.page.keyboard.press("Control+a")
+    editor.until("editor.store.selection.join() === 'unit_box'", "the box without the ground")
+
+
+def test_a_light_is_flown_to_from_the_present_direction(editor):
+    before = editor.get("editor.view.camera")
+    editor.get("editor.view.moveTo('sun')")
+    editor.rest()
+    after = editor.get("editor.view.camera")
+    assert after["position"] != before["position"]
+    assert (after["yaw"], after["pitch"]) == (before["yaw"], before["pitch"])
+
+
+def test_a_new_world_is_seen_from_gazebos_first_view(editor):
+    first = editor.get("editor.view.camera")
+    with_box(editor)
+    editor.get("editor.view.moveTo('unit_box')")
+    editor.rest()
+    assert editor.get("editor.view.camera") != first
+    editor.get("editor.actions.newWorld({discard: true})")
+    editor.until(f"JSON.stringify(editor.view.camera) === JSON.stringify({json.dumps(first)})",
+                 "the first view")
 
 
 def test_a_command_is_found_by_a_part_of_its_name(editor):

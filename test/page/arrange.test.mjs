@@ -63,6 +63,22 @@ test('duplicating and arrays are one step, and what has come is selected', async
   assert.throws(() => actions.array([100, 100, 1], [1, 1, 1]), RangeError);
 });
 
+test('links of the edited model are copied beside themselves; others are not', async () => {
+  const {connection, store, actions} = page();
+  store.select(['a::link']);
+  await actions.duplicate();
+  assert.deepEqual(connection.requests, []);
+  store.setModelEditing({name: 'a'});
+  connection.answers.edit = {names: ['a::link_clone']};
+  await actions.duplicate();
+  const [[kind, {op}]] = connection.requests;
+  assert.equal(requestFault(kind, {op}), null);
+  assert.equal(op.ops[0].kind, 'copy_link');
+  const [x, y] = store.worldPose('a::link');
+  near(op.ops[0].pose.slice(0, 2), [x + 1, y]);
+  assert.deepEqual(store.selection, ['a::link_clone']);
+});
+
 test('hidden and locked models are left out of what all means', () => {
   const {store, actions} = page();
   const names = store.document.models.map(({name}) => name);

@@ -2,6 +2,7 @@
 import {arrayOffsets, clearSpacing, copiesIn, distributeMoves, MOST_COPIES} from './arrange.js';
 import {withGroups} from './model_groups.js';
 import {NOTHING} from './nothing.js';
+import {isGround} from './selected_model.js';
 import {add, orientation, position} from './pose.js';
 import type {ActionParts, Outcome} from './actions.js';
 import type {Operation} from './protocol.js';
@@ -17,6 +18,24 @@ export function arrangeActions({store, ask, edit, dialog, note, view}: ActionPar
     const kinds = ['model', 'light'] as const;
     return kinds.flatMap((kind) => store.selection.filter((name) => store.entity(name)?.kind === kind));
   };
+
+  /** The selected links of the model in the model editor. */
+  const editedLinks = () => store.selection.filter((name) => {
+    const entity = store.entity(name);
+    return entity?.kind === 'link' && entity.model.name === store.modelEditing?.name;
+  });
+
+  async function copiesOfLinks(links: string[]): Promise<Outcome> {
+    const [beside] = clearSpacing(links.flatMap((name) => view()?.bounds(name) ?? []));
+    const ops = links.flatMap((link): Operation[] => {
+      const pose = store.worldPose(link);
+      return pose ? [{kind: 'copy_link', link,
+        pose: [...add(position(pose), [beside, 0, 0]), ...orientation(pose)] as Pose7}] : [];
+    });
+    const done = await edit({kind: 'group', ops, label: `Duplicate ${links.join(', ')}`});
+    if (done.ok && done.value.names) store.select(done.value.names);
+    return done;
+  }
 
   /**
    * @param names  models, then lights
@@ -39,11 +58,13 @@ export function arrangeActions({store, ask, edit, dialog, note, view}: ActionPar
   const arrange = {
     /** What keeps the copies of the selection apart, m. */
     spacing: () => clearSpacing(copied().flatMap((name) => view()?.bounds(name) ?? [])),
-    /** A copy of the selected models and lights beside them. */
+    /** A copy of the selected models and lights, or of links of the edited model, beside them. */
     duplicate() {
       const names = copied();
+      const links = editedLinks();
+      if (!names.length && links.length) return copiesOfLinks(links);
       if (!names.length) {
-        note('Select models or lights to duplicate.');
+        note('Select models, lights or links of the edited model to duplicate.');
         return Promise.resolve(NOTHING);
       }
       return copies(names, [[arrange.spacing()[0], 0, 0]], `Duplicate ${names.join(', ')}`);
@@ -107,8 +128,9 @@ export function arrangeActions({store, ask, edit, dialog, note, view}: ActionPar
       note('No model of a group is selected.');
       return NOTHING;
     },
-    /** What a click can select: neither hidden nor locked. */
-    selectAll: () => store.select((store.document?.models ?? []).map(({name}) => name)
+    /** What a click can select: no ground, neither hidden nor locked. */
+    selectAll: () => store.select((store.document?.models ?? []).filter((model) => !isGround(model))
+      .map(({name}) => name)
       .filter((name) => !store.overlay('hidden', name) && !store.overlay('locked', name))),
     commands: () => dialog('commands'),
   };

@@ -4,8 +4,12 @@ import type {ActionParts, Outcome} from './actions.js';
 export function fileActions({store, ask, dialog, note, view}: ActionParts) {
   const files = {
     /** An empty world; asks first when there are unsaved changes and `discard` is not given. */
-    newWorld: (options?: {discard?: boolean}) =>
-      options || !store.history.dirty ? ask('new', options ?? {}) : dialog('newWorld'),
+    async newWorld(options?: {discard?: boolean}): Promise<Outcome|void> {
+      if (!options && store.history.dirty) return dialog('newWorld');
+      const outcome = await ask('new', options ?? {});
+      if (outcome.ok) view()?.beginAnew();
+      return outcome;
+    },
     /** Opens a world; without a path asks which (a dialog). */
     open: (path?: string, options: {discard?: boolean} = {}) =>
       path ? ask('open', {path, ...options}, {quiet: true}) : dialog('open'),

@@ -443,6 +443,8 @@ export type AddShapeOperation = {
   uri?: string|null
 };
 
+export type CopyLinkOperation = {kind: 'copy_link', link: string, pose: pose};
+
 export type RenameLinkOperation = {kind: 'rename_link', link: string, to: string};
 
 export type AddJointOperation = {kind: 'add_joint', model: string, joint: Partial<Joint>};
@@ -471,9 +473,9 @@ export type GroupOperation = {kind: 'group', ops: Operation[], label?: string|nu
 
 export type Operation = InsertOperation|InsertLightOperation|DeleteOperation|MoveOperation|ScaleOperation|
   RenameOperation|SetOperation|PasteOperation|WrenchOperation|ResetOperation|JointOperation|
-  AddLinkOperation|AddShapeOperation|RenameLinkOperation|AddJointOperation|EditJointOperation|
-  AddModelOperation|SetPluginsOperation|AddSensorOperation|SetGroupOperation|RemovePartOperation|
-  ComputeInertialOperation|GroupOperation;
+  AddLinkOperation|AddShapeOperation|CopyLinkOperation|RenameLinkOperation|AddJointOperation|
+  EditJointOperation|AddModelOperation|SetPluginsOperation|AddSensorOperation|SetGroupOperation|
+  RemovePartOperation|ComputeInertialOperation|GroupOperation;
 
 export type ReplyPush = {
   type: 'reply', id: number, ok: boolean, value?: unknown|null, issues?: Issue[]|null

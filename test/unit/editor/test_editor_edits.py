@@ -97,6 +97,7 @@ EDITS = {
         "loops": [[[0, 0], [1, 0], [1, 1]], [[0.6, 0.2], [0.8, 0.2], [0.8, 0.4]]], "height": 0.1}},
     "add a collision": {"kind": "add_shape", "link": "a::link", "part": "collision",
                         "shape": "cone"},
+    "copy a link": {"kind": "copy_link", "link": "arm::tip", "pose": POSE},
     "rename a link": {"kind": "rename_link", "link": "arm::tip", "to": "hand"},
     "add a joint": {"kind": "add_joint", "model": "arm", "joint": {
         "type": "fixed", "parent": "world", "child": "base"}},

@@ -109,6 +109,21 @@ def test_what_refers_to_a_renamed_link_follows(case):
     made.browse(build)
 
 
+def test_a_copied_link_has_all_but_the_name_and_the_place(case):
+    made = case(arm("arm"))
+
+    async def build(browser):
+        for place in (at(0, 0, 2), at(0, 0, 3)):
+            reply = await browser.edit("copy_link", link="arm::tip", pose=place)
+        assert reply["name"] == "arm::tip_clone_0"
+        links = made.sim.models.get("arm").links
+        assert [link.name for link in links] == ["base", "tip", "tip_clone", "tip_clone_0"]
+        assert links[3].pose.position[2] == 3.0
+        assert links[3].collisions == links[1].collisions and links[3].inertial == links[1].inertial
+
+    made.browse(build)
+
+
 def test_joints_go_with_their_link(case):
     made = case(arm("arm"))
 

@@ -5,7 +5,8 @@ import {remembered} from '../ui/dom.js';
 import {add, length, scale, subtract} from '../pose.js';
 import {cornersOf} from './three_convert.js';
 import {readLink} from '../view_link.js';
-import type {GuiCamera, Model} from '../protocol.js';
+import {isGround} from '../selected_model.js';
+import type {GuiCamera} from '../protocol.js';
 import type {Vec3} from '../pose.js';
 import type {View} from '../camera_math.js';
 import type {ViewParts} from './view.js';
@@ -18,12 +19,11 @@ export type Configuration = View & {projection: 'perspective'|'orthographic', co
 export const savedConfiguration = (): Configuration|null => remembered.get('configuration', null);
 
 const FLIGHT = 500;
+/** The least distance from a light that is flown to, m. */
+const NEAR = 3;
 const TURN_FLIGHT = 1000;
 /** Whether the user has asked the system for less motion: views then change at once. */
 const calm = () => globalThis.matchMedia?.('(prefers-reduced-motion: reduce)').matches ?? false;
-/** Whether nothing is seen of a model but planes. */
-const isGround = (model: Model) =>
-  model.links.every((link) => link.visuals.every(({geometry}) => geometry.type === 'plane'));
 const WALK_SPEED = {ahead: 1, aside: 0.8};
 
 export class CameraRig {
@@ -147,6 +147,12 @@ export class CameraRig {
   flyTowards(point: Vec3) {
     const position = add(this.view.position, scale(subtract(point, this.view.position), 0.8));
     this.fly({...views.lookAt(this.view.position, point), position});
+  }
+
+  /** Flies near a point, and looks there from the present direction. */
+  flyNear(point: Vec3) {
+    const distance = Math.max(0.2 * length(subtract(point, this.view.position)), NEAR);
+    this.fly({...this.view, position: subtract(point, scale(views.forward(this.view), distance))});
   }
 
   /**
@@ -281,6 +287,12 @@ export class CameraRig {
   #takeCamera(camera: GuiCamera) {
     this.#home = views.fromPose(camera.pose);
     this.fly(this.#home);
+  }
+
+  /** Looks at the world as if it had just come. */
+  beginAnew() {
+    this.#world = '';
+    this.#openWorld();
   }
 
   /** A world that comes again, after a lost line say, is looked at as before. */

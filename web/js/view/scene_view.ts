@@ -260,11 +260,15 @@ export class View {
     this.#rig.flyToSide(side, centre);
   }
 
+  beginAnew() {
+    this.#rig.beginAnew();
+  }
+
   moveTo(name: string) {
     const box = this.#models.bounds(name);
     const pose = this.#models.shownPose(name);
     if (box) this.#rig.flyTo(box);
-    else if (pose) this.#rig.flyTowards(pose.slice(0, 3));
+    else if (pose) this.#rig.flyNear(pose.slice(0, 3));
   }
 
   /** Shows the inside of a model from above. */

@@ -53,9 +53,10 @@ export class Selector {
     return hit && !hit.plane ? hit : null;
   }
 
-  /** As `movable`; of the model that is being built, its link. */
+  /** What a drag moves, nothing behind a locked model; of the model that is being built, its link. */
   grasped(event: MousePoint) {
-    const hit = this.movable(event);
+    const nearest = this.under(event);
+    const hit = nearest && this.#store.overlay('locked', nearest.name) ? null : this.movable(event);
     const built = hit?.link && this.#store.modelEditing?.name === hit.name;
     return hit && built ? {...hit, name: `${hit.name}::${hit.link}`} : hit;
   }

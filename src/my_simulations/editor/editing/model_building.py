@@ -63,7 +63,8 @@ class ModelBuilding:
         return {"add_link": self._add_link, "add_shape": self._add_shape,
                 "add_joint": self._add_joint, "edit_joint": self._edit_joint,
                 "add_model": self._add_model, "remove_part": self._remove,
-                "rename_link": self._rename_link, "set_plugins": self._set_plugins,
+                "copy_link": self._copy_link, "rename_link": self._rename_link,
+                "set_plugins": self._set_plugins,
                 "add_sensor": self._add_sensor,
                 "compute_inertial": self._compute_inertial}
 
@@ -107,6 +108,13 @@ class ModelBuilding:
             return Mesh(uri=op["uri"], path=self._resolver.resolve(op["uri"]))
         except ResourceNotFoundError as missing:
             raise CommandError(str(missing)) from missing
+
+    def _copy_link(self, op: Dict[str, Any]) -> Planned:
+        model, link = self._link(op["link"])
+        name = free_name(f"{link.name}_clone", parts.part_names(model))
+        copied = replace(link, name=name, pose=self._in_model(model, _pose(op) or IDENTITY))
+        return self._edited(f"Copy {op['link']}", model,
+                            replace(model, links=[*model.links, copied]), f"{model.name}::{name}")
 
     def _rename_link(self, op: Dict[str, Any]) -> Planned:
         model, link = self._link(op["link"])
