@@ -9,17 +9,15 @@ from __future__ import annotations
 import math
 from typing import Any, Dict, List, Tuple
 
-from ...description.sensor import Sensor
 from ...geometry import compose, rpy_from_quat, scale
-from ...sensing.api import RayReturns
 from ...sensing.models.imu import measure
 from ...sensing.models.motion import acceleration_between, velocity_at
 from ..base import Plugin
 from ..context import PluginError, Publication
 from ..frames import prefixed, stamped
 from ..parameters import namespace_or
-from ..sensors.rays import fan_of
 from ..stepwise_change import StepwiseChange
+from .floor_rays import FloorRays, sensor_named
 from .odometry import Odometer, WheelRotations, planar
 from .wheels import VelocityCommand, WheelStates
 
@@ -30,7 +28,6 @@ _BITS = {"left": 4, "center": 2, "right": 1}    # in kobuki_msgs/SensorState
 _BUMPER_HEIGHT = (0.01, 0.13)                   # m above the base
 _SECTOR = math.pi / 6.0                         # half of a bumper's arc
 _READING, _READING_AT = 76123.0, 0.995          # of GazeboRosKobuki::updateCliffSensor
-_PATIENCE_NS = 10 ** 9                          # of sim time, for rays
 
 
 class Kobuki(Plugin):
@@ -45,7 +42,7 @@ class Kobuki(Plugin):
         self._separation = _needed_number(p, "wheel_separation")
         self._radius = _needed_number(p, "wheel_diameter") / 2.0
         self._torque = _needed_number(p, "torque")
-        self._imu_link, self._imu = self._sensor(_needed(p, "imu_name"))
+        self._imu_link, self._imu = sensor_named(context, _needed(p, "imu_name"))
         # Gazebo's ImuSensor reports orientations relative to the one at loading.
         self._reference = compose(context.link(self._imu_link).pose, self._imu.pose).orientation
         self._odometer = Odometer(context, "odom", "odom", "base_footprint", _COVARIANCE)
@@ -67,9 +64,6 @@ class Kobuki(Plugin):
         context.observe(hertz, self.publish, transforms=self._broadcasts, remembers=True, topics=[
             *self._states.topics, *self._odometer.topics, self._imu_topic])
         self._events.follow(hertz)
-
-    def _sensor(self, name: str) -> Tuple[str, Sensor]:
-        return sensor_named(self, name)
 
     def power(self, on: bool) -> None:
         self._powered = on
@@ -158,17 +152,17 @@ class KobukiEvents:
     def __init__(self, base: Kobuki, prefix: str) -> None:
         self._context, p = base.context, base.context.parameters
         context = self._context
-        self._cliffs = {side: sensor_named(base, _needed(p, f"cliff_sensor_{side}_name"))
-                        for side in _SIDES}
+        self._rays = FloorRays(
+            context, {side: sensor_named(context, _needed(p, f"cliff_sensor_{side}_name"))
+                      for side in _SIDES}, self._receive_cliffs)
         self._edge = _needed_number(p, "cliff_detection_threshold")
-        self._bumper = sensor_named(base, _needed(p, "bumper_name"))[0]
-        self._drops = {side: sensor_named(base, _needed(p, f"wheel_drop_{side}_sensor_name"))[0]
+        self._bumper = sensor_named(context, _needed(p, "bumper_name"))[0]
+        self._drops = {side: sensor_named(context, _needed(p, f"wheel_drop_{side}_sensor_name"))[0]
                        for side in ("left", "right")}
         self._pressed: Dict[str, bool] = dict.fromkeys(_SIDES, False)
         self._over: Dict[str, bool] = dict.fromkeys(_SIDES, False)
         self._dropped: Dict[str, bool] = dict.fromkeys(self._drops, False)
         self._bottoms = dict.fromkeys(_SIDES, 0)
-        self._next_cast_ns = 0
         self._topics: Dict[str, Publication] = {}
         try:
             context.subscribe(f"{prefix}/commands/motor_power", "kobuki_msgs/MotorPower",
@@ -182,14 +176,14 @@ class KobukiEvents:
 
     def clock_set(self) -> None:
         """What was asked belongs to another time."""
-        self._next_cast_ns = 0
+        self._rays.clock_set()
 
     def follow(self, hertz: float) -> None:
         """Publish at a rate in Hz while there are subscribers."""
         if not self._topics:
             return
         cliff, core = self._topics["events/cliff"], self._topics["sensors/core"]
-        self._context.observe(hertz, self._update_cliffs, [cliff, core], world=True)
+        self._context.observe(hertz, self._rays.cast, [cliff, core], world=True)
         self._context.observe(
             hertz, self.update, [self._topics["events/bumper"], self._topics["events/wheel_drop"],
                                  core], resume=self._resume, contacts=True)
@@ -212,13 +206,6 @@ class KobukiEvents:
         touching = {name for one, other, _ in contacts for name in (one, other)}
         return self._bumps(contacts), {side: f"{model}::{link}" not in touching
                                        for side, link in self._drops.items()}
-
-    def _update_cliffs(self) -> None:
-        """Cast the rays again, once those before have been answered."""
-        now = self._context.now_ns
-        if now >= self._next_cast_ns:
-            self._next_cast_ns = now + _PATIENCE_NS
-            self._cast_cliff_rays(list(_SIDES), {})
 
     def _publish_state(self) -> None:
         core = self._topics["sensors/core"]
@@ -244,22 +231,11 @@ class KobukiEvents:
                 found["left" if angle > 0.0 else "right"] = True
         return found
 
-    def _cast_cliff_rays(self, sides: List[str], found: Dict[str, bool]) -> None:
-        if not sides:
-            self._next_cast_ns = 0
-            self._change("events/cliff", "sensor", "CliffEvent", self._over, found)
-            return
-        link, sensor = self._cliffs[sides[0]]
-        if sensor.ray is None:
-            raise PluginError(f"sensor '{sensor.name}' has no <ray>")
-
-        def seen(returns: RayReturns, ns: int) -> None:
-            first = float(returns.ranges.flat[0])
-            found[sides[0]] = not first < self._edge   # nothing below is a cliff
-            self._bottoms[sides[0]] = _adc_value(first)
-            self._cast_cliff_rays(sides[1:], found)
-
-        self._context.scan(fan_of(sensor.ray), False, seen, (link, sensor.pose))
+    def _receive_cliffs(self, distances: Dict[str, float]) -> None:
+        self._bottoms = {side: _adc_value(distance) for side, distance in distances.items()}
+        self._change("events/cliff", "sensor", "CliffEvent", self._over,
+                     # nothing below is a cliff
+                     {side: not distance < self._edge for side, distance in distances.items()})
 
     def _change(self, topic: str, field: str, kind: str, known: Dict[str, bool],
                 now: Dict[str, bool]) -> None:
@@ -281,14 +257,6 @@ class KobukiEvents:
         message.cliff = sum(_BITS[side] for side, on in self._over.items() if on)
         message.wheel_drop = (2 if self._dropped["left"] else 0) + self._dropped["right"]
         return message
-
-
-def sensor_named(base: Kobuki, name: str) -> Tuple[str, Sensor]:
-    """A sensor of the model, and its link. Raises PluginError."""
-    for link, sensor in base.context.sensors():
-        if sensor.name == name:
-            return link, sensor
-    raise PluginError(f"the model has no sensor '{name}'")
 
 
 def _adc_value(distance: float) -> int:
