@@ -64,6 +64,7 @@ BUILT_IN: Mapping[str, str] = {
     "libWindPlugin.so": "world.wind:Wind",
     "libgazebo_ros_f3d.so": "state.f3d:F3d",
     "libJointControlPlugin.so": "state.joint_control:JointControl",
+    "libgazebo_ros_create.so": "drive.create:Create",
     "libgazebo_ros_kobuki.so": "drive.kobuki:Kobuki",
     "libunitreeFootContactPlugin.so": "sensors.foot_contact:FootContact",
     "libLiftDragPlugin.so": "world.lift_drag:LiftDrag",
