@@ -55,6 +55,15 @@ JointTolerance: string name; float64 position; float64 velocity; float64 acceler
 JointTrajectoryControllerState: Header header; string[] joint_names;
     trajectory_msgs/JointTrajectoryPoint desired; trajectory_msgs/JointTrajectoryPoint actual;
     trajectory_msgs/JointTrajectoryPoint error
+PointHeadAction: PointHeadActionGoal action_goal; PointHeadActionResult action_result;
+    PointHeadActionFeedback action_feedback
+PointHeadActionFeedback: Header header; actionlib_msgs/GoalStatus status; PointHeadFeedback feedback
+PointHeadActionGoal: Header header; actionlib_msgs/GoalID goal_id; PointHeadGoal goal
+PointHeadActionResult: Header header; actionlib_msgs/GoalStatus status; PointHeadResult result
+PointHeadFeedback: float64 pointing_angle_error
+PointHeadGoal: geometry_msgs/PointStamped target; geometry_msgs/Vector3 pointing_axis; string
+    pointing_frame; duration min_duration; float64 max_velocity
+PointHeadResult:
 QueryTrajectoryStateRequest: time time
 QueryTrajectoryStateResponse: string[] name; float64[] position; float64[] velocity; float64[]
     acceleration

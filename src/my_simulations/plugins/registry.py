@@ -34,6 +34,7 @@ BUILT_IN: Mapping[str, str] = {
     "libwpr_plugin.so": "drive.force_based_move:WprForceBasedMove",
     "libgazebo_ros_joint_state_publisher.so": "state.joint_state_publisher:JointStatePublisher",
     "libgazebo_ros_control.so": "control.gazebo_ros_control:GazeboRosControl",
+    "libfetch_gazebo_plugin.so": "control.fetch:FetchGazebo",
     "libhwi_switch_gazebo_ros_control.so": "control.hwi_switch:HwiSwitchGazeboRosControl",
     "libgazebo_ros_p3d.so": "state.p3d:P3d",
     "libgazebo_world_odometry.so": "state.world_odometry:PalWorldOdometry",

@@ -36,6 +36,10 @@ class JointTrajectory(Controller):
 
     interface = ""
 
+    @property
+    def action_name(self) -> str:
+        return f"{self.name}/follow_joint_trajectory"
+
     def load(self) -> None:
         s = self.settings
         self._names = s.texts("joints")
@@ -66,8 +70,8 @@ class JointTrajectory(Controller):
         self.subscribe("command", "trajectory_msgs/JointTrajectory", self._receive,
                        checks=True)
         self._state = self.publish("state", "control_msgs/JointTrajectoryControllerState")
-        self._action = ActionServer(self.context, f"{self.name}/follow_joint_trajectory", _ACTION,
-                                    self._start_goal, self._cancelled)
+        self._action = ActionServer(self.context, self.action_name, _ACTION, self._start_goal,
+                                    self._cancelled)
         self.keep(self._action)
         self.serve("query_state", "control_msgs/QueryTrajectoryState", self._query)
 

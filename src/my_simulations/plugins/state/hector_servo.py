@@ -5,6 +5,7 @@ Source: hector_gazebo_plugins, servo_plugin.cpp. The loops run in the physics en
 """
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 from typing import Any, List, Optional, Tuple
 
@@ -34,13 +35,11 @@ class HectorServo(Plugin):
         if axes not in (*_X_FIRST, *_Z_FIRST):
             raise PluginError("the axes of its servos must be y, x y, z y, x y z or z y x")
         self._z_first, self._is_single = axes in _Z_FIRST, len(axes) == 1
-        # The default of 0 means no limit: Gazebo sets the velocities of joints directly.
         rate, torque = p.number("maxVelocity", 0.0), p.number("torque", 0.0)
-        limits = {key: value for key, value in (("most_rate", rate), ("most_effort", torque))
-                  if value > 0.0}
         self._gains = PidGains(p.number("proportionalControllerGain", 8.0),
                                d=p.number("derivativeControllerGain", 0.0))
-        self._servo = JointServo(0, "velocity", by_rates=True, **limits)
+        self._servo = JointServo(0, "velocity", by_rates=True, most_rate=_or_unlimited(rate),
+                                 most_effort=_or_unlimited(torque))
         topic = p.text("topicName", "drive")
         if topic:
             context.subscribe(topic, "geometry_msgs/QuaternionStamped",
@@ -115,3 +114,8 @@ class HectorServo(Plugin):
         message.velocity = [joint.velocity for joint in self._joints]
         message.effort = self.context.efforts(message.name)
         self._states.publish(message)
+
+
+def _or_unlimited(limit: float) -> float:
+    """A limit; 0, the default, is none: Gazebo sets the velocities of joints directly."""
+    return limit if limit > 0.0 else math.inf
