@@ -110,6 +110,7 @@ def unknown_plugins(loaded: Loaded) -> List[Issue]:
         specs += loaded.plugins
     if not specs:
         return []
+    from ..plugins.missing_plugins import missing_plugin
     from ..plugins.registry import PluginRegistry, library_name
     from ..plugins.without_effect import no_effect_note
     from ..resources.ros_packages import PackageIndex
@@ -119,10 +120,10 @@ def unknown_plugins(loaded: Loaded) -> List[Issue]:
     for spec in specs:
         library = library_name(spec.filename)
         if library not in unknown and not registry.is_supported(spec.filename):
+            reason, hint = missing_plugin(library)
             unknown[library] = no_effect_note(spec) or Issue(
-                Severity.NOTE, "not-simulated", f"<plugin {spec.name}> has no effect: there is no"
-                f" plugin for {library or 'a library without a name'}", spec.file, spec.line,
-                hint="a package can bring one: see doc/plugins.md")
+                Severity.NOTE, "not-simulated", f"<plugin {spec.name}> has no effect: {reason}",
+                spec.file, spec.line, hint=hint)
     return list(unknown.values())
 
 

@@ -10,6 +10,7 @@ from .call_watch import CallLimits
 from .found_plugins import FoundPlugin
 from .isolated.isolated_plugin import IsolatedPlugin
 from .isolated.plugin_process import PluginProcesses
+from .missing_plugins import missing_plugin
 from .registry import (
     PluginRegistry,
     UnknownPluginError,
@@ -89,4 +90,5 @@ class PluginLoader:
 def _unknown(found: FoundPlugin, entity: Entity, text: str) -> Issue:
     return warning("plugin-unknown", f"{text}; '{found.spec.name}' of model"
                    f" '{entity.model.name}' does nothing", file=found.spec.file,
-                   line=found.spec.line, hint="a package can bring one: see doc/plugins.md")
+                   line=found.spec.line,
+                   hint=missing_plugin(library_name(found.spec.filename))[1])

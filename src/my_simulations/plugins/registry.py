@@ -17,6 +17,7 @@ from typing import Callable, Dict, Iterable, List, Mapping, Optional, Type
 from ..errors import SimulationError
 from .base import Plugin
 from .context import PluginError
+from .missing_plugins import missing_plugin
 
 BUILT_IN: Mapping[str, str] = {
     "libgazebo_ros_diff_drive.so": "drive.diff_drive:DiffDrive",
@@ -181,7 +182,7 @@ class PluginRegistry:
         if where is None:
             where = self._of_packages().get(name)
         if where is None:
-            raise UnknownPluginError(f"there is no plugin for {name or 'a library without a name'}")
+            raise UnknownPluginError(missing_plugin(name)[0])
         return where
 
     def _of_packages(self) -> Dict[str, str]:

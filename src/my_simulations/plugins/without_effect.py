@@ -9,8 +9,8 @@ from .registry import library_name
 
 _REASONS: Mapping[str, str] = {
     "it only draws in Gazebo's own window, or takes input from it":
-        "CessnaGUIPlugin HeightmapLODPlugin KeyboardGUIPlugin LinkPlot3DPlugin LookAtDemoPlugin "
-        "TimerGUIPlugin unitreeDrawForcePlugin",
+        "CessnaGUIPlugin HeightmapLODPlugin KeyboardGUIPlugin LightVisualPlugin LinkPlot3DPlugin "
+        "LookAtDemoPlugin TimerGUIPlugin unitreeDrawForcePlugin",
     "the lights stay as the file sets them": "FlashLightPlugin RosFlashLightPlugin LedPlugin",
     "pictures have no lens flare": "LensFlareSensorPlugin",
     "it publishes on topics of Gazebo's own transport, or only prints":

@@ -268,6 +268,15 @@ def test_a_plugin_without_effect_is_noted_with_the_reason(tmp_path):
     assert issue.message.endswith("has no effect: the lights stay as the file sets them")
 
 
+def test_a_library_without_a_substitute_is_noted_with_the_reason_and_the_alternative(tmp_path):
+    path = tmp_path / "robot.sdf"
+    path.write_text(sdf("<model name='m'><static>1</static><link name='l'/>"
+                        "<plugin name='p' filename='libgazebo_ros_projector.so'/></model>"))
+    (issue,) = check(str(path), Resolver())[1]
+    assert issue.message.endswith("libgazebo_ros_projector.so: patterns are not projected")
+    assert "libgazebo_ros_openni_kinect.so" in issue.hint
+
+
 PLACES = ("<model name='m'><link name='l'/>{}</model>",
           "<model name='m'><model name='n'><link name='l'/>{}</model></model>",
           "<model name='m'><link name='l'><sensor name='s' type='ray'><ray/>{}</sensor></link>"

@@ -154,6 +154,13 @@ def test_an_unknown_library_is_one_warning_that_names_it(case):
     assert "libmystery.so" in issue.message and issue.line == 12
 
 
+def test_a_well_known_library_without_a_substitute_has_a_reason_and_an_alternative(case):
+    one = case(robot("a", "<plugin/>", "libgazebo_ros_controller_manager.so"))
+    (issue,) = [issue for issue in one.issues if issue.code == "plugin-unknown"]
+    assert "libgazebo_ros_controller_manager.so: the controllers of PR2 are" in issue.message
+    assert "libgazebo_ros_control.so" in issue.hint
+
+
 @pytest.mark.parametrize("library, reason", [
     ("libKeyboardGUIPlugin.so", "Gazebo's own window"),
     ("libFlashLightPlugin.so", "the lights stay as the file sets them"),
