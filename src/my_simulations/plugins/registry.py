@@ -50,6 +50,7 @@ BUILT_IN: Mapping[str, str] = {
     "libgazebo_mimic_joint_plugin.so": "state.mimic_joint:MimicJoint",
     "libleo_gazebo_differential_plugin.so": "state.joint_springs:Differential",
     "libwarthog_suspension_plugin.so": "state.joint_springs:WarthogSuspension",
+    "libgazebo_ros_power_monitor.so": "state.power_monitor:PowerMonitor",
     "libhector_servo_plugin.so": "state.hector_servo:HectorServo",
     "libInitialVelocityPlugin.so": "state.initial_velocity:InitialVelocity",
     "libRandomVelocityPlugin.so": "state.random_velocity:RandomVelocity",
