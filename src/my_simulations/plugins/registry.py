@@ -128,7 +128,7 @@ PROVIDED = ("libgazebo_ros_api_plugin.so", "libgazebo_ros_paths_plugin.so",
             "libroboticsgroup_gazebo_disable_link_plugin.so",
             "libroboticsgroup_upatras_gazebo_disable_link_plugin.so",
             "libgazebo_ros_template.so", "librotors_gazebo_ros_interface_plugin.so",
-            "libpegasus_gazebo_closed_loop_plugin.so")
+            "libpegasus_gazebo_closed_loop_plugin.so", "libActorPlugin.so")
 """What these libraries do, the simulator itself does, or it is nothing here."""
 
 _EXPORT = re.compile(r"<my_simulations\b([^>]*)>")

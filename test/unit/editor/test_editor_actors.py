@@ -4,6 +4,7 @@ from __future__ import annotations
 import pytest
 
 from my_simulations.description.actor import Actor, Animation, Trajectory, Waypoint
+from my_simulations.description.plugin import PluginSpec
 from my_simulations.editor.scene.scene_json import Documents
 from my_simulations.editor.transport.http_pages import Pages
 from my_simulations.editor.transport.protocol import Protocol
@@ -69,3 +70,11 @@ def test_the_files_of_animations_are_served_too(documents, tmp_path):
     assert first["name"] == "walk" and first["geometry"]["url"].endswith("/man.dae")
     assert second["geometry"]["url"].endswith("/run.bvh")
     assert second["geometry"]["format"] == "bvh"
+
+
+def test_an_actor_with_actor_plugin_is_told_with_the_script_of_its_walk(documents):
+    found = told(documents, Actor(
+        "man", animations=[Animation("walking")],
+        plugins=[PluginSpec("walk", "libActorPlugin.so", "<plugin/>")]))
+    (trajectory,) = found["trajectories"]
+    assert trajectory["type"] == "walking" and len(trajectory["waypoints"]) > 100
