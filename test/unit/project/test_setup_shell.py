@@ -33,8 +33,8 @@ def make_clone(folder):
         (folder / name / "ours").write_text("ours")
         (folder / name / "both").write_text("ours")
     for name in (*CONTROL, "four_wheel_steering_msgs", "gazebo_msgs", "gazebo_ros",
-                 "my_simulations_msgs", "my_simulations_underlay", "teleop_twist_keyboard",
-                 "unitree_legged_msgs", "xacro"):
+                 "joint_state_controller", "my_simulations_msgs", "my_simulations_underlay",
+                 "teleop_twist_keyboard", "unitree_legged_msgs", "xacro"):
         make_package(folder / "compat" / name, name)
     make_package(folder, "my_simulations")
     return folder
@@ -174,8 +174,8 @@ def test_overlay_puts_ours_beside_the_users_package_and_touches_neither(clone, t
     assert done.returncode == 0, done.stderr
     source = home / "simulation_ws" / "src"
     assert sorted(path.name for path in source.iterdir()) == [
-        *CONTROL, "gazebo_msgs", "gazebo_ros", "my_simulations", "my_simulations_msgs",
-        "my_simulations_underlay", "teleop_twist_keyboard", "xacro"]
+        *CONTROL, "gazebo_msgs", "gazebo_ros", "joint_state_controller", "my_simulations",
+        "my_simulations_msgs", "my_simulations_underlay", "teleop_twist_keyboard", "xacro"]
     assert (source / "my_simulations_underlay").resolve() == \
         clone / "compat" / "my_simulations_underlay"
     assert [path.name for path in foreign.iterdir()] == ["package.xml"]
@@ -267,8 +267,8 @@ def linked(clone, home, script="", **variables):
 
 def test_companions_are_linked_where_nothing_is_installed(clone, tmp_path):
     assert linked(clone, tmp_path / "home") == [
-        *CONTROL, "gazebo_msgs", "gazebo_ros", "my_simulations", "my_simulations_msgs",
-        "teleop_twist_keyboard", "xacro"]
+        *CONTROL, "gazebo_msgs", "gazebo_ros", "joint_state_controller", "my_simulations",
+        "my_simulations_msgs", "teleop_twist_keyboard", "xacro"]
 
 
 def test_messages_of_few_robots_are_linked_where_a_package_speaks_of_them(clone, tmp_path):
@@ -294,16 +294,16 @@ def test_real_packages_are_preferred_to_the_companions(clone, tmp_path):
     for name in ("gazebo_msgs", "gazebo_ros"):
         make_package(share / name, name)
     found = linked(clone, tmp_path / "home", ROS_PACKAGE_PATH=str(share))
-    assert found == [*CONTROL, "my_simulations", "my_simulations_msgs", "teleop_twist_keyboard",
-                     "xacro"]
+    assert found == [*CONTROL, "joint_state_controller", "my_simulations", "my_simulations_msgs",
+                     "teleop_twist_keyboard", "xacro"]
 
 
 def test_real_package_in_the_workspace_is_preferred_too(clone, tmp_path):
     home = tmp_path / "home"
     make_package(home / "simulation_ws" / "src" / "gazebo" / "gazebo_msgs", "gazebo_msgs")
     assert linked(clone, home) == [
-        *CONTROL, "gazebo", "gazebo_ros", "my_simulations", "my_simulations_msgs",
-        "teleop_twist_keyboard", "xacro"]
+        *CONTROL, "gazebo", "gazebo_ros", "joint_state_controller", "my_simulations",
+        "my_simulations_msgs", "teleop_twist_keyboard", "xacro"]
 
 
 @pytest.mark.parametrize("how", ["option", "variable"])
@@ -314,8 +314,8 @@ def test_real_gazebo_ros_can_be_overridden(clone, tmp_path, how):
     script = "common_option --use-companions" if how == "option" else ""
     more = {"MY_SIMULATIONS_OVERRIDE_GAZEBO_ROS": "1"} if how == "variable" else {}
     found = linked(clone, tmp_path / "home", script, ROS_PACKAGE_PATH=str(share), **more)
-    assert found == [*CONTROL, "gazebo_ros", "my_simulations", "my_simulations_msgs",
-                     "teleop_twist_keyboard", "xacro"]
+    assert found == [*CONTROL, "gazebo_ros", "joint_state_controller", "my_simulations",
+                     "my_simulations_msgs", "teleop_twist_keyboard", "xacro"]
 
 
 def test_companion_goes_with_its_build_once_a_real_one_is_installed(clone, tmp_path):
@@ -325,8 +325,8 @@ def test_companion_goes_with_its_build_once_a_real_one_is_installed(clone, tmp_p
     built.mkdir(parents=True)
     make_package(tmp_path / "share" / "gazebo_msgs", "gazebo_msgs")
     found = linked(clone, home, ROS_PACKAGE_PATH=str(tmp_path / "share"))
-    assert found == [*CONTROL, "gazebo_ros", "my_simulations", "my_simulations_msgs",
-                     "teleop_twist_keyboard", "xacro"]
+    assert found == [*CONTROL, "gazebo_ros", "joint_state_controller", "my_simulations",
+                     "my_simulations_msgs", "teleop_twist_keyboard", "xacro"]
     assert not built.exists()
 
 
