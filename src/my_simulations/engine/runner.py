@@ -54,7 +54,7 @@ from .timed_forces import AddTimedForces
 
 _BURST_S = 0.0008        # bursts between two looks at the commands
 _MAX_LAG_S = 0.2        # a world that is later than this has given up the rest
-_IDLE_S = 2.0            # heartbeat while paused
+_IDLE_S = 2.0            # heartbeat while paused, or while the next step is far off
 _SYNC_S = 0.02           # between two looks at the budget while the host works; it notifies earlier
 _SHARE_ON_TIME = 0.25    # of the wall time for read-outs that no reader waits for, if on schedule
 _SHARE_LATE = 0.02       # the same while late or unthrottled
@@ -309,7 +309,7 @@ class Runner:
         now = time.perf_counter()
         wait = self._due - now
         if wait > 0.0:
-            if self._serve(wait):
+            if self._serve(min(wait, _IDLE_S)):
                 return
             now = time.perf_counter()
             if self._due > now:

@@ -26,8 +26,9 @@ from my_simulations.engine.commands import (
     SetModelState,
     SetPhysics,
 )
-from my_simulations.engine.ring import DEMAND_NS, LATEST_POSES, POSE_DEMAND_NS
+from my_simulations.engine.ring import DEMAND_NS, HEARTBEAT, LATEST_POSES, POSE_DEMAND_NS
 from my_simulations.geometry import Pose, Twist
+from my_simulations.simulator.watchdog import _STALL_S
 
 WAIT = 60.0
 
@@ -77,6 +78,25 @@ def test_it_stops_exactly_at_the_horizon_and_shows_it_in_a_snapshot(engine):
         until(lambda horizon=horizon: engine.ring.read().step >= horizon)
         assert engine.ring.read().step == engine.ring.step == horizon
         assert ask(engine, Ping()).step == horizon
+
+
+@pytest.mark.parametrize("rate", [1e-3, 5e-324])
+def test_between_the_steps_of_a_slow_rate_it_gives_signs_of_life(engine, rate):
+    waits = []
+    receive = engine._channel.receive
+
+    def noting(timeout):
+        waits.append(timeout)
+        return receive(min(timeout, 0.01))
+
+    engine._channel.receive = noting
+    ask(engine, SetPhysics(PhysicsSettings(rate=rate)))
+    ask(engine, Run())
+    until(lambda: engine.ring.step == 1)
+    beat = engine.ring.words[HEARTBEAT]
+    until(lambda: engine.ring.words[HEARTBEAT] > beat + 1)
+    assert 0.0 < max(waits) < _STALL_S / 2
+    assert engine.ring.step == 1
 
 
 def test_a_pause_stops_after_the_running_step_and_is_shown_in_the_ring(engine):
