@@ -166,7 +166,10 @@ def _load_image(level: Level, folder: str, issues: List[Issue]) -> None:
     assert level.image is not None
     name = os.path.basename(level.image.file)
     try:
-        with open(os.path.join(folder, name), "rb") as stream:
+        path = os.path.join(folder, name)
+        if not os.path.isfile(path):   # a named pipe may have no writer
+            raise FileNotFoundError(errno.ENOENT, os.strerror(errno.ENOENT))
+        with open(path, "rb") as stream:
             content = at_most(stream, LARGEST_IMAGE)
         kind = image_kind(content, name)
     except (OSError, InputError) as fault:

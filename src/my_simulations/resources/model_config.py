@@ -62,6 +62,6 @@ def _only_description(folder: str) -> Optional[str]:
         return usual
     for extension in (".sdf", ".urdf"):
         found = [name for name in os.listdir(folder) if name.lower().endswith(extension)]
-        if len(found) == 1:
+        if len(found) == 1 and os.path.isfile(os.path.join(folder, found[0])):
             return os.path.join(folder, found[0])
     return None

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import copy
 import os
+import stat
 from typing import Callable, Iterator, List, Optional, Protocol, Sequence, Tuple, Type, TypeVar
 
 from ..errors import ResourceError
@@ -203,7 +204,8 @@ class Resolver:
             base_dir: folder of the file that contains the URI; "" for none.
 
         Raises:
-            ResourceNotFoundError: the file does not exist.
+            ResourceNotFoundError: the file does not exist, or is a device or a named pipe, whose
+                reader might wait forever.
         """
         uri = uri.strip()
         if not uri or uri == "__default__":
@@ -212,7 +214,7 @@ class Resolver:
             return self._from_fuel(uri)
         tried: List[str] = []
         for candidate in self._candidates(uri, base_dir):
-            if os.path.exists(candidate):
+            if _is_file_or_folder(candidate):
                 return os.path.abspath(candidate)
             if candidate not in tried:
                 tried.append(candidate)
@@ -239,13 +241,15 @@ class Resolver:
                 path = os.path.join(self._missing.provide(name), inside)
             except ModelNotProvidedError as fault:
                 raise ResourceNotFoundError(uri, [*tried, str(fault)]) from None
-            if os.path.exists(path):
+            if _is_file_or_folder(path):
                 return os.path.abspath(path)
             tried.append(path)
         here = self.replaced_home(uri)
         if here:
             return self.resolve(here)
-        raise ResourceNotFoundError(uri, tried)
+        special = next(filter(os.path.exists, tried), "")
+        raise ResourceNotFoundError(uri, tried, f"{special} is neither a file nor a folder"
+                                    if special else "")
 
     def replaced_home(self, uri: str) -> str:
         """`model://NAME/…` for a path `…/.gazebo/models/NAME/…` that does not exist.
@@ -349,6 +353,14 @@ class Resolver:
         if self._late is None:
             self._late = self._exported()
         yield from self._late.models if kind == "models" else self._late.media
+
+
+def _is_file_or_folder(path: str) -> bool:
+    try:
+        mode = os.stat(path).st_mode
+    except (OSError, ValueError):   # ValueError: a null character
+        return False
+    return stat.S_ISREG(mode) or stat.S_ISDIR(mode)
 
 
 def _searched(uri: str, tried: Sequence[str]) -> str:

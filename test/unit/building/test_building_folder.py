@@ -233,11 +233,13 @@ def test_a_picture_of_another_folder_is_refused():
         save(plan)
 
 
-def test_a_lost_picture_is_mentioned_and_the_plan_opened():
+@pytest.mark.parametrize("replace", [lambda path: None, os.mkfifo])
+def test_a_lost_picture_is_mentioned_and_the_plan_opened(replace):
     plan = two_rooms()
     plan.levels[0].image = FloorImage("scan", 100.0, data_url(picture()))
     path = save(plan)["path"]
     os.unlink(os.path.join(path, "floor_plan_1.png"))
+    replace(os.path.join(path, "floor_plan_1.png"))
     loaded = building_load(path)
     assert codes(loaded["issues"]) == ["image-unreadable"]
     assert len(loaded["plan"]["levels"][0]["walls"]) == 5

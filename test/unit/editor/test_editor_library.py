@@ -5,6 +5,7 @@ import asyncio
 import http.server
 import io
 import json
+import os
 import tarfile
 import threading
 
@@ -64,6 +65,20 @@ def test_models_are_listed_by_location_with_their_titles(case, tmp_path, monkeyp
         for uri in ("model://nix", "/etc/passwd", "http://example.org/x"):
             with pytest.raises(Refused):
                 await browser.ask("library_get", uri=uri)
+
+    made.browse(look)
+
+
+def test_a_pipe_without_a_writer_does_not_stop_the_list(case, tmp_path, monkeypatch):
+    (tmp_path / "paths" / "piped").mkdir(parents=True)
+    os.mkfifo(tmp_path / "paths" / "piped" / "model.config")
+    model_folder(tmp_path / "paths", "thing", "A thing")
+    monkeypatch.setenv("GAZEBO_MODEL_PATH", str(tmp_path / "paths"))
+    made = case()
+
+    async def look(browser):
+        found = location(await browser.ask("library"), "environment")
+        assert "A thing" in [one["title"] for one in found["models"]]
 
     made.browse(look)
 

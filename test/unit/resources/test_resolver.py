@@ -35,6 +35,22 @@ def test_a_model_uri_is_looked_for_in_the_model_paths_in_their_order(resolver, t
     assert found(resolver, "model://lamp/b.dae", tree) == "second/lamp/b.dae"
 
 
+def test_devices_and_pipes_are_not_read(resolver, tree):
+    os.mkfifo(tree / "first" / "crate" / "pipe.stl")
+    for uri, path in (("model://crate/pipe.stl", "first/crate/pipe.stl"),
+                      (f"file://{tree}/first/crate/pipe.stl", "first/crate/pipe.stl"),
+                      ("/dev/zero", "/dev/zero")):
+        with pytest.raises(ResourceNotFoundError,
+                           match=f"{tree / path} is neither a file nor a folder"):
+            resolver.resolve(uri)
+
+
+def test_a_pipe_in_a_model_folder_is_not_its_description(tmp_path):
+    os.mkfifo(tmp_path / "model.config")
+    os.mkfifo(tmp_path / "model.sdf")
+    assert description_in(str(tmp_path)) is None
+
+
 def test_a_model_uri_may_name_a_package(resolver, tree):
     assert found(resolver, "model://pkg/meshes/c.dae", tree) == "pkg/meshes/c.dae"
 

@@ -1,6 +1,7 @@
 """The model library: models in folders and Fuel caches of this machine, and in the database."""
 from __future__ import annotations
 
+import contextlib
 import hashlib
 import json
 import os
@@ -220,14 +221,12 @@ class Library:
 
     def _described(self, path: str, name: str, changed: float, uri: str) -> Dict[str, Any]:
         text = ""
-        for config in _CONFIGS:
-            try:
-                with open(os.path.join(path, config), encoding="utf-8",
-                          errors="replace") as stream:
+        for file in (os.path.join(path, config) for config in _CONFIGS):
+            if os.path.isfile(file):   # a named pipe may have no writer
+                with contextlib.suppress(OSError), open(file, encoding="utf-8",
+                                                        errors="replace") as stream:
                     text = stream.read(_LARGEST_CONFIG)
-                break
-            except OSError:
-                continue
+                    break
         uri = uri or self._uri(path, name)
         return {"uri": uri, "name": name, "title": _element(text, "name") or name,
                 "description": _element(text, "description"),
