@@ -137,8 +137,9 @@ _TABLE: Tuple[Tuple[str, Tuple[Tuple[str, str, str, str], ...]], ...] = (
         ("include-empty", ERROR, "The included file contains no model and no light.",
          "Correct the URI."),
         ("include-cycle", ERROR, "Models include each other in a cycle.", "Remove one include."),
-        ("model-too-large", ERROR, "The model has more links, nested models, collisions, triangles "
-         "or pairs of links than a model may have.", "Divide it, or use simpler collisions."),
+        ("model-too-large", ERROR, "The model has more links, nested models, plugins, "
+         "collisions, triangles or pairs of links than a model may have.",
+         "Divide it, or use simpler collisions."),
         ("world-too-large", ERROR, "The models of the world together exceed a limit; the rest is "
          "skipped.", "Remove models, or use simpler ones."),
         ("include-many", ERROR, "The model has more includes than a model may have.",

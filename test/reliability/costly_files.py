@@ -57,6 +57,13 @@ def boxes_at_one_place(_folder: str, count: int = 2000) -> str:
     return _SDF.format(_model("attack", f"<self_collide>1</self_collide>{links}"))
 
 
+def many_plugins(_folder: str, count: int = 1000) -> str:
+    """A model of many plugins, each with a topic of its own."""
+    plugins = "".join(f"<plugin name='p{n}' filename='libgazebo_ros_p3d.so'><bodyName>l</bodyName>"
+                      f"<topicName>t{n}</topicName></plugin>" for n in range(count))
+    return _SDF.format(_model("attack", f"<link name='l'/>{plugins}"))
+
+
 def one_large_face(folder: str, count: int = 1_900_000) -> str:
     """An OBJ file with one face of many indices."""
     path = _write(os.path.join(folder, "face.obj"), iter(
@@ -187,6 +194,7 @@ ATTACKS: Dict[str, Callable[[str], str]] = {
     "20 000 boxes in a moving link": moving_boxes_of_one_link,
     "2000 links with boxes": separate_boxes,
     "2000 overlapping links": boxes_at_one_place,
+    "1000 plugins": many_plugins,
     "OBJ face of 1.9 M indices": one_large_face,
     "STL of 2 M triangles": many_triangles,
     "STL that declares 40 M triangles": declared_triangles,

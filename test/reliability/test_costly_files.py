@@ -19,6 +19,7 @@ OUTCOMES = {
     "20 000 boxes in a moving link": LARGE,
     "2000 links with boxes": LARGE,
     "2000 overlapping links": LARGE,
+    "1000 plugins": LARGE,
     "OBJ face of 1.9 M indices": SKIPPED,
     "STL of 2 M triangles": "built",
     "STL that declares 40 M triangles": SKIPPED,

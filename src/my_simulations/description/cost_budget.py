@@ -11,6 +11,7 @@ from typing import Any, Dict, Iterator, List, Optional, Tuple
 
 from .flatten import flattened
 from .model import WORLD, Model
+from .model_plugins import plugin_count
 from .self_collision import requests_self_collision
 from .shapes import SOLIDS, MeshTable, mesh_key
 from .validate import Fault
@@ -27,6 +28,7 @@ class Cost:
         pairs: pairs of links of one model of which the engine stores whether they collide. Links
             that joints connect to one tree count only if one of them has self_collide.
         colliding_pairs: those of them that collide because of self_collide.
+        plugins: plugins, those of sensors included.
     """
 
     links: int = 0
@@ -34,31 +36,33 @@ class Cost:
     triangles: int = 0
     pairs: int = 0
     colliding_pairs: int = 0
+    plugins: int = 0
 
     def __add__(self, other: "Cost") -> "Cost":
         return Cost(self.links + other.links, self.shapes + other.shapes,
                     self.triangles + other.triangles, self.pairs + other.pairs,
-                    self.colliding_pairs + other.colliding_pairs)
+                    self.colliding_pairs + other.colliding_pairs, self.plugins + other.plugins)
 
     def __sub__(self, other: "Cost") -> "Cost":
         return Cost(self.links - other.links, self.shapes - other.shapes,
                     self.triangles - other.triangles, self.pairs - other.pairs,
-                    self.colliding_pairs - other.colliding_pairs)
+                    self.colliding_pairs - other.colliding_pairs, self.plugins - other.plugins)
 
 
 MODEL_BUDGET = Cost(links=2000, shapes=10_000, triangles=2_500_000, pairs=100_000,
-                    colliding_pairs=50_000)
+                    colliding_pairs=50_000, plugins=200)
 """Limits of one model.
 
 Processor time of a load at each limit: 2000 links 0.3 s, 10 000 shapes of a moving link 0.35 s,
 100 000 pairs (447 moving links without joints) 0.2 s. 2000 moving links take 0.14 s for each step;
 50 000 pairs that collide are 316 links, which take 0.5 s for a step if all overlap. A mesh takes
 1 s for each 600 000 triangles, and is built in pieces between steps. The largest height map has
-2 097 152 triangles.
+2 097 152 triangles. A plugin takes 2 to 4 ms to start, mostly for the registration of its topics,
+while simulated time stands still.
 """
 
 WORLD_BUDGET = Cost(links=16_384, shapes=100_000, triangles=5_000_000, pairs=1_000_000,
-                    colliding_pairs=200_000)
+                    colliding_pairs=200_000, plugins=20_000)
 """Limits of all models of a world together.
 
 The first is the number of rows for links in the shared memory. A million triangles take about
@@ -71,11 +75,13 @@ _HINTS: Dict[str, str] = {
     "triangles": "use a simpler mesh for <collision>; <visual> may keep the detailed one",
     "pairs": "connect the links by joints, or divide the model into several models",
     "colliding_pairs": "set self_collide for the links that need it only",
+    "plugins": "divide it into several models",
 }
 _NAMES: Dict[str, str] = {
     "links": "links", "shapes": "collisions", "triangles": "triangles in its collision meshes",
     "pairs": "pairs of links that the engine has to tell apart",
-    "colliding_pairs": "pairs of links that collide because of self_collide"}
+    "colliding_pairs": "pairs of links that collide because of self_collide",
+    "plugins": "plugins"}
 
 
 def cost_of(model: Model, meshes: Optional[MeshTable] = None) -> Cost:
@@ -90,7 +96,7 @@ def cost_of(model: Model, meshes: Optional[MeshTable] = None) -> Cost:
                     if table and isinstance(collision.geometry, SOLIDS) else None)
             shapes += len(data.parts) if data is not None and data.parts and moves else 1
             triangles += 0 if data is None else len(data.triangles)
-    return Cost(len(flat.links), shapes, triangles, *_pairs(flat))
+    return Cost(len(flat.links), shapes, triangles, *_pairs(flat), plugin_count(flat))
 
 
 def budget_faults(cost: Cost, model: Model) -> Iterator[Fault]:

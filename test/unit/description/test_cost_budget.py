@@ -14,7 +14,10 @@ from my_simulations.description.cost_budget import (
     cost_of,
     world_excess,
 )
+from my_simulations.description.flatten import flattened
 from my_simulations.description.model import Joint, Link, Model
+from my_simulations.description.plugin import PluginSpec
+from my_simulations.description.sensor import Sensor
 from my_simulations.description.shapes import Box, Collision, Mesh, MeshData, mesh_key
 
 
@@ -58,6 +61,16 @@ def test_a_mesh_counts_for_each_collision_and_its_parts_count_as_shapes_if_it_mo
     assert cost_of(Model("m", links=links), table) == Cost(1, 8, 14)
     assert cost_of(Model("m", links=links, static=True), table) == Cost(1, 2, 14)
     assert cost_of(Model("m", links=links)) == Cost(1, 2, 0)
+
+
+def test_plugins_of_sensors_and_nested_models_are_counted():
+    plugin = PluginSpec("p", "libp.so")
+    sensor = Sensor("s", "imu", plugins=[plugin])
+    inner = Model("n", plugins=[plugin, plugin], links=[Link("c", sensors=[sensor])])
+    model = Model("m", plugins=[plugin], links=[Link("a", sensors=[sensor]), Link("b")],
+                  joints=[Joint("j", "fixed", "a", "b", sensors=[sensor])], models=[inner])
+    for one in (model, flattened(model)):
+        assert cost_of(one).plugins == 6
 
 
 @pytest.mark.parametrize("name", [field.name for field in dataclasses.fields(Cost)])
