@@ -116,7 +116,8 @@ def test_a_fault_of_the_context_is_raised_where_the_plugin_has_asked(case):
 
 
 ENDS = [
-    ("import os; os._exit(3)", "its process ended with exit status 3", False),
+    ("import os; os._exit(3)", "its process ended with exit status 3", True),
+    ("import os; os.fork() or os._exit(0); 1 / 0", "ZeroDivisionError", True),
     ("import os, signal; os.kill(os.getpid(), signal.SIGINT)", "KeyboardInterrupt", True),
     ("import os, signal; os.kill(os.getpid(), signal.SIGKILL)", "ended by SIGKILL", False),
     ("import ctypes; ctypes.string_at(0)", "ended by SIGSEGV", True),

@@ -11,7 +11,7 @@ import os
 import resource
 import socket
 import sys
-from typing import List
+from typing import List, NoReturn
 
 from ...child_process import die_with_parent
 from ...engine.message_pipe import Wire
@@ -30,6 +30,7 @@ def main() -> None:
     sock, trace = int(sys.argv[1]), int(sys.argv[2])
     faulthandler.enable(trace, all_threads=False)
     faulthandler.register(TRACE_SIGNAL, trace, all_threads=False)
+    _trace_exit(trace)
     _limit_memory()
     sys.dont_write_bytecode = True   # a file that is mended within a second has the same time stamp
     connection = Connection(Wire(socket.socket(fileno=sock)))
@@ -61,6 +62,19 @@ def _prepare(connection: Connection, start: Start) -> None:
                                   clock_set=plugin.clock_set)
 
     connection.methods["construct"] = construct
+
+
+def _trace_exit(trace: int) -> None:
+    """Have `os._exit` of this process write a trace: the node reports where it was called."""
+    exit_process, own = os._exit, os.getpid()
+
+    def exit_with_trace(status: int) -> NoReturn:
+        if os.getpid() == own:   # a forked child ends alone
+            with contextlib.suppress(OSError):   # the plugin may have closed the file
+                faulthandler.dump_traceback(trace, all_threads=False)
+        exit_process(status)
+
+    os._exit = exit_with_trace
 
 
 def _limit_memory() -> None:

@@ -203,7 +203,7 @@ class PluginProcess:
             hint = "; the memory of the machine may be exhausted" * (status == -signal.SIGKILL)
             return ProcessEndedError(f"its process was ended by {signal_name(-status)}{hint}"
                                      f"{self._traced(0)}")
-        return ProcessEndedError(f"its process ended with exit status {status}")
+        return ProcessEndedError(f"its process ended with exit status {status}{self._traced(0)}")
 
     def _kill(self) -> None:
         """Kill the process and all that it has started, unless it was waited for."""
