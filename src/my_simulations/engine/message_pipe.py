@@ -3,22 +3,29 @@ from __future__ import annotations
 
 import contextlib
 import pickle
-import select
 import socket
 import struct
 from typing import Any, List
 
+from ..readable import wait_until_readable
+
 _LENGTH = struct.Struct("=Q")
 _CHUNK = 1 << 18
+_LONGEST = 1 << 32
 _NOTICE = _LENGTH.pack(0)
 
 
 class Wire:
-    """One end. Several threads may send with a lock of the caller; only one may receive."""
+    """One end. Several threads may send with a lock of the caller; only one may receive.
 
-    def __init__(self, sock: socket.socket) -> None:
+    Args:
+        sock: the socket.
+        longest: the longest message that is received, bytes.
+    """
+
+    def __init__(self, sock: socket.socket, longest: int = _LONGEST) -> None:
         self.sock = sock
-        self._waited_for = [sock]
+        self._longest = longest
         # rospy sets a default timeout for all sockets of a process as soon as it subscribes. One
         # made then does not block, in the child neither: what does not fit at once would be lost.
         sock.settimeout(None)
@@ -45,13 +52,17 @@ class Wire:
         with contextlib.suppress(OSError):  # it may be shut down already
             self.sock.shutdown(socket.SHUT_RDWR)
 
-    def receive(self, timeout: float) -> List[Any]:
-        """All complete messages received; waits up to `timeout` s for the first bytes.
+    def receive(self, timeout: float, rest: float = 60.0) -> List[Any]:
+        """All complete messages received.
+
+        Args:
+            timeout: s to wait for the first bytes.
+            rest: s to wait for the rest of a message, each time that a part has arrived.
 
         Raises EOFError if the other side is closed, or sends what is no message.
         """
         while True:
-            if not select.select(self._waited_for, (), (), timeout)[0]:
+            if not wait_until_readable(self.sock.fileno(), timeout):
                 return []
             try:
                 chunk = self.sock.recv(_CHUNK)
@@ -63,12 +74,14 @@ class Wire:
             found = self._complete_messages()
             if found:
                 return found
-            timeout = 60.0  # the rest of a large message is on its way
+            timeout = rest
 
     def _complete_messages(self) -> List[Any]:
         found, at = [], 0
         while len(self._pending) >= at + _LENGTH.size:
             (length,) = _LENGTH.unpack_from(self._pending, at)
+            if length > self._longest:
+                raise EOFError(f"damaged message: its length would be {length} bytes")
             end = at + _LENGTH.size + length
             if len(self._pending) < end:
                 break

@@ -2,8 +2,9 @@
 from __future__ import annotations
 
 import os
-import select
 import threading
+
+from ..readable import wait_until_readable
 
 
 class WakePipe:
@@ -22,7 +23,7 @@ class WakePipe:
     def wait(self, timeout: float) -> bool:
         """Wait for a wake-up; False after `timeout` s, or once it is closed."""
         with self._lock:   # close() must not take the descriptor away meanwhile
-            if self.output < 0 or not select.select([self.output], [], [], timeout)[0]:
+            if self.output < 0 or not wait_until_readable(self.output, timeout):
                 return False
             try:
                 os.read(self.output, 4096)

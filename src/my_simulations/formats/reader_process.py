@@ -13,7 +13,6 @@ from __future__ import annotations
 import functools
 import json
 import os
-import select
 import signal
 import struct
 import subprocess
@@ -23,6 +22,7 @@ from typing import Any, Dict, List, Tuple
 
 from ..child_process import child_command, child_environment, wait_or_kill
 from ..errors import InputError, Issue, Severity, error
+from ..readable import wait_until_readable
 
 MEMORY, SECONDS, DEADLINE_S = 1 << 30, 4, 300.0
 """Limits of a small file: bytes, s of processor time, and s of wall time on a busy machine."""
@@ -134,7 +134,7 @@ class ReaderProcess:
         stream = self._child.stdout
         while at < size:
             left = until - time.monotonic()
-            if left <= 0 or not select.select([stream], [], [], left)[0]:
+            if left <= 0 or not wait_until_readable(stream.fileno(), left):
                 self._child.kill()
                 raise _GoneError
             count = stream.readinto(view[at:])

@@ -1,6 +1,9 @@
 """Messages between our own processes arrive whole, or the stream ends."""
 from __future__ import annotations
 
+import os
+import pickle
+import resource
 import socket
 import struct
 import subprocess
@@ -10,7 +13,10 @@ import threading
 import pytest
 
 from my_simulations.child_process import await_end
+from my_simulations.engine.commands import Ping
 from my_simulations.engine.message_pipe import Wire
+from my_simulations.engine.process_engine import ProcessEngine
+from my_simulations.engine.wake_pipe import WakePipe
 
 LARGE = b"x" * 8_000_000   # more than a socket holds
 
@@ -55,6 +61,69 @@ def test_a_stream_that_holds_no_message_ends(two_ends):
     child.sendall(struct.pack("=Q", 4) + b"\xff\xff\xff\xff")
     with pytest.raises(EOFError, match="damaged message"):
         Wire(ours).receive(30.0)
+
+
+def test_a_message_of_absurd_length_ends_the_stream_at_once(two_ends):
+    ours, child = two_ends
+    child.sendall(b"\xff" * 100)
+    with pytest.raises(EOFError, match="damaged message: its length"):
+        Wire(ours).receive(30.0)
+    child.sendall(struct.pack("=Q", 1001))
+    with pytest.raises(EOFError, match="would be 1001 bytes"):
+        Wire(ours, longest=1000).receive(30.0)
+
+
+def test_a_part_of_a_message_is_kept_until_the_rest_arrives(two_ends):
+    ours, child = two_ends
+    wire, body = Wire(ours), pickle.dumps("whole")
+    data = struct.pack("=Q", len(body)) + body
+    for byte in data[:-1]:
+        child.sendall(bytes([byte]))
+        assert wire.receive(30.0, rest=0.0) == []
+    child.sendall(data[-1:])
+    assert wire.receive(30.0, rest=0.0) == ["whole"]
+
+
+@pytest.fixture
+def many_descriptors():
+    """A process with so many open files that the next ones have numbers above those of select."""
+    soft, hard = resource.getrlimit(resource.RLIMIT_NOFILE)
+    if hard < 1200:
+        pytest.skip(f"this user may open {hard} files only")
+    resource.setrlimit(resource.RLIMIT_NOFILE, (max(soft, 1200), hard))
+    held = [os.open(os.devnull, os.O_RDONLY)]
+    while held[-1] < 1024:
+        held.append(os.dup(held[0]))
+    yield
+    for one in held:
+        os.close(one)
+    resource.setrlimit(resource.RLIMIT_NOFILE, (soft, hard))
+
+
+def test_a_message_arrives_where_many_files_are_open(many_descriptors):
+    ours, theirs = socket.socketpair()
+    with ours, theirs:
+        assert ours.fileno() >= 1024
+        wire = Wire(ours)
+        assert wire.receive(0.001) == []
+        Wire(theirs).send("hello")
+        assert wire.receive(30.0) == ["hello"]
+
+
+def test_a_thread_is_woken_where_many_files_are_open(many_descriptors):
+    pipe = WakePipe()
+    assert pipe.output >= 1024 and not pipe.wait(0.001)
+    pipe.wake()
+    assert pipe.wait(30.0)
+    pipe.close()
+
+
+def test_an_engine_starts_where_many_files_are_open(many_descriptors):
+    engine = ProcessEngine()
+    try:
+        assert engine.submit(Ping()).result(60.0).error == ""
+    finally:
+        engine.close()
 
 
 def test_both_sides_see_the_end_of_a_stream_that_could_not_take_a_message(two_ends):

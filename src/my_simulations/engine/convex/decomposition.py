@@ -10,7 +10,6 @@ import contextlib
 import logging
 import os
 import re
-import select
 import signal
 import subprocess
 import time
@@ -19,6 +18,7 @@ from typing import Callable, List, Optional
 from ...child_process import child_command, child_environment, shielded
 from ...description.shapes import MeshData
 from ...errors import Issue, warning
+from ...readable import wait_until_readable
 from ..scratch_folder import Scratch
 from .cache import Decomposition, PartsCache, content_key, default_folder, load
 from .frame import FLAT, NOT_DIVIDED, frame_of
@@ -189,7 +189,7 @@ def _follow(output: int, progress: Progress, end: float) -> bool:
     told, rest = 0, b""
     while True:
         left = end - time.monotonic()
-        if left <= 0 or not select.select([output], [], [], left)[0]:
+        if left <= 0 or not wait_until_readable(output, left):
             return False
         said = os.read(output, 65536)
         if not said:
