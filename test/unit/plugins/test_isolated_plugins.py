@@ -128,6 +128,8 @@ ENDS = [
     ("while True: pass", "s of processor time", True),
     ("import threading; threading.Event().wait()", "it waited for more than 8 s", True),
     ("import os; os.close(int(__import__('sys').argv[1]))", "", False),
+    ("import os; os.write(int(__import__('sys').argv[1]), b'\\xff' * 1000)", "damaged message",
+     False),
     ("self.context.publish('t', 'std_msgs/Empty').publish(lambda: 1)", "pickle", True),
     ("raise ValueError('x' * 50_000_000)", "49999500 more characters", True),
     ("import threading; threading.Thread(target=self.context.models).start(); 1 / 0",
@@ -322,9 +324,15 @@ def runs(one, count=20):
     assert one.sim.clock.step > step
 
 
+PARTS = """import os, sys, time; out = int(sys.argv[1]); os.write(out, b'\\xff\\xff' + bytes(6)); \
+[(os.write(out, b'x'), time.sleep(0.1)) for _ in range(9000)]"""   # of a message
+
+
 @pytest.mark.parametrize(("when", "statement"), [
     ("import", "__import__('time').sleep(1000)"),
     ("load", "while True: pass"),
+    ("load", "while True: self.context.models()"),
+    ("load", PARTS),
     ("call", "__import__('time').sleep(1000)"),
 ])
 def test_the_world_continues_while_a_plugin_hangs(case, when, statement):

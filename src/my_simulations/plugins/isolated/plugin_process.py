@@ -27,6 +27,7 @@ _LOOK_S = 0.25      # between two looks at a process that does not answer
 _TRACE_S = 1.0      # for the trace to be written
 _END_S = 3.0        # for the process to end by itself
 _SEND_S = 30.0      # for the process to receive a message
+_LONGEST = 1 << 28  # of a message of a plugin, bytes
 _SCHEDULED_CLOCK = 2
 _FRAME = re.compile(r'^  File "(.*)", line (\d+) in (.*)$', re.MULTILINE)
 
@@ -86,7 +87,7 @@ class PluginProcess:
             self._child = subprocess.Popen(
                 child_command("plugins.isolated", *map(str, handed)), pass_fds=handed,
                 stdin=subprocess.DEVNULL, env=child_environment(), start_new_session=True)
-        self._wire = Wire(ours)
+        self._wire = Wire(ours, _LONGEST)
         ours.settimeout(_SEND_S)
         self._poll = select.poll()
         self._poll.register(ours, select.POLLIN)
@@ -117,21 +118,26 @@ class PluginProcess:
 
         Raises ProcessEndedError if the process has ended, or takes too long and so was ended.
         """
+        first_look = time.monotonic() + _LOOK_S
         begun: Optional[float] = None
         look_s = _LOOK_S
         while not self._received:
-            if not self._poll.poll(1000.0 * look_s):
-                if begun is None:   # from the first look on, as all calls that are watched
-                    begun, used_before = time.monotonic(), self._used()
-                waited = time.monotonic() - begun
-                self._check(limits, waited, self._used() - used_before)
-                look_s = 0.0 if while_waiting(waited) else _LOOK_S
-                continue
-            try:
-                self._received += self._wire.receive(0.0)
-            except EOFError as fault:
-                raise self._lost(str(fault)) from None
+            if self._poll.poll(1000.0 * look_s):
+                self._read()
+                if self._received or time.monotonic() < first_look:
+                    continue   # else it sends a part of a message now and then
+            if begun is None:   # from the first look on, as all calls that are watched
+                begun, used_before = time.monotonic(), self._used()
+            waited = time.monotonic() - begun
+            self._check(limits, waited, self._used() - used_before)
+            look_s = 0.0 if while_waiting(waited) else _LOOK_S
         return self._received.popleft()
+
+    def _read(self) -> None:
+        try:
+            self._received += self._wire.receive(0.0, rest=0.0)
+        except EOFError as fault:
+            raise self._lost(str(fault)) from None
 
     def end(self) -> None:
         """Have the process end; it is killed with all that it has started if it does not."""
