@@ -309,3 +309,25 @@ def test_what_falls_on_what_fell_beside_it_lands_upright(lab: Lab, laws: Laws):
     lab.seconds(1.5)
     for number in cans:
         laws.at_most("cans that fall above each other: tilt, degrees", _tilt(lab, number), 1.0)
+
+
+@pytest.mark.parametrize("removed", [True, False])
+@pytest.mark.parametrize("above", [0.01, 0.02, 0.03])
+def test_a_can_lands_upright_though_what_is_below_changes_while_it_falls(
+        lab: Lab, laws: Laws, above: float, removed: bool):
+    """A table is removed, or put there, between two searches for what the can may reach."""
+    lab.load(ground())
+    table, at = slab("table", (0.3, 0.3, 0.1)), (0.0, 0.0, 0.05)
+    can = _drop(lab, "can", (0, 0, 0.5))
+    number = lab.load(table, at) if removed else 0
+    while lab.pose(can).position[2] > 0.1 + HALF + above:
+        lab.steps(1)
+    if removed:
+        lab.remove(number)
+    else:
+        lab.load(table, at)
+    lab.seconds(0.5)
+    height = lab.pose(can).position[2] - HALF
+    laws.at_most("what is below a falling can changes: height, m",
+                 abs(height - (0.0 if removed else 0.1)), 1e-3)
+    laws.at_most("the same: tilt, degrees", _tilt(lab, can), 0.1)

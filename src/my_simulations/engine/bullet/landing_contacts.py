@@ -6,15 +6,16 @@ surface, `LandingPoints` tilts it back and forth by 2 mrad about the contact, an
 contacts after each tilt. The body stays tilted by 0.1 mrad: then the point that the step adds is a
 corner too, and does not replace a better one.
 
-A periodic check finds flying bodies. For each, the distance to all bodies in reach gives the step
-of the next check. If two bodies fly side by side, one is checked again once the other has landed.
-A box or a can with a tilt beyond the limit of `LandingPoints` lands on a corner; it is checked
-again when it can have turned that far. Bodies that stand or sleep cost almost nothing.
+A periodic check finds flying bodies. For each, a search finds the bodies in reach of the next 16
+steps, and the distance to each of these gives the step of the next check. If two bodies fly side by
+side, one is checked again once the other has landed. A box or a can with a tilt beyond the limit of
+`LandingPoints` lands on a corner; it is checked again when it can have turned that far. Bodies that
+stand or sleep cost almost nothing.
 """
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from math import acos, asin
+from math import acos, asin, dist, inf
 from operator import attrgetter, itemgetter
 from typing import Callable, Dict, Iterable, List, NamedTuple, Optional, Set, Tuple
 
@@ -123,21 +124,27 @@ class LandingContacts(StepHelper):
         self._points = LandingPoints(self._meets)
         self._alone: Dict[int, Tuple[Vec3, ...]] = {}   # axes of single boxes or cylinders
         self._moving: Set[int] = set()
+        self._radii: Dict[int, float] = {}              # of rigid bodies that move, m
         self._motions = Motions(self._moving)
         self._uneven: Dict[int, None] = {}  # with other shapes than boxes, spheres and planes
         self._flights: Dict[int, _Flight] = {}
         self._agenda: Agenda[int] = Agenda()
-        self.body_tables = (self._bodies, self._meets, self._alone, self._moving, self._uneven,
-                            self._flights, self._agenda)
+        # By flying body: the step of the next search for bodies in reach, and those found last.
+        self._near: Dict[int, Tuple[int, List[int]]] = {}
+        self.body_tables = (self._bodies, self._meets, self._alone, self._moving, self._radii,
+                            self._uneven, self._flights, self._agenda)
 
     def add(self, body: Body) -> None:
         """Register a new body; only bodies that can tilt as they land matter."""
+        self._near.clear()
         known = (Box, Sphere, Empty) if body.moves else (Box, Sphere, Empty, Plane)
         if not all(isinstance(collision.geometry, known) for part in body.colliders
                    for collision in part.link.collisions):
             self._uneven[body.uid] = None
         if body.moves:
             self._moving.add(body.uid)
+            if body.rigid:
+                self._radii[body.uid] = body.radius or inf
             if not body.is_ball and body.base is not None:
                 self._bodies[body.uid] = body
                 axes = _axes_of(body.parts[0]) if body.rigid else ()
@@ -150,9 +157,14 @@ class LandingContacts(StepHelper):
 
     def handle_event(self, event: BodyEvent, body: Body) -> None:
         """Check a body that a command changed: it may fly from the next step on."""
+        self._near.clear()
         if body.uid in self._bodies:
             self._flights[body.uid] = _Flight(body)
             self._agenda.plan(body.uid, 0)
+
+    def forget(self, body: Body) -> None:
+        super().forget(body)
+        self._near.clear()
 
     def due(self, step: int) -> int:
         """The step of the next check; none if all bodies consist of boxes, spheres and planes.
@@ -246,7 +258,11 @@ class LandingContacts(StepHelper):
         later = step + _AHEAD
         touches: List[Touch] = []
         pairs: Dict[int, Tuple[int, int]] = {}
-        for other in self._within(flight, path):
+        until, near = self._near.get(uid, (step, []))
+        if until <= step:
+            near = self._within(flight, path)
+            self._near[uid] = later, near
+        for other in near:
             if other in self._moving and other in self._flights and (
                     self._flights[other].seen is not None):
                 flight.beside.add(other)   # checked again once the other body has landed
@@ -270,15 +286,25 @@ class LandingContacts(StepHelper):
         uid, (step, dt, here, low, high, fall, spin, speed) = flight.body.uid, path
         there = self._motions.of(other)
         way = dt * (speed + norm(there.linear))   # in one step, at most
-        points = pybullet.getClosestPoints(uid, other, way * (_AHEAD + 2))
+        reach = way * (_AHEAD + 2)
+        apart = dist(here.position, there.position)
+        radius = self._radii.get(uid, inf)
+        if apart - radius - self._radii.get(other, inf) > reach:
+            return None
+        points = pybullet.getClosestPoints(uid, other, reach)
         if not points or way == 0.0:   # without gravity a body at rest stays there
             return None
         nearest = min(points, key=itemgetter(DISTANCE))
         gap: float = nearest[DISTANCE]
         at: Vec3 = nearest[PLACE]
         normal: Vec3 = nearest[NORMAL]
-        speed_in = dot(there.velocity_at(at), normal) - dot(here.velocity_at(at), normal)
-        steps = max(0.0, gap) / max(1e-9, dt * (speed_in + spin + _AHEAD * fall))
+        there_in = dot(there.velocity_at(at), normal)
+        speed_in = there_in - dot(here.velocity_at(at), normal)
+        nearing = speed_in + spin
+        if spin > 0.0:   # the smaller of two upper bounds for all points of the body
+            nearing = min(nearing,
+                          there_in - dot(here.linear, normal) + norm(here.angular) * radius)
+        steps = max(0.0, gap) / max(1e-9, dt * (nearing + _AHEAD * fall))
         free = step + int(min(_AHEAD, steps))
         tilt = self._tilt_beyond_flat(uid, here.orientation, normal)
         if tilt > 0.0:   # it lands on a corner, for which one point is enough
