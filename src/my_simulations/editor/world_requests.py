@@ -72,11 +72,17 @@ class WorldRequests:
                 **{kind: Route(self._soon(handler), None) for kind, handler in others.items()}}
 
     def _in_turn(self, handler: Handler) -> Handler:
-        """A handler that runs after all changes before it; refused while another world opens."""
+        """A handler that runs after all changes before it; refused while another world opens.
+
+        Its reply comes after the change of the world and the history.
+        """
         async def handle(client: Client, message: Dict[str, Any]) -> Any:
             self._files.check_no_world_opens()
-            return await asyncio.get_running_loop().run_in_executor(
-                self.thread, handler, client, message)
+            try:
+                return await asyncio.get_running_loop().run_in_executor(
+                    self.thread, handler, client, message)
+            finally:
+                await self._push_changes()
 
         return handle
 
@@ -149,7 +155,6 @@ class WorldRequests:
             value = self._edits.do(op, self._users.key_of(client.number))
             if op.get("kind") == "move":
                 self._notices.drag_ended(client.number, list(op["poses"]))
-        self._changed()
         return value
 
     def _copy(self, _client: Client, message: Dict[str, Any]) -> Dict[str, Any]:
@@ -170,14 +175,11 @@ class WorldRequests:
         move, authors, labels = (
             (history.undo, history.undo_authors, history.undo_labels) if verb == "undo" else
             (history.redo, history.redo_authors, history.redo_labels))
-        try:
-            with self._notices.notify_of_deletions(client.number):
-                label = move(steps)
-            theirs = list(zip(authors[:steps + 1], labels[:steps + 1]))
-            return {"label": label, "by": self._notices.notify_of_undo(
-                client.number, verb, theirs)}
-        finally:
-            self._changed()
+        with self._notices.notify_of_deletions(client.number):
+            label = move(steps)
+        theirs = list(zip(authors[:steps + 1], labels[:steps + 1]))
+        return {"label": label, "by": self._notices.notify_of_undo(
+            client.number, verb, theirs)}
 
     async def _drag(self, client: Client, message: Dict[str, Any]) -> None:
         """Latest wins: while one drag is carried out, only the newest waits."""
@@ -258,16 +260,13 @@ class WorldRequests:
 
     def _filed(self, client: Client, verb: str, handler: Callable[[Dict[str, Any]], Dict[str, Any]],
                message: Dict[str, Any]) -> Dict[str, Any]:
-        try:
-            with self._notices.notify_of_deletions(client.number):
-                value = handler(message)
-                if verb == "opened":
-                    self._end_all_drags()
-            file = value.get("path") or value.get("file") or "an empty world"
-            self._notices.notify_others(client.number, f"{verb} {file}")
-            return value
-        finally:
-            self._changed()
+        with self._notices.notify_of_deletions(client.number):
+            value = handler(message)
+            if verb == "opened":
+                self._end_all_drags()
+        file = value.get("path") or value.get("file") or "an empty world"
+        self._notices.notify_others(client.number, f"{verb} {file}")
+        return value
 
     async def _recover(self, client: Client, message: Dict[str, Any]) -> Any:
         way = self._in_turn if message["action"] == "restore" else self._soon
@@ -285,7 +284,6 @@ class WorldRequests:
             return {"file": ""}
         finally:
             self._hub.push_soon(self._autosave.push())
-            self._changed()
 
     def _end_all_drags(self) -> None:
         """What people dragged was of the world before this one."""
@@ -293,13 +291,14 @@ class WorldRequests:
         self._drags.clear()
         self._notices.push_drags()
 
-    def _changed(self) -> None:
-        """After an edit: everybody looks at the world, and at the history if it differs."""
+    async def _push_changes(self) -> None:
+        """Send all pages what an edit has changed: the world, then the history if it differs."""
+        history = self.history_push()
         self._hub.wake()
-        push = self.history_push()
-        if push != self._last_history:
-            self._last_history = push
-            self._hub.push_soon(push)
+        await self._hub.push_changes()
+        if history != self._last_history:
+            self._last_history = history
+            self._hub.push(history)
 
 
 def _refuse_in_log(client: Client) -> None:

@@ -145,6 +145,26 @@ def test_an_edit_is_one_step_that_can_be_undone_and_done_again(case, op):
     made.browse(edit)
 
 
+@pytest.mark.parametrize("request_and_fields", (
+    ("edit", {"op": {"kind": "compute_inertial", "target": "a::link", "density": 500}}),
+    ("undo", {}), ("redo", {})), ids=lambda one: one[0])
+def test_the_change_of_the_world_comes_before_the_history_and_the_reply(case, request_and_fields):
+    made = case(box("a"))
+    kind, fields = request_and_fields
+
+    async def edit(browser):
+        if kind != "edit":
+            await browser.edit("rename", name="a", to="b")
+        if kind == "redo":
+            await browser.ask("undo")
+        browser.pushes.clear()
+        await browser.ask(kind, **fields)
+        told = [push["type"] for push in browser.pushes if push["type"] in ("change", "history")]
+        assert told == ["change", "history"]
+
+    made.browse(edit)
+
+
 REFUSED = {
     "unknown_model": {"kind": "delete", "names": ["a", "nix"]},
     "nothing_to_delete": {"kind": "delete", "names": []},

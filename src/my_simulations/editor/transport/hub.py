@@ -134,7 +134,7 @@ class Hub:
     async def add_client(self, client: Client, new: bool) -> None:
         """Give a client the world, and from then on all of its changes."""
         if self._mirror.revision < 0:
-            await self._push_changes()
+            await self.push_changes()
         world = await self._loop.run_in_executor(self._writer, self._encoded_world)
         client.append(world)
         client.sent.forget()
@@ -223,7 +223,7 @@ class Hub:
 
     async def _tick(self) -> None:
         if self.simulator.models.revision != self._mirror.revision:
-            await self._push_changes()
+            await self.push_changes()
         sequence = self.simulator.feed.changes
         moved = sequence != self._sequence or self._has_late_client()
         if moved:
@@ -249,7 +249,7 @@ class Hub:
         """Whether some client could not take its last frame."""
         return any(client.live and client.sent.late for client in self.clients.values())
 
-    async def _push_changes(self) -> None:
+    async def push_changes(self) -> None:
         """Tell everybody what has changed in the description."""
         change = await self._loop.run_in_executor(self._writer, self._mirror.changes)
         if change is None:
