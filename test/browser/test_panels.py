@@ -56,6 +56,54 @@ def test_masses_sizes_and_friction_are_set_where_they_are_shown(editor):
     editor.until("editor.store.history.undo.length === 4", "each of them in the history")
 
 
+def show_link_of_box(editor):
+    with_box(editor)
+    editor.row("unit_box").click()
+    editor.page.keyboard.press("ArrowRight")
+    editor.row("link").click()
+    editor.field("size z").first.wait_for()
+
+
+def add_visual(editor):
+    """Gives the link of the box another visual, as another user would: its panel is built again."""
+    editor.get("editor.request('edit', {op: {kind: 'add_shape', link: 'unit_box::link',"
+               " part: 'visual', shape: 'sphere'}})")
+    editor.page.locator('.field[data-target$="visual_0"]').first.wait_for()
+
+
+def test_text_that_is_typed_stays_where_the_panel_is_built_again(editor):
+    show_link_of_box(editor)
+    # The second of its name: a collision has one, too.
+    editor.field("size z").nth(1).click()
+    editor.page.keyboard.type("0.")
+    add_visual(editor)
+    assert editor.get("editor.store.history.undo[0]") == "Add visual to unit_box::link"
+    editor.page.keyboard.type("25")
+    editor.page.keyboard.press("Enter")
+    editor.until("editor.store.model('unit_box').links[0].visuals[0].geometry.size[2] === 0.25",
+                 "the typed size")
+    assert editor.get("editor.store.model('unit_box').links[0].collisions[0].geometry.size") == [
+        1, 1, 1]
+
+
+def test_text_that_is_typed_is_committed_where_another_panel_comes(editor):
+    show_link_of_box(editor)
+    editor.field("size z").first.click()
+    editor.page.keyboard.type("0.25")
+    editor.get("editor.store.select(['ground_plane'])")
+    editor.until("editor.store.model('unit_box').links[0].collisions[0].geometry.size[2] === 0.25",
+                 "the typed size")
+
+
+def test_parts_of_a_vector_that_are_typed_quickly_are_all_kept(editor):
+    show_link_of_box(editor)
+    for part, text in zip("xyz", ("0.5", "0.6", "0.7")):
+        editor.field(f"size {part}").first.fill(text)
+    editor.field("size z").first.press("Enter")
+    editor.until("editor.store.model('unit_box').links[0].collisions[0].geometry.size.join()"
+                 " === '0.5,0.6,0.7'", "all three")
+
+
 def test_a_number_that_makes_no_sense_is_refused_and_the_old_one_comes_back(editor):
     with_box(editor)
     editor.row("unit_box").click()

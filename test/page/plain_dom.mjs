@@ -13,6 +13,7 @@ class PlainElement extends EventTarget {
   style = {};
   value = '';
   textContent = '';
+  isConnected = true;
 
   constructor(tag) {
     super();
@@ -24,6 +25,7 @@ class PlainElement extends EventTarget {
   setAttribute() {}
   contains() { return false; }
   closest() { return null; }
+  querySelectorAll() { return []; }
   getContext() { return null; }
   focus() {}
   select() {}

@@ -3,16 +3,18 @@
  * came back.
  */
 import {compose, inverse} from '../pose.js';
-import {byId, elementsOf, fill, h, onceAFrame, remembered} from '../ui/dom.js';
+import {byId, fill, h, onceAFrame, remembered} from '../ui/dom.js';
 import {faultText} from '../ui/dialog.js';
 import {icon} from '../ui/icons.js';
 import {pluginState, withSensorState, withState} from './plugin_states.js';
 import {makeInput} from './property_inputs.js';
+import {keepTyping} from './kept_typing.js';
 import {sharedSections} from './model_sections.js';
 import {sectionsOf, valueAt} from './property_sections.js';
 import {unitGeometry} from './geometry_fields.js';
 import type {Field, Section} from './property_fields.js';
 import type {Found} from './property_sections.js';
+import type {Restore} from './kept_typing.js';
 import type {Input} from './property_inputs.js';
 import type {Row} from './world_rows.js';
 import type {Page} from './panels.js';
@@ -25,13 +27,15 @@ export class Properties {
   element;
   store;
   request;
+  notices;
   row: Row|null;
   update;
 
-  constructor(element: HTMLElement, {store, request}: Page) {
+  constructor(element: HTMLElement, {store, request, notices}: Page) {
     this.element = element;
     this.store = store;
     this.request = request;
+    this.notices = notices;
     this.row = null;
     this.#body = h('div', {class: 'properties-body'});
     this.#title = h('h2', {class: 'properties-title'});
@@ -54,8 +58,8 @@ export class Properties {
   #turns = new WeakMap();
   #closed = new Set(remembered.get('closed-sections', ['Inertial']));
 
-  /** Gives the focus to the field that had it. */
-  #refocus: (() => void)|null = null;
+  /** Gives the focus, and text that is not yet confirmed, to the fields that had them. */
+  #typing: Restore|null = null;
   /** Callbacks that the next poses resolve. */
   #frames: (() => void)[] = [];
   #later: ReturnType<typeof setTimeout>|0 = 0;
@@ -77,34 +81,6 @@ export class Properties {
       this.#frames.push(resolve);
       setTimeout(resolve, 500);
     });
-  }
-
-  /**
-   * A request whose effect is told: the answer may come before the change of the document does, and
-   * what the fields show is the document.
-   */
-  async #told(name: string, request: () => Promise<unknown>) {
-    let changed: () => void = () => {};
-    const came: Promise<void> = new Promise((resolve) => {
-      changed = resolve;
-    });
-    const ends = [
-      this.store.listen('entity', ({detail}) => {
-        if (detail.name === name) changed();
-      }),
-      this.store.listen('document', () => changed()),
-    ];
-    try {
-      await request();
-      await Promise.race([
-        came,
-        new Promise((resolve) => {
-          setTimeout(resolve, 500);
-        }),
-      ]);
-    } finally {
-      for (const end of ends) end();
-    }
   }
 
   /** @param row  whose properties are wanted */
@@ -179,9 +155,10 @@ export class Properties {
   }
 
   #build(found: Found|null) {
-    const focus = this.#focused() ?? this.#refocus;
+    const fresh = keepTyping(this.#body);
+    const typing = fresh ?? this.#typing;
     // A renamed entity is gone for a moment; its field gets the focus back.
-    this.#refocus = found ? null : focus;
+    this.#typing = found ? null : typing;
     this.#inputs = [];
     this.#title.textContent = found?.title ?? 'Property';
     this.#title.title = found?.title ?? '';
@@ -194,19 +171,7 @@ export class Properties {
       return;
     }
     fill(this.#body, ...found.sections.map((section) => this.#section(section)));
-    if (focus && document.activeElement === document.body) focus();
-  }
-
-  /** Gives the focus back to the same field of what is built next; null where it is elsewhere. */
-  #focused() {
-    const field = document.activeElement?.closest('.field');
-    if (!(field instanceof HTMLElement) || !this.#body.contains(field)) return null;
-    const {path} = field.dataset;
-    const at = elementsOf(field, 'input, select').findIndex((one) => one === document.activeElement);
-    return () => {
-      const again = elementsOf(this.#body, '.field').find((one) => one.dataset.path === path);
-      if (again) elementsOf(again, 'input, select')[at]?.focus();
-    };
+    typing?.({focus: document.activeElement === document.body, confirm: typing === fresh});
   }
 
   #section(section: Section) {
@@ -271,9 +236,8 @@ export class Properties {
     try {
       if (field.ops) {
         const {label, ops} = field.ops(value);
-        await this.#told(this.row?.model ?? '', () =>
-          this.request('edit', {op: ops.length === 1 && ops[0].kind === 'compute_inertial'
-            ? ops[0] : {kind: 'group', ops, label}}));
+        await this.request('edit', {op: ops.length === 1 && ops[0].kind === 'compute_inertial'
+          ? ops[0] : {kind: 'group', ops, label}});
       } else if (field.rename) await this.#rename(section.target, String(value));
       else if (field.path === 'geometry.type') {
         await this.#set(section.target, 'geometry', unitGeometry(String(value)));
@@ -282,8 +246,10 @@ export class Properties {
       element.classList.add('taken');
       setTimeout(() => element.classList.remove('taken'), 700);
     } catch (fault) {
-      note.textContent = faultText(fault);
-      note.scrollIntoView({block: 'nearest'});
+      if (element.isConnected) {
+        note.textContent = faultText(fault);
+        note.scrollIntoView({block: 'nearest'});
+      } else this.notices.say(`${field.label}: ${faultText(fault)}`);
     }
     if (this.#turns.get(element) !== turn) return;
     element.classList.remove('pending');
@@ -292,14 +258,12 @@ export class Properties {
 
   async #rename(name: string, to: string) {
     const renamed = to.trim();
-    await this.#told(renamed, () =>
-      this.request('edit', {op: {kind: 'rename', name, to: renamed}}));
+    await this.request('edit', {op: {kind: 'rename', name, to: renamed}});
     this.store.select([renamed]);
   }
 
   #set(target: string, path: string, value: unknown) {
-    const owner = this.row?.kind === 'light' ? target : (this.row?.model ?? '');
-    return this.#told(owner, () => this.request('edit', {op: {kind: 'set', target, path, value}}));
+    return this.request('edit', {op: {kind: 'set', target, path, value}});
   }
 }
 

@@ -63,7 +63,6 @@ function lineInput(field: InputField, attributes: Record<string, unknown>,
     textOf: (value: unknown) => string, take: (text: string, shown: unknown) => boolean):
     Input & {element: HTMLInputElement, type: (text: string) => void} {
   let shown: unknown = null;
-  let edited = false;
   const element = h('input', {
     type: 'text',
     autocomplete: 'off',
@@ -73,24 +72,27 @@ function lineInput(field: InputField, attributes: Record<string, unknown>,
     title: field.hint,
     ...attributes,
   });
+  // The mark is on the element, so that a panel that is built again can find the text.
+  const isEdited = () => element.dataset.edited !== undefined;
+  const markEdited = () => {
+    element.dataset.edited = '';
+  };
   const restore = () => {
-    edited = false;
+    delete element.dataset.edited;
     const text = textOf(shown);
     if (element.value !== text) element.value = text;
   };
   const finish = () => {
-    if (!edited) return;
-    edited = false;
+    if (!isEdited()) return;
+    delete element.dataset.edited;
     if (!take(element.value, shown)) restore();
   };
-  element.addEventListener('input', () => {
-    edited = true;
-  });
+  element.addEventListener('input', markEdited);
   element.addEventListener('blur', finish);
   element.addEventListener('focus', () => element.select());
   element.addEventListener('keydown', (event) => {
     if (event.key === 'Enter') finish();
-    else if (event.key === 'Escape' && edited) {
+    else if (event.key === 'Escape' && isEdited()) {
       event.stopPropagation();
       restore();
     }
@@ -99,11 +101,11 @@ function lineInput(field: InputField, attributes: Record<string, unknown>,
     element,
     show(value) {
       shown = value ?? null;
-      if (!edited) restore();
+      if (!isEdited()) restore();
     },
     type(text) {
       element.value = text;
-      edited = true;
+      markEdited();
     },
   };
 }
