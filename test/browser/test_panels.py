@@ -23,6 +23,42 @@ def with_box(editor, place=(0.0, 0.0)):
     return editor.place("Box", (*place, 0.0))
 
 
+def tag_of(editor, row):
+    return editor.get(f"[...document.querySelectorAll('[role=treeitem]')].find((one) =>"
+                      f" one.textContent.startsWith({row!r}))?.querySelector('.tag')?.textContent")
+
+
+def test_a_plugin_of_the_world_is_added_set_undone_and_removed(editor):
+    plugins = "editor.store.document.plugins"
+    editor.row("Plugins (0)").click()
+    editor.button("Add wind plugin").click()
+    editor.until(f"{plugins}.length === 1", "the plugin")
+    editor.page.keyboard.press("Escape")
+    editor.row("Plugins (1)").click()
+    editor.page.keyboard.press("ArrowRight")
+    editor.row("WindPlugin").click()
+    wait_for(lambda: tag_of(editor, "WindPlugin") == "running", "the running plugin")
+    factor = editor.field("force_approximation_scaling_factor")
+    factor.fill("0")
+    factor.press("Enter")
+    wait_for(lambda: tag_of(editor, "WindPlugin") == "failed", "the reason to fail")
+    editor.get("editor.actions.undo()")
+    wait_for(lambda: tag_of(editor, "WindPlugin") == "running", "the plugin that runs again")
+    source = editor.page.locator("textarea.xml")
+    text = source.input_value()
+    source.fill(text.replace("</plugin>", "</plug>"))
+    source.press("Control+Enter")
+    editor.page.locator(".field-note", has_text="line 3").wait_for()
+    assert "</plug>" in source.input_value()
+    source.fill(text.replace("WindPlugin\"", "breeze\""))
+    source.press("Control+Enter")
+    editor.until(f"{plugins}[0].name === 'breeze'", "the other name")
+    editor.button("Remove plugin").click()
+    editor.until(f"{plugins}.length === 0", "the end of the plugin")
+    editor.get("editor.actions.undo()")
+    editor.until(f"{plugins}[0]?.name === 'breeze'", "its return")
+
+
 # -- properties -----------------------------------------------------------------------------------
 
 def test_a_typed_position_moves_the_model_and_is_what_services_tell(editor, node):

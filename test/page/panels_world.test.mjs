@@ -4,7 +4,7 @@ import {layersOf} from '../../web/js/panels/layers_tab.js';
 import {geometryFields, unitGeometry} from '../../web/js/panels/geometry_fields.js';
 import {sectionsOf, valueAt} from '../../web/js/panels/property_sections.js';
 import {defaultFields, pluginFields} from '../../web/js/panels/plugin_fields.js';
-import {withSensorState} from '../../web/js/panels/plugin_states.js';
+import {withSensorState, withState} from '../../web/js/panels/plugin_states.js';
 import {modelOf, rowOf, worldRows} from '../../web/js/panels/world_rows.js';
 import {driveHints, hintsOf} from '../../web/js/panels/hint_line.js';
 import {searched} from '../../web/js/panels/insert_tab.js';
@@ -47,6 +47,7 @@ test('rows stand in the order of Gazebo', () => {
     'Wind',
     'Models (1)',
     'Lights (1)',
+    'Plugins (0)',
   ]);
 });
 
@@ -71,7 +72,7 @@ test('an open model shows links, joints and plugins under headings', () => {
 
 test('headings without anything below are left out', () => {
   const rows = worldRows(world([box('a')]), new Set(['models', 'model:a']));
-  assert.deepEqual(labels(rows).slice(8), ['LINKS', 'link', 'Lights (0)']);
+  assert.deepEqual(labels(rows).slice(8), ['LINKS', 'link', 'Lights (0)', 'Plugins (0)']);
 });
 
 test('a search leaves what fits and counts it', () => {
@@ -117,6 +118,28 @@ test('each element of a plugin that holds only text is a field', () => {
   const text = (at, value) => fields[at].ops(value).ops[0].text.split('\n');
   assert.deepEqual(text(2, '<z>'), ['<plugin name="o"/>', xml.replace('x &amp; y', '&lt;z&gt;')]);
   assert.equal(text(1, 2)[1], xml.replace(' 0.5 ', '2'));
+});
+
+test('plugins of the world are added, edited and removed as those of models', () => {
+  const document = world([]);
+  document.plugins = [{name: 'a', filename: 'liba.so', xml: '<plugin name="a"><b>1</b></plugin>'},
+    {name: 'c', filename: 'libc.so', xml: '<plugin name="c"/>'}];
+  const rows = worldRows(document, new Set(['plugins']));
+  /** @param {string} id @param {string} path @param {unknown} value */
+  const op = (id, path, value) => sectionsOf(document, row(rows, id)).sections
+    .flatMap(({fields}) => fields).find((one) => one.path === path).ops(value).ops[0];
+  assert.deepEqual(op('plugin::0', 'parameter0', 2), {kind: 'set_plugins', model: '',
+    text: '<plugin name="a"><b>2</b></plugin>\n<plugin name="c"/>'});
+  assert.equal(op('plugin::1', 'xml', '<plugin name="d"/>').text,
+    '<plugin name="a"><b>1</b></plugin>\n<plugin name="d"/>');
+  assert.equal(op('plugin::0', 'remove', null).text, '<plugin name="c"/>');
+  const [, , added] = op('plugins', 'add', 'liba.so').text.split('\n');
+  assert.equal(added, '<plugin name="a_0" filename="liba.so"/>', 'names are unique');
+  const state = {model: '', name: 'a', filename: 'liba.so', state: 'running', reason: '',
+    parameters: [{name: 'e', type: 'number', default: '3', choices: []}]};
+  const found = withState(sectionsOf(document, row(rows, 'plugin::0')), state, {name: '', plugins: document.plugins}, 0);
+  const [field] = found.sections.find(({key}) => key === 'defaults').fields;
+  assert.equal(field.ops(4).ops[0].text.split('\n<plugin name="c')[0], '<plugin name="a"><b>1</b>  <e>4</e>\n</plugin>');
 });
 
 test('parameters that the XML of a plugin leaves out are fields with their defaults', () => {

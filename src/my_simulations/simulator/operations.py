@@ -11,6 +11,7 @@ from typing import Any, Callable, Dict, List, Optional, Protocol, Tuple
 from ..description.light import Light
 from ..description.model import Joint, Model
 from ..description.model_group import extra_with_group, group_of
+from ..description.plugin import PluginSpec
 from ..description.scoped_names import split_scoped
 from ..description.shapes import MeshTable
 from ..description.world import Physics
@@ -269,6 +270,19 @@ class SetWorldField:
     def apply(self, world: Simulator) -> Operation:
         back = SetWorldField(self.name, getattr(world.world, self.name))
         SETTERS[self.name](world.scene, self.value)
+        return back
+
+
+@dataclass(frozen=True)
+class SetWorldPlugins:
+    """Replace the plugins of the world; those of models and actors stay."""
+
+    plugins: Tuple[PluginSpec, ...]
+
+    def apply(self, world: Simulator) -> Operation:
+        """Set the plugins; those that are not the same as before are loaded again."""
+        back = SetWorldPlugins(tuple(world.world.plugins))
+        world.scene.set_plugins(list(self.plugins))
         return back
 
 

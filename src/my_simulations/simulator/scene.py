@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from dataclasses import fields, is_dataclass, replace
-from typing import Any, Dict, Optional
+from typing import Any, Dict, List, Optional
 
+from ..description.plugin import PluginSpec
 from ..description.surroundings import Atmosphere, GuiCamera, Scene, SphericalCoordinates, Wind
 from ..geometry import Vec3
 from .session import Session
@@ -41,6 +42,10 @@ class SceneSettings:
     def set_magnetic_field(self, field: Vec3) -> None:
         """Set the magnetic field, T in the world frame; used by magnetometers and saved."""
         self._session.set_world_fields(magnetic_field=field)
+
+    def set_plugins(self, plugins: List[PluginSpec]) -> None:
+        """Set the plugins of the world; a running plugin host loads them."""
+        self._session.set_world_fields(plugins=plugins)
 
     def set_spherical_coordinates(self, place: Optional[SphericalCoordinates]) -> None:
         """Kept and saved."""

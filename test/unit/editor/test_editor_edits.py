@@ -35,6 +35,7 @@ def state(sim):
                 "atmosphere",
                 "magnetic_field",
                 "spherical_coordinates",
+                "plugins",
             )
         },
     )
@@ -106,6 +107,8 @@ EDITS = {
     "nest a model": {"kind": "add_model", "model": "arm", "uri": "model://table", "pose": POSE},
     "set plugins": {"kind": "set_plugins", "model": "arm",
                     "text": "<plugin name='p' filename='libnone.so'><rate>5</rate></plugin>"},
+    "set plugins of the world": {"kind": "set_plugins", "model": "",
+                                 "text": "<plugin name='p' filename='libnone.so'/>"},
     "add a sensor": {"kind": "add_sensor", "link": "arm::tip", "sensor": "camera"},
     "remove a link": {"kind": "remove_part", "target": "arm::tip"},
     "remove a joint": {"kind": "remove_part", "target": "arm::hinge"},

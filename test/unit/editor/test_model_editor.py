@@ -21,6 +21,7 @@ from my_simulations.description.shapes import (
 from my_simulations.editor.editing.part_inertia import inertial_of
 from my_simulations.errors import CommandError
 from my_simulations.formats.reading import read_file
+from my_simulations.formats.sdf.writer.entities import write_world
 from my_simulations.geometry import STILL, Pose
 from my_simulations.resources.resolver import Resolver
 
@@ -164,6 +165,24 @@ def test_plugins_are_stored_as_they_were_written(case):
             await browser.edit("set_plugins", model="a", text=text.replace("two", "one"))
         await browser.edit("set_plugins", model="a", text="")
         assert made.sim.models.get("a").plugins == []
+
+    made.browse(build)
+
+
+def test_plugins_of_the_world_come_as_a_change_of_it_alone_and_are_saved(case):
+    made = case(box("a"))
+
+    async def build(browser):
+        browser.pushes.clear()
+        await browser.edit("set_plugins", model="", text='<plugin name="w" filename="libw.so">'
+                                                         '<force>2</force></plugin>')
+        assert browser.last("world") is None
+        assert [one["name"] for one in browser.last("change")["world"]["plugins"]] == ["w"]
+        assert list(browser.last("change")) == ["type", "revision", "world"]
+        assert [one.filename for one in made.sim.world.plugins] == ["libw.so"]
+        assert "<force>2</force>" in write_world(made.sim.world).decode()
+        with pytest.raises(Refused, match="<plugin> elements only"):
+            await browser.edit("set_plugins", model="", text="<light name='l'/>")
 
     made.browse(build)
 

@@ -2,7 +2,8 @@
 import {elementsOf} from '../ui/dom.js';
 
 type Place = {target: string, path: string, label: string};
-type Draft = {place: Place, input: HTMLInputElement};
+type TextField = HTMLInputElement|HTMLTextAreaElement;
+type Draft = {place: Place, input: TextField};
 
 /**
  * `focus`: whether the field that had the focus gets it back; `confirm`: whether text is committed
@@ -18,30 +19,33 @@ export type Restore = (how: {focus: boolean, confirm: boolean}) => void;
 export function keepTyping(body: HTMLElement): Restore|null {
   const active = inputsOf(body).find((one) => one === document.activeElement);
   const drafts: Draft[] = inputsOf(body).flatMap((input) => {
-    if (!(input instanceof HTMLInputElement) || input.dataset.edited === undefined) return [];
+    if (!isText(input) || input.dataset.edited === undefined) return [];
     // Chromium sends `blur` to an element that is removed: nothing is confirmed by that.
     delete input.dataset.edited;
     return [{place: placeOf(input), input}];
   });
   if (!active && !drafts.length) return null;
-  const caret = active instanceof HTMLInputElement && active.type === 'text' && drafts.length
+  const caret = isText(active) && active.type.startsWith('text') && drafts.length
     ? [active.selectionStart, active.selectionEnd] as const : null;
   const focused = active && placeOf(active);
   return ({focus, confirm}) => {
     for (const {place, input: old} of drafts) {
       const input = inputAt(body, place);
-      if (input instanceof HTMLInputElement) input.value = old.value;
+      if (isText(input)) input.value = old.value;
       (input ?? old).dispatchEvent(new Event('input'));
       if (!input && confirm) old.dispatchEvent(new Event('blur'));
     }
     const input = focus && focused && (inputAt(body, focused) ?? inputAt(body, focused, false));
     if (!input) return;
     input.focus();
-    if (caret && input instanceof HTMLInputElement) input.setSelectionRange(...caret);
+    if (caret && isText(input)) input.setSelectionRange(...caret);
   };
 }
 
-const inputsOf = (body: HTMLElement) => elementsOf(body, '.field input, .field select');
+const isText = (element: HTMLElement|undefined|null): element is TextField =>
+  element instanceof HTMLInputElement || element instanceof HTMLTextAreaElement;
+
+const inputsOf = (body: HTMLElement) => elementsOf(body, '.field input, .field select, .field textarea');
 
 function placeOf(input: HTMLElement): Place {
   const field = input.closest('.field');

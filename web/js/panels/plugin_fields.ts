@@ -1,10 +1,17 @@
 /**
- * The parameters of a model's plugin as fields: one for each element of its XML that holds only text.
- * Pure.
+ * The parameters of a plugin as fields: one for each element of its XML that holds only text. Pure.
  */
 import {parameterUnit} from './parameter_units.js';
 import type {Field} from './property_fields.js';
-import type {Model, PluginParameter} from '../protocol.js';
+import type {Plugin, PluginParameter, World} from '../protocol.js';
+
+/** What has plugins: a model, or the world under the name ''. */
+export type PluginOwner = {name: string, plugins: Plugin[]};
+
+/** The owner of a plugin's row; undefined for a model that has gone. */
+export const pluginOwner = (world: World|null, model: string): PluginOwner|undefined =>
+  (model ? world?.models.find(({name}) => name === model)
+    : world ? {name: '', plugins: world.plugins} : undefined);
 
 const ELEMENT = /<!--[^]*?-->|<!\[CDATA\[[^]*?\]\]>|<([\w.:-]+)(?:\s[^<>]*)?>([^<]*)<\/\1\s*>/g;
 const ENTITIES: Record<string, string> = {'&': '&amp;', '<': '&lt;', '>': '&gt;'};
@@ -21,9 +28,9 @@ function typed(text: string): {type: Field['type'], value: unknown} {
  * @param index  of the plugin
  * @returns values and fields by path
  */
-export function pluginFields(model: Model, index: number): {entity: Record<string, unknown>,
+export function pluginFields(owner: PluginOwner, index: number): {entity: Record<string, unknown>,
     fields: Field[]} {
-  const {xml} = model.plugins[index];
+  const {xml} = owner.plugins[index];
   const entity: Record<string, unknown> = {};
   const fields: Field[] = [];
   for (const found of xml.matchAll(ELEMENT)) {
@@ -33,7 +40,7 @@ export function pluginFields(model: Model, index: number): {entity: Record<strin
     const {type, value} = typed(text.trim());
     const end = found.index + whole.lastIndexOf('</');
     entity[path] = value;
-    fields.push({path, label: name, type, ...unitOf(name, type), ops: (next) => replaced(model, index, name,
+    fields.push({path, label: name, type, ...unitOf(name, type), ops: (next) => replaced(owner, index, name,
         xml.slice(0, end - text.length) + escaped(next) + xml.slice(end))});
   }
   return {entity, fields};
@@ -44,9 +51,9 @@ export function pluginFields(model: Model, index: number): {entity: Record<strin
  * @param index  of the plugin
  * @returns defaults and fields by path
  */
-export function defaultFields(model: Model, index: number, parameters: PluginParameter[]):
+export function defaultFields(owner: PluginOwner, index: number, parameters: PluginParameter[]):
     {entity: Record<string, unknown>, fields: Field[]} {
-  const {xml} = model.plugins[index];
+  const {xml} = owner.plugins[index];
   const shown = xml.replace(/<!--[^]*?-->/g, '');
   const entity: Record<string, unknown> = {};
   const fields: Field[] = [];
@@ -54,7 +61,7 @@ export function defaultFields(model: Model, index: number, parameters: PluginPar
     const {name} = parameter;
     if (shown.includes(`<${name}>`) || shown.includes(`<${name} `) || shown.includes(`<${name}/`)) continue;
     const {field, value} = defaultField(parameter, (next) =>
-      replaced(model, index, name, withElement(xml, `<${name}>${escaped(next)}</${name}>`)));
+      replaced(owner, index, name, withElement(xml, `<${name}>${escaped(next)}</${name}>`)));
     entity[field.path] = value;
     fields.push(field);
   }
@@ -91,8 +98,55 @@ function withElement(xml: string, element: string) {
   return xml.replace(/\/\s*>\s*$/, `>\n  ${element.replaceAll('$', '$$$$')}\n</${name}>`);
 }
 
-function replaced(model: Model, index: number, name: string, changed: string) {
-  const all = model.plugins.map((one, at) => (at === index ? changed : one.xml));
-  return {label: `Set ${name} of ${model.name}`,
-    ops: [{kind: 'set_plugins' as const, model: model.name, text: all.join('\n')}]};
+/**
+ * The XML of a plugin as text that can be edited.
+ * @param index  of the plugin
+ */
+export const sourceField = (owner: PluginOwner, index: number): Field => ({path: 'xml', label: 'XML', type: 'xml',
+  hint: 'Ctrl+Enter or a click elsewhere commits it, Escape discards it',
+  ops: (text) => replaced(owner, index, 'XML', String(text))});
+
+/** A button that removes a plugin. */
+export const removalField = (owner: PluginOwner, index: number): Field => ({path: 'remove', label: 'Remove plugin', type: 'button',
+  ops: () => {
+    const {name, filename} = owner.plugins[index];
+    return {label: `Remove plugin ${name || filename}`, ops: setPlugins(owner, owner.plugins.flatMap(({xml}, at) =>
+      (at === index ? [] : [xml])))};
+  }});
+
+/** Plugins that have a use in every world: words, library, and the elements that each requires. */
+const KNOWN = [
+  ['wind', 'libWindPlugin.so', '<force_approximation_scaling_factor>1</force_approximation_scaling_factor>'],
+  ['link attacher', 'libgazebo_ros_link_attacher.so', ''],
+];
+
+/** Buttons for plugins that a world can get, and a field for the library of any other. */
+export function newPluginFields(owner: PluginOwner): {entity: Record<string, unknown>, fields: Field[]} {
+  const added = (library: string, inside = '') => {
+    const name = freeName(owner, library.replace(/^lib/, '').replace(/\.so$/, ''));
+    const xml = `<plugin name="${escaped(name).replaceAll('"', '&quot;')}" filename="${escaped(library).replaceAll('"', '&quot;')}"${inside ? `>
+  ${inside}
+</plugin>` : '/>'}`;
+    return {label: `Add plugin ${name}`, ops: setPlugins(owner, [...owner.plugins.map((one) => one.xml), xml])};
+  };
+  const fields: Field[] = KNOWN.map(([word, library, inside]) => ({path: `add_${word.replaceAll(' ', '_')}`, label: `Add ${word} plugin`,
+    type: 'button', hint: library, ops: () => added(library, inside)}));
+  fields.push({path: 'add', label: 'add library', type: 'text', hint: 'file name of a plugin, for example libWindPlugin.so',
+    ops: (library) => added(String(library).trim())});
+  return {entity: Object.fromEntries(fields.map(({path}) => [path, null])), fields};
+}
+
+function freeName({plugins}: PluginOwner, wanted: string) {
+  const taken = new Set(plugins.map(({name}) => name));
+  let name = wanted;
+  for (let number = 0; taken.has(name); number++) name = `${wanted}_${number}`;
+  return name;
+}
+
+const setPlugins = (owner: PluginOwner, all: string[]) =>
+  [{kind: 'set_plugins' as const, model: owner.name, text: all.join('\n')}];
+
+function replaced(owner: PluginOwner, index: number, name: string, changed: string) {
+  return {label: `Set ${name} of ${owner.name || owner.plugins[index].name || 'a plugin of the world'}`,
+    ops: setPlugins(owner, owner.plugins.map((one, at) => (at === index ? changed : one.xml)))};
 }

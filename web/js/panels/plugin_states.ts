@@ -1,8 +1,9 @@
 /** Whether a plugin runs, as the tree and the property panel show it. */
 import {h} from '../ui/dom.js';
-import {defaultFields} from './plugin_fields.js';
+import {defaultFields, pluginOwner} from './plugin_fields.js';
 import {sensorPlugin, stateSection} from './sensor_fields.js';
-import type {Model, PluginState, Sensor, World} from '../protocol.js';
+import type {PluginOwner} from './plugin_fields.js';
+import type {PluginState, Sensor, World} from '../protocol.js';
 import type {Found} from './property_sections.js';
 import type {Row} from './world_rows.js';
 import type {Section} from './property_fields.js';
@@ -10,8 +11,7 @@ import type {Section} from './property_fields.js';
 /** The state of the plugin of a row; undefined before the simulator has sent it. */
 export function pluginState({document, pluginStates}: {document: World|null,
     pluginStates: PluginState[]}, {model = '', index = -1}: Row): PluginState|undefined {
-  const owner = model ? document?.models.find(({name}) => name === model) : document;
-  const plugin = owner?.plugins[index];
+  const plugin = pluginOwner(document, model)?.plugins[index];
   return plugin && pluginStates.find((one) =>
     one.model === model && one.name === plugin.name && one.filename === plugin.filename);
 }
@@ -47,14 +47,14 @@ export const stateTag = (text: string, reason: string) =>
 
 /**
  * The sections of a plugin, with its state after its name, and the defaults of what its XML leaves out.
- * @param model  that has the plugin; undefined for the world
+ * @param owner  of the plugin
  */
-export function withState({title, sections}: Found, state: PluginState, model: Model|undefined,
+export function withState({title, sections}: Found, state: PluginState, owner: PluginOwner,
     index: number): Found {
   const [first, ...others] = sections;
   const made: Section[] = [first, stateSection(state), ...others];
-  const left = model && defaultFields(model, index, state.parameters);
-  if (left?.fields.length) {
+  const left = defaultFields(owner, index, state.parameters);
+  if (left.fields.length) {
     made.splice(-1, 0, {key: 'defaults', title: 'Parameters with default values', target: '', ...left});
   }
   return {title, sections: made};

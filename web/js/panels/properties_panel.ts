@@ -7,6 +7,7 @@ import {byId, fill, h, onceAFrame, remembered} from '../ui/dom.js';
 import {faultText} from '../ui/dialog.js';
 import {icon} from '../ui/icons.js';
 import {pluginState, withSensorState, withState} from './plugin_states.js';
+import {pluginOwner} from './plugin_fields.js';
 import {makeInput} from './property_inputs.js';
 import {keepTyping} from './kept_typing.js';
 import {sharedSections} from './model_sections.js';
@@ -110,7 +111,8 @@ export class Properties {
     if (found && this.row?.kind === 'sensor') return withSensorState(found, this.store, this.row);
     const state = found && this.row?.kind === 'plugin' ? pluginState(this.store, this.row) : undefined;
     const {model = '', index = -1} = this.row ?? {};
-    return found && state ? withState(found, state, this.store.model(model), index) : found;
+    const owner = pluginOwner(this.store.document, model);
+    return found && state && owner ? withState(found, state, owner, index) : found;
   }
 
   #show() {
@@ -224,6 +226,7 @@ export class Properties {
     return element;
   }
 
+  /** Resolves to whether the change was accepted. */
   async #commit(section: Section, entry: Entry, value: unknown, note: HTMLElement) {
     // What other properties and poses are now may be newer than what the panel shows.
     renew([entry], this.#found());
@@ -233,6 +236,7 @@ export class Properties {
     // Several changes of one field may be on their way; the last one decides.
     const turn = (this.#turns.get(element) ?? 0) + 1;
     this.#turns.set(element, turn);
+    let accepted = true;
     try {
       if (field.ops) {
         const {label, ops} = field.ops(value);
@@ -246,14 +250,16 @@ export class Properties {
       element.classList.add('taken');
       setTimeout(() => element.classList.remove('taken'), 700);
     } catch (fault) {
+      accepted = false;
       if (element.isConnected) {
         note.textContent = faultText(fault);
         note.scrollIntoView({block: 'nearest'});
       } else this.notices.say(`${field.label}: ${faultText(fault)}`);
     }
-    if (this.#turns.get(element) !== turn) return;
+    if (this.#turns.get(element) !== turn) return accepted;
     element.classList.remove('pending');
     this.#show();
+    return accepted;
   }
 
   async #rename(name: string, to: string) {

@@ -272,5 +272,4 @@ export function lightFields(light: Light) {
 export const PLUGIN = [
   fixed('name', 'name'),
   fixed('filename', 'file'),
-  field('xml', 'XML', 'xml', {fixed: true}),
 ];

@@ -14,16 +14,18 @@ export interface Input {
 }
 export type InputField = Omit<Field, 'path'> & {path?: string};
 
+/** Called with a new value, checked against the field; resolves to false for one that is refused. */
+export type Commit = (value: unknown) => unknown;
+
 /**
- * @param commit  called with a new value, checked against the field
  * @param refuse  called with what is wrong with an input
  */
-export function makeInput(field: InputField, commit: (value: unknown) => void,
+export function makeInput(field: InputField, commit: Commit,
     refuse: (text: string) => void): Input {
   return MAKERS[field.type](field, commit, refuse);
 }
 
-const MAKERS: Record<Field['type'], (field: InputField, commit: (value: unknown) => void,
+const MAKERS: Record<Field['type'], (field: InputField, commit: Commit,
     refuse: (text: string) => void) => Input> = {
   number: numberInput,
   integer: numberInput,
@@ -309,12 +311,53 @@ function buttonInput(field: InputField, commit: (value: unknown) => void) {
   return {element, show: () => {}};
 }
 
-function xmlInput(field: InputField) {
+function xmlInput(field: InputField, commit: Commit): Input {
+  if (!field.fixed) return xmlArea(field, commit);
   const element = h('pre', {class: 'xml', tabindex: 0, 'aria-label': field.label});
   return {
     element,
     show: (value: unknown) => {
       element.textContent = String(value ?? '');
+    },
+  };
+}
+
+/** XML of several lines. Ctrl+Enter and loss of focus commit it; Escape discards it. */
+function xmlArea(field: InputField, commit: Commit): Input {
+  let shown = '';
+  const element = h('textarea', {class: 'xml', rows: 8, spellcheck: 'false', 'aria-label': field.label,
+    title: field.hint});
+  const restore = () => {
+    delete element.dataset.edited;
+    element.value = shown;
+  };
+  const finish = () => {
+    if (element.dataset.edited === undefined) return;
+    delete element.dataset.edited;
+    if (element.value !== shown) void send(element.value);
+  };
+  /** XML that is refused stays, to be corrected. */
+  const send = async (text: string) => {
+    if (await commit(text) !== false) return;
+    element.value = text;
+    element.dataset.edited = '';
+  };
+  element.addEventListener('input', () => {
+    element.dataset.edited = '';
+  });
+  element.addEventListener('blur', finish);
+  element.addEventListener('keydown', (event) => {
+    if (event.key === 'Enter' && (event.ctrlKey || event.metaKey)) finish();
+    else if (event.key === 'Escape' && element.dataset.edited !== undefined) {
+      event.stopPropagation();
+      restore();
+    }
+  });
+  return {
+    element,
+    show(value: unknown) {
+      shown = String(value ?? '');
+      if (element.dataset.edited === undefined && element.value !== shown) restore();
     },
   };
 }

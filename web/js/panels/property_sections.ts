@@ -4,7 +4,7 @@
 import * as table from './property_fields.js';
 import {geometryFields} from './geometry_fields.js';
 import {bodySections} from './model_sections.js';
-import {pluginFields} from './plugin_fields.js';
+import {newPluginFields, pluginFields, pluginOwner, removalField, sourceField} from './plugin_fields.js';
 import {newSensors, removal, sensorSections} from './sensor_fields.js';
 import type {Field, Section} from './property_fields.js';
 import type {Row} from './world_rows.js';
@@ -115,14 +115,19 @@ const KINDS: Record<string, (world: World, row: Row) => BareSection[]|null|undef
     const target = `${model.name}::${row.owner}::sensor:${sensor.name}`;
     return [removal(sensor, target), ...sensorSections(sensor, target)].map((one) => ({...one, prefix: ''}));
   },
+  plugins: (world) => {
+    const {entity, fields} = newPluginFields({name: '', plugins: world.plugins});
+    return [section('', '', entity, fields)];
+  },
   plugin: (world, row) => {
-    const model = named(world.models, row.model);
+    const owner = pluginOwner(world, row.model ?? '');
     const index = row.index ?? -1;
-    const plugin = (model ?? world).plugins[index];
-    if (!model || !plugin) return [section('', '', plugin, table.PLUGIN)];
-    const {entity, fields} = pluginFields(model, index);
-    return [section('', '', plugin, table.PLUGIN.slice(0, 2)), section('Parameters', '', entity, fields),
-      section('Source', '', plugin, table.PLUGIN.slice(2))];
+    const plugin = owner?.plugins[index];
+    if (!owner || !plugin) return null;
+    const {entity, fields} = pluginFields(owner, index);
+    return [section('', '', {...plugin, remove: null}, [...table.PLUGIN, removalField(owner, index)]),
+      section('Parameters', '', entity, fields),
+      section('Source', '', plugin, [sourceField(owner, index)])];
   },
   light: (world, row) => {
     const light = named(world.lights, row.name);

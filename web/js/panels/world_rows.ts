@@ -84,21 +84,8 @@ export function worldRows(document: World|null, open: Set<string>, wanted = ''):
     );
   }
   const plugins = document.plugins;
-  if (plugins.length) {
-    group(
-      rows,
-      open,
-      'plugins',
-      `Plugins (${plugins.length})`,
-      'plugin',
-      plugins,
-      (plugin, index) =>
-        rows.push({
-          ...leaf(`plugin::${index}`, plugin.name || plugin.filename, 'plugin', 2, 'plugin'),
-          index,
-        }),
-    );
-  }
+  group(rows, open, 'plugins', `Plugins (${plugins.length})`, 'plugin', plugins, (plugin, index) =>
+    rows.push({...leaf(`plugin::${index}`, plugin.name || plugin.filename, 'plugin', 2, 'plugin'), index}));
   return rows;
 }
 

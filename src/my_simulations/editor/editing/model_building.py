@@ -6,6 +6,7 @@ from typing import Any, Callable, Dict, List, Optional, Tuple
 
 from ...description.compare import BUILT_IN
 from ...description.model import WORLD, Joint, Link, Model
+from ...description.plugin import PluginSpec
 from ...description.shapes import (
     Box,
     Capsule,
@@ -21,7 +22,7 @@ from ...description.shapes import (
 from ...errors import CommandError, Issue
 from ...geometry import IDENTITY, Pose, compose, inverse, normalised
 from ...resources.resolver import Resolver, ResourceNotFoundError
-from ...simulator.operations import AddModel, EditModel, Operation
+from ...simulator.operations import AddModel, EditModel, Operation, SetWorldPlugins
 from ...simulator.simulator import Simulator
 from ..scene.plain_json import pose_of as pose_from
 from ..scene.scene_json import NAMES
@@ -185,9 +186,17 @@ class ModelBuilding:
         return self._edited(f"Add {name} to {model.name}", model, changed, model.name)
 
     def _set_plugins(self, op: Dict[str, Any]) -> Planned:
+        plugins = self._plugins_of(op["text"])
+        if not op["model"]:
+            return "Set plugins of the world", SetWorldPlugins(tuple(plugins)), {}
         model = self._world.models.get(op["model"])
+        return self._edited(f"Set plugins of {model.name}", model,
+                            replace(model, plugins=plugins), model.name)
+
+    def _plugins_of(self, elements: str) -> List[PluginSpec]:
+        """Read `<plugin>` elements. Raises CommandError, InputError."""
         text = ('<sdf version="1.7"><model name="plugins"><link name="link"/>\n'
-                f"{op['text']}\n</model></sdf>")
+                f"{elements}\n</model></sdf>")
         _check_xml(text)
         found, issues = entity_of_text(text, self._resolver)
         for issue in issues:
@@ -199,8 +208,7 @@ class ModelBuilding:
         twice = next((name for name in names if names.count(name) > 1), None)
         if twice is not None:
             raise CommandError(f"two plugins are called {twice!r}")
-        return self._edited(f"Set plugins of {model.name}", model,
-                            replace(model, plugins=found.plugins), model.name)
+        return found.plugins
 
     def _remove(self, op: Dict[str, Any]) -> Planned:
         model, rest = split_target(self._world, op["target"])

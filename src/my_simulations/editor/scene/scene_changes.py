@@ -47,7 +47,7 @@ class Mirror:
             return None
         entities, snapshot = self._simulator.states.latest()
         world = self._simulator.world
-        rest = (world.plugins, world.roads, world.actors, world.file)
+        rest = (world.roads, world.actors, world.file)
         if self.revision < 0 or rest != self._rest:
             document = self._document(entities, snapshot)
             change = SceneChange({"type": "world", "revision": revision, "document": document},
