@@ -191,6 +191,41 @@ def test_a_second_click_selects_one_model_of_a_group_and_ungroup_is_undone(edito
     editor.until("editor.store.model('right').group === 'group'", "the group again")
 
 
+def test_a_light_is_moved_hidden_and_deleted_with_the_model_of_its_group(editor):
+    editor.get("editor.actions.edit({kind: 'insert', shape: 'box', name: 'post',"
+               " pose: [0, 0, 0.5, 0, 0, 0, 1]})")
+    editor.get("editor.actions.edit({kind: 'insert_light', light: {type: 'point', name: 'bulb',"
+               " pose: [0, 0, 1.5, 0, 0, 0, 1]}})")
+    editor.until("editor.view.bounds('post')", "the drawn box")
+    editor.get("editor.store.select(['post', 'bulb'])")
+    editor.page.keyboard.press("Control+g")
+    editor.until("editor.store.light('bulb').group === 'group'", "the group")
+    editor.page.keyboard.press("Escape")
+    editor.click((0.0, 0.0, 1.5))
+    editor.until("editor.store.selection.join() === 'post,bulb'", "the group under the mouse")
+    editor.page.keyboard.press("t")
+    editor.drag((0.0, 0.0, 0.5), (1.0, 0.0, 0.5))
+    wait_for(lambda: editor.get("editor.store.light('bulb').pose")[0] > 0.5, "the moved light")
+    x, y, _ = editor.get("editor.store.light('bulb').pose")[:3]
+    assert editor.model("post")["pose"][:3] == approx([x, y, 0.5], abs=1e-3)
+    editor.page.keyboard.press("h")
+    editor.until("editor.store.selection.length === 0", "nothing selected")
+    editor.click((x, y, 1.5))
+    editor.frame()
+    assert editor.get("editor.store.selection") == []
+    editor.page.keyboard.press("Alt+h")
+    editor.row("group (2)").click()
+    name = editor.field("name")
+    name.fill("lamp")
+    name.press("Enter")
+    editor.row("lamp (2)").click()
+    editor.page.locator("#view").focus()
+    editor.page.keyboard.press("Delete")
+    editor.until("!editor.store.light('bulb') && !editor.store.model('post')", "both deleted")
+    editor.page.keyboard.press("Control+z")
+    editor.until("editor.store.light('bulb')?.group === 'lamp'", "the light in its group again")
+
+
 def test_a_group_survives_save_and_load(editor, node):
     two_grouped_boxes(editor)
     editor.get("editor.request('save', {path: 'grouped.world', overwrite: true})")

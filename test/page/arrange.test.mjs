@@ -123,6 +123,23 @@ test('groups name their models, and a name stands for its group', () => {
   assert.deepEqual(groupAround(models, 'a'), ['c', 'a']);
 });
 
+test('lights are members of groups, are hidden and locked with them', async () => {
+  const {connection, store, actions} = page();
+  const [name] = store.document.lights.map((one) => one.name);
+  store.select(['a', name]);
+  await actions.groupSelection();
+  assert.deepEqual(connection.requests.at(-1), ['edit', {op: {kind: 'set_group', names: ['a', name]}}]);
+  actions.lock();
+  assert.ok(store.overlay('locked', name) && store.overlay('locked', 'a'));
+  actions.unlockAll();
+  assert.ok(!store.overlay('locked', name));
+  actions.hide();
+  assert.ok(store.overlay('hidden', name));
+  assert.deepEqual(store.selection, []);
+  store.receive({type: 'change', revision: 9, lights: {[name]: null}});
+  assert.ok(!store.overlay('hidden', name), 'the next light of the name is shown');
+});
+
 test('grouping asks for a new group, ungrouping for all models of the groups', async () => {
   const {connection, store, actions} = page();
   store.select(['a']);

@@ -108,6 +108,7 @@ export function light(name, more = {}) {
     inner_angle: 0,
     outer_angle: 0,
     falloff: 0,
+    group: '',
     ...more,
   };
 }

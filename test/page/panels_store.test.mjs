@@ -126,7 +126,7 @@ test('the context menu is that of Gazebo, with Hide and Locked; a light takes no
     'Paste',
     'Delete',
   ]);
-  assert.deepEqual(titles('sun'), ['Move To', 'Follow', 'Copy', 'Paste', 'Delete']);
+  assert.deepEqual(titles('sun'), ['Move To', 'Follow', 'Hide', 'Locked', 'Copy', 'Paste', 'Delete']);
   assert.deepEqual(titles('nobody'), []);
   store.select(['a', 'sun']);
   assert.ok(titles('a').includes('Delete Selection (2)'));

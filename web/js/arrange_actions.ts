@@ -1,6 +1,6 @@
 /** Several of a kind, equal gaps, and what is hidden or locked in this browser. */
 import {arrayOffsets, clearSpacing, copiesIn, distributeMoves, MOST_COPIES} from './arrange.js';
-import {withGroups} from './model_groups.js';
+import {membersOf, withGroups} from './model_groups.js';
 import {NOTHING} from './nothing.js';
 import {isGround} from './selected_model.js';
 import {add, orientation, position} from './pose.js';
@@ -12,6 +12,9 @@ export function arrangeActions({store, ask, edit, dialog, note, view}: ActionPar
   /** The selected models, those of selected links, too. */
   const chosenModels = () =>
     [...new Set(store.selection.flatMap((name) => store.split(name)[0]?.name ?? []))];
+
+  /** The selected models and lights; of links, their models. */
+  const chosen = () => [...new Set(store.selection.flatMap((name) => store.wholeOf(name) ?? []))];
 
   /** What can be copied of the selection, in the order of a world file: models, then lights. */
   const copied = () => {
@@ -97,35 +100,36 @@ export function arrangeActions({store, ask, edit, dialog, note, view}: ActionPar
     distributeX: () => arrange.distribute('x'),
     distributeY: () => arrange.distribute('y'),
     distributeZ: () => arrange.distribute('z'),
-    /** The selected models are not drawn any more, in this browser. */
-    hide(names = chosenModels()) {
+    /** The selected models and icons of lights are not drawn any more, in this browser. */
+    hide(names = chosen()) {
       for (const name of names) store.setOverlay('hidden', true, name);
-      store.select(store.selection.filter((name) => !names.includes(store.split(name)[0]?.name ?? '')));
+      store.select(store.selection.filter((name) => !names.includes(store.wholeOf(name) ?? '')));
     },
     showHidden: (names = marked('hidden')) => names.forEach((name) => store.setOverlay('hidden', null, name)),
-    /** Locks the selected models against the mouse; unlocks them where all of them are locked. */
-    lock(names = chosenModels()) {
+    /** Locks what is selected against the mouse; unlocks it where all of it is locked. */
+    lock(names = chosen()) {
       const on = names.every((name) => store.overlay('locked', name)) ? null : true;
       for (const name of names) store.setOverlay('locked', on, name);
     },
     unlockAll: () => marked('locked').forEach((name) => store.setOverlay('locked', null, name)),
-    /** Puts the selected models into a new group, kept in the world's file. */
+    /** Puts the selected models and lights into a new group, kept in the world's file. */
     async groupSelection(): Promise<Outcome> {
-      const names = chosenModels();
+      const names = chosen();
       if (names.length < 2) {
-        note('Select at least two models to group.');
+        note('Select at least two models or lights to group.');
         return NOTHING;
       }
       const done = await edit({kind: 'set_group', names});
       if (done.ok) store.select(names);
       return done;
     },
-    /** Takes the selected models, and the others of their groups, out of them. */
+    /** Takes what is selected, and the others of its groups, out of them. */
     async ungroupSelection(): Promise<Outcome> {
-      const models = store.document?.models ?? [];
-      const names = withGroups(models, chosenModels()).filter((name) => store.model(name)?.group);
+      const members = membersOf(store.document);
+      const grouped = new Set(members.flatMap(({name, group}) => (group ? [name] : [])));
+      const names = withGroups(members, chosen()).filter((name) => grouped.has(name));
       if (names.length) return edit({kind: 'set_group', names, group: ''});
-      note('No model of a group is selected.');
+      note('No member of a group is selected.');
       return NOTHING;
     },
     /** What a click can select: no ground, neither hidden nor locked. */
@@ -136,7 +140,7 @@ export function arrangeActions({store, ask, edit, dialog, note, view}: ActionPar
   };
 
   const marked = (flag: 'hidden'|'locked') =>
-    (store.document?.models ?? []).map(({name}) => name).filter((name) => store.overlay(flag, name));
+    membersOf(store.document).map(({name}) => name).filter((name) => store.overlay(flag, name));
 
   return arrange;
 }

@@ -28,7 +28,7 @@ export const HOTKEYS: readonly Hotkey[] = Object.freeze([
   {keys: 'Ctrl+G', title: 'Group selected models', group: 'Edit', action: 'groupSelection'},
   {keys: 'Ctrl+Shift+G', title: 'Ungroup selected models', group: 'Edit', action: 'ungroupSelection'},
   {keys: 'H', title: 'Hide selected models', group: 'Edit', action: 'hide'},
-  {keys: 'Alt+H', title: 'Show hidden models', group: 'Edit', action: 'showHidden'},
+  {keys: 'Alt+H', title: 'Show what is hidden', group: 'Edit', action: 'showHidden'},
   {keys: 'L', title: 'Lock or unlock selected models', group: 'Edit', action: 'lock'},
   {keys: 'Ctrl+A', title: 'Select all models', group: 'Edit', action: 'selectAll'},
   {keys: 'Ctrl+F', title: 'Find a model or light', group: 'Edit', action: 'find'},

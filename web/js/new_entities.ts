@@ -45,7 +45,7 @@ export function shapeModel(shape: ShapeName): Model {
 const COMMON_LIGHT = {
   pose: [0, 0, 1, 0, 0, 0, 1], cast_shadows: false, diffuse: [0.5, 0.5, 0.5, 1],
   specular: [0.1, 0.1, 0.1, 1], range: 20, constant: 0.5, linear: 0.01, quadratic: 0.001,
-  direction: [0, 0, -1], inner_angle: 0, outer_angle: 0, falloff: 0,
+  direction: [0, 0, -1], inner_angle: 0, outer_angle: 0, falloff: 0, group: '',
 };
 
 const LIGHT_TYPES: Record<LightType, Partial<Light>> = {

@@ -155,7 +155,8 @@ export type Model = {
 export type Light = {
   name: string, type: 'point'|'directional'|'spot', pose: pose, cast_shadows: boolean,
   diffuse: color, specular: color, range: number, constant: number, linear: number,
-  quadratic: number, direction: vec3, inner_angle: number, outer_angle: number, falloff: number
+  quadratic: number, direction: vec3, inner_angle: number, outer_angle: number, falloff: number,
+  group: string
 };
 
 export type Waypoint = {time: number, pose: pose};

@@ -121,7 +121,7 @@ export class Store extends WorldStore {
   }
 
   /**
-   * What is shown of a model goes with it, and is not that of the next one of its name.
+   * What is shown of a model or light goes with it, and is not that of the next one of its name.
    * @param to  its new name
    */
   override modelGone(name: string, to: string|null) {

@@ -140,6 +140,7 @@ export class WorldStore extends Emitter<StoreEvents> {
       changed.push({name, kind: 'model', value});
     }
     for (const [name, value] of Object.entries(lights ?? {})) {
+      if (value === null) this.modelGone(name, null);
       replaceByName(this.document.lights, name, value);
       changed.push({name, kind: 'light', value});
     }
@@ -183,7 +184,7 @@ export class WorldStore extends Emitter<StoreEvents> {
   dropGone() {}
 
   /**
-   * Called when there is no model of a name any more, before others are told.
+   * Called when there is no model or light of a name any more, before others are told.
    * @param _to  its new name, where it got one
    */
   modelGone(_name: string, _to: string|null) {}
@@ -229,6 +230,11 @@ export class WorldStore extends Emitter<StoreEvents> {
   split(name: string): [Model|undefined, string] {
     const [model, rest] = splitScoped(name, (one) => this.model(one) !== undefined);
     return [this.model(model), rest];
+  }
+
+  /** The name of the model or light that a name belongs to; undefined where there is none. */
+  wholeOf(name: string): string|undefined {
+    return this.split(name)[0]?.name ?? this.light(name)?.name;
   }
 
   /**

@@ -6,11 +6,11 @@ are kept.
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
-from typing import Any, Callable, Dict, List, Optional, Protocol, Tuple
+from typing import Any, Callable, Dict, List, Optional, Protocol, Tuple, Union
 
 from ..description.light import Light
 from ..description.model import Joint, Model
-from ..description.model_group import extra_with_group, group_of
+from ..description.model_group import extra_with_group, group_of, with_group
 from ..description.plugin import PluginSpec
 from ..description.scoped_names import split_scoped
 from ..description.shapes import MeshTable
@@ -122,16 +122,30 @@ class EditModel:
 
 @dataclass(frozen=True)
 class SetGroups:
-    """Put models into groups of the editor: name of the group by name of the model, "" for none."""
+    """Put models and lights into groups of the editor.
+
+    Attributes:
+        groups: name of the group by name of the model or light, "" for none.
+    """
 
     groups: Dict[str, str]
 
     def apply(self, world: Simulator) -> Operation:
-        """Set the groups; no model is built again."""
-        models = {name: world.models.get(name) for name in self.groups}
-        for name, model in models.items():
-            world.models.set_extra(name, extra_with_group(model.extra, self.groups[name]))
-        return SetGroups({name: group_of(model) for name, model in models.items()})
+        """Set the groups; no model is built again. Raises CommandError for an unknown name."""
+        before = {name: entity_of(world, name) for name in self.groups}
+        for name, entity in before.items():
+            if isinstance(entity, Light):
+                world.lights.set(name, with_group(entity, self.groups[name]))
+            else:
+                world.models.set_extra(name, extra_with_group(entity.extra, self.groups[name]))
+        return SetGroups({name: group_of(entity) for name, entity in before.items()})
+
+
+def entity_of(world: Simulator, name: str) -> Union[Model, Light]:
+    """Return the model or light of a name: the model if both have it. Raises CommandError."""
+    light = None if world.models.has(name) else next(
+        (one for one in world.lights.all() if one.name == name), None)
+    return light or world.models.get(name)
 
 
 @dataclass(frozen=True)

@@ -10,7 +10,10 @@ from editor_case import Refused, arm, box, cases, sun
 from my_simulations.description.compare import differences
 from my_simulations.description.model_group import group_of
 from my_simulations.engine.timed_forces import JointPid
+from my_simulations.formats.reading import parse_world
+from my_simulations.formats.sdf.writer.entities import write_world
 from my_simulations.geometry import STILL, Pose
+from my_simulations.resources.resolver import Resolver
 from my_simulations.simulator.joint_gains import default_gains
 
 case = pytest.fixture(cases)
@@ -115,6 +118,7 @@ EDITS = {
     "remove a visual": {"kind": "remove_part", "target": "a::link::visual:visual"},
     "compute inertia": {"kind": "compute_inertial", "target": "a::link", "density": 500},
     "group models": {"kind": "set_group", "names": ["a", "arm"]},
+    "group a light": {"kind": "set_group", "names": ["a", "sun"]},
     "reset poses": {"kind": "reset", "what": "poses"},
     "reset the world": {"kind": "reset", "what": "world"},
     "several as one": {"kind": "group", "label": "Two things", "ops": [
@@ -532,6 +536,25 @@ def test_copies_of_a_group_are_a_group_of_their_own(case):
                             == list(groups().values()))
         await browser.ask("edit", op={"kind": "set_group", "names": ["a", "b"], "group": ""})
         assert groups()["a"] == groups()["b"] == ""
+
+    made.browse(edit)
+
+
+def test_a_light_is_a_member_of_a_group_copied_with_it_and_saved(case):
+    made = case(box("a"), lights=[sun()])
+
+    async def edit(browser):
+        await browser.ask("edit", op={"kind": "set_group", "names": ["a", "sun"]})
+        assert browser.light("sun")["group"] == browser.model("a")["group"] == "group"
+        text = (await browser.ask("copy", names=["a", "sun"]))["text"]
+        await browser.ask("edit", op={"kind": "paste", "text": text})
+        assert {name: group_of(made.sim.lights.get(name)) for name in ("sun", "sun_clone")} == {
+            "sun": "group", "sun_clone": "group_0"}
+        assert group_of(made.sim.models.get("a_clone")) == "group_0"
+        world, issues = parse_world(write_world(made.sim.world).decode(), Resolver(), "x.world")
+        assert not issues and [group_of(light) for light in world.lights] == ["group", "group_0"]
+        with pytest.raises(Refused, match="nix"):
+            await browser.ask("edit", op={"kind": "set_group", "names": ["sun", "nix"]})
 
     made.browse(edit)
 

@@ -87,7 +87,6 @@ def test_every_request_of_the_protocol_is_handled_and_no_other(protocol, tmp_pat
 @pytest.mark.parametrize(
     "kind, described",
     [
-        ("Light", light.Light),
         ("Inertial", model.Inertial),
         ("Surface", shapes.Surface),
         ("Axis", model.JointAxis),
@@ -125,7 +124,7 @@ def test_the_protocol_names_all_fields_of_the_description(data, kind, described)
 
 @pytest.mark.parametrize("kind, described, more", [
     ("Model", model.Model, {"enable_wind", "uri", "scalable", "group"}),
-    ("Link", model.Link, {"id"}), ("Visual", shapes.Visual, {"layer"}),
+    ("Light", light.Light, {"group"}), ("Link", model.Link, {"id"}), ("Visual", shapes.Visual, {"layer"}),
     ("Collision", shapes.Collision, set()), ("Actor", actor.Actor, {"geometry"}),
     ("Animation", actor.Animation, {"geometry"}), ("World", world.World, set())])
 def test_the_protocol_has_no_field_that_the_description_lacks(data, kind, described, more):

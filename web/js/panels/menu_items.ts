@@ -105,7 +105,7 @@ export function menus(page: Page): Menu[] {
         item('Ungroup', 'ungroupSelection', {enabled: () => grouped(store, store.selection)}),
         LINE,
         item('Hide Selection', 'hide', {enabled: () => store.selection.length > 0}),
-        item('Show Hidden Models', 'showHidden'),
+        item('Show Hidden', 'showHidden'),
         item('Lock or Unlock Selection', 'lock', {enabled: () => store.selection.length > 0}),
         item('Unlock All', 'unlockAll'),
         LINE,
@@ -218,7 +218,7 @@ export function contextMenu(page: Page, name: string):
   const whole = model ?? name;
   const chosen =
     store.selection.includes(name) && store.selection.length > 1 ? store.selection : [whole];
-  const models = [...new Set(chosen.flatMap((one) => store.split(one)[0]?.name ?? []))];
+  const wholes = [...new Set(chosen.flatMap((one) => store.wholeOf(one) ?? []))];
   const view = light
     ? []
     : [
@@ -242,9 +242,9 @@ export function contextMenu(page: Page, name: string):
       ? {title: 'Stop Following', run: () => actions.follow(null)}
       : {title: 'Follow', run: () => actions.follow(whole)},
   ];
-  const hide = (named: string) => (store.overlay('hidden', named) ? {title: 'Show', run: () => actions.showHidden(models)}
-    : {title: 'Hide', keys: keysOf('hide'), run: () => actions.hide(models)});
-  if (store.readOnly) return [...follow, ...view, ...(model ? [hide(model)] : [])];
+  const hide = (named: string) => (store.overlay('hidden', named) ? {title: 'Show', run: () => actions.showHidden(wholes)}
+    : {title: 'Hide', keys: keysOf('hide'), run: () => actions.hide(wholes)});
+  if (store.readOnly) return [...follow, ...view, hide(whole)];
   return [
     ...follow,
     ...force,
@@ -253,13 +253,12 @@ export function contextMenu(page: Page, name: string):
     LINE,
     ...view,
     ...(light ? [] : [LINE]),
-    ...(model ? [
-      hide(model),
-      {title: 'Locked', keys: keysOf('lock'), checked: () => store.overlay('locked', model), run: () => actions.lock(models)},
-      ...(models.length > 1 ? [{title: 'Group', keys: keysOf('groupSelection'), run: () => actions.groupSelection()}] : []),
-      ...(grouped(store, models)
+      hide(whole),
+      {title: 'Locked', keys: keysOf('lock'), checked: () => store.overlay('locked', whole), run: () => actions.lock(wholes)},
+      ...(wholes.length > 1 ? [{title: 'Group', keys: keysOf('groupSelection'), run: () => actions.groupSelection()}] : []),
+      ...(grouped(store, wholes)
         ? [{title: 'Ungroup', keys: keysOf('ungroupSelection'), run: () => actions.ungroupSelection()}] : []),
-      LINE] : []),
+    LINE,
     {title: 'Copy', keys: keysOf('copy'), run: () => actions.copy(chosen)},
     {
       title: 'Paste',
@@ -275,9 +274,9 @@ export function contextMenu(page: Page, name: string):
   ];
 }
 
-/** Whether a model of a group is among them. */
+/** Whether a member of a group is among them. */
 const grouped = (store: Store, names: string[]) => names.some((name) =>
-    Boolean(store.split(name)[0]?.group));
+    Boolean((store.split(name)[0] ?? store.light(name))?.group));
 
 /** A ground: nothing of it can be edited by hand. */
 const isPlane = (model: Model|undefined) =>

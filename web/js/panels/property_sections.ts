@@ -3,6 +3,7 @@
  */
 import * as table from './property_fields.js';
 import {geometryFields} from './geometry_fields.js';
+import {groupsOf, membersOf} from '../model_groups.js';
 import {bodySections} from './model_sections.js';
 import {newPluginFields, pluginFields, pluginOwner, removalField, sourceField} from './plugin_fields.js';
 import {newSensors, removal, sensorSections} from './sensor_fields.js';
@@ -128,6 +129,11 @@ const KINDS: Record<string, (world: World, row: Row) => BareSection[]|null|undef
     return [section('', '', {...plugin, remove: null}, [...table.PLUGIN, removalField(owner, index)]),
       section('Parameters', '', entity, fields),
       section('Source', '', plugin, [sourceField(owner, index)])];
+  },
+  group: (world, row) => {
+    const names = groupsOf(membersOf(world)).get(row.name ?? '');
+    return names && [section('', '', {group: row.name}, [{path: 'group', label: 'name', type: 'text',
+      ops: (value) => ({label: `Rename group ${row.name} to ${value}`, ops: [{kind: 'set_group', names, group: String(value)}]})}])];
   },
   light: (world, row) => {
     const light = named(world.lights, row.name);

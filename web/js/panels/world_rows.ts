@@ -1,5 +1,5 @@
 /** The rows of the World tab, in Gazebo's order, out of the document. Pure. */
-import {groupsOf} from '../model_groups.js';
+import {groupsOf, membersOf} from '../model_groups.js';
 import {splitScoped} from '../scoped_names.js';
 import type {Model, World} from '../protocol.js';
 import type {TreeRow} from '../ui/tree_view.js';
@@ -51,7 +51,7 @@ export function worldRows(document: World|null, open: Set<string>, wanted = ''):
     models,
     (model) => modelRows(rows, open, model),
   );
-  const groups = [...groupsOf(document.models)];
+  const groups = [...groupsOf(membersOf(document))];
   if (groups.length) {
     group(rows, open, 'groups', `Groups (${groups.length})`, 'group', groups, ([name, members]) =>
       rows.push({...leaf(`group:${name}`, `${name} (${members.length})`, 'group', 2, 'group'), name}));

@@ -1,6 +1,6 @@
 /** The World tab: a filter, the tree, and the properties of the row that is chosen. */
 import {elementsOf, fill, h, onceAFrame, remembered} from '../ui/dom.js';
-import {groupsOf} from '../model_groups.js';
+import {groupsOf, membersOf} from '../model_groups.js';
 import {colorOf} from '../person_color.js';
 import {doing} from './people_bar.js';
 import {pluginState, sensorState, stateTag} from './plugin_states.js';
@@ -11,7 +11,7 @@ import {lyingBar, splitter} from '../ui/splitter.js';
 import type {Row} from './world_rows.js';
 import type {Page} from './panels.js';
 
-/** What of a model this browser's user has chosen, as tags of its row. */
+/** What of a model or light this browser's user has chosen, as tags of its row. */
 const FLAGS = ['hidden', 'locked'] as const;
 
 export class WorldTab {
@@ -109,7 +109,7 @@ export class WorldTab {
     if (row.kind === 'heading') return;
     this.#row = row;
     if (row.kind === 'group') {
-      this.store.select(groupsOf(this.store.document?.models ?? []).get(row.name ?? '') ?? []);
+      this.store.select(groupsOf(membersOf(this.store.document)).get(row.name ?? '') ?? []);
       // The selection shows the row of its last model.
       this.#row = row;
     } else if (row.select) {
@@ -172,10 +172,11 @@ export class WorldTab {
       return h('span', {class: 'tag person-tag', style: `--person: ${colorOf(person)}`,
         text: person.name, title: `${person.name} ${doing(person)}`});
     }
-    if (row.kind === 'model') {
-      const model = this.store.document?.models.find((one) => one.name === row.name);
-      const tags = [model?.group, model?.static && 'static', ...FLAGS.map((flag) => model && this.store.overlay(flag, model.name) && flag)];
-      const failed = this.store.pluginStates.find((one) => one.model === row.name && one.state === 'failed');
+    if (row.kind === 'model' || row.kind === 'light') {
+      const model = this.store.model(row.model ?? '');
+      const member = model ?? this.store.light(row.name ?? '');
+      const tags = [member?.group, model?.static && 'static', ...FLAGS.map((flag) => member && this.store.overlay(flag, member.name) && flag)];
+      const failed = this.store.pluginStates.find((one) => one.model && one.model === row.model && one.state === 'failed');
       return h('span', {class: 'tags'}, ...tags.map((text) => text && h('span', {class: 'tag', text})),
         failed && stateTag('plugin failed', failed.reason));
     }

@@ -1,6 +1,6 @@
 /** A rectangle drawn with the mouse: what has its middle in it is selected. */
 
-import {withGroups} from '../model_groups.js';
+import {membersOf, withGroups} from '../model_groups.js';
 import type {Store} from '../store.js';
 
 export type Dragged = {x: number, y: number, lastX: number, lastY: number};
@@ -34,14 +34,14 @@ export class BoxSelect {
   /** Selects what is in the rectangle, with what is selected. */
   end({x, y, lastX, lastY}: Dragged) {
     this.cancel();
-    const models = this.#store.document?.models ?? [];
-    const free = models.map(({name}) => name).filter((name) => !this.#store.overlay('locked', name));
+    const members = membersOf(this.#store.document);
+    const free = members.map(({name}) => name).filter((name) => !this.#store.overlay('locked', name));
     const within = free.filter((name) => {
       const pixel = this.#pixelOf(name);
       return pixel !== null && (pixel[0] - x) * (pixel[0] - lastX) < 0 &&
         (pixel[1] - y) * (pixel[1] - lastY) < 0;
     });
-    this.#store.select(withGroups(models, within).filter((name) => free.includes(name)), {add: true});
+    this.#store.select(withGroups(members, within).filter((name) => free.includes(name)), {add: true});
   }
 
   cancel() {

@@ -126,15 +126,22 @@ export class Lights {
     store.listen('document', () => this.#rebuild());
     store.listen('overlays', ({detail: {flag}}) => {
       if (flag === 'cameraColors') this.#rebuild();
+      if (flag === 'hidden') this.#hideIcons();
     });
     store.listen('entity', ({detail: {kind, value}}) => {
       if (kind === 'light' || (kind === 'world' && value.scene)) this.#rebuild();
     });
   }
 
-  /** Icons by light name, for picking. */
+  /** Icons that are shown by light name, for picking. */
   get icons(): Map<string, Group> {
-    return new Map([...this.#entries].map(([name, {icon}]) => [name, icon]));
+    return new Map([...this.#entries].filter(([, {icon}]) => icon.visible).map(([name, {icon}]) => [name, icon]));
+  }
+
+  /** A hidden light still shines. */
+  #hideIcons() {
+    for (const [name, {icon}] of this.#entries) icon.visible = !this.#store.overlay('hidden', name);
+    this.#stage.invalidate();
   }
 
   /** Shows a light elsewhere while it is dragged. */
@@ -199,6 +206,7 @@ export class Lights {
       if ('target' in lamp) scene.add(lamp.target);
       this.#aim(entry, light);
     }
+    this.#hideIcons();
     this.#stage.shadowsChanged();
   }
 

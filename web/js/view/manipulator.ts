@@ -1,6 +1,6 @@
 /** Moving, turning and scaling with the mouse: by the handles, or by the body itself. */
 import {alongAxis, rotated, roundness, scaled, translated} from '../drag_math.js';
-import {groupAround} from '../model_groups.js';
+import {groupAround, membersOf} from '../model_groups.js';
 import {compose, inverse, orientation, position} from '../pose.js';
 import {LIMITS} from '../protocol.js';
 import {Gizmo} from './gizmo.js';
@@ -84,7 +84,9 @@ export class Manipulator {
     return name;
   }
 
-  #isLocked({model}: EntityRef) { return Boolean(model && this.#store.overlay('locked', model.name)); }
+  #isLocked({model, light}: EntityRef) {
+    return this.#store.overlay('locked', (model ?? light)?.name);
+  }
 
   /** Puts the handles where the target is shown. */
   update() {
@@ -207,13 +209,12 @@ export class Manipulator {
     if (this.#grasp && names.includes(this.#grasp.name)) return;
     for (const name of names) this.#models.fade(name, false);
     this.#models.release(names, {keep});
-    const light = this.#store.light(grasp.name);
-    if (light && !keep) this.#lights.move(grasp.name, light.pose);
+    if (!keep) this.#moveLights(Object.fromEntries(names.map((name) => [name, this.#store.light(name)?.pose])));
     this.#moved();
   }
 
   #group(name: string) {
-    return groupAround(this.#store.document?.models ?? [], name);
+    return groupAround(membersOf(this.#store.document), name);
   }
 
   #shown(name: string) {
@@ -239,9 +240,9 @@ export class Manipulator {
     if (!pose || !isGizmoMode(mode)) return false;
     const others: Record<string, Pose7> = {};
     if (mode !== 'scale') {
-      // Of what is selected, all moves along; only the models of its group turn along.
+      // Of what is selected, all moves along; only the members of its group turn along.
       for (const other of this.#store.selection) {
-        const along = other !== name && this.#store.model(other) &&
+        const along = other !== name && this.#store.entity(other)?.kind !== 'link' &&
           (mode === 'translate' || this.#group(name).includes(other));
         const shown = along && this.#models.shownPose(other);
         if (shown) others[other] = shown;
@@ -253,7 +254,7 @@ export class Manipulator {
       ray: this.#picker.ray(event.clientX, event.clientY), how: howOf(handle, key, event)};
     grasp.point = graspedPoint(grasp, point);
     this.#grasp = grasp;
-    if (model) for (const one of [name, ...Object.keys(others)]) this.#models.fade(one, true);
+    for (const one of [name, ...Object.keys(others)]) this.#models.fade(one, true);
     return true;
   }
 
@@ -311,9 +312,15 @@ export class Manipulator {
     const name = this.#grasp?.name;
     if (name === undefined) return;
     if (factors) this.#models.stretch(name, factors);
-    else if (this.#store.light(name)) this.#lights.move(name, poses[name]);
-    else this.#models.hold(poses);
+    else {
+      this.#moveLights(poses);
+      this.#models.hold(Object.fromEntries(Object.entries(poses).filter(([one]) => !this.#store.light(one))));
+    }
     this.#moved();
+  }
+
+  #moveLights(poses: Record<string, Pose7|undefined>) {
+    for (const [name, pose] of Object.entries(poses)) if (pose && this.#store.light(name)) this.#lights.move(name, pose);
   }
 
   #moved() {

@@ -1,6 +1,6 @@
 /** What clicks select, and where the ray under the mouse meets the world. */
 import {Mesh} from 'three';
-import {groupAround} from '../model_groups.js';
+import {groupAround, membersOf} from '../model_groups.js';
 import {rayPlane, WORLD_AXES} from '../drag_math.js';
 import {add, length, scale, subtract} from '../pose.js';
 import type {MousePoint} from './pointer.js';
@@ -31,11 +31,12 @@ export class Selector {
     this.#rig = rig;
   }
 
-  under({clientX, clientY}: MousePoint, accept: (model: string) => boolean = () => true):
+  /** @param accept  whether a model or light is wanted */
+  under({clientX, clientY}: MousePoint, accept: (name: string) => boolean = () => true):
       {name: string, link?: string, point: number[], plane?: boolean}|null {
     const body = this.#picker.nearest(this.#batches.items(), clientX, clientY,
       (owner) => owner.model !== undefined && accept(owner.model));
-    const icons = this.#lights.icons;
+    const icons = new Map([...this.#lights.icons].filter(([name]) => accept(name)));
     const [light] = this.#picker.objects([...icons.values()], clientX, clientY)
       .filter(({object}) => object instanceof Mesh);
     if (light && (!body || light.distance < body.distance)) {
@@ -47,9 +48,9 @@ export class Selector {
     return {name: model, link, point: body.point, plane};
   }
 
-  /** What a drag may take hold of; locked models are passed over. */
+  /** What a drag may take hold of; what is locked is passed over. */
   movable(event: MousePoint) {
-    const hit = this.under(event, (model) => !this.#store.overlay('locked', model));
+    const hit = this.under(event, (name) => !this.#store.overlay('locked', name));
     return hit && !hit.plane ? hit : null;
   }
 
@@ -92,13 +93,13 @@ export class Selector {
     else this.#store.select(this.#wantsMember(group) ? [hit.name] : group);
   }
 
-  /** The models of the group of a model that the mouse reaches, this one last. */
+  /** The members of the group of a model or light that the mouse reaches, this one last. */
   #group(name: string) {
-    return groupAround(this.#store.document?.models ?? [], name)
+    return groupAround(membersOf(this.#store.document), name)
       .filter((one) => one === name || !this.#store.overlay('locked', one));
   }
 
-  /** The second click on a group means one of its models. */
+  /** The second click on a group means one of its members. */
   #wantsMember(group: string[]) {
     const {selection} = this.#store;
     return group.length > 1 && group.every((name) => selection.includes(name)) ||

@@ -31,6 +31,7 @@ from ...simulator.operations import (
     Reset,
     SetGroups,
     SetPoses,
+    entity_of,
     pose_of,
 )
 from ...simulator.simulator import Simulator
@@ -251,11 +252,11 @@ class EditRequests:
         return label, operation, {}
 
     def _set_group(self, op: Dict[str, Any]) -> Planned:
-        """An empty name removes the models from their groups; without a name it is a new group."""
+        """An empty name removes the members from their groups; without a name it is a new group."""
         names = list(dict.fromkeys(op["names"]))
         if not names:
-            raise CommandError("no models are selected")
-        groups = [group_of(self._world.models.get(name)) for name in names]
+            raise CommandError("no models or lights are selected")
+        groups = [group_of(entity_of(self._world, name)) for name in names]
         group = op.get("group")
         if group is None:
             group = free_name("group", self._taken_groups())
@@ -266,7 +267,8 @@ class EditRequests:
         return label, SetGroups({name: group for name in names}), {"name": group}
 
     def _taken_groups(self) -> Set[str]:
-        return {group_of(entity.model) for entity in self._world.models.inventory()[1]}
+        return {*(group_of(entity.model) for entity in self._world.models.inventory()[1]),
+                *(group_of(light) for light in self._world.lights.all())}
 
     def _is_of_model(self, target: str) -> bool:
         return bool(split_scoped(target, self._world.models.has)[0])

@@ -129,12 +129,12 @@ def used_names(simulator: Simulator) -> Collection[str]:
 def regrouped(entities: Sequence[Entity], taken: Collection[str]) -> List[Entity]:
     """Copies in groups of their own: those of one group in a group with a free name.
 
-    A copy of one model of a group is in none.
+    A copy of one member of a group is in none.
     """
-    groups = [group_of(one) if isinstance(one, Model) else "" for one in entities]
+    groups = [group_of(one) for one in entities]
     names = {group: free_name(group, taken) if groups.count(group) > 1 else ""
              for group in groups if group}
-    return [with_group(one, names[group]) if group and isinstance(one, Model) else one
+    return [with_group(one, names[group]) if group else one
             for one, group in zip(entities, groups)]
 
 

@@ -94,7 +94,7 @@ class Documents:
     @staticmethod
     def light(light: Light) -> Dict[str, Any]:
         """The protocol's `Light`."""
-        return plain_fields(light)
+        return {**plain_fields(light), "group": group_of(light)}
 
     def actor(self, actor: Actor) -> Dict[str, Any]:
         """The protocol's `Actor`: its skin is a geometry, "empty" for an actor without one."""
