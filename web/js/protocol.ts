@@ -129,7 +129,7 @@ export type Collision = {
 
 export type Visual = {
   name: string, pose: pose, geometry: Geometry, material?: Material|null, cast_shadows: boolean,
-  transparency: number, laser_retro: number, layer?: number|null
+  transparency: number, laser_retro: number, layer?: number|null, picture_size?: number|null
 };
 
 export type Link = {

@@ -9,6 +9,7 @@ from typing import Any, Dict, List, Optional, Sequence, Tuple
 
 from ..description.compare import BUILT_IN
 from ..description.model import Link, Model
+from ..description.picture_size import picture_size_xml
 from ..description.shapes import Box, Collision, Geometry, Material, Polyline, Visual
 from ..errors import InputError, errors_of
 from ..geometry import IDENTITY, IDENTITY_QUAT, Pose, Vec3, quat_from_rpy
@@ -21,6 +22,8 @@ Part = Tuple[Geometry, Pose]
 """A solid and its pose in the link frame."""
 
 GREY = "Gazebo/Grey"
+_PICTURE = 1.0
+"""Edge of a texture, m: a brick is 25 cm long."""
 
 
 def model_name(name: str) -> str:
@@ -190,7 +193,8 @@ class _Links:
             ending = f"_{number}" if numbered else ""
             link.collisions.append(Collision(f"{name}_Collision{ending}", geometry, at))
             link.visuals.append(Visual(f"{name}_Visual{ending}", geometry, at,
-                                       _material(color, texture), layer=self._layer))
+                                       _material(color, texture), layer=self._layer,
+                                       extra=[picture_size_xml(_PICTURE)] if texture else []))
         self.links.append(link)
 
 

@@ -9,8 +9,9 @@ import numpy as np
 from ..appearance.looks import Look
 from ..appearance.palette import DULLEST, GREY, GROUND
 from ..appearance.terrain_layers import TerrainLayer
-from ..description.shapes import SOLIDS, Color, Heightmap, Mesh, Plane, Visual
-from .tessellation import triangles_of
+from ..description.picture_size import picture_size_of
+from ..description.shapes import SOLIDS, Box, Color, Heightmap, Mesh, Plane, Visual
+from .tessellation import repeated_uv, triangles_of
 
 _OF_MESH: Color = (0.784, 0.784, 0.784, 1.0)
 _DULL: Color = (0.0, 0.0, 0.0, 1.0)
@@ -87,7 +88,9 @@ def pieces_of(visual: Visual, look: Optional[Look]) -> List[Piece]:
     surface = surface_of(look, opacity)
     if isinstance(shape, Plane):
         surface = replace(surface, brightness=GROUND)
-    return [piece_of(made.vertices, made.normals, made.uv, made.triangles, surface)]
+    size = picture_size_of(visual) if isinstance(shape, Box) else None
+    uv = made.uv if size is None else repeated_uv(made.vertices, made.normals, visual.pose, size)
+    return [piece_of(made.vertices, made.normals, uv, made.triangles, surface)]
 
 
 def _terrain(part: Any, layers: Tuple[TerrainLayer, ...], base: float, opacity: float) -> Piece:

@@ -18,7 +18,7 @@ from ..description.shapes import (
     Plane,
     Sphere,
 )
-from ..geometry import Vec3, cross, norm, scale
+from ..geometry import Pose, Vec3, conjugate, cross, norm, rotate, scale
 
 RAY_ERROR = 5e-5
 """m that a round surface may lie off where rays meet it."""
@@ -97,6 +97,26 @@ def _face_uv(axis: int) -> List[Tuple[float, float]]:
     """A whole picture a face, upright on the sides; the faces' corners begin elsewhere on y."""
     upright = [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)]
     return [upright[(n + 3) % 4] for n in range(4)] if axis == 1 else upright
+
+
+def repeated_uv(vertices: np.ndarray, normals: np.ndarray, pose: Pose, size: float) -> np.ndarray:
+    """Texture coordinates of a box for pictures of one size, upright on the sides.
+
+    They begin at the origin of the link, so that the pictures of the parts of a wall meet.
+
+    Args:
+        vertices: of the box, m in its own frame.
+        normals: of the faces, at each vertex.
+        pose: of the box in the link.
+        size: edge of a picture, m.
+    """
+    start = rotate(conjugate(pose.orientation), pose.position)
+    x, y, z = (vertices + np.array(start)).T
+    along_x, along_y = normals[:, 0], normals[:, 1]
+    on_top = np.abs(normals[:, 2]) > 0.5
+    u = np.where(on_top, x, along_x * y - along_y * x)
+    v = np.where(on_top, normals[:, 2] * y, z)
+    return np.column_stack([u, v]) / size
 
 
 def _of_quads(quads: np.ndarray) -> np.ndarray:

@@ -10,6 +10,7 @@ from reading import codes, errors
 from my_simulations.building.building_plan import Level, Opening, Plan, Stairs, Wall
 from my_simulations.building.plan_to_model import building_model
 from my_simulations.description.compare import differences
+from my_simulations.description.picture_size import picture_size_of
 from my_simulations.errors import InputError
 from my_simulations.formats.reading import read_entity
 from my_simulations.formats.sdf.writer.entities import write_entity
@@ -67,6 +68,7 @@ def test_colours_textures_and_layers_are_written():
     assert painted.material.script_name == "Gazebo/Grey"
     assert bricks.material.script_name == "Gazebo/Bricks"
     assert painted.layer == 0 and painted.extra == []
+    assert picture_size_of(painted) is None and picture_size_of(bricks) == 1.0
     assert link(model, "Floor_0").visuals[0].layer == 1
 
 

@@ -124,7 +124,8 @@ def test_the_protocol_names_all_fields_of_the_description(data, kind, described)
 
 @pytest.mark.parametrize("kind, described, more", [
     ("Model", model.Model, {"enable_wind", "uri", "scalable", "group"}),
-    ("Light", light.Light, {"group"}), ("Link", model.Link, {"id"}), ("Visual", shapes.Visual, {"layer"}),
+    ("Light", light.Light, {"group"}), ("Link", model.Link, {"id"}),
+    ("Visual", shapes.Visual, {"layer", "picture_size"}),
     ("Collision", shapes.Collision, set()), ("Actor", actor.Actor, {"geometry"}),
     ("Animation", actor.Animation, {"geometry"}), ("World", world.World, set())])
 def test_the_protocol_has_no_field_that_the_description_lacks(data, kind, described, more):

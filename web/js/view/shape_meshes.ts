@@ -19,7 +19,7 @@ export type Stock = {meshes: Meshes, materials: Materials};
 /** A visual, or a collision, which has no material of its own. */
 export type DrawnShape = {pose: Pose7, geometry: Geometry,
     material?: import('../protocol.js').Material|null,
-    transparency?: number};
+    transparency?: number, picture_size?: number|null};
 
 /** How a shape is drawn; `material`: in place of its own. */
 export type Look = Variant & {material?: Material};
@@ -86,6 +86,27 @@ function polyline({loops, height}: Polyline) {
   return [{geometry, matrix: new Matrix4()}];
 }
 
+/**
+ * A box whose texture has one size on all faces, upright on the sides; null for other shapes. Textures begin at
+ * the origin of the link, so that those of the parts of a wall meet.
+ */
+function repeatedBox({pose, geometry: shape, picture_size: edge}: DrawnShape): BasicPart[]|null {
+  if (!edge || shape.type !== 'box') return null;
+  const geometry = new BoxGeometry(...(shape.size as [number, number, number]));
+  const start = new Vector3().fromArray(pose)
+    .applyQuaternion(new Quaternion().fromArray(pose, 3).conjugate());
+  const {position, normal, uv} = geometry.attributes;
+  for (let at = 0; at < position.count; at++) {
+    const [x, y, z] = [position.getX(at) + start.x, position.getY(at) + start.y, position.getZ(at) + start.z];
+    const up = normal.getZ(at);
+    if (up) uv.setXY(at, x / edge, up * y / edge);
+    else uv.setXY(at, (normal.getX(at) * y - normal.getY(at) * x) / edge, z / edge);
+  }
+  // This geometry is not shared: its owner disposes it.
+  geometry.userData.single = true;
+  return [{geometry, matrix: new Matrix4()}];
+}
+
 /** The parts of a shape that needs no file; null for one that does. */
 function simpleParts(geometry: Geometry): BasicPart[]|null {
   switch (geometry.type) {
@@ -141,7 +162,7 @@ function basicParts(geometry: Geometry, meshes: Meshes) {
  * @returns at once when nothing must be fetched
  */
 export function visualParts(shape: DrawnShape, stock: Stock, look: Look = {}): Part[]|Promise<Part[]> {
-  const basic = basicParts(shape.geometry, stock.meshes);
+  const basic = repeatedBox(shape) ?? basicParts(shape.geometry, stock.meshes);
   const finish = (parts: BasicPart[]) => parts.map((part) => finished(part, shape, stock.materials,
       look));
   return basic instanceof Promise ? basic.then(finish) : finish(basic);

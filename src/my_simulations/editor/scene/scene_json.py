@@ -9,6 +9,7 @@ from ...description.actor import Actor
 from ...description.light import Light
 from ...description.model import Joint, Link, Model
 from ...description.model_group import group_of
+from ...description.picture_size import picture_size_of
 from ...description.random_walk import walking
 from ...description.shapes import (
     Box,
@@ -128,7 +129,8 @@ class Documents:
         if isinstance(visual.geometry, Heightmap):
             geometry["layers"] = self._materials.layers(visual)
         return {**plain_fields(visual, "geometry", "material"), "geometry": geometry,
-                "material": self._materials.document(visual.material)}
+                "material": self._materials.document(visual.material),
+                "picture_size": picture_size_of(visual)}
 
     def geometry(self, shape: Geometry) -> Dict[str, Any]:
         """The protocol's `Geometry`, with a URL where the page must load something."""

@@ -8,6 +8,7 @@ from typing import Any, Callable, Dict, Iterator, List, Optional, Tuple
 import numpy as np
 
 from ...description.light import Light
+from ...description.picture_size import picture_size_of
 from ...description.surroundings import Scene
 from ...errors import InputError
 from ..api import DEPTH, LABELS, NO_ROW, RGB, Body, CameraSpec, Pictures, SetScenery
@@ -84,7 +85,9 @@ class Renderer:
                 if visual.transparency >= 1.0:
                     continue
                 local, look = matrix(visual.pose), body.looks.get((n, m))
-                key = repr((visual.geometry, look, visual.transparency, visual.cast_shadows))
+                size = picture_size_of(visual)
+                key = repr((visual.geometry, look, visual.transparency, visual.cast_shadows,
+                            size and (size, visual.pose)))
                 if (key, 0) not in self._batches and not self._prepare(
                         key, visual, look, f"{body.name}::{link.name}"):
                     continue
