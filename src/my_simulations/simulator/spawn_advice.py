@@ -62,8 +62,18 @@ def arrival_advice(simulator: Simulator, name: str, meshes: Optional[MeshTable],
 
 
 def overlap_advice(simulator: Simulator, names: Sequence[str]) -> List[Issue]:
-    """Warnings about overlaps of models with others; none for more than `NEIGHBOURS` names."""
+    """Warnings about overlaps of models with others, at most one for each model.
+
+    None for more than `NEIGHBOURS` names.
+    """
     if len(names) > NEIGHBOURS:
         return []
-    return [issue for name in names if simulator.models.has(name)
-            for issue in arrival_advice(simulator, name, None) if issue.code == _INSIDE]
+    found: List[Issue] = []
+    for name in names:
+        inside = [issue for issue in arrival_advice(simulator, name, None)
+                  if issue.code == _INSIDE] if simulator.models.has(name) else []
+        if inside:
+            others = len(inside) - 1
+            more = f", and {others} more of its overlaps" if others else ""
+            found.append(replace(inside[0], message=inside[0].message + more))
+    return found

@@ -15,7 +15,7 @@ from my_simulations.geometry import STILL, Pose
 from my_simulations.resources.resolver import Resolver
 from my_simulations.simulator import spawn_advice
 from my_simulations.simulator.simulator import Simulator
-from my_simulations.simulator.spawn_advice import arrival_advice
+from my_simulations.simulator.spawn_advice import arrival_advice, overlap_advice
 
 
 def cube(name, height, size=1.0, moment=0.17):
@@ -51,6 +51,14 @@ def test_a_model_inside_others_is_told_with_them_and_them_alone(sim):
     assert "new::l" in found[0][1] and "high::l" in found[0][1]
     (ground,) = said(sim, cube("low", -30.0))
     assert "ground::l" in ground[1]
+
+
+def test_a_model_in_several_others_is_one_overlap_advice(sim):
+    sim.models.spawn(cube("near", 5.2), Pose((0.0, 0.5, 5.2)))
+    sim.models.spawn(cube("new", 4.8), Pose((0.0, 0.2, 4.8)))
+    (issue,) = overlap_advice(sim, ["new"])
+    assert issue.message.endswith(", and 1 more of its overlaps")
+    assert len([one for one in arrival_advice(sim, "new", {}) if one.code == issue.code]) == 2
 
 
 def test_others_count_where_they_are_now(sim):
