@@ -591,6 +591,20 @@ def drop(editor, name, data, point):
     editor.page.evaluate(DROP, [name, base64.b64encode(data).decode(), *editor.pixel(point)])
 
 
+def test_the_ghost_of_a_card_follows_the_drag_and_goes_with_it(editor):
+    editor.page.get_by_role("tab", name="Insert").click()
+    card = editor.page.locator(".model-card").first
+    card.hover()
+    editor.page.mouse.down()
+    editor.page.mouse.move(*editor.pixel((0.5, 0.0, 0.0)), steps=4)
+    editor.until("Boolean(editor.store.placing?.uri)", "what is dragged")
+    editor.page.mouse.move(*editor.pixel((0.0, 0.0, 0.0)), steps=4)
+    editor.page.keyboard.press("Escape")
+    editor.page.mouse.up()
+    editor.until("editor.store.placing === null", "the end of the drag")
+    assert editor.names() == ["ground_plane"]
+
+
 def test_a_card_of_the_gallery_is_dragged_to_its_place(editor):
     editor.page.get_by_role("tab", name="Insert").click()
     card = editor.page.get_by_role("button", name="crate", exact=True).or_(

@@ -164,6 +164,12 @@ export class InsertTab {
         ondragstart: (event) => {
           event.dataTransfer?.setData('text/x-model-uri', model.uri);
           if (event.dataTransfer) event.dataTransfer.effectAllowed = 'copy';
+          // Its ghost follows the drag.
+          void this.#insert(model);
+        },
+        ondragend: (event) => {
+          const dropped = event.dataTransfer?.dropEffect !== 'none';
+          if (!dropped && this.page.store.placing?.uri === model.uri) this.page.store.setPlacing(null);
         },
       },
       this.#picture(model),

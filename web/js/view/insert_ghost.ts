@@ -132,6 +132,9 @@ export class Placer {
       ghost.visible = false;
       this.#stage.scene.add(ghost);
       this.#ghost = ghost;
+    } else if (document.activeElement === document.body) {
+      // The arrow keys drive a robot that was just placed.
+      this.#stage.canvas.parentElement?.focus({preventScroll: true});
     }
     this.#stage.shadowsChanged();
   }

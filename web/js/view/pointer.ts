@@ -95,7 +95,11 @@ export class Pointer {
     this.#listen(canvas, 'dblclick', (event) => this.#parts.selector.flyTo(event));
     this.#listen(canvas, 'wheel', (event) => this.#wheel(event), {passive: false});
     this.#listen(canvas, 'contextmenu', (event) => event.preventDefault());
-    this.#listen(canvas, 'dragover', (event) => event.preventDefault());
+    this.#listen(canvas, 'dragover', (event) => {
+      event.preventDefault();
+      this.#parts.placer.follow(event);
+    });
+    this.#listen(canvas, 'dragleave', () => this.#parts.placer.hide());
     this.#listen(canvas, 'drop', (event) => this.#drop(event));
   }
 
@@ -255,7 +259,9 @@ export class Pointer {
       if (items.length && place) this.#parts.actions.dropFiles(items, place);
       return;
     }
-    const outcome = await this.#parts.actions.insertModel(uri);
-    if (outcome.ok) this.#parts.placer.put({clientX, clientY});
+    const {store, actions, placer} = this.#parts;
+    // The drag has begun to fetch it: the first drop may come before it is there.
+    if (store.placing?.uri !== uri && !(await actions.insertModel(uri)).ok) return;
+    placer.put({clientX, clientY});
   }
 }
