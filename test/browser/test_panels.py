@@ -591,6 +591,17 @@ def drop(editor, name, data, point):
     editor.page.evaluate(DROP, [name, base64.b64encode(data).decode(), *editor.pixel(point)])
 
 
+def test_the_first_number_of_a_dialog_is_replaced_by_what_is_typed(editor):
+    name = with_box(editor)
+    editor.get(f"editor.store.select([{name!r}])")
+    editor.get("editor.actions.arrayOfSelection()")
+    field = editor.page.locator("dialog input").first
+    wait_for(lambda: field.evaluate("(one) => one === document.activeElement"), "its focus")
+    editor.page.keyboard.type("3")
+    assert field.input_value() == "3"
+    editor.page.keyboard.press("Escape")
+
+
 def test_the_ghost_of_a_card_follows_the_drag_and_goes_with_it(editor):
     editor.page.get_by_role("tab", name="Insert").click()
     card = editor.page.locator(".model-card").first

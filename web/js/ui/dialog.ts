@@ -136,8 +136,8 @@ export class Dialog {
       elementsOf(this.element, '.dialog-body input, .dialog-body select')[0] ??
       this.#safe;
     this.#first?.focus();
-    // Typing replaces a suggested name.
-    if (this.#first instanceof HTMLInputElement && this.#first.type === 'text') this.#first.select();
+    // Typing replaces a suggested name or number.
+    if (this.#first instanceof HTMLInputElement && ['text', 'number'].includes(this.#first.type)) this.#first.select();
     return this.closed;
   }
 
