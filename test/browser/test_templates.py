@@ -56,6 +56,19 @@ def test_a_car_with_a_camera_is_built_driven_and_shows_its_picture(editor):
     editor.page.keyboard.press("Control+p")
 
 
+def test_a_second_robot_gets_a_namespace_of_its_own(editor):
+    form = form_of(editor, "Differential drive")
+    assert form.get_by_label("ROS namespace").input_value() == ""
+    form.get_by_role("button", name="Insert").click()
+    form.wait_for(state="detached")
+    editor.page.keyboard.press("Enter")
+    editor.until("editor.store.selection.join() === 'car'", "the car")
+    form = form_of(editor, "Differential drive")
+    form.get_by_text("car may use the same topics").wait_for()
+    assert form.get_by_label("ROS namespace").input_value() == "car_0"
+    editor.page.keyboard.press("Escape")
+
+
 def test_a_template_is_inserted_by_the_keyboard_alone(editor):
     editor.page.get_by_role("tab", name="Insert").click()
     card = editor.page.get_by_role("button", name="Template: IMU", exact=True)

@@ -1,7 +1,7 @@
 /** The form of a robot template: its parameters as the server declares them. */
 import {Dialog, labelled} from '../../ui/dialog.js';
 import {h} from '../../ui/dom.js';
-import type {Requests, Template, TemplateParameter} from '../../protocol.js';
+import type {Model, Requests, Template, TemplateParameter} from '../../protocol.js';
 import type {Page} from '../panels.js';
 
 export type Field = {parameter: TemplateParameter, input: HTMLInputElement};
@@ -37,13 +37,32 @@ function groupsOf(fields: Field[]): HTMLElement[] {
   return groups;
 }
 
+/** The models with plugins, whose topics a robot without a namespace may share. */
+export const robotNames = (models: Pick<Model, 'name'|'plugins'|'links'>[]): string[] => models.filter(({plugins, links}) =>
+  plugins.length > 0 || links.some(({sensors}) => sensors?.length)).map(({name}) => name);
+
+/** The name that the robot of a template gets in the world. */
+function freeNamespace({parameters}: Template, {document}: Page['store']) {
+  const wanted = String(parameters.find(({name}) => name === 'name')?.default ?? 'robot');
+  const taken = new Set([...document?.models ?? [], ...document?.lights ?? []].map(({name}) => name));
+  let name = wanted;
+  for (let number = 0; taken.has(name); number++) name = `${wanted}_${number}`;
+  return name;
+}
+
+const sharedNote = (fields: Field[], robots: string[]) =>
+  (robots.length && fields.some(({parameter}) => parameter.name === 'namespace')
+    ? [h('p', {class: 'soft', text: `${robots.join(', ')} may use the same topics: the ROS namespace keeps them apart.`})] : []);
+
 /** Asks for the parameters of a template; the robot then follows the mouse. */
-export async function templateDialog({actions}: Pick<Page, 'actions'>, template: Template) {
-  const fields = template.parameters.map(fieldOf);
+export async function templateDialog({actions, store}: Pick<Page, 'actions'|'store'>, template: Template) {
+  const robots = robotNames(store.document?.models ?? []);
+  const fields = template.parameters.map((parameter) => fieldOf(
+    parameter.name === 'namespace' && robots.length ? {...parameter, default: freeNamespace(template, store)} : parameter));
   const dialog = new Dialog({
     title: template.title,
     name: 'template',
-    content: [h('p', {class: 'soft', text: `${template.description}.`}), ...groupsOf(fields)],
+    content: [h('p', {class: 'soft', text: `${template.description}.`}), ...sharedNote(fields, robots), ...groupsOf(fields)],
     buttons: [{title: 'Cancel'}, {title: 'Insert', primary: true, run: async () => {
       const values = fields.map((field) => [field.parameter.name, valueOf(field)]);
       const wrong = fields.find((field) => Number.isNaN(valueOf(field)));
