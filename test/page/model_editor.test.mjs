@@ -7,6 +7,7 @@ import {
 } from '../../web/js/model_edits.js';
 import {ModelEditor} from '../../web/js/model_editor/model_editor.js';
 import {BOX, schematicOf} from '../../web/js/model_editor/schematic_layout.js';
+import {pluginFor, PLUGIN_TITLES} from '../../web/js/model_editor/plugin_templates.js';
 import {SOLID_SHAPES, solidModel} from '../../web/js/model_editor/solids.js';
 import {scaledLoops} from '../../web/js/model_editor/svg_outline.js';
 import {Store} from '../../web/js/store.js';
@@ -211,4 +212,19 @@ test('outlines of a drawing get a width in metres, y up, the largest first', () 
   assert.throws(() => scaledLoops([[[0, 0], [1, 0]]], 1), /no closed outline/);
   const many = Array.from({length: 3000}, (_, at) => [Math.cos(at / 477) * 100, Math.sin(at / 477) * 100]);
   assert.throws(() => scaledLoops([many], 1), /3000 corners/);
+});
+
+test('a drive plugin is filled in with the wheels of a cart', () => {
+  const link = (name, y, radius) => ({name, pose: [0, y, 0.5, 0, 0, 0, 1],
+    collisions: radius ? [{geometry: {type: 'cylinder', radius, length: 0.2}}] : []});
+  const joint = (child, type = 'revolute') => ({name: `${child}_joint`, type, parent: 'body', child, axis: {}});
+  const cart = {name: 'cart', links: [link('body', 0), link('r', -0.6, 0.5), link('l', 0.6, 0.5), link('arm', 0.3)],
+    joints: [joint('r'), joint('l'), joint('arm', 'prismatic')]};
+  const drive = pluginFor('differential drive', cart, '');
+  for (const wanted of ['<leftJoint>l_joint<', '<rightJoint>r_joint<', '<wheelSeparation>1.2<', '<wheelDiameter>1<',
+    '<robotBaseFrame>body<']) assert.ok(drive.includes(wanted), wanted);
+  assert.match(pluginFor('differential drive', cart, drive), /name="drive_0"/);
+  assert.match(pluginFor('skid steer drive', cart, ''), /<leftRearJoint>LEFT_REAR_JOINT</);
+  assert.match(pluginFor('joint states', cart, ''), /<jointName>r_joint, l_joint, arm_joint</);
+  for (const title of PLUGIN_TITLES) assert.match(pluginFor(title, {name: 'm', links: [], joints: []}, ''), /^<plugin /);
 });

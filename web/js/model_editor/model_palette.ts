@@ -8,6 +8,7 @@ import {meshDialog} from './model_files.js';
 import {Schematic} from './schematic.js';
 import {SOLID_SHAPES, solidModel} from './solids.js';
 import {svgDialog} from './svg_dialog.js';
+import {pluginFor, PLUGIN_TITLES} from './plugin_templates.js';
 import type {Joint, Model, Operation, SolidShape} from '../protocol.js';
 import type {ModelEditor} from './model_editor.js';
 
@@ -257,8 +258,14 @@ export class Palette {
     if (!model) return;
     const text = h('textarea', {class: 'plugin-text', spellcheck: 'false', 'aria-label': 'Plugins', rows: 14});
     text.value = pluginText(model);
+    const add = h('select', {'aria-label': 'Add', onchange: () => {
+      text.value = [text.value.trim(), pluginFor(add.value, model, text.value)].filter(Boolean).join('\n');
+      add.value = '';
+      text.scrollTop = text.scrollHeight;
+    }}, h('option', {value: '', text: 'Add…'}), ...PLUGIN_TITLES.map((title) => h('option', {value: title, text: title})));
     return new Dialog({title: `Plugins of ${model.name}`, name: 'model-plugins',
-      content: [h('p', {class: 'soft', text: '<plugin> elements as in an SDF file.'}), text],
+      content: [h('p', {class: 'soft', text: '<plugin> elements as in an SDF file. Add fills in the joints of the model.'}),
+        add, text],
       buttons: [{title: 'Cancel'}, {title: 'OK', primary: true, run: () =>
         this.#asked({kind: 'set_plugins', model: model.name, text: text.value})}]}).open();
   }
