@@ -108,12 +108,17 @@ class Drives:
 
     def _with_ended_holds(self, motors: Sequence[JointMotor],
                           servos: Sequence[JointServo]) -> List[JointServo]:
-        """Servos, and the ends of those that hold axes which motors drive."""
-        if not motors and not any(servo.holds for servo in servos):
+        """Servos, and the ends of those that hold axes which motors drive.
+
+        A motor also goes on if a servo begins that only stops its axis, as joints of ros_control do
+        that no controller uses.
+        """
+        if not motors and not any(servo.holds or _only_stops(servo) for servo in servos):
             return list(servos)
         now = {**self._motors, **{motor.row: motor for motor in motors}}
         driven = {row for row, motor in now.items() if motor.effort > 0.0}
-        return [*(servo for servo in servos if not (servo.holds and servo.row in driven)),
+        return [*(servo for servo in servos if not (servo.row in driven and (
+            servo.holds or _only_stops(servo) and servo.row not in self._servos))),
                 *(JointServo(row, "") for row, servo in self._servos.items()
                   if servo.holds and row in driven)]
 
@@ -269,3 +274,9 @@ def _finite(first: float, second: float) -> Tuple[float, float]:
     if not is_finite(first, second):
         raise CommandError("rate and effort of a motor must be finite")
     return first, second
+
+
+def _only_stops(servo: JointServo) -> bool:
+    """Whether a servo is a motor with the rate 0, without loops."""
+    return servo.drive == "velocity" and servo.target == 0.0 and (
+        servo.spline is None and servo.gains is None and servo.drive_gains is None)
