@@ -391,6 +391,8 @@ def test_uploads_get_a_place_of_their_own_and_replace_nothing(case):
     assert (folder / "a.stl").read_bytes() == b"one"
     for name in ("a.py", ".stl", "..%2fa.stl", "x"):
         assert request(made.url + "upload/" + name, "PUT", data=b"x")[0] in (400, 404)
+    assert request(made.url + "upload/a.stl", "PUT", data=b"not gzip",
+                   headers={"Content-Encoding": "gzip"})[0] == 415
 
 
 def test_the_world_can_be_downloaded(case):

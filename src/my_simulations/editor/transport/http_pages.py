@@ -116,7 +116,9 @@ class Pages(PageFiles):
 
 
 async def _body(request: web.Request, largest: int) -> bytes:
-    """The whole body, refused as soon as it is too large."""
+    """The whole body, refused as soon as it is too large, and if it is compressed."""
+    if hdrs.CONTENT_ENCODING in request.headers:
+        raise web.HTTPUnsupportedMediaType(text="a compressed body is not accepted\n")
     if (request.content_length or 0) > largest:
         raise web.HTTPRequestEntityTooLarge(largest, request.content_length or 0)
     data = bytearray()
