@@ -198,7 +198,7 @@ class Base:
 
     def test_an_object_can_be_replaced_in_one_step(self):
         spawn = rospy.ServiceProxy("/gazebo/spawn_object", SpawnObject)
-        rospy.wait_for_service("/gazebo/spawn_object", 10.0)
+        rospy.wait_for_service("/gazebo/spawn_object", support.SECONDS)
         self.spawned("one", where=pose(1.0, 0.0, 0.1))
         self.spawned("two")
         refused = spawn(model_name="one", model_xml=support.box(0.4))

@@ -40,7 +40,7 @@ class Typist:
     def close(self):
         if self.process.poll() is None:
             self.process.kill()
-        self.process.wait(10.0)
+        self.process.wait(SECONDS)
         os.close(self._terminal)
 
 

@@ -14,6 +14,9 @@ from rospy.exceptions import TransportException, TransportTerminated
 from ..errors import CommandError, InputError
 from ..xml_characters import check_characters, check_tree
 
+LONGEST_STATUS = 2000
+"""Characters of a status message."""
+
 
 @dataclass(frozen=True)
 class Endpoint:
@@ -57,6 +60,7 @@ def answering(endpoint: Endpoint) -> Callable[[Any], Any]:
             rospy.logerr("%s: internal error in %s:\n%s", endpoint.title, endpoint.name,
                          traceback.format_exc())
             text, succeeded = f"internal error: {type(fault).__name__}: {fault}", False
+        text = _shortened(text)
         if has_status:
             response.success = succeeded
             response.status_message = f"{endpoint.title}: {text}"
@@ -65,6 +69,15 @@ def answering(endpoint: Endpoint) -> Callable[[Any], Any]:
         return response
 
     return answer
+
+
+def _shortened(text: str) -> str:
+    """A status message without the middle of a name of a megabyte that it repeats."""
+    more = len(text) - LONGEST_STATUS
+    if more <= 0:
+        return text
+    half = LONGEST_STATUS // 2
+    return f"{text[:half]}... ({more} more characters) ...{text[-half:]}"
 
 
 class TextCheck:

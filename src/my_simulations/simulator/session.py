@@ -16,7 +16,7 @@ from ..engine.ring import JOINTS, LINKS, RingReader, Snapshot
 from ..engine.ring_rows import axis_rows
 from ..errors import CommandError, Issue, OutdatedCommandError, warning
 from ..geometry import Pose
-from ..xml_characters import check_characters
+from ..xml_characters import check_characters, hidden_character
 from .entity import Entity
 from .registry import NameTakenError, Registry
 from .row_allocator import RowAllocator
@@ -227,8 +227,19 @@ def do_nothing() -> None:
     """For `Session.before_advance` and `before_plugins`."""
 
 
+LONGEST_NAME = 1000
+"""Characters of the name of a model or light: each message about all models contains it."""
+
+
 def check_name(name: str, kind: str) -> None:
     """Refuse a name that nothing can have; `kind` is `model` or `light`. Raises CommandError."""
     if not name:
         raise CommandError(f"the name of a {kind} must not be empty")
+    if len(name) > LONGEST_NAME:
+        raise CommandError(f"the name of a {kind} may have {LONGEST_NAME} characters, not"
+                           f" {len(name)}: '{name[:20]}...'")
     check_characters(name, f"the name of the {kind}")
+    hidden = hidden_character(name)
+    if hidden:
+        raise CommandError(f"the name of the {kind} contains the character {hidden}, which is not"
+                           " shown")

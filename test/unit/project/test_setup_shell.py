@@ -579,7 +579,7 @@ sys.exit(adopt.main(["bash", "-c", "setsid sleep 3 & exit 7"]))
 
 
 def test_a_program_that_ends_before_it_is_waited_for_is_not_waited_for_again():
-    done = subprocess.run([sys.executable, "-c", ENDS_AT_ONCE], cwd=REPOSITORY, timeout=30)
+    done = subprocess.run([sys.executable, "-c", ENDS_AT_ONCE], cwd=REPOSITORY, timeout=300)
     assert done.returncode == 7
 
 

@@ -37,6 +37,18 @@ def test_nested_messages_and_lists_are_looked_at_and_documents_are_not():
     TextCheck(SpawnModelRequest)(SpawnModelRequest(model_name="fine", model_xml="<sdf>\x01</sdf>"))
 
 
+def test_a_status_does_not_repeat_a_name_of_a_megabyte():
+    def refuse(request, response):
+        raise CommandError(f"no model {request.model_state.model_name}, did you mean x?")
+
+    answer = answering(Endpoint("set_model_state", "SetModelState", SetModelState, refuse))(
+        SetModelStateRequest(ModelState(model_name="x" * 1_000_000)))
+    assert answer.status_message.startswith("SetModelState: no model xxx")
+    assert "x... (998026 more characters) ...x" in answer.status_message
+    assert answer.status_message.endswith("x, did you mean x?") and len(
+        answer.status_message) < 2100
+
+
 def test_every_fitting_text_passes():
     endpoint = Endpoint("set_model_state", "SetModelState", SetModelState,
                         lambda request, response: request.model_state.model_name)

@@ -53,7 +53,7 @@ class Service:
 
     def end(self) -> None:
         """Wait for its end."""
-        self._thread.join(10.0)
+        self._thread.join(60.0)
         self._listener.close()
 
 

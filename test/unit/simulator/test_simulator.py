@@ -4,12 +4,14 @@ from __future__ import annotations
 import math
 import threading
 import time
+from dataclasses import replace
 
 import pytest
 from box_models import arm, box
 from inline_engine import InlineEngine
 from kinematic_backend import KinematicBackend
 
+from my_simulations.description.light import Light
 from my_simulations.description.model import Model
 from my_simulations.description.shapes import Collision, Mesh
 from my_simulations.description.world import World
@@ -79,6 +81,23 @@ def test_an_empty_or_taken_name_is_refused(case, name):
     with pytest.raises(CommandError):
         sim.models.spawn(box(name))
     assert sim.models.names() == ["taken"]
+
+
+@pytest.mark.parametrize(("name", "said"), [
+    ("x" * 1001, "may have 1000 characters, not 1001: 'xxxxxxxxxxxxxxxxxxxx...'"),
+    ("a\nb", "the character U[+]000A at position 2, which is not shown"),
+    ("\u202exob", "the character U[+]202E at position 1, which is not shown"),
+])
+def test_a_name_that_no_list_can_show_is_refused(case, name, said):
+    sim = case(box("here")).sim
+    with pytest.raises(CommandError, match=said):
+        sim.models.spawn(box(name))
+    with pytest.raises(CommandError, match=said):
+        sim.models.edit("here", replace(sim.models.get("here"), name=name))
+    with pytest.raises(CommandError, match=said):
+        sim.lights.add(Light(name, "point"))
+    assert sim.models.names() == ["here"] and sim.world.lights == []
+    sim.models.spawn(box("caf\u00e9 \U0001f916 " + "x" * 990))
 
 
 def test_a_replaced_model_goes_last_and_is_never_absent(case, quick_threads):
