@@ -15,7 +15,7 @@ stand or sleep cost almost nothing.
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from math import acos, asin, dist, inf
+from math import acos, asin
 from operator import attrgetter, itemgetter
 from typing import Callable, Dict, Iterable, List, NamedTuple, Optional, Set, Tuple
 
@@ -124,15 +124,14 @@ class LandingContacts(StepHelper):
         self._points = LandingPoints(self._meets)
         self._alone: Dict[int, Tuple[Vec3, ...]] = {}   # axes of single boxes or cylinders
         self._moving: Set[int] = set()
-        self._radii: Dict[int, float] = {}              # of rigid bodies that move, m
         self._motions = Motions(self._moving)
         self._uneven: Dict[int, None] = {}  # with other shapes than boxes, spheres and planes
         self._flights: Dict[int, _Flight] = {}
         self._agenda: Agenda[int] = Agenda()
         # By flying body: the step of the next search for bodies in reach, and those found last.
         self._near: Dict[int, Tuple[int, List[int]]] = {}
-        self.body_tables = (self._bodies, self._meets, self._alone, self._moving, self._radii,
-                            self._uneven, self._flights, self._agenda)
+        self.body_tables = (self._bodies, self._meets, self._alone, self._moving, self._uneven,
+                            self._flights, self._agenda)
 
     def add(self, body: Body) -> None:
         """Register a new body; only bodies that can tilt as they land matter."""
@@ -143,8 +142,6 @@ class LandingContacts(StepHelper):
             self._uneven[body.uid] = None
         if body.moves:
             self._moving.add(body.uid)
-            if body.rigid:
-                self._radii[body.uid] = body.radius or inf
             if not body.is_ball and body.base is not None:
                 self._bodies[body.uid] = body
                 axes = _axes_of(body.parts[0]) if body.rigid else ()
@@ -286,12 +283,7 @@ class LandingContacts(StepHelper):
         uid, (step, dt, here, low, high, fall, spin, speed) = flight.body.uid, path
         there = self._motions.of(other)
         way = dt * (speed + norm(there.linear))   # in one step, at most
-        reach = way * (_AHEAD + 2)
-        apart = dist(here.position, there.position)
-        radius = self._radii.get(uid, inf)
-        if apart - radius - self._radii.get(other, inf) > reach:
-            return None
-        points = pybullet.getClosestPoints(uid, other, reach)
+        points = pybullet.getClosestPoints(uid, other, way * (_AHEAD + 2))
         if not points or way == 0.0:   # without gravity a body at rest stays there
             return None
         nearest = min(points, key=itemgetter(DISTANCE))
@@ -301,9 +293,9 @@ class LandingContacts(StepHelper):
         there_in = dot(there.velocity_at(at), normal)
         speed_in = there_in - dot(here.velocity_at(at), normal)
         nearing = speed_in + spin
-        if spin > 0.0:   # the smaller of two upper bounds for all points of the body
-            nearing = min(nearing,
-                          there_in - dot(here.linear, normal) + norm(here.angular) * radius)
+        if flight.body.rigid:   # the smaller of two upper bounds for all points of the body
+            nearing = min(nearing, there_in - dot(here.linear, normal)
+                          + norm(here.angular) * flight.body.radius)
         steps = max(0.0, gap) / max(1e-9, dt * (nearing + _AHEAD * fall))
         free = step + int(min(_AHEAD, steps))
         tilt = self._tilt_beyond_flat(uid, here.orientation, normal)
