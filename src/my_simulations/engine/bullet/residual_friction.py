@@ -46,7 +46,9 @@ from .surface_coefficients import is_direction_dependent, of_link
 
 _EVERY = 8         # checks are at multiples of this number of steps
 _FAST_EVERY = 16   # steps between two checks of a body that slides fast
-_SLOW_EVERY = 128  # the same for all other bodies that move
+_EACH_EVERY = 16   # the same for a body that is corrected in each step, as it may come to rest
+_QUIET = 8         # such checks without a correction after which a fast body is checked seldom
+_SLOW_EVERY = 128  # steps between two checks of all other bodies that move
 _REST_EVERY = 512  # the same for a body at rest
 _CLEAR = 192       # steps until a body that flies far from others is checked again
 _FAST = 2e-3       # m/s, or rad/s: slower bodies may be at rest
@@ -78,7 +80,7 @@ class ResidualFriction(StepHelper):
         self._moving: Set[int] = set()
         self._agenda: Agenda[int] = Agenda()
         self._fast: Dict[int, None] = {}
-        self._each_step: Dict[int, bool] = {}  # whether corrected since the last check
+        self._each_step: Dict[int, int] = {}   # checks since the last correction
         self._new: Set[int] = set()            # changed by a command since the last step
         self._planes: Set[int] = set()
         self._mu: Dict[LinkKey, float] = {}    # of surfaces with one coefficient
@@ -110,7 +112,7 @@ class ResidualFriction(StepHelper):
         """Check a body in each step after a command changed its pose or velocity."""
         uid = body.uid
         if uid in self._bodies and not body.is_ball:
-            self._fast[uid], self._each_step[uid] = None, False
+            self._fast[uid], self._each_step[uid] = None, 1
             self._new.add(uid)
             self._agenda.plan(uid, 0)
 
@@ -124,7 +126,7 @@ class ResidualFriction(StepHelper):
         for uid in list(self._each_step):
             found = self._mend(uid, seen, dt)
             if found == _MENDED:
-                self._each_step[uid] = True
+                self._each_step[uid] = 0
             elif found != _SLIDES or uid not in self._new and self._rolls(uid):
                 del self._each_step[uid]
                 if found == _FLIES:
@@ -146,27 +148,28 @@ class ResidualFriction(StepHelper):
     def _check_interval(self, uid: int, seen: Set[int], dt: float, gravity: Vec3) -> int:
         """Decide how often to check a body. Returns the steps until the next check; 0 if it flies.
 
-        Bodies that slide slowly, or were corrected since the last check, are checked in each step.
+        Bodies that slide slowly, or were corrected in the last 128 steps, are checked in each step.
         """
         if uid in self._new:
             return _SLOW_EVERY
         linear, angular = pybullet.getBaseVelocity(uid)
         speed = max(dot(linear, linear), dot(angular, angular))
-        mended = self._each_step.get(uid, False)
+        checks = self._each_step.get(uid, _QUIET if uid in self._fast else 0)
+        mended = self._each_step.get(uid) == 0
         rests = speed <= _FAST * _FAST and not mended and (speed == 0.0 or not self._is_held(uid))
         rolls = self._rolls(uid)
         if rests or rolls or _tumbles(angular, gravity):
             self._fast.pop(uid, None)
-            self._each_step.pop(uid, None)
-            return _REST_EVERY if speed == 0.0 else _FAST_EVERY if rolls else _SLOW_EVERY
-        if mended or speed < _MAY_STOP * _MAY_STOP or uid not in self._fast:
-            self._fast[uid], self._each_step[uid] = None, False
-            return _SLOW_EVERY
+            soon = self._each_step.pop(uid, None) is not None or rolls
+            return _REST_EVERY if speed == 0.0 else _FAST_EVERY if soon else _SLOW_EVERY
+        if checks < _QUIET or speed < _MAY_STOP * _MAY_STOP:
+            self._fast[uid], self._each_step[uid] = None, checks + 1
+            return _EACH_EVERY
         if self._each_step.pop(uid, None) is not None:
             return _FAST_EVERY
         found = self._mend(uid, seen, dt)
         if found == _MENDED:
-            self._each_step[uid] = True
+            self._each_step[uid] = 0
         elif found == _PILED:
             del self._fast[uid]
         return {_FLIES: 0, _SLIDES: _FAST_EVERY}.get(found, _SLOW_EVERY)
