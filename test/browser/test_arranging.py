@@ -1,8 +1,6 @@
 """Copies, arrays, hidden and locked models, and the search for commands."""
 from __future__ import annotations
 
-import json
-
 from pytest import approx
 from support import wait_for
 
@@ -114,15 +112,16 @@ def test_a_light_is_flown_to_from_the_present_direction(editor):
     assert (after["yaw"], after["pitch"]) == (before["yaw"], before["pitch"])
 
 
-def test_a_new_world_is_seen_from_gazebos_first_view(editor):
-    first = editor.get("editor.view.camera")
+def test_a_new_world_is_seen_from_afar_and_an_opened_one_as_a_whole(editor):
     with_box(editor)
     editor.get("editor.view.moveTo('unit_box')")
     editor.rest()
-    assert editor.get("editor.view.camera") != first
+    editor.get("editor.request('save', {path: 'seen_as_a_whole.world', overwrite: true})")
     editor.get("editor.actions.newWorld({discard: true})")
-    editor.until(f"JSON.stringify(editor.view.camera) === JSON.stringify({json.dumps(first)})",
-                 "the first view")
+    editor.until("editor.view.camera.position.join() === '5,-5,2'", "Gazebo's first view")
+    editor.get("editor.actions.open('seen_as_a_whole.world', {discard: true})")
+    editor.until("editor.view.bounds('unit_box') !== null", "the box")
+    editor.until("editor.view.camera.position.join() !== '5,-5,2'", "a view of the box")
 
 
 def test_a_command_is_found_by_a_part_of_its_name(editor):

@@ -2,17 +2,22 @@
 import type {ActionParts, Outcome} from './actions.js';
 
 export function fileActions({store, ask, dialog, note, view}: ActionParts) {
+  /** Looks at a world once all of it has come: it may come in parts. */
+  async function begun(asked: Promise<Outcome>) {
+    const outcome = await asked;
+    if (outcome.ok) view()?.beginAnew();
+    return outcome;
+  }
+
   const files = {
     /** An empty world; asks first when there are unsaved changes and `discard` is not given. */
     async newWorld(options?: {discard?: boolean}): Promise<Outcome|void> {
       if (!options && store.history.dirty) return dialog('newWorld');
-      const outcome = await ask('new', options ?? {});
-      if (outcome.ok) view()?.beginAnew();
-      return outcome;
+      return begun(ask('new', options ?? {}));
     },
     /** Opens a world; without a path asks which (a dialog). */
     open: (path?: string, options: {discard?: boolean} = {}) =>
-      path ? ask('open', {path, ...options}, {quiet: true}) : dialog('open'),
+      path ? begun(ask('open', {path, ...options}, {quiet: true})) : dialog('open'),
     /** Saves to the file of the world; asks for a name the first time. */
     async save(): Promise<Outcome|void> {
       if (store.modelEditing) return dialog('saveModel');

@@ -289,14 +289,14 @@ export class CameraRig {
     this.fly(this.#home);
   }
 
-  /** Looks at the world as if it had just come. */
+  /** Looks at another world, of which the address of the page says nothing. */
   beginAnew() {
     this.#world = '';
-    this.#openWorld();
+    this.#openWorld('');
   }
 
   /** A world that comes again, after a lost line say, is looked at as before. */
-  #openWorld() {
+  #openWorld(address = globalThis.location?.hash ?? '') {
     if (!this.#store.document) return;
     const {gui_camera: camera, file, name} = this.#store.document;
     const which = JSON.stringify([file, name]);
@@ -316,7 +316,7 @@ export class CameraRig {
       this.#home = {position: kept.position, yaw: kept.yaw, pitch: kept.pitch};
       this.set(this.#home);
     } else this.#beginWithAll();
-    const link = readLink(globalThis.location?.hash ?? '');
+    const link = readLink(address);
     if (link) {
       if (link.view) {
         this.#toFrame = [];
@@ -342,6 +342,7 @@ export class CameraRig {
     this.#home = views.HOME;
     this.set(this.#home);
     this.#framed = this.view;
+    this.#whole.makeEmpty();
     this.frameAll();
   }
 
