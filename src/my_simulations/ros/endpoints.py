@@ -14,7 +14,7 @@ from rospy.exceptions import TransportException, TransportTerminated
 from ..errors import CommandError, InputError
 from ..xml_characters import check_characters, check_tree
 
-LONGEST_STATUS = 2000
+LONGEST_STATUS = 10_000
 """Characters of a status message."""
 
 
