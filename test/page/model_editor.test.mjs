@@ -217,13 +217,18 @@ test('outlines of a drawing get a width in metres, y up, the largest first', () 
 test('a drive plugin is filled in with the wheels of a cart', () => {
   const link = (name, y, radius) => ({name, pose: [0, y, 0.5, 0, 0, 0, 1],
     collisions: radius ? [{geometry: {type: 'cylinder', radius, length: 0.2}}] : []});
-  const joint = (child, type = 'revolute') => ({name: `${child}_joint`, type, parent: 'body', child, axis: {}});
+  const joint = (child, type = 'revolute') => ({name: `${child}_joint`, type, parent: 'body', child,
+    pose: [0, 0, 0, 0, 0, 0, 1], axis: {xyz: [0, 1, 0]}});
   const cart = {name: 'cart', links: [link('body', 0), link('r', -0.6, 0.5), link('l', 0.6, 0.5), link('arm', 0.3)],
     joints: [joint('r'), joint('l'), joint('arm', 'prismatic')]};
   const drive = pluginFor('differential drive', cart, '');
   for (const wanted of ['<leftJoint>l_joint<', '<rightJoint>r_joint<', '<wheelSeparation>1.2<', '<wheelDiameter>1<',
     '<robotBaseFrame>body<']) assert.ok(drive.includes(wanted), wanted);
   assert.match(pluginFor('differential drive', cart, drive), /name="drive_0"/);
+  assert.doesNotMatch(drive, /backwards/);
+  cart.joints[0].axis.xyz = [0, -1, 0];
+  assert.match(pluginFor('differential drive', cart, ''), /r_joint: the axis points to the right/);
+  assert.doesNotMatch(pluginFor('joint states', cart, ''), /backwards/);
   assert.match(pluginFor('skid steer drive', cart, ''), /<leftRearJoint>LEFT_REAR_JOINT</);
   assert.match(pluginFor('joint states', cart, ''), /<jointName>r_joint, l_joint, arm_joint</);
   for (const title of PLUGIN_TITLES) assert.match(pluginFor(title, {name: 'm', links: [], joints: []}, ''), /^<plugin /);

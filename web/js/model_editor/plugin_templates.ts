@@ -1,16 +1,18 @@
 /** Plugins that the model editor offers, filled in with the joints of the model. Pure. */
+import {compose, orientation, rotate} from '../pose.js';
 import type {Joint, Link, Model} from '../protocol.js';
 
-/** A turning joint with its child link. */
-type Wheel = {name: string, link: Link};
+/** A turning joint with its child link; `backward`: its axis points to the right. */
+type Wheel = {name: string, link: Link, backward: boolean};
 
 const TURNING = ['revolute', 'continuous'];
 
 /** The wheels of a model on one side of its x axis, front ones first. */
 function wheelsOf({joints, links}: Model, side: 1|-1): Wheel[] {
-  const found = joints.flatMap(({name, type, child}: Joint) => {
+  const found = joints.flatMap(({name, type, child, pose, axis}: Joint) => {
     const link = links.find((one) => one.name === child);
-    return TURNING.includes(type) && link && Math.sign(link.pose[1]) === side ? [{name, link}] : [];
+    if (!TURNING.includes(type) || !link || !axis || Math.sign(link.pose[1]) !== side) return [];
+    return [{name, link, backward: rotate(orientation(compose(link.pose, pose)), axis.xyz)[1] < 0}];
   });
   return found.sort((a, b) => b.link.pose[0] - a.link.pose[0]);
 }
@@ -61,6 +63,9 @@ export function pluginFor(title: string, model: Model, text: string): string {
   if (!maker) throw new RangeError(`no plugin ${title}`);
   let {name} = maker;
   for (let number = 0; text.includes(`name="${name}"`); number++) name = `${maker.name}_${number}`;
-  const inner = Object.entries(maker.elements(model)).map(([key, value]) => `  <${key}>${value}</${key}>\n`).join('');
+  const backward = [1 as const, -1 as const].flatMap((side) => wheelsOf(model, side)).filter((one) => one.backward);
+  const remark = backward.length && 'wheelSeparation' in maker.elements(model)
+    ? `  <!-- ${backward.map((one) => one.name).join(', ')}: the axis points to the right, so positive rates drive backwards; reverse it -->\n` : '';
+  const inner = remark + Object.entries(maker.elements(model)).map(([key, value]) => `  <${key}>${value}</${key}>\n`).join('');
   return `<plugin name="${name}" filename="${maker.filename}">\n${inner}</plugin>`;
 }
