@@ -9,7 +9,7 @@ from my_simulations.messages.definitions import standard_definitions
 from my_simulations.messages.message_types import MessageTypes
 
 PLUGINS = Path(__file__).resolve().parents[3] / "src/my_simulations/plugins"
-ROBOTS = {"cob_base_controller_utils", "kobuki_msgs", "pal_control_msgs"}
+ROBOTS = {"cob_base_controller_utils", "kobuki_msgs", "pal_control_msgs", "pr2_msgs"}
 """Packages whose messages are read from their files, where they are installed."""
 
 
