@@ -71,8 +71,8 @@ class OtherPackage(flow.ToolCase, unittest.TestCase):
 
     def test_a_world_outside_of_all_packages_needs_no_list(self):
         with tempfile.TemporaryDirectory() as folder:
-            text = self.run_here("upload_objects.py", "--world", f"{folder}/house.world")
-        self.assertEqual(text.strip(), "upload_objects.py: world 'house' has no object list")
+            text = self.run_here("upload_objects.py", "--world", f"{folder}/a_house.world")
+        self.assertEqual(text.strip(), "upload_objects.py: world 'a_house' has no object list")
 
     def edit_list(self, old, new):
         """Change the list, and wait until its time shows it."""
