@@ -158,7 +158,7 @@ def test_an_upright_cylinder_slides_on_a_floor_not_in_it(lab: Lab, laws: Laws, s
                   lab.pose(can).position[0], way, rel=0.02)
 
 
-@pytest.mark.parametrize("speed", [0.3, 2.7])
+@pytest.mark.parametrize("speed", [0.3, 2.0])
 def test_upright_cylinders_slide_and_wheels_roll_on_triangles_in_one_world(lab: Lab, laws: Laws,
                                                                            speed: float):
     """Both need other contact points than usual, which Bullet finds by one world-wide rule."""
@@ -168,7 +168,7 @@ def test_upright_cylinders_slide_and_wheels_roll_on_triangles_in_one_world(lab: 
         lab.load(slab(f"tile{tile}", (1.0, 4.0, 0.2)), (tile - 0.5, -9.5, -0.08))
     cans = [(lab.load(_upright(radius, height, 0.0), (0, n + y, height / 2 + base)),
              height / 2 + base, deepest) for n, (radius, height) in enumerate(CANS)
-            for y, base, deepest in ((0, 0.0, 3e-4), (-10, 0.02, 1.5e-3))]
+            for y, base, deepest in ((0, 0.0, 3e-4), (-10, 0.02, 1e-3))]
     lab.seconds(0.5)
     lab.push(wheel, (0.5, 0, 0), (0, 5.0, 0))
     lab.seconds(0.5)
