@@ -90,6 +90,8 @@ export class Picker {
   /** Hits of three objects, e.g. handles, nearest first. */
   objects(list: Object3D[], clientX: number, clientY: number) {
     this.#aim(clientX, clientY);
+    // Objects that are new since the last picture are drawn, and so placed, with the next one.
+    for (const object of list) object.updateMatrixWorld();
     return this.#caster.intersectObjects(list, true);
   }
 
