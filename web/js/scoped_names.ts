@@ -24,3 +24,10 @@ export function splitScoped(name: string, isModel: (name: string) => boolean): [
   }
   return ['', name];
 }
+
+/** A name that is not taken: the wanted one, or with the first free number, as Gazebo's `name_0`. */
+export function freeName(wanted: string, isTaken: (name: string) => boolean): string {
+  let name = wanted;
+  for (let number = 0; isTaken(name); number++) name = `${wanted}_${number}`;
+  return name;
+}

@@ -1,5 +1,6 @@
 /** Plugins that the model editor offers, filled in with the joints of the model. Pure. */
 import {compose, orientation, rotate} from '../pose.js';
+import {freeName} from '../scoped_names.js';
 import type {Joint, Link, Model} from '../protocol.js';
 
 /** A turning joint with its child link; `backward`: its axis points to the right. */
@@ -61,11 +62,11 @@ export const PLUGIN_TITLES = MAKERS.map(({title}) => title);
 export function pluginFor(title: string, model: Model, text: string): string {
   const maker = MAKERS.find((one) => one.title === title);
   if (!maker) throw new RangeError(`no plugin ${title}`);
-  let {name} = maker;
-  for (let number = 0; text.includes(`name="${name}"`); number++) name = `${maker.name}_${number}`;
-  const backward = [1 as const, -1 as const].flatMap((side) => wheelsOf(model, side)).filter((one) => one.backward);
-  const remark = backward.length && 'wheelSeparation' in maker.elements(model)
+  const name = freeName(maker.name, (one) => text.includes(`name="${one}"`));
+  const elements = maker.elements(model);
+  const backward = [...wheelsOf(model, 1), ...wheelsOf(model, -1)].filter((one) => one.backward);
+  const remark = backward.length && 'wheelSeparation' in elements
     ? `  <!-- ${backward.map((one) => one.name).join(', ')}: the axis points to the right, so positive rates drive backwards; reverse it -->\n` : '';
-  const inner = remark + Object.entries(maker.elements(model)).map(([key, value]) => `  <${key}>${value}</${key}>\n`).join('');
+  const inner = remark + Object.entries(elements).map(([key, value]) => `  <${key}>${value}</${key}>\n`).join('');
   return `<plugin name="${name}" filename="${maker.filename}">\n${inner}</plugin>`;
 }

@@ -1,6 +1,7 @@
 /**
  * The parameters of a plugin as fields: one for each element of its XML that holds only text. Pure.
  */
+import {freeName} from '../scoped_names.js';
 import {parameterUnit} from './parameter_units.js';
 import type {Field} from './property_fields.js';
 import type {Plugin, PluginParameter, World} from '../protocol.js';
@@ -123,7 +124,8 @@ const KNOWN = [
 /** Buttons for plugins that a world can get, and a field for the library of any other. */
 export function newPluginFields(owner: PluginOwner): {entity: Record<string, unknown>, fields: Field[]} {
   const added = (library: string, inside = '') => {
-    const name = freeName(owner, library.replace(/^lib/, '').replace(/\.so$/, ''));
+    const name = freeName(library.replace(/^lib/, '').replace(/\.so$/, ''),
+      (one) => owner.plugins.some((plugin) => plugin.name === one));
     const xml = `<plugin name="${escaped(name).replaceAll('"', '&quot;')}" filename="${escaped(library).replaceAll('"', '&quot;')}"${inside ? `>
   ${inside}
 </plugin>` : '/>'}`;
@@ -134,13 +136,6 @@ export function newPluginFields(owner: PluginOwner): {entity: Record<string, unk
   fields.push({path: 'add', label: 'add library', type: 'text', hint: 'file name of a plugin, for example libWindPlugin.so',
     ops: (library) => added(String(library).trim())});
   return {entity: Object.fromEntries(fields.map(({path}) => [path, null])), fields};
-}
-
-function freeName({plugins}: PluginOwner, wanted: string) {
-  const taken = new Set(plugins.map(({name}) => name));
-  let name = wanted;
-  for (let number = 0; taken.has(name); number++) name = `${wanted}_${number}`;
-  return name;
 }
 
 const setPlugins = (owner: PluginOwner, all: string[]) =>

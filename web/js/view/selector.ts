@@ -54,10 +54,10 @@ export class Selector {
     return hit && !hit.plane ? hit : null;
   }
 
-  /** What a drag moves, nothing behind a locked model; of the model that is being built, its link. */
+  /** A drag moves the nearest model or light, unless it is locked; of the model that is being built, the link. */
   grasped(event: MousePoint) {
     const nearest = this.under(event);
-    const hit = nearest && this.#store.overlay('locked', nearest.name) ? null : this.movable(event);
+    const hit = nearest && !nearest.plane && !this.#store.overlay('locked', nearest.name) ? nearest : null;
     const built = hit?.link && this.#store.modelEditing?.name === hit.name;
     return hit && built ? {...hit, name: `${hit.name}::${hit.link}`} : hit;
   }

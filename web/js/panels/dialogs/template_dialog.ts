@@ -1,4 +1,5 @@
 /** The form of a robot template: its parameters as the server declares them. */
+import {freeName} from '../../scoped_names.js';
 import {Dialog, labelled} from '../../ui/dialog.js';
 import {h} from '../../ui/dom.js';
 import type {Model, Requests, Template, TemplateParameter} from '../../protocol.js';
@@ -45,9 +46,7 @@ export const robotNames = (models: Pick<Model, 'name'|'plugins'|'links'>[]): str
 function freeNamespace({parameters}: Template, {document}: Page['store']) {
   const wanted = String(parameters.find(({name}) => name === 'name')?.default ?? 'robot');
   const taken = new Set([...document?.models ?? [], ...document?.lights ?? []].map(({name}) => name));
-  let name = wanted;
-  for (let number = 0; taken.has(name); number++) name = `${wanted}_${number}`;
-  return name;
+  return freeName(wanted, (name) => taken.has(name));
 }
 
 const sharedNote = (fields: Field[], robots: string[]) =>
