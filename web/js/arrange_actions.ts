@@ -28,16 +28,21 @@ export function arrangeActions({store, ask, edit, dialog, note, view}: ActionPar
     return entity?.kind === 'link' && entity.model.name === store.modelEditing?.name;
   });
 
-  async function copiesOfLinks(links: string[]): Promise<Outcome> {
+  /** Makes copies in one step of the history, and selects them. */
+  async function addCopies(ops: Operation[], label: string): Promise<Outcome> {
+    const done = await edit({kind: 'group', ops, label});
+    if (done.ok && done.value.names) store.select(done.value.names);
+    return done;
+  }
+
+  function copiesOfLinks(links: string[]) {
     const [beside] = clearSpacing(links.flatMap((name) => view()?.bounds(name) ?? []));
     const ops = links.flatMap((link): Operation[] => {
       const pose = store.worldPose(link);
       return pose ? [{kind: 'copy_link', link,
         pose: [...add(position(pose), [beside, 0, 0]), ...orientation(pose)] as Pose7}] : [];
     });
-    const done = await edit({kind: 'group', ops, label: `Duplicate ${links.join(', ')}`});
-    if (done.ok && done.value.names) store.select(done.value.names);
-    return done;
+    return addCopies(ops, `Duplicate ${links.join(', ')}`);
   }
 
   /**
@@ -53,9 +58,7 @@ export function arrangeActions({store, ask, edit, dialog, note, view}: ActionPar
     const {text} = outcome.value;
     const ops: Operation[] = offsets.map((offset) => ({kind: 'paste', text,
       pose: [...add(position(from), offset), ...orientation(from)] as Pose7}));
-    const done = await edit({kind: 'group', ops, label});
-    if (done.ok && done.value.names) store.select(done.value.names);
-    return done;
+    return addCopies(ops, label);
   }
 
   const arrange = {
@@ -119,9 +122,9 @@ export function arrangeActions({store, ask, edit, dialog, note, view}: ActionPar
         note('Select at least two models or lights to group.');
         return NOTHING;
       }
-      const done = await edit({kind: 'set_group', names});
-      if (done.ok) store.select(names);
-      return done;
+      // Not after the reply: the user may have selected something else by then.
+      store.select(names);
+      return edit({kind: 'set_group', names});
     },
     /** Takes what is selected, and the others of its groups, out of them. */
     async ungroupSelection(): Promise<Outcome> {
