@@ -72,8 +72,11 @@ def package_folder(package: str) -> str:
     return folder
 
 
-def upload(parameters: client.Parameters, world: str, package: str) -> Upload:
+def upload(parameters: client.Parameters, world: str, package: str,
+           needs_list: bool = True) -> Upload:
     """Replace the object list and the groups by those of a world.
+
+    With `needs_list` a world without a list is a warning.
 
     Raises ToolError: the package is unknown.
     """
@@ -82,7 +85,7 @@ def upload(parameters: client.Parameters, world: str, package: str) -> Upload:
     parameters.delete(LIST_MARK)
     state = _state(place)
     found = _upload_files(parameters, place, package)
-    if not found.file:
+    if needs_list and not found.file:
         near = closest(world, _listed(os.path.join(folder, "config")), 1)
         meant = f" (did you mean {near[0]}?)" if near else ""
         found.issues.append(warning(

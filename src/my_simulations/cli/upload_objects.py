@@ -46,17 +46,15 @@ def _upload(options: argparse.Namespace, remappings: Sequence[str]) -> int:
     name = world_name(options.world) or _running_world(parameters, options, node)
     file = "" if options.package else _world_file(parameters, options, node, name)
     package = options.package or _package_of_world(file, name)
-    found = upload(parameters, name, package)
-    issues = found.issues
+    needs_list = not file or bool(package_of(file))   # one saved outside of all packages does not
+    found = upload(parameters, name, package, needs_list)
     if found.file:
         print(f"{NAME}: world '{name}': {found.objects} objects, {found.groups} groups from "
               f"{os.path.dirname(found.file)}", flush=True)
-    elif file and not package_of(file):
-        # A world that is saved outside of all packages needs no list.
-        issues = [issue for issue in issues if issue.code != "no-object-list"]
+    elif not needs_list:
         print(f"{NAME}: world '{name}' has no object list", flush=True)
-    client.show(issues)
-    return client.FAILED if client.has_errors(issues) else client.OK
+    client.show(found.issues)
+    return client.FAILED if client.has_errors(found.issues) else client.OK
 
 
 def _running_world(parameters: client.Parameters, options: argparse.Namespace, node: str) -> str:
