@@ -111,8 +111,7 @@ class FetchGazebo(Plugin):
 
     def reset(self) -> None:
         """Stop all controllers, and begin again at the initial joint positions."""
-        self._stop()
-        self._begin()
+        self.clock_set()
 
     def clock_set(self) -> None:
         """Controllers stop, because their plans refer to the previous sim time."""
@@ -139,4 +138,3 @@ class FetchGazebo(Plugin):
 
 def _joints_of(controller: Controller) -> List[str]:
     return [name for names in controller.claimed.values() for name in names]
-
