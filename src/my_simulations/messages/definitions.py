@@ -164,6 +164,9 @@ Actuators: Header header; float64[] angles; float64[] angular_velocities; float6
 Odometry: Header header; string child_frame_id; geometry_msgs/PoseWithCovariance pose;
     geometry_msgs/TwistWithCovariance twist
 Path: Header header; geometry_msgs/PoseStamped[] poses
+[prius_msgs]
+Control: Header header; float64 throttle; float64 brake; float64 steer; uint8 NO_COMMAND=0; uint8
+    NEUTRAL=1; uint8 FORWARD=2; uint8 REVERSE=3; uint8 shift_gears
 [rosgraph_msgs]
 Clock: time clock
 [rotors_comm]
