@@ -167,6 +167,8 @@ class GraphUser:
                 call(waiting.popleft())
 
         def arrived(message: Any) -> None:
+            if self._closed.is_set():   # the subscription ends a moment later
+                return
             waiting.append(message)
             self.inbox.append(deliver)
             self._wake()

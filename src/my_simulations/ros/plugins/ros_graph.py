@@ -12,6 +12,7 @@ from ...errors import SimulationError
 from ...plugins.graph import GraphHandle, MissingTypeError, ServiceTakenError, Topic, TransformOf
 from ..direct_connection import direct_publish
 from ..topics.subscriber_events import SubscriberEvents
+from .deferred_closing import DeferredClosing
 from .packed_transforms import PackedTransforms
 
 _TF_QUEUE = 100
@@ -22,10 +23,12 @@ def _ignore() -> None:
 
 
 class RosTopic:
-    """A publisher."""
+    """A publisher. `close` is called with the function that removes it from the graph."""
 
-    def __init__(self, publisher: rospy.Publisher) -> None:
+    def __init__(self, publisher: rospy.Publisher,
+                 close: Callable[[Callable[[], Any]], None]) -> None:
         self._publisher, self._publish = publisher, direct_publish(publisher)
+        self._close = close
 
     @property
     def wanted(self) -> bool:
@@ -41,17 +44,16 @@ class RosTopic:
                 raise
 
     def close(self) -> None:
-        with contextlib.suppress(OSError):  # the master has gone: nothing is registered any more
-            self._publisher.unregister()
+        self._close(self._publisher.unregister)
 
 
 class _Closing:
-    def __init__(self, close: Callable[[], Any]) -> None:
-        self._close = close
+    def __init__(self, close: Callable[[], Any],
+                 defer: Callable[[Callable[[], Any]], None]) -> None:
+        self._close, self._defer = close, defer
 
     def close(self) -> None:
-        with contextlib.suppress(OSError):
-            self._close()
+        self._defer(self._close)
 
 
 class RosGraph:
@@ -61,6 +63,7 @@ class RosGraph:
         self._types: Dict[str, Any] = {}
         self._tf: Any = None
         self._stamp = (0, genpy.Time())
+        self._closing = DeferredClosing()
 
     def message(self, kind: str) -> Any:
         return self._type(kind, "msg")()
@@ -72,13 +75,15 @@ class RosGraph:
 
     def publish(self, name: str, kind: str, queue: int, latch: bool,
                 changed: Callable[[], None] = _ignore) -> Topic:
-        return RosTopic(rospy.Publisher(name, self._type(kind, "msg"), SubscriberEvents(changed),
-                                        queue_size=queue, latch=latch, tcp_nodelay=True))
+        made, closing = self._type(kind, "msg"), self._reuse(name)
+        return RosTopic(rospy.Publisher(name, made, SubscriberEvents(changed), queue_size=queue,
+                                        latch=latch, tcp_nodelay=True), closing)
 
     def subscribe(self, name: str, kind: str, call: Callable[[Any], None],
                   queue: int) -> GraphHandle:
-        return _Closing(rospy.Subscriber(name, self._type(kind, "msg"), call, queue_size=queue,
-                                         tcp_nodelay=True).unregister)
+        made, closing = self._type(kind, "msg"), self._reuse(name)
+        return _Closing(rospy.Subscriber(name, made, call, queue_size=queue,
+                                         tcp_nodelay=True).unregister, closing)
 
     def serve(self, name: str, kind: str, call: Callable[[Any, Any], None]) -> GraphHandle:
         """Offer a service; a plugin's refusal goes to who has asked, and not into the log."""
@@ -94,8 +99,9 @@ class RosGraph:
                 raise rospy.ServiceException(str(fault)) from fault
             return response
 
+        closing = self._reuse(name)
         try:
-            return _Closing(rospy.Service(name, service, answer).shutdown)
+            return _Closing(rospy.Service(name, service, answer).shutdown, closing)
         except rospy.ServiceException:
             raise ServiceTakenError(f"the service {rospy.resolve_name(name)} is offered already, by"
                                     " another plugin") from None
@@ -129,6 +135,20 @@ class RosGraph:
             self.offer_transforms(_ignore)
         if self._tf.wanted:
             self._tf.send(PackedTransforms(transforms, ns))
+
+    def _reuse(self, name: str) -> Callable[[Callable[[], Any]], None]:
+        """End the removal of a name that is used again; return what defers the next removal."""
+        resolved = rospy.resolve_name(name)
+        self._closing.finish(resolved)
+
+        def defer(close: Callable[[], Any]) -> None:
+            def remove() -> None:
+                with contextlib.suppress(OSError):  # the master has gone: nothing is registered
+                    close()
+
+            self._closing.put(resolved, remove)
+
+        return defer
 
     def _type(self, kind: str, sort: str) -> Any:
         if kind not in self._types:
