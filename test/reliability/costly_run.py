@@ -2,8 +2,9 @@
 
 A process of its own, so that its peak of memory belongs to this file. Keys: `outcome`, the codes of
 errors and of skipped collisions, or `built`; `took_s`; `stall_s`, the longest time in which
-simulated time stood still; `turn_s`, the longest time for which another thread of the node waited
-for its turn; `useful_mb`, see `useful_bytes`; `node_mb`, `engine_mb` and `reader_mb`, peaks of
+simulated time stood still; `stall_engine_s`, the most processor time that the engine used while
+time stood still, which other programs of the machine do not change; `turn_s`, the longest time for
+which another thread of the node waited for its turn; `useful_mb`, see `useful_bytes`; `node_mb`, `engine_mb` and `reader_mb`, peaks of
 resident memory above those before, of the process that reads untrusted files as a whole.
 """
 from __future__ import annotations
@@ -30,6 +31,9 @@ from my_simulations.resources.resolver import Resolver
 from my_simulations.simulator.simulator import Simulator
 
 
+_SCHEDULED_CLOCK = 2   # of the clocks that Linux has for each process
+
+
 def peak(pid: int) -> int:
     """The peak of resident memory of a process, MB; 0 if it does not exist."""
     try:
@@ -37,6 +41,14 @@ def peak(pid: int) -> int:
             return next(int(line.split()[1]) >> 10 for line in stream if line.startswith("VmHWM"))
     except (OSError, StopIteration):
         return 0
+
+
+def processor_time(pid: int) -> float:
+    """The processor time that a process has used, s; 0 if it does not exist."""
+    try:
+        return time.clock_gettime((~pid << 3) | _SCHEDULED_CLOCK)
+    except OSError:
+        return 0.0
 
 
 BODY_BYTES = 8 << 10
@@ -59,7 +71,7 @@ class Watch(threading.Thread):
 
     def __init__(self, simulator: Simulator) -> None:
         super().__init__(daemon=True)
-        self.stall = self.turn = 0.0
+        self.stall = self.stall_engine = self.turn = 0.0
         self.peaks: Dict[str, int] = {"engine": 0, "reader": 0}
         self.stopping = threading.Event()
         self._simulator = simulator
@@ -67,12 +79,15 @@ class Watch(threading.Thread):
     def run(self) -> None:
         since, before = time.monotonic(), self._simulator.clock.sim_ns
         asleep = since
+        used = processor_time(self._simulator.engine_pid)
         while not self.stopping.wait(0.01):
+            engine = processor_time(self._simulator.engine_pid)
             now = self._simulator.clock.sim_ns
             self.turn = max(self.turn, time.monotonic() - asleep - 0.01)
             self.stall = max(self.stall, time.monotonic() - since)
+            self.stall_engine = max(self.stall_engine, engine - used)
             if now != before:
-                since, before = time.monotonic(), now
+                since, before, used = time.monotonic(), now, engine
             for name, pid in (("engine", self._simulator.engine_pid),
                               ("reader", reader_process.kept().pid)):
                 self.peaks[name] = max(self.peaks[name], peak(pid) if pid else 0)
@@ -139,7 +154,8 @@ def main(name: str, folder: str) -> None:
         watch.join()
         print(json.dumps({
             "outcome": found, "took_s": round(took, 1), "stall_s": round(watch.stall, 1),
-            "turn_s": round(watch.turn, 1), "useful_mb": useful_bytes(text, folder, built) >> 20,
+            "stall_engine_s": round(watch.stall_engine, 2), "turn_s": round(watch.turn, 1),
+            "useful_mb": useful_bytes(text, folder, built) >> 20,
             "node_mb": peak(os.getpid()) - own, "engine_mb": watch.peaks["engine"] - engine,
             "reader_mb": watch.peaks["reader"]}))
     finally:
