@@ -4,8 +4,9 @@ A process of its own, so that its peak of memory belongs to this file. Keys: `ou
 errors and of skipped collisions, or `built`; `took_s`; `stall_s`, the longest time in which
 simulated time stood still; `stall_engine_s`, the most processor time that the engine used while
 time stood still, which other programs of the machine do not change; `turn_s`, the longest time for
-which another thread of the node waited for its turn; `useful_mb`, see `useful_bytes`; `node_mb`, `engine_mb` and `reader_mb`, peaks of
-resident memory above those before, of the process that reads untrusted files as a whole.
+which another thread of the node waited for its turn; `useful_mb`, see `useful_bytes`; `node_mb`,
+`engine_mb` and `reader_mb`, peaks of resident memory above those before, of the process that reads
+untrusted files as a whole.
 """
 from __future__ import annotations
 
@@ -29,7 +30,6 @@ from my_simulations.formats.mesh.loading import collision_meshes
 from my_simulations.formats.reading import parse_document, read_world_text
 from my_simulations.resources.resolver import Resolver
 from my_simulations.simulator.simulator import Simulator
-
 
 _SCHEDULED_CLOCK = 2   # of the clocks that Linux has for each process
 
