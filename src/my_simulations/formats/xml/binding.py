@@ -163,7 +163,7 @@ class _Filler:
             if known is not None:
                 self._set(target, known, text, element, f"@{name}")
             elif name not in more and ":" not in name and name[0] != "{":
-                self._unknown(f"attribute {name}", name, element, [*attributes, *more])
+                self._unknown(name, element, [*attributes, *more], is_attribute=True)
 
     def _nested(self, target: Any, child: Any, entry: Nested, seen: Set[str]) -> None:
         """Fill the object of a child; adds its tag to `seen` if there can be one only."""
@@ -184,7 +184,7 @@ class _Filler:
         tag = child.tag
         self._extra.append(to_xml(child, wrap))
         if ":" not in tag and tag[0] != "{":
-            self._unknown(f"element <{tag}>", tag, child, list(known))
+            self._unknown(tag, child, list(known))
 
     def _repeated(self, child: Any, parent: Any) -> None:
         """Report a repeated element; Gazebo reads the first of a name only."""
@@ -207,7 +207,8 @@ class _Filler:
                          self._table.strict):
             self._found.setdefault(BAD, []).append(element)
 
-    def _unknown(self, what: str, name: str, element: Any, known: List[str]) -> None:
+    def _unknown(self, name: str, element: Any, known: List[str],
+                 is_attribute: bool = False) -> None:
         log = self._source.log
         log.unknown += 1
         if log.unknown > _MOST_UNKNOWN:
@@ -215,14 +216,16 @@ class _Filler:
                 self._source.warn("unknown-many", "more unknown elements and attributes follow;"
                                   " they are not listed", element)
             return
-        parent = element.getparent() if what.startswith("element") else element
+        parent = element if is_attribute else element.getparent()
         inside = parent.tag if parent is not None else self._table.name
         hint = closest(name, known)
-        if what.startswith("element"):
+        if is_attribute:
+            code, what = "unknown-attribute", f"attribute {name}"
+        else:
+            code, what = "unknown-element", f"element <{name}>"
             hint = hint or self._table.hint.format(name=name)
-        self._source.warn(
-            "unknown-element" if what.startswith("element") else "unknown-attribute",
-            f"{what} is unknown in <{inside}>; it is kept without effect", element, hint)
+        self._source.warn(code, f"{what} is unknown in <{inside}>; it is kept without effect",
+                          element, hint)
 
 
 def has_prefix(xml: str) -> bool:
