@@ -4,11 +4,10 @@ from __future__ import annotations
 import argparse
 import difflib
 import re
-from typing import Any, List, NoReturn
+from typing import Any, List
 
 from ..program_end import ArgumentParser
 
-_UNKNOWN = "unrecognized arguments: "
 _NEGATIVE = re.compile(r"-(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?(,.*)?$")
 """A negative number, or a list that begins with one; argparse itself knows -0.5, not -1e-3."""
 
@@ -23,18 +22,19 @@ class Parser(ArgumentParser):
         super().__init__(*arguments, **options)
         self._negative_number_matcher = _NEGATIVE
 
-    def error(self, message: str) -> NoReturn:
-        """Print usage, error and suggestion, and exit with status 2."""
-        super().error(message + self._meant(message))
+    def parse_args(self, args: Any = None, namespace: Any = None) -> Any:
+        """Parse; print usage, error and suggestion, and exit with status 2 for unknown options."""
+        found, unknown = self.parse_known_args(args, namespace)
+        if unknown:
+            self.error(f"unrecognized arguments: {' '.join(unknown)}{self._suggestion(unknown)}")
+        return found
 
-    def _meant(self, message: str) -> str:
-        if not message.startswith(_UNKNOWN):
-            return ""
+    def _suggestion(self, unknown: List[str]) -> str:
         known: List[str] = [option for action in self._actions
                             if action.help is not argparse.SUPPRESS
                             for option in action.option_strings]
         near = [difflib.get_close_matches(word.split("=")[0], known, 1)
-                for word in message[len(_UNKNOWN):].split() if word.startswith("-")]
+                for word in unknown if word.startswith("-")]
         found = [options[0] for options in near if options]
         return f"; did you mean {' and '.join(found)}?" if found else ""
 
