@@ -79,8 +79,7 @@ def find_world(name: str, resolver: Resolver, caller: str = "") -> str:
     if os.path.isabs(name):
         if os.path.isfile(name):
             return os.path.abspath(name)
-        reason = "this is a folder" if os.path.isdir(name) else ""
-        raise ResourceNotFoundError(name, [name], reason)
+        raise ResourceNotFoundError(name, [name], _reason(name))
     if name and "://" not in name:
         for folder in (caller or os.getcwd(), users_folder()):
             candidate = os.path.abspath(os.path.join(folder, name))
@@ -95,8 +94,8 @@ def find_world(name: str, resolver: Resolver, caller: str = "") -> str:
         raise ResourceNotFoundError(name, tried + more, missing.reason) from None
 
 
-def advice_on(name: str, caller: str = "") -> str:
-    """Hint for a world that was not found: similar existing files."""
+def similar_world(name: str, caller: str = "") -> str:
+    """A world file that exists and is named like one that was not found; "" for none."""
     path = os.path.expanduser(name.strip().rstrip("/"))
     base = os.path.basename(path)
     beside = _worlds_in(os.path.dirname(path)) if os.path.isabs(path) else []
@@ -104,15 +103,31 @@ def advice_on(name: str, caller: str = "") -> str:
     same = [os.path.join(folder, file) for folder, file in known
             if os.path.basename(file) == base]
     if same:
-        return f"did you mean {same[0]}?"
+        return same[0]
     stems = {_stem(file): file for _, file in reversed(known)}
     stems.update((_stem(file), os.path.join(folder, file)) for folder, file in reversed(beside))
     near = difflib.get_close_matches(_stem(base), stems, 1, 0.7)
-    meant = f"did you mean {stems[near[0]]}?" if near else ""
+    return stems[near[0]] if near else ""
+
+
+def advice_on(name: str, caller: str = "") -> str:
+    """Hint for a world that was not found: similar existing files."""
+    path = os.path.expanduser(name.strip().rstrip("/"))
+    near = similar_world(name, caller)
+    meant = f"did you mean {near}?" if near else ""
     if os.path.isabs(path):
         return meant or "correct the path"
+    if os.path.basename(near) == os.path.basename(path):
+        return meant
     otherwise = "give its full path, or add its folder to GAZEBO_RESOURCE_PATH"
     return f"{meant} Otherwise {otherwise}" if meant else otherwise
+
+
+def _reason(path: str) -> str:
+    """Why an existing path is no world file; "" if nothing is there."""
+    if os.path.isdir(path):
+        return "this is a folder"
+    return "this is a device or a pipe, not a file" if os.path.exists(path) else ""
 
 
 def _stem(file: str) -> str:
@@ -135,4 +150,5 @@ def _worlds_in(folder: str, below: str = "") -> List[Tuple[str, str]]:
     except OSError:
         return []
     return [(folder, os.path.join(below, name)) for name in names
-            if name.lower().endswith(ENDINGS)]
+            if name.lower().endswith(ENDINGS)
+            and os.path.isfile(os.path.join(folder, below, name))]

@@ -9,7 +9,7 @@ from ..engine.commands import FOREVER
 from ..errors import InputError, Issue, error, grouped
 from ..formats.reading import LoadedWorld, read_world
 from ..resources.resolver import Resolver, ResourceNotFoundError
-from ..resources.world_lookup import advice_on, find_world
+from ..resources.world_lookup import advice_on, find_world, similar_world
 from .simulator import Simulator
 
 Log = Callable[[Issue], None]
@@ -71,9 +71,10 @@ def load_world(name: str, resolver: Resolver, log: Log, *, seed: int = 0, profil
     try:
         path = find_world(name, resolver, caller)
     except ResourceNotFoundError as missing:
-        advice = advice_on(name, caller)
-        text = f"{name!r} was not found" if advice.startswith("did you mean") else str(missing)
-        raise InputError([error("world-not-found", f"world file {text}", hint=advice)]) from missing
+        is_short = not missing.reason and similar_world(name, caller)
+        text = f"{name!r} was not found" if is_short else str(missing)
+        raise InputError([error("world-not-found", f"world file {text}",
+                                hint=advice_on(name, caller))]) from missing
     title = f"Reading {os.path.basename(path)}"
     progress(title, "", 0, 0)
 

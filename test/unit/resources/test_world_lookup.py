@@ -77,6 +77,18 @@ def test_an_absolute_name_is_searched_nowhere_else(places):
     assert advice_on(wrong, "/") == f"did you mean {typed / 'maze.world'}?"
 
 
+def test_folders_and_pipes_are_named_and_never_suggested(places):
+    typed, _, _ = places
+    folder, pipe = typed / "rooms.world", typed / "pipe.world"
+    folder.mkdir()
+    os.mkfifo(pipe)
+    for path, reason in ((folder, "this is a folder"), (pipe, "this is a device or a pipe")):
+        with pytest.raises(InputError) as refused:
+            load_world(str(path), Resolver(), lambda issue: None, caller=str(typed))
+        assert reason in refused.value.issues[0].message
+        assert str(path) not in refused.value.issues[0].hint
+
+
 @pytest.mark.parametrize(("name", "text", "parts"), [
     ("arm.urdf", "<robot name='arm'/>", ("spawn_model -urdf -file ", "-model arm")),
     ("box.sdf", "<sdf version='1.6'><model name='box'/></sdf>",
