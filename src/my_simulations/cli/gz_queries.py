@@ -15,6 +15,8 @@ from . import object_client as client
 
 OK = client.OK
 FIND_SECONDS = 10.0
+STEP_SECONDS = 0.1
+"""Wall seconds that `gz world -m` allows for each step; a single step can render a picture."""
 STATS_SECONDS = 0.2
 """Wall seconds between two lines of `gz stats` (Gazebo behaviour)."""
 
@@ -28,9 +30,10 @@ class Running:
         self.parameters = client.Parameters(remappings)
         self.simulator = client.SimulatorClient(self.parameters, self.node, FIND_SECONDS)
 
-    def call_service(self, service: str, kind: str, **fields: Any) -> Any:
-        """The response of a service. Raises ToolError if it fails."""
-        answer = self.simulator.call_service(service, kind, **fields)
+    def call_service(self, service: str, kind: str, timeout: float = FIND_SECONDS, **fields: Any
+                     ) -> Any:
+        """The response of a service within `timeout` wall s. Raises ToolError if it fails."""
+        answer = self.simulator.call_service(service, kind, timeout, **fields)
         if not getattr(answer, "success", True):
             raise client.ToolError(answer.status_message)
         return answer
@@ -49,9 +52,17 @@ def world(options: argparse.Namespace, running: Running) -> int:
             done += 1
     steps = 1 if options.step else options.multi_step
     if steps:
-        running.call_service("step_world", "StepWorld", steps=steps)
+        _make_steps(running, steps)
         done += 1
     return _something(done, "gz world", "-p 0|1, -s, -m N, -r, -t or -o")
+
+
+def _make_steps(running: Running, steps: int) -> None:
+    if not running.parameters.has_service(f"{running.node}/step_world"):
+        raise client.ToolError(f"{running.node} has no service step_world; "
+                               "launch it with the argument extensions:=true")
+    running.call_service("step_world", "StepWorld", FIND_SECONDS + STEP_SECONDS * steps,
+                         steps=steps)
 
 
 def model(options: argparse.Namespace, running: Running) -> int:

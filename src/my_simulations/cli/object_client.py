@@ -168,12 +168,19 @@ class SimulatorClient:
         answer = self._call("get_world_properties", "GetWorldProperties")
         return list(answer.model_names)
 
-    def call_service(self, service: str, kind: str, **fields: Any) -> Any:
+    def call_service(self, service: str, kind: str, timeout: Optional[float] = None, **fields: Any
+                     ) -> Any:
         """The response of a service of the node, with a type of gazebo_msgs or my_simulations_msgs.
+
+        Args:
+            service: its name, below the node's name.
+            kind: its type.
+            timeout: wall seconds for the response; by default those of this client.
+            fields: of the request.
 
         Raises ToolError: it is not available or did not respond.
         """
-        return self._call(service, kind, **fields)
+        return self._call(service, kind, timeout, **fields)
 
     def spawn(self, name: str, xml: str, sdf: bool, position: Vec3, rpy: Vec3) -> str:
         """Spawn a model; returns the status message.
@@ -253,7 +260,7 @@ class SimulatorClient:
             raise ToolError(answer.status_message)
         return str(answer.status_message)
 
-    def _call(self, service: str, kind: str, **fields: Any) -> Any:
+    def _call(self, service: str, kind: str, timeout: Optional[float] = None, **fields: Any) -> Any:
         """Call a service by the open connection, or a new one. Raises ToolError."""
         full = f"{self.name}/{service}"
         of_kind = _service_class(kind)
@@ -264,7 +271,7 @@ class SimulatorClient:
             return self._connections[full](**fields)
 
         try:
-            return within(self._timeout, f"service {full}", call)
+            return within(timeout or self._timeout, f"service {full}", call)
         except CallTimeoutError as fault:
             raise ToolError(str(fault)) from fault
         except (ServiceCallError, OSError) as fault:

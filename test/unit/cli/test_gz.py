@@ -1,12 +1,15 @@
 """The command gz, as far as it needs no node."""
 from __future__ import annotations
 
+import argparse
 from pathlib import Path
+from typing import Any, List, Tuple
 
 import numpy as np
 import pytest
 
-from my_simulations.cli import gz_command
+from my_simulations.cli import gz_command, gz_queries
+from my_simulations.cli.object_client import ToolError
 from my_simulations.editor.logs.state_log import LogWriter
 from my_simulations.editor.transport.pose_messages import Poses
 
@@ -86,3 +89,40 @@ def test_world_needs_a_master(capsys, monkeypatch):
     monkeypatch.setenv("ROS_MASTER_URI", "http://127.0.0.1:1")
     assert gz_command.main(["gz", "world", "-p", "1"]) == gz_command.FAILED
     assert "no ROS master" in capsys.readouterr().err
+
+
+class OfferedServices:
+    """A running simulator that offers some services; records calls."""
+
+    node = "/gazebo"
+
+    def __init__(self, *names: str) -> None:
+        self.names, self.parameters = names, self
+        self.calls: List[Tuple[Any, ...]] = []
+
+    def has_service(self, name: str) -> bool:
+        return name in self.names
+
+    def call_service(self, service: str, kind: str, timeout: float, **fields: Any) -> None:
+        self.calls.append((service, timeout, fields))
+
+
+def step(running: OfferedServices, steps: int) -> int:
+    options = argparse.Namespace(pause=None, reset_all=False, reset_time=False, reset_models=False,
+                                 step=False, multi_step=steps)
+    return gz_queries.world(options, running)
+
+
+def test_deadline_of_steps_grows_with_their_number():
+    running = OfferedServices("/gazebo/step_world")
+    assert step(running, 1) == step(running, 40000) == gz_command.OK
+    (_, one, _), (service, many, fields) = running.calls
+    assert (service, fields) == ("step_world", {"steps": 40000})
+    assert many > 100.0 * one
+
+
+def test_steps_without_extensions_name_the_launch_argument():
+    running = OfferedServices()
+    with pytest.raises(ToolError, match="extensions:=true"):
+        step(running, 1)
+    assert not running.calls
