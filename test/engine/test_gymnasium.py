@@ -317,6 +317,11 @@ def test_an_evaluation_and_a_number_of_actions_are_needed():
         envs.close()
 
 
+def test_an_info_that_is_not_a_dictionary_is_refused():
+    with pytest.raises(TypeError, match="info of an Evaluation is a dictionary.*not True"):
+        Evaluation(1.0, True, True)
+
+
 def test_environments_are_closed_when_one_of_several_cannot_be_made():
     class Closing(gymnasium.Env):
         closed = False

@@ -24,21 +24,28 @@ class View:
 
 @dataclass(frozen=True)
 class Evaluation:
-    """What a step was worth.
+    """The reward of a step, and whether it ended the episode.
 
     Attributes:
         reward: of the step.
-        terminated: the task has come to its end, by success or failure.
-        info: what else is to be told.
+        terminated: whether the episode ends, by success or failure.
+        info: the dictionary that `step` returns. The tasks of this package set "is_success".
+
+    Raises TypeError if `info` is not a dictionary.
     """
 
     reward: float
     terminated: bool = False
     info: Dict[str, Any] = field(default_factory=dict)
 
+    def __post_init__(self) -> None:
+        if not isinstance(self.info, dict):
+            raise TypeError("the info of an Evaluation is a dictionary, such as "
+                            f"{{'is_success': True}}, not {self.info!r:.80}")
+
 
 class Task(Protocol):
-    """What an environment is about; `WorldEnv` does the rest.
+    """The attributes and methods that `WorldEnv` requires of a task.
 
     Attributes:
         choice: the world.
@@ -61,10 +68,10 @@ class Task(Protocol):
         """Apply an action; the world makes its steps afterwards."""
 
     def observe(self, world: OpenWorld) -> Any:
-        """The observation, a member of the space; asked for once after `begin` and each step."""
+        """Return the observation, a member of the space; called after `begin` and each step."""
 
     def evaluate(self, world: OpenWorld, action: Any) -> Evaluation:
-        """What the step was worth; asked for after `observe`, which may keep what it has read."""
+        """Evaluate the step; called after `observe`, so it can use values that `observe` stored."""
 
 
 class WorldEnv(gymnasium.Env[Any, Any]):
@@ -74,7 +81,7 @@ class WorldEnv(gymnasium.Env[Any, Any]):
     truncated with the reason under "fault" of the info, and the next `reset` opens the world again.
 
     Args:
-        task: what it is about.
+        task: world, actions, observations and rewards.
         render_mode: "rgb_array", "human", or None. "human" shows the world in a page of the editor,
             which cannot change it, and makes the steps in real time.
         robots: which plugins of the world's robots run.
@@ -150,7 +157,7 @@ class WorldEnv(gymnasium.Env[Any, Any]):
                                 f" {judged!r:.80}")
         except EngineLostError as fault:
             return self._last, 0.0, False, True, {"fault": str(fault)}
-        return self._last, float(judged.reward), judged.terminated, False, judged.info
+        return self._last, float(judged.reward), bool(judged.terminated), False, judged.info
 
     def render(self) -> Optional[np.ndarray]:
         """A picture, uint8 (height, width, 3); None if render_mode is not "rgb_array"."""
@@ -170,7 +177,7 @@ class WorldEnv(gymnasium.Env[Any, Any]):
 
 
 def _check_task(task: Task) -> None:
-    """Raise TypeError or ValueError for what is no task."""
+    """Raise TypeError or ValueError if the object is not a task."""
     if isinstance(task, type):
         raise TypeError(f"the task is an object, not a class: {task.__name__}()")
     missing = [name for name in (*Task.__annotations__, "begin", "act", "observe", "evaluate")
