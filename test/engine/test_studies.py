@@ -104,6 +104,37 @@ def test_poisoned_cases_do_not_touch_the_others(folder):
     assert len(alone) > 5 and alone.items() <= alike.items()
 
 
+@pytest.mark.parametrize("fault, told", [
+    ("os._exit(3)", "its process ended with exit status 3"),
+    ("sys.exit(4)", "SystemExit: 4"), ("", "")])
+def test_a_plugin_that_fails_in_a_case_fails_only_this_case(folder, monkeypatch, fault, told):
+    (folder / "ending.py").write_text(
+        "import os, sys\n"
+        "from my_simulations.plugins.base import Plugin\n"
+        "class Ending(Plugin):\n"
+        "    def load(self):\n"
+        "        self.context.every(100.0, self.turn)\n"
+        "    def turn(self):\n"
+        "        if self.context.link('link').pose.position[2] > 0.35:\n"
+        f"            {fault or 'pass'}\n")
+    package = folder / "packages" / "ending"
+    package.mkdir(parents=True)
+    (package / "package.xml").write_text(
+        "<package><name>ending</name><export>"
+        "<my_simulations plugin='ending:Ending' library='libending.so'/></export></package>")
+    monkeypatch.setenv("ROS_PACKAGE_PATH", str(package.parent))
+    monkeypatch.setenv("PYTHONPATH", str(folder), prepend=os.pathsep)
+    monkeypatch.syspath_prepend(str(folder))
+    (folder / "box.sdf").write_text(BOX.replace(
+        "</model>", "<plugin name='p' filename='libending.so'/></model>"))
+    text = DROP.replace("range: {from: 0.2, to: 0.6, count: 20}", "values: [0.2, 0.6]").replace(
+        "[0, 0.3, 0.6]", "[0]")
+    assert run(folder, text, "--slots", "1") == (1 if told else 0)
+    low, high = table(folder)
+    assert (low["status"], low["issue"]) == ("ok", "")
+    assert high["status"] == ("failed" if told else "ok") and told in high["issue"]
+
+
 def test_cases_that_crashed_run_again_on_request(folder, capsys):
     def crash(case, attempt, world):
         if case.index == 1:

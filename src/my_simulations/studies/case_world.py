@@ -4,10 +4,13 @@ from __future__ import annotations
 from typing import Callable, Sequence, Tuple
 
 from ..errors import InputError, error, errors_of
-from ..python_api import OpenWorld, WorldChoice
+from ..python_api import OpenWorld, RobotOptions, WorldChoice
 from .changes import CaseChanges
 from .plan import Case, CasePlan
 from .variation import value_requirement
+
+CASE_ROBOTS = RobotOptions(isolate=True)
+"""Plugins of users run in processes of their own: one that exits must not end the study."""
 
 _SLICE = 1000  # steps at a time
 
@@ -34,7 +37,7 @@ def world_choice_of(plan: CasePlan, case: Case) -> Tuple[WorldChoice, CaseChange
 
 def open_case(plan: CasePlan, case: Case) -> OpenWorld:
     """Open the world of a case. Raises InputError: the world file has errors."""
-    world = OpenWorld(world_choice_of(plan, case)[0])
+    world = OpenWorld(world_choice_of(plan, case)[0], robots=CASE_ROBOTS)
     if errors_of(world.issues):
         world.close()
         raise InputError(world.issues)

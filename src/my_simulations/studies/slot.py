@@ -13,13 +13,13 @@ from ..child_process import signal_name
 from ..engine.api import Engine
 from ..engine.commands import Command
 from ..engine.process_engine import ProcessEngine
-from ..errors import CommandError, InputError, Severity, SimulationError
+from ..errors import CommandError, InputError, SimulationError, errors_of
 from ..python_api import OpenWorld
 from ..python_api.kept_files import FileCache
 from ..python_api.world_choice import WorldChoice
 from ..simulator.watchdog import process_time, resident_bytes
 from .attempts import repeat_after_crash
-from .case_world import world_choice_of
+from .case_world import CASE_ROBOTS, world_choice_of
 from .kept import CaseTrajectory
 from .plan import Case, CasePlan
 from .row import CRASHED, DIVERGED, FAILED, OK, REFUSED, TIMED_OUT, TOO_LARGE, Row
@@ -217,8 +217,11 @@ class Slot:
         row.values = {name: expression.value(samples) for name, expression in expressions}
         row.issue = _divergence(world)
         missed = [name for name, _ in study.require if not row.values[name]]
+        faults = errors_of(world.issues)  # since the world was opened, such as of a plugin
         if row.issue:
             row.status = DIVERGED
+        elif faults:
+            row.status, row.issue = FAILED, str(faults[0])
         elif missed:
             row.status, row.issue = FAILED, f"required, and not so: {', '.join(missed)}"
         if study.trajectory is None:
@@ -232,7 +235,7 @@ class Slot:
         else:
             self._world.open(choice)
         world = self._world
-        faults = [issue for issue in world.issues if issue.severity is Severity.ERROR]
+        faults = errors_of(world.issues)
         if faults:
             raise InputError(faults)
         unused = changes.unused()
@@ -242,7 +245,8 @@ class Slot:
 
     def _in_new_engine(self, choice: WorldChoice) -> OpenWorld:
         try:
-            return OpenWorld(choice, engine=self._new_engine, files=self._files)
+            return OpenWorld(choice, engine=self._new_engine, files=self._files,
+                             robots=CASE_ROBOTS)
         except BaseException:
             with self._guard:  # it was closed; that is no crash unless it had died before
                 if self._engine is not None and not (self._engine.death or self._excess):
