@@ -85,7 +85,7 @@ class _Call:
             self._computed, self._begun = self._used(), time.monotonic()
         used = self._used() - self._computed
         if used > self.limits.computing:
-            return f"it did not come back within {self.limits.computing:g} s of processor time"
+            return f"it did not return within {self.limits.computing:g} s of processor time"
         waited = time.monotonic() - self._begun
         if waited > self.limits.waiting and used < 0.1 * waited:
             return f"it waited for more than {self.limits.waiting:g} s"
