@@ -24,6 +24,13 @@ class MessageFieldError(CommandError):
     """A field that the type of the message does not have, or a value that it cannot have."""
 
 
+def require_message(value: Any, kind: str) -> None:
+    """Raise MessageFieldError for a dictionary, which rospy does not publish either."""
+    if isinstance(value, Mapping):
+        raise MessageFieldError(f"a plugin publishes messages, not dictionaries: make a {kind} with"
+                                " context.message")
+
+
 class Converter:
     """Copies messages of any type.
 

@@ -7,7 +7,7 @@ from typing import Any, Callable, Dict, Iterator, List, Mapping, NamedTuple, Opt
 
 from ..errors import CommandError, SimulationError
 from ..geometry import Pose
-from ..messages.conversion import Converter
+from ..messages.conversion import Converter, require_message
 from ..messages.message_types import FindPackage, Message, MessageTypes, UnknownTypeError
 from ..messages.time_values import Time
 from .graph import MissingTypeError, ServiceTakenError, TransformOf
@@ -62,6 +62,7 @@ class LocalTopic:
 
     def send(self, message: Any) -> None:
         """Pass the message to all listeners. Raises MessageFieldError for an invalid one."""
+        require_message(message, self.kind)
         self._count += 1
         header = getattr(message, "header", None)
         if header is not None and hasattr(header, "seq"):

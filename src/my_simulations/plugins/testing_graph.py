@@ -4,7 +4,7 @@ from __future__ import annotations
 from typing import Any, Callable, Dict, List, Optional, Set, Tuple
 
 from ..geometry import Pose
-from ..messages.conversion import Converter
+from ..messages.conversion import Converter, require_message
 from ..messages.message_types import Message as TypedMessage
 from ..messages.message_types import MessageTypes, UnknownTypeError
 from ..messages.time_values import Time
@@ -143,8 +143,12 @@ class FakeGraph:
             return _Topic(lambda message: None, lambda: False)
         name = self._name(name)
         sent = self.published.setdefault(name, [])
-        return _Topic(lambda message: sent.append(self._converter.convert(message, kind)),
-                      lambda: name not in self.unwanted)
+
+        def send(message: Any) -> None:
+            require_message(message, kind)
+            sent.append(self._converter.convert(message, kind))
+
+        return _Topic(send, lambda: name not in self.unwanted)
 
     def subscribe(self, name: str, kind: str, call: Callable[[Any], None],
                   queue: int = 1) -> FakeHandle:

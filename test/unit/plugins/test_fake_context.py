@@ -63,3 +63,9 @@ def test_a_service_is_called_with_its_types():
     assert (response.success, response.message) == (True, "on")
     with pytest.raises(MessageFieldError, match="no field 'on'"):
         context.call("on", on=True)
+
+
+def test_a_dictionary_is_not_published():
+    topic = FakeContext().publish("speed", "std_msgs/Float64")
+    with pytest.raises(MessageFieldError, match="make a std_msgs/Float64 with context.message"):
+        topic.publish({"data": 1.0})

@@ -5,6 +5,7 @@ import pytest
 
 from my_simulations.errors import CommandError
 from my_simulations.geometry import IDENTITY
+from my_simulations.messages import MessageFieldError
 from my_simulations.plugins.context import PluginError
 from my_simulations.plugins.graph import MissingTypeError, ServiceTakenError
 from my_simulations.plugins.local_graph import LocalGraph, resolve_name
@@ -44,6 +45,12 @@ def test_messages_are_copied_to_each_listener(graph):
     assert not topic.wanted and len(changes) == 4
     topic.close()
     assert graph.topics() == {}
+
+
+def test_a_plugin_publishes_no_dictionary(graph):
+    topic = graph.publish("speed", "std_msgs/Float64", 1, False, nothing)
+    with pytest.raises(MessageFieldError, match="make a std_msgs/Float64 with context.message"):
+        topic.send({"data": 1.0})
 
 
 def test_a_latched_message_reaches_those_who_listen_later(graph):
