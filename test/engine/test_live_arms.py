@@ -108,6 +108,19 @@ def test_a_drive_and_its_release(world, arm):
     assert arm.rates["turn"] > 0.75
 
 
+def test_applied_efforts_are_read_and_end(world, arm):
+    assert not arm.applied_efforts.array.any()
+    arm.apply_efforts({"turn": 2.0}, duration=0.1)
+    arm.apply_efforts({"turn": 0.5, "wrist": -1.0})
+    assert dict(arm.applied_efforts) == {"turn": 2.5, "lift": 0.0, "slide": 0.0, "wrist": -1.0}
+    world.step(round(0.1 / world.step_size))
+    assert (arm.applied_efforts["turn"], arm.applied_efforts["wrist"]) == (0.5, -1.0)
+    arm.clear_efforts(["turn"])
+    assert (arm.applied_efforts["turn"], arm.applied_efforts["wrist"]) == (0.0, -1.0)
+    arm.clear_efforts()
+    assert not arm.applied_efforts.array.any()
+
+
 def test_a_jacobian_is_the_derivative_of_the_pose(world, arm):
     arm.set_positions(POSE)
     point = np.array([0.05, 0.02, 0.1])

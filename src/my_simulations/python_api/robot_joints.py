@@ -51,6 +51,13 @@ class Robot:
         rows = [simulator.joints.row(self._scoped(name)) for name in names]
         return NamedRows(names, np.array(simulator.drives.efforts(rows), float))
 
+    @property
+    def applied_efforts(self) -> NamedRows:
+        """The sums of applied efforts that act in the next step, N m or N; see `apply_efforts`."""
+        simulator, names = self._running_simulator(), self.joints
+        return NamedRows(names, np.array([simulator.wrenches.effort_sum(self._scoped(name))
+                                          for name in names], float))
+
     def limits(self, joint: str) -> JointLimits:
         """The limits of an axis in the robot's file."""
         return limits_of(self._running_simulator(), self._scoped(joint))
@@ -101,11 +108,16 @@ class Robot:
 
         Args:
             efforts: N m or N.
-            duration: s of sim time; None for until the world is reset.
+            duration: s of sim time; None for until `clear_efforts` or a reset of the world.
         """
         for name, effort in self._scoped_numbers(efforts, "efforts").items():
             self._running_simulator().wrenches.apply_effort(
                 name, effort, duration_ns=nanoseconds_of(duration))
+
+    def clear_efforts(self, joints: Iterable[str] = ()) -> None:
+        """End the applied efforts on some joints, or on all."""
+        for name in tuple(joints) or self.joints:
+            self._running_simulator().wrenches.clear_efforts(self._scoped(name))
 
     def release(self, joints: Iterable[str] = ()) -> None:
         """Switch off what `move` and `drive` have set, for some joints or for all."""

@@ -102,6 +102,17 @@ class Wrenches:
                      if isinstance(force, TimedEffort) and force.row == row
                      and force.stop == FOREVER)
 
+    def effort_sum(self, joint: str) -> float:
+        """The sum of the efforts on an axis in the next step, N m or N, without controllers.
+
+        Raises CommandError like `apply_effort`.
+        """
+        with self._session.structure_lock:
+            row, now = self._session.axis_row(joint), self._session.ring.step
+            return sum(force.effort for force in self._forces.values()
+                       if isinstance(force, TimedEffort) and force.row == row
+                       and force.pid is None and force.start <= now < force.stop)
+
     def clear_wrenches(self, link: str) -> None:
         """Clear every wrench on a link, except those by a law. Raises UnknownEntityError."""
         with self._session.structure_lock:
