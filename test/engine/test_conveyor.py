@@ -8,6 +8,7 @@ from conftest import box
 from plugin_case import PluginCase, kept
 from wheeled_robots import plugin
 
+import my_simulations
 from my_simulations.description.model import Inertial, Joint, JointAxis, Link, Model
 from my_simulations.description.shapes import Box, Collision, Surface
 from my_simulations.description.world import World
@@ -65,3 +66,36 @@ def test_a_part_on_a_fast_belt_is_accelerated_by_friction(case):
     one.sim.clock.advance(500)
     assert one.sim.states.model_state("part")[1].linear[0] == pytest.approx(1.0, rel=0.01)
     assert one.graph.on("conveyor/state")[-1].power == 50.0
+
+
+BELT = """<sdf version="1.7"><world name="w">
+<physics type="ode"><max_step_size>0.001</max_step_size></physics>
+<model name="conveyor"><pose>0 0 0.9 0 0 0</pose><link name="belt"><inertial><mass>100</mass>
+<inertia><ixx>4</ixx><iyy>800</iyy><izz>800</izz></inertia></inertial>
+<collision name="c"><geometry><box><size>10 0.6 0.006</size></box></geometry></collision>
+</link><joint name="belt_joint" type="prismatic"><parent>world</parent><child>belt</child>
+<axis><xyz>1 0 0</xyz><limit><lower>0</lower><upper>1</upper></limit></axis></joint>
+<plugin name="belt" filename="libbelt.so"/></model>
+<model name="part"><pose>2 0 0.953 0 0 0</pose><link name="l"><inertial><mass>1</mass>
+<inertia><ixx>0.0017</ixx><iyy>0.0017</iyy><izz>0.0017</izz></inertia></inertial>
+<collision name="c"><geometry><box><size>0.1 0.1 0.1</size></box></geometry></collision></link>
+</model></world></sdf>"""
+
+
+def test_a_surface_of_a_plugin_carries_a_part_backwards(tmp_path, monkeypatch):
+    (tmp_path / "backwards.py").write_text(
+        "from my_simulations.plugins.base import Plugin\n"
+        "from my_simulations.plugins.moving_surface import MovingSurface\n"
+        "class Backwards(Plugin):\n"
+        "    def load(self):\n"
+        "        MovingSurface(self.context, 'belt_joint').set_velocity(-0.4)\n")
+    monkeypatch.syspath_prepend(str(tmp_path))
+    (tmp_path / "belt.world").write_text(BELT)
+    with my_simulations.open_world(tmp_path / "belt.world",
+                                   plugins={"libbelt.so": "backwards:Backwards"}) as world:
+        world.step(1000)
+        before = world.states().pose["part"][0]
+        world.step(5000)        # twice the way of the joint
+        assert not world.issues
+        assert world.states().pose["part"][0] == pytest.approx(before - 2.0, abs=0.01)
+        assert world.states().twist["part"][0] == pytest.approx(-0.4, rel=0.02)

@@ -7,6 +7,7 @@ import pytest
 
 from my_simulations.description.model import Joint, JointAxis
 from my_simulations.plugins.context import PluginError
+from my_simulations.plugins.moving_surface import MovingSurface
 from my_simulations.plugins.testing import FakeContext, Message
 from my_simulations.plugins.world.conveyor_belt import ConveyorBelt, power_of
 
@@ -47,6 +48,32 @@ def test_a_belt_never_reaches_its_limit():
         positions.append(context.joints["belt_joint"].position)
     assert 0.8 < max(positions) < 1.0
     assert context.joints["belt_joint"].set_count >= 3
+
+
+@pytest.mark.parametrize("lower, upper", [(0.0, 1.0), (-1.0, 1.0), (-2.0, -1.0)])
+@pytest.mark.parametrize("velocity", [2.0, -2.0])
+def test_a_surface_never_reaches_the_limits_in_either_direction(lower, upper, velocity):
+    context = FakeContext("<plugin/>", joints=["belt"])
+    joint = context.joints["belt"]
+    joint.spec = Joint("belt", "prismatic", "world", "belt",
+                       axis=JointAxis(lower=lower, upper=upper))
+    joint.position = 0.5 * (lower + upper)
+    MovingSurface(context, "belt").set_velocity(velocity)
+    for _ in range(300):
+        context.advance(0.01)
+        assert lower <= joint.position <= upper
+    assert joint.set_count >= 3 and joint.motor[0] == velocity
+
+
+def test_a_surface_that_stops_stays():
+    context = FakeContext("<plugin/>", joints=["belt"])
+    surface = MovingSurface(context, "belt")
+    surface.set_velocity(1.0)
+    context.advance(0.1)
+    surface.set_velocity(0.0)
+    before = context.joints["belt"].position
+    context.advance(1.0)
+    assert context.joints["belt"].position == before > 0.0
 
 
 def test_a_power_beyond_its_range_is_refused():

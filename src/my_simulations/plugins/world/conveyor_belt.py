@@ -1,26 +1,23 @@
 """libROSConveyorBeltPlugin.so: a belt that carries bodies.
 
 Parameters, defaults, service and topic are those of the plugin of the ARIAC competition and its
-copies. The belt is a link on a prismatic joint; the joint moves, and jumps back before its upper
-limit, which bodies on a long belt do not notice. Where it differs: the belt is always enabled, for
-`<enable_topic>` is one of Gazebo's own transport; nothing is told to a plugin that populates it.
+copies. It differs in this: the belt is always enabled, because `<enable_topic>` is one of Gazebo's
+own transport, and a plugin that populates the belt is not notified.
 """
 from __future__ import annotations
 
-from typing import Any, Optional
+from typing import Any
 
-from ...description.model import INFINITE
 from ..base import Plugin
-from ..context import CallHandle, PluginError
+from ..context import PluginError
+from ..moving_surface import MovingSurface
 from ..parameters import namespace_or
 
 PACKAGES = ("osrf_gear", "nist_gear", "gazebo_conveyor", "conveyor_gazebo")
 """Packages with the messages of the plugin, which each copy of it has renamed."""
 
 _FASTEST = 0.2        # m/s at full power
-_EFFORT = 1e6         # N: the belt keeps its velocity, whatever lies on it
 _STATE_HZ = 100.0
-_CHECKS = 20.0        # between two jumps
 
 
 class ConveyorBelt(Plugin):
@@ -29,12 +26,9 @@ class ConveyorBelt(Plugin):
     def load(self) -> None:
         context, p = self.context, self.context.parameters
         context.use_namespace(p.text("robot_namespace") or namespace_or(p, ""))
-        self._joint = context.joint((p.text("joint") or "belt_joint").rpartition("::")[2])
+        self._surface = MovingSurface(
+            context, (p.text("joint") or "belt_joint").rpartition("::")[2])
         self._fastest = p.number("max_velocity", p.number("max_belt_linear_vel", _FASTEST))
-        axis = self._joint.spec.axis
-        self._lower, self._upper = (0.0, INFINITE) if axis is None else (
-            max(0.0, axis.lower), axis.upper)
-        self._timer: Optional[CallHandle] = None
         self._initial_power = self._checked(p.number("power", 0.0))
         self._offer(p.text("control_topic") or "conveyor/control",
                     p.text("state_topic") or "conveyor/state")
@@ -72,21 +66,8 @@ class ConveyorBelt(Plugin):
             self.context.warn(f"the power of a belt is 0 to 100, {power} was asked for")
 
     def _set(self, power: float) -> None:
-        self._power, self._velocity = power, self._fastest * power / 100.0
-        self._joint.drive(self._velocity, _EFFORT)
-        if self._timer is not None:
-            self._timer.end()
-            self._timer = None
-        span = self._upper - self._lower
-        if self._velocity > 0.0 and 0.0 < span and self._upper < INFINITE:
-            self._timer = self.context.every(_CHECKS * self._velocity / span, self._jump_back)
-
-    def _jump_back(self) -> None:
-        """Go back to the beginning before the limit stops the belt."""
-        ahead = 2.0 * (self._upper - self._lower) / _CHECKS
-        if self._joint.position > self._upper - ahead:
-            self.context.set_joint_positions({self._joint.name: self._lower})
-            self._joint.drive(self._velocity, _EFFORT)
+        self._power = power
+        self._surface.set_velocity(self._fastest * power / 100.0)
 
     def _publish(self) -> None:
         message = self.context.message(self._kind)
