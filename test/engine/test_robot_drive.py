@@ -19,8 +19,8 @@ from my_simulations.plugins.host import PluginHost
 from my_simulations.plugins.registry import PluginRegistry
 from my_simulations.plugins.testing import Message
 from my_simulations.resources.resolver import Resolver
+from my_simulations.simulator.effort_operations import DriveJoint
 from my_simulations.simulator.joint_gains import default_gains
-from my_simulations.simulator.operations import DriveJoint
 from my_simulations.simulator.simulator import Simulator
 
 ROBOT = pathlib.Path(__file__).resolve().parents[2] / "urdf" / "robo.urdf"

@@ -58,8 +58,10 @@ test('duplicating and arrays are one step, and what has come is selected', async
   await actions.array([3, 2, 1], [1, 2, 0]);
   const [, {op}] = connection.requests.at(-1);
   const [x, y] = store.worldPose('a');
-  near(op.ops.map(({pose}) => pose[0] - x), [1, 2, 0, 1, 2]);
-  near(op.ops.map(({pose}) => pose[1] - y), [0, 0, 2, 2, 2]);
+  const [{kind, poses}, ...others] = op.ops;
+  assert.deepEqual([kind, others], ['paste', []]);
+  near(poses.map((pose) => pose[0] - x), [1, 2, 0, 1, 2]);
+  near(poses.map((pose) => pose[1] - y), [0, 0, 2, 2, 2]);
   assert.throws(() => actions.array([100, 100, 1], [1, 1, 1]), RangeError);
 });
 

@@ -56,9 +56,8 @@ export function arrangeActions({store, ask, edit, dialog, note, view}: ActionPar
     const outcome = await ask('copy', {names});
     if (!outcome.ok) return outcome;
     const {text} = outcome.value;
-    const ops: Operation[] = offsets.map((offset) => ({kind: 'paste', text,
-      pose: [...add(position(from), offset), ...orientation(from)] as Pose7}));
-    return addCopies(ops, label);
+    const poses = offsets.map((offset) => [...add(position(from), offset), ...orientation(from)] as Pose7);
+    return addCopies([{kind: 'paste', text, poses}], label);
   }
 
   const arrange = {

@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 from copy import copy
+from dataclasses import dataclass, field
 from dataclasses import replace as replaced
 from typing import Dict, List, Optional, Sequence
 
@@ -35,6 +36,17 @@ from .order_slot import OrderSlot
 from .registry import NameTakenError
 from .session import Session, check_name
 from .wrenches import Wrenches
+
+
+@dataclass(frozen=True)
+class NewModel:
+    """A model for `Models.spawn_all`; the fields are the arguments of `Models.spawn`."""
+
+    model: Model
+    pose: Optional[Pose] = None
+    meshes: MeshTable = field(default_factory=dict)
+    state: Optional[ModelState] = None
+    deleted: Optional[DeletedModel] = None
 
 
 class Models(ConnectedModels):
@@ -121,28 +133,81 @@ class Models(ConnectedModels):
                     self._set_joints(self._links.between.without(model.name))
                     self._forget(old)
 
+    def spawn_all(self, models: Sequence[NewModel]) -> None:
+        """Add models by one command; returns when a snapshot contains all of them.
+
+        Each command costs a snapshot of the whole world. Joints to other models are not restored.
+        Raises CommandError as `spawn`; then none is added.
+        """
+        session = self._session
+        entities: List[Entity] = []
+        commands: List[Command] = []
+        with session.structure_lock:
+            session.await_posted()
+            try:
+                for one in models:
+                    entity = self._new_entity(one, [other.model.name for other in entities])
+                    entities.append(entity)
+                    commands += [load_command(entity, one.state), *initial_commands(
+                        entity, entity.start if one.state is None else None)]
+                session.call(Batch(tuple(commands)))
+            except CommandError:
+                for entity in entities:
+                    self._forget(entity)
+                raise
+            with session.registry_lock:
+                session.registry.add_all(entities, [
+                    None if one.deleted is None else one.deleted.slot for one in models])
+                for entity in entities:
+                    self._saved_starts.pop(entity.model.name, None)
+
+    def _new_entity(self, new: NewModel, others: Sequence[str]) -> Entity:
+        """The entity of a model that is added after `others`. Raises CommandError."""
+        check_name(new.model.name, "model")
+        model, deleted, session = flattened(new.model), new.deleted, self._session
+        if has_plugins(model):
+            session.before_plugins()
+        parts = self._convex_meshes.of(model, new.meshes)
+        with session.registry_lock:
+            self._replaceable(model.name)
+            if model.name in others:
+                raise NameTakenError(f"a model named '{model.name}' already exists")
+            entity = session.new_entity(
+                model, self._world_pose(model, new.pose, ""), parts,
+                self._links.between.slides(model.name)
+                or (deleted is not None and deleted.articulated))
+        entity.launched = deleted is not None and deleted.launched
+        entity.start = deleted.start if deleted else self._saved_starts.get(model.name)
+        return entity
+
     def delete(self, name: str) -> DeletedModel:
         """Delete a model; returns when it is gone, with the data that `spawn` restores it from.
 
         Raises UnknownEntityError.
         """
+        return self.delete_all([name])[0]
+
+    def delete_all(self, names: Sequence[str]) -> List[DeletedModel]:
+        """Delete models by one command, as `delete`. The names are different."""
         session = self._session
         with session.structure_lock:
             with session.registry_lock:
-                entity = session.registry.model(name)
-            session.call(RemoveModel(entity.model_id))
+                entities = [session.registry.model(name) for name in names]
+            commands = tuple(RemoveModel(entity.model_id) for entity in entities)
+            session.call(Batch(commands) if len(commands) > 1 else commands[0])
             with session.registry_lock:
-                deleted = DeletedModel(
-                    OrderSlot.of(session.registry.names(), name),
-                    self._links.lasting_joints.of(name),
-                    entity.launched,
-                    entity.start,
-                    entity.articulated,
-                )
-                session.registry.remove(name)
-                self._links = self._links.without(name)
-                self._forget(entity)
-                return deleted
+                return list(map(self._deleted, entities))
+
+    def _deleted(self, entity: Entity) -> DeletedModel:
+        """Remove an entity, which the engine has no more, from the registry."""
+        registry, name = self._session.registry, entity.model.name
+        deleted = DeletedModel(OrderSlot.of(registry.names(), name),
+                               self._links.lasting_joints.of(name),
+                               entity.launched, entity.start, entity.articulated)
+        registry.remove(name)
+        self._links = self._links.without(name)
+        self._forget(entity)
+        return deleted
 
     def _replaceable(self, name: str, may_replace: bool = False) -> Optional[Entity]:
         registry = self._session.registry
@@ -313,37 +378,12 @@ class Models(ConnectedModels):
             self._session.log(error("model-refused", left_out, file=self._session.world.file))
 
     def _load_together(self, group: Sequence[Model], meshes: Dict[str, MeshTable]) -> bool:
-        """Load models by one command; returns False, and loads none, if one of them is refused.
-
-        Each command costs a snapshot of the whole world.
-        """
-        session = self._session
-        entities: List[Entity] = []
-        with session.structure_lock:
-            try:
-                for model in map(flattened, group):
-                    check_name(model.name, "model")
-                    if has_plugins(model):
-                        session.before_plugins()
-                    parts = self._convex_meshes.of(model, meshes.get(model.name) or {})
-                    with session.registry_lock:
-                        self._replaceable(model.name)
-                        entity = session.new_entity(model, self._world_pose(model, None, ""),
-                                                    parts, self._links.between.slides(model.name))
-                    entity.start = self._saved_starts.get(model.name)
-                    entities.append(entity)
-                session.call(Batch(tuple(
-                    command for entity in entities
-                    for command in (load_command(entity),
-                                    *initial_commands(entity, entity.start)))))
-            except CommandError:
-                for entity in entities:
-                    self._forget(entity)
-                return False
-            with session.registry_lock:
-                for entity in entities:
-                    session.registry.add(entity)
-                    self._saved_starts.pop(entity.model.name, None)
+        """Load models by one command; returns False, and loads none, if one of them is refused."""
+        try:
+            self.spawn_all([NewModel(model, meshes=meshes.get(model.name) or {})
+                            for model in group])
+        except CommandError:
+            return False
         return True
 
     def divide_meshes(self, world: World, meshes: Dict[str, MeshTable],

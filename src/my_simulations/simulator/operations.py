@@ -6,24 +6,40 @@ are kept.
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
-from typing import Any, Callable, Dict, List, Optional, Protocol, Tuple, Union
+from itertools import groupby, islice
+from typing import (
+    Any,
+    Callable,
+    Dict,
+    Iterable,
+    Iterator,
+    List,
+    Optional,
+    Protocol,
+    Sequence,
+    Tuple,
+    Union,
+)
 
 from ..description.light import Light
 from ..description.model import Joint, Model
 from ..description.model_group import extra_with_group, group_of, with_group
 from ..description.plugin import PluginSpec
-from ..description.scoped_names import split_scoped
 from ..description.shapes import MeshTable
 from ..description.world import Physics
 from ..engine.commands import ModelState
 from ..errors import CommandError
-from ..geometry import STILL, ZERO3, Pose, Vec3, rotate, subtract
+from ..geometry import STILL, Pose, Vec3
 from .inter_model_joints import DeletedModel
+from .load_groups import small_groups
+from .models import NewModel
 from .order_slot import OrderSlot
 from .scene import SceneSettings
 from .simulator import Simulator
 from .world_state import WorldState
-from .wrenches import Effort
+
+_MOST_REMOVED = 100
+"""Models that one command deletes: the engine takes much less than a second for them."""
 
 
 class Operation(Protocol):
@@ -45,7 +61,7 @@ class Group:
     def apply(self, world: Simulator) -> Operation:
         """Apply the parts in order; the inverse undoes them in reverse order."""
         done: List[Operation] = []
-        for part in self.parts:
+        for part in _joined(self.parts):
             try:
                 done.append(part.apply(world))
             except CommandError:
@@ -87,14 +103,82 @@ class RemoveModel:
 
     def apply(self, world: Simulator) -> Operation:
         """Delete the model; the inverse restores it with the states of its links and joints."""
-        world.models.get(self.name)  # raises UnknownEntityError
-        entities, snapshot = world.states.latest()
-        entity = next(one for one in entities if one.model.name == self.name)
+        return _removed(world, [self.name])
+
+
+def _removed(world: Simulator, names: Sequence[str]) -> Operation:
+    """Delete models, whose names are different, by one command; returns the inverse."""
+    for name in names:
+        world.models.get(name)  # raises UnknownEntityError
+    entities, snapshot = world.states.latest()
+    by_name = {entity.model.name: entity for entity in entities}
+    before = [(by_name[name], by_name[name].pose) for name in names]
+    back: List[Operation] = []
+    for (entity, pose), deleted in reversed([*zip(before, world.models.delete_all(names))]):
         state = entity.saved(snapshot) if entity.link_names else None
-        pose = entity.pose
-        back = AddModel(entity.model, entity.initial_pose, entity.meshes, state,
-                        world.models.delete(self.name))
-        return back if state is not None else Group((back, SetPoses({self.name: pose})))
+        back.append(AddModel(entity.model, entity.initial_pose, entity.meshes, state, deleted))
+        if state is None:
+            back.append(SetPoses({entity.model.name: pose}))
+    return back[0] if len(back) == 1 else Group(tuple(back))
+
+
+@dataclass(frozen=True)
+class _AddModels:
+    """Spawn several models by one command; none of them has joints to other models."""
+
+    parts: Tuple[AddModel, ...]
+
+    def apply(self, world: Simulator) -> Operation:
+        world.models.spawn_all([NewModel(one.model, one.pose, one.meshes, one.state, one.deleted)
+                                for one in self.parts])
+        return Group(tuple(RemoveModel(one.model.name) for one in reversed(self.parts)))
+
+
+@dataclass(frozen=True)
+class _RemoveModels:
+    """Delete several models, whose names are different, by one command."""
+
+    names: Tuple[str, ...]
+
+    def apply(self, world: Simulator) -> Operation:
+        return _removed(world, self.names)
+
+
+def _joined(parts: Iterable[Operation]) -> Iterator[Operation]:
+    """The parts in their order; neighbours that add or delete models are joined."""
+    for kind, run in groupby(_without_groups(parts), _joined_as):
+        same = list(run)
+        if kind == "add":
+            added = iter([one for one in same if isinstance(one, AddModel)])
+            for group in small_groups([one.model for one in same if isinstance(one, AddModel)]):
+                few = tuple(islice(added, len(group)))
+                yield few[0] if len(few) == 1 else _AddModels(few)
+        elif kind == "remove":
+            names = [one.name for one in same if isinstance(one, RemoveModel)]
+            if len(set(names)) < len(names):  # the second of them is unknown by then
+                yield from same
+                continue
+            for at in range(0, len(names), _MOST_REMOVED):
+                yield _RemoveModels(tuple(names[at:at + _MOST_REMOVED]))
+        else:
+            yield from same
+
+
+def _without_groups(parts: Iterable[Operation]) -> Iterator[Operation]:
+    for part in parts:
+        if isinstance(part, Group):
+            yield from _without_groups(part.parts)
+        else:
+            yield part
+
+
+def _joined_as(part: Operation) -> str:
+    """Neighbours of the same kind are joined; "" for an operation that is applied by itself."""
+    if isinstance(part, RemoveModel):
+        return "remove"
+    if not isinstance(part, AddModel) or (part.deleted and part.deleted.joints.joints):
+        return ""
+    return "add"
 
 
 @dataclass(frozen=True)
@@ -331,73 +415,3 @@ class Reset:
             "world": world.resets.reset_simulation}
         resets[self.what]()
         return back
-
-
-@dataclass(frozen=True)
-class ApplyWrench:
-    """Apply a wrench to a link for a number of steps.
-
-    Attributes:
-        link: scoped link name.
-        force: N, in world axes, or in link axes with `in_link_axes`.
-        torque: N m, likewise.
-        point: point of application in the link frame, m; None for the centre of mass.
-        in_link_axes: the wrench rotates with the link.
-        steps: duration in steps.
-    """
-
-    link: str
-    force: Vec3
-    torque: Vec3
-    point: Optional[Vec3]
-    in_link_axes: bool
-    steps: int
-
-    def apply(self, world: Simulator) -> Operation:
-        """Apply the wrench; the inverse restores pose and velocity of the model."""
-        name, plain = split_scoped(self.link, world.models.has)
-        model = world.models.get(name)
-        com = next((link.inertial.pose.position for link in model.links if link.name == plain),
-                   None)
-        pose, _ = world.states.link_state(self.link)
-        back = world.states.capture()
-        if com is None:
-            raise CommandError(f"unknown link '{self.link}'")
-        lever = ZERO3 if self.point is None else subtract(self.point, com)
-        duration = round(self.steps * world.physics.settings.max_step_size * 1e9)
-        if self.in_link_axes:
-            at = com if self.point is None else self.point
-            world.wrenches.apply_wrench(self.link, self.force, self.torque, frame=self.link,
-                                        point=at, duration_ns=duration)
-        else:
-            world.wrenches.apply_wrench(self.link, self.force, self.torque, duration_ns=duration,
-                                        point=rotate(pose.orientation, lever))
-        return _RestoreModel(WorldState(back.step, back.sim_ns, {name: back.models[name]}), self)
-
-
-@dataclass(frozen=True)
-class _RestoreModel:
-    """Inverse of `ApplyWrench`: restores states, not the clock; its inverse is the wrench."""
-
-    moment: WorldState
-    wrench: ApplyWrench
-
-    def apply(self, world: Simulator) -> Operation:
-        world.states.restore(self.moment, clock=False)
-        return self.wrench
-
-
-@dataclass(frozen=True)
-class DriveJoint:
-    """Replace the efforts and PID controllers of a joint axis; an empty list removes them."""
-
-    joint: str
-    efforts: Tuple[Effort, ...] = ()
-
-    def apply(self, world: Simulator) -> Operation:
-        """Replace the efforts and PID controllers of the axis."""
-        before = world.wrenches.efforts_on(self.joint)
-        world.wrenches.clear_efforts(self.joint)
-        for effort in self.efforts:
-            world.wrenches.apply_effort(self.joint, effort)
-        return DriveJoint(self.joint, before)

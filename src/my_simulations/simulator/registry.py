@@ -112,12 +112,25 @@ class Registry:
 
     def add(self, entity: Entity, slot: Optional[OrderSlot] = None) -> None:
         """Add a model at a slot, else last; replaces a model of the same name."""
-        if entity.model.name in self._entities:
-            self.remove(entity.model.name)
-        self._entities[entity.model.name] = entity
-        self._index_parts(entity)
-        if slot is not None:
-            self._insert(entity, slot)
+        self.add_all([entity], [slot])
+
+    def add_all(self, entities: Sequence[Entity], slots: Sequence[Optional[OrderSlot]]) -> None:
+        """Add models one after the other, as `add`."""
+        names: Optional[List[str]] = None
+        for entity, slot in zip(entities, slots):
+            name = entity.model.name
+            if name in self._entities:
+                self.remove(name)
+                names = names and [one for one in names if one != name]
+            if slot is not None and names is None:
+                names = list(self._entities)
+            if names is not None:
+                names.insert(len(names) if slot is None else slot.among(names), name)
+            self._entities[name] = entity
+            self._index_parts(entity)
+        if names is not None:
+            self._entities = {one: self._entities[one] for one in names}
+            self._sort_links(entities)
         self.revision += 1
 
     def swap(self, old: Entity, new: Entity) -> None:
@@ -128,7 +141,7 @@ class Registry:
                           for entity in self._entities.values()}
         self._forget_parts(old)
         self._index_parts(new)
-        self._sort_links(new)
+        self._sort_links([new])
         self.revision += 1
 
     def _index_parts(self, entity: Entity) -> None:
@@ -144,17 +157,10 @@ class Registry:
                 del self._plain_links[link]
         self._with_plugins.pop(entity.model_id, None)
 
-    def _insert(self, entity: Entity, slot: OrderSlot) -> None:
-        name = entity.model.name
-        names = [one for one in self._entities if one != name]
-        names.insert(slot.among(names), name)
-        self._entities = {one: self._entities[one] for one in names}
-        self._sort_links(entity)
-
-    def _sort_links(self, moved: Entity) -> None:
+    def _sort_links(self, moved: Sequence[Entity]) -> None:
         """An unscoped link name refers to the first model in the order."""
         places = {name: place for place, name in enumerate(self._entities)}
-        for link in moved.link_names:
+        for link in {link for entity in moved for link in entity.link_names}:
             self._plain_links[link] = dict(sorted(
                 self._plain_links[link].items(), key=lambda pair: places[pair[1][0].model.name]))
 

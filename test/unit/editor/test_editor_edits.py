@@ -347,6 +347,27 @@ def test_what_is_copied_can_be_pasted_together_with_its_places(case):
     made.browse(paste)
 
 
+def test_copies_at_several_poses_are_one_step_with_names_and_groups_of_their_own(case):
+    made = case(box("a", (1.0, 0.0, 0.5)), box("b", (3.0, 0.0, 0.5)))
+
+    async def paste(browser):
+        await browser.edit("set_group", names=["a", "b"], group="pair")
+        text = (await browser.ask("copy", names=["a", "b"]))["text"]
+        done = await browser.edit("paste", text=text, poses=[
+            [0, y, 0.5, 0, 0, 0, 1] for y in (5, 9)])
+        assert done["names"] == ["a_clone", "b_clone", "a_clone_0", "b_clone_0"]
+        places = [made.sim.states.model_state(name)[0].position[:2] for name in done["names"]]
+        assert places == [pytest.approx(place) for place in ((-2, 5), (0, 5), (-2, 9), (0, 9))]
+        groups = [group_of(made.sim.models.get(name)) for name in done["names"]]
+        assert groups[0] == groups[1] != groups[2] == groups[3] and "pair" not in groups
+        with pytest.raises(Refused, match="at most 5000"):
+            await browser.edit("paste", text=text, poses=[[0, 0, 1, 0, 0, 0, 1]] * 2501)
+        await browser.ask("undo")
+        assert made.sim.models.names() == ["a", "b"]
+
+    made.browse(paste)
+
+
 def test_the_models_of_a_file_keep_their_names_and_its_faults_name_it(case):
     made = case(box("a"))
 

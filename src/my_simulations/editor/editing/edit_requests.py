@@ -9,19 +9,19 @@ from ...description.light import Light
 from ...description.model import Model
 from ...description.model_group import group_of
 from ...description.scoped_names import split_scoped
+from ...description.shapes import MeshTable
 from ...description.unflatten import unflattened
 from ...engine.timed_forces import JointPid
 from ...errors import CommandError, Issue
 from ...formats.sdf.writer.entities import write_world
 from ...geometry import Pose, compose, inverse, normalised, pose_is_finite
 from ...resources.resolver import Resolver
+from ...simulator.effort_operations import ApplyWrench, DriveJoint
 from ...simulator.history import History
 from ...simulator.joint_gains import default_gains
 from ...simulator.operations import (
     AddLight,
     AddModel,
-    ApplyWrench,
-    DriveJoint,
     EditLight,
     EditModel,
     Group,
@@ -52,7 +52,7 @@ from .inserts import (
     world_of,
 )
 from .model_building import ModelBuilding
-from .model_parts import free_name
+from .model_parts import FreeNames, free_name
 from .model_scaling import resized
 from .property_path import made
 from .property_target import is_of_light, property_change, split_target
@@ -148,14 +148,17 @@ class EditRequests:
         pose = pose_from(op["pose"]) if op.get("pose") else entity.pose
         return f"Insert {name}", self._addition(entity, name, pose), {"name": name}
 
-    def _addition(self, entity: Entity, name: str, pose: Pose) -> Operation:
+    def _addition(self, entity: Entity, name: str, pose: Pose,
+                  meshes: Optional[MeshTable] = None) -> Operation:
+        """Add an entity. `meshes`: those of a model that was checked before."""
         pose = _usable(pose)
         if isinstance(entity, Light):
             return AddLight(replace(entity, name=name, pose=pose))
         model = replace(entity, name=name, pose=pose)
-        meshes, issues = checked(model)
-        for issue in issues:
-            self._report(issue)
+        if meshes is None:
+            meshes, issues = checked(model)
+            for issue in issues:
+                self._report(issue)
         return AddModel(model, pose, meshes)
 
     def _insert_light(self, op: Dict[str, Any]) -> Planned:
@@ -193,23 +196,29 @@ class EditRequests:
             self._report(issue)
         if not entities:
             raise CommandError("the pasted text contains no models or lights")
-        taken = set(used_names(self._world))
-        target = _usable(pose_from(op["pose"])) if op.get("pose") else None
-        entities = regrouped(entities, self._taken_groups())
-        first = entities[-1].pose
+        targets: List[Optional[Pose]] = [
+            _usable(pose_from(pose)) for pose in op.get("poses") or [op.get("pose")]
+            if pose is not None]
+        if len(entities) * len(targets) > _MOST_IN_A_GROUP:
+            raise CommandError(f"one paste adds at most {_MOST_IN_A_GROUP} models and lights")
+        free, groups = FreeNames(used_names(self._world)), self._taken_groups()
+        meshes: Dict[int, MeshTable] = {}
         names, parts = [], []
-        for entity in entities:
-            # An entity from a file is the first of its name, not a copy.
-            own = entity.name if op.get("source") else f"{entity.name}_clone"
-            name = free_name(op.get("name") or own, taken)
-            taken.add(name)
-            pose = entity.pose
-            if target is not None:
+        for target in targets or [None]:
+            copies = regrouped(entities, groups)
+            groups.update(map(group_of, copies))
+            for number, entity in enumerate(copies):
+                # An entity from a file is the first of its name, not a copy.
+                own = entity.name if op.get("source") else f"{entity.name}_clone"
+                names.append(free.take(op.get("name") or own))
                 # All of them keep their places about the last one, which goes to the pose.
-                pose = target if entity is entities[-1] else compose(
-                    target, compose(inverse(first), pose))
-            names.append(name)
-            parts.append(self._addition(entity, name, pose))
+                pose = entity.pose if target is None else (
+                    target if entity is copies[-1] else
+                    compose(target, compose(inverse(copies[-1].pose), entity.pose)))
+                part = self._addition(entity, names[-1], pose, meshes.get(number))
+                if isinstance(part, AddModel):
+                    meshes[number] = part.meshes
+                parts.append(part)
         verb = "Insert" if op.get("source") else "Paste"
         return f"{verb} {listed(names)}", _as_one(parts), {"names": names, "name": names[-1]}
 

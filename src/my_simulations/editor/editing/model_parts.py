@@ -40,6 +40,23 @@ def free_name(wanted: str, taken: Collection[str]) -> str:
     return wanted if wanted not in taken else numbered(wanted, taken)
 
 
+class FreeNames:
+    """Gives out free names, each once, without a search from 0 for each of them."""
+
+    def __init__(self, taken: Collection[str]) -> None:
+        self._taken = set(taken)
+        self._next: Dict[str, int] = {}
+
+    def take(self, wanted: str) -> str:
+        """Return the same name as `free_name`, which is taken from now on."""
+        name, number = wanted, self._next.get(wanted, 0)
+        while name in self._taken:
+            name, number = f"{wanted}_{number}", number + 1
+        self._next[wanted] = number
+        self._taken.add(name)
+        return name
+
+
 def part_names(model: Model) -> List[str]:
     """Names that links, joints and nested models share."""
     return [*(link.name for link in model.links), *(joint.name for joint in model.joints),
