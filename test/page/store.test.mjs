@@ -81,6 +81,20 @@ test('a model that is changed keeps the pose that frames gave it', () => {
   near(store.worldPose('a'), [7, 0, 0.5, 0, 0, 0, 1], 1e-6);
 });
 
+test('an id that goes to another model of the same change keeps a pose', () => {
+  const store = opened();
+  const [first] = store.document.models;
+  const [{id}] = first.links;
+  const other = {...structuredClone(first), name: 'other', pose: [7, 8, 9, 0, 0, 0, 1]};
+  for (const models of [{other, [first.name]: null}, {[first.name]: first, other: null}]) {
+    store.receive({type: 'change', revision: 2, models});
+    const name = models.other ? 'other' : first.name;
+    assert.equal(store.poses.has(id), true);
+    assert.deepEqual(store.document.models.map((one) => one.name).filter((one) => one === 'other' || one === first.name), [name]);
+    assert.equal(store.model(name), models[name]);
+  }
+});
+
 test('an order that comes along is taken over', () => {
   const store = opened();
   store.receive({type: 'change', revision: 2, order: ['b', 'a', 'lamp']});

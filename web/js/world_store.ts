@@ -40,6 +40,8 @@ export class WorldStore extends Emitter<StoreEvents> {
 
   /** From a link's id to the document of its model. */
   #owners: Map<number, Model> = new Map();
+  /** The models of a list by name; each change makes another list. */
+  #models: {of: Model[], byName: Map<string, Model>} = {of: [], byName: new Map()};
   #connection: Connection|undefined;
 
   constructor(connection?: Connection) {
@@ -135,15 +137,15 @@ export class WorldStore extends Emitter<StoreEvents> {
     const before = new Set(gone.length ? this.document.models.map(({name}) => name) : []);
     const changed: EntityChange[] = [];
     for (const [name, value] of Object.entries(models ?? {})) {
-      replaceByName(this.document.models, name, value);
-      this.#reindex(name, value);
+      this.#reindex(this.model(name), value);
       changed.push({name, kind: 'model', value});
     }
     for (const [name, value] of Object.entries(lights ?? {})) {
       if (value === null) this.modelGone(name, null);
-      replaceByName(this.document.lights, name, value);
       changed.push({name, kind: 'light', value});
     }
+    this.document.models = replacedByName(this.document.models, models ?? {});
+    this.document.lights = replacedByName(this.document.lights, lights ?? {});
     Object.assign(this.document, world);
     if (world && Object.keys(world).length) changed.push({name: '', kind: 'world', value: world});
     if (order) this.#sort(order);
@@ -164,8 +166,9 @@ export class WorldStore extends Emitter<StoreEvents> {
     this.document?.lights.sort((a, b) => place(a) - place(b));
   }
 
-  #reindex(name: string, model: Model|null) {
-    const before = [...this.#owners].flatMap(([id, owner]) => (owner.name === name ? [id] : []));
+  #reindex(former: Model|undefined, model: Model|null) {
+    // Another model of the same change may have got the id of a link by now.
+    const before = (former?.links ?? []).flatMap(({id}) => (this.#owners.get(id) === former ? [id] : []));
     for (const id of before) this.#owners.delete(id);
     if (model) this.#index(model);
     for (const id of before) if (!this.#owners.has(id)) this.poses.delete(id);
@@ -201,7 +204,11 @@ export class WorldStore extends Emitter<StoreEvents> {
 
   /** The model's document, or undefined. */
   model(name: string) {
-    return this.document?.models.find((model) => model.name === name);
+    const {models = []} = this.document ?? {};
+    if (this.#models.of !== models) {
+      this.#models = {of: models, byName: new Map(models.map((model) => [model.name, model]))};
+    }
+    return this.#models.byName.get(name);
   }
 
   /** The light's document, or undefined. */
@@ -286,10 +293,14 @@ export function canonicalLink(model: Model): Link|undefined {
   return model.links.find((link) => link.name === model.canonical_link) ?? model.links[0];
 }
 
-function replaceByName<T extends {name: string}>(list: T[], name: string, value: T|null) {
-  const index = list.findIndex((one) => one.name === name);
-  if (value === null) {
-    if (index >= 0) list.splice(index, 1);
-  } else if (index >= 0) list[index] = value;
-  else list.push(value);
+/** Those of a list with changes by name: null where one has gone. New ones are last. */
+function replacedByName<T extends {name: string}>(list: T[], changes: Record<string, T|null>): T[] {
+  const left = new Map(Object.entries(changes));
+  if (!left.size) return list;
+  const kept = list.flatMap((one) => {
+    const change = left.get(one.name);
+    left.delete(one.name);
+    return change === undefined ? [one] : change ?? [];
+  });
+  return [...kept, ...[...left.values()].flatMap((one) => one ?? [])];
 }

@@ -38,8 +38,8 @@ from .scene import SceneSettings
 from .simulator import Simulator
 from .world_state import WorldState
 
-_MOST_REMOVED = 100
-"""Models that one command deletes: the engine takes much less than a second for them."""
+_MOST_REMOVED = 1000
+"""Models that one command deletes: the engine takes 0.2 s for 1000 boxes."""
 
 
 class Operation(Protocol):
