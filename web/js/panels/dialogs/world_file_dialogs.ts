@@ -47,19 +47,20 @@ class FolderList {
   list;
   element;
 
-  constructor(request: RequestFunction, {onFile, onOpen, onFault}: FolderHandlers) {
+  /** @param create  whether a folder can be created: a file of a new one can be saved, not opened */
+  constructor(request: RequestFunction, {onFile, onOpen, onFault}: FolderHandlers, create: boolean) {
     this.request = request;
     this.handlers = {onFile, onOpen, onFault};
     this.listing = null;
     this.path = h('output', {class: 'folder-path', 'aria-label': 'Folder'});
-    const create = h('button', {type: 'button', text: 'New Folder…', onclick: () => this.#create()});
+    const creates = create && h('button', {type: 'button', text: 'New Folder…', onclick: () => this.#create()});
     this.roots = h('div', {class: 'folder-roots', role: 'group', 'aria-label': 'Places'});
     this.list = h('div', {class: 'folder-list', role: 'listbox', 'aria-label': 'Files'});
     this.element = h(
       'div',
       {class: 'folders'},
       this.roots,
-      h('div', {class: 'folder-main'}, h('div', {class: 'folder-head'}, this.path, create), this.list),
+      h('div', {class: 'folder-main'}, h('div', {class: 'folder-head'}, this.path, creates), this.list),
     );
     this.#rove = roving(this.list, '[role=option]', {vertical: true, wrap: false});
   }
@@ -194,15 +195,16 @@ export function withEnding(name: string) {
  * @param options.nameless  said where no name was given
  * @param options.field  attributes of the field
  * @param options.run  as a button's, for the chosen path
+ * @param options.create  whether a folder can be created
  * @param options.more  below the list
  * @param options.onListing  gets the first folder's listing
  * @returns what `run` answered, undefined when cancelled
  */
 async function filesDialog(
   request: RequestFunction,
-  {title, button, nameless, field, run, more = [], onListing = () => {}}: {title: string,
+  {title, button, nameless, field, run, create, more = [], onListing = () => {}}: {title: string,
       button: string, nameless: string, field: Record<string, unknown>, run: (path: string) =>
-      Promise<string|false>, more?: Node[], onListing?: (listing: Requests['folders']['reply']) =>
+      Promise<string|false>, create: boolean, more?: Node[], onListing?: (listing: Requests['folders']['reply']) =>
       void},
 ): Promise<string|undefined> {
   const name = h('input', {
@@ -222,7 +224,7 @@ async function filesDialog(
       dialog.submit();
     },
     onFault: (fault: unknown) => dialog.say(fault ? faultText(fault) : ''),
-  });
+  }, create);
   const chosen = async () => {
     const wanted = name.value.trim();
     if (!wanted) {
@@ -261,6 +263,7 @@ export function saveAsDialog({store, request}: FileDialogPage): Promise<string|u
     button: 'Save',
     nameless: 'Enter a file name.',
     field: {value: file || 'untitled.world'},
+    create: true,
     more: [choices.element],
     onListing: (listing) => choices.show(listing),
     run: (path) => saveTo(request, {path: withEnding(path), ...choices.values()}),
@@ -275,6 +278,7 @@ export async function cloneDialog({store, request}: FileDialogPage) {
     button: 'Clone',
     nameless: 'Enter a file name.',
     field: {value: `${name || 'untitled'}_clone.world`},
+    create: true,
     more: [h('p', {class: 'soft', text: 'The world as it is now, with sim time, velocities and launched models. ' +
       'This world keeps its own file.'})],
     run: (chosen) => saveTo(request, {path: withEnding(chosen), copy: true}),
@@ -371,6 +375,7 @@ export async function openDialog({store, request}: FileDialogPage): Promise<stri
     button: 'Open',
     nameless: 'Select a file.',
     field: {placeholder: 'file name or path'},
+    create: false,
     async run(path) {
       await request('open', {path, discard: true});
       return path;
