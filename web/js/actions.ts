@@ -142,7 +142,7 @@ export function createActions({store, connection}: {store: Store,
       const last = items.at(-1);
       if (!last) return;
       store.setPlacing({...last, items, keepHeight: true,
-        op: (pose) => ({kind: 'paste', text, pose})});
+        op: (pose) => ({kind: 'paste', text, poses: [pose]})});
     },
 
     ...inserts,

@@ -419,8 +419,7 @@ export type RenameOperation = {kind: 'rename', name: string, to: string};
 export type SetOperation = {kind: 'set', target: string, path: string, value: unknown};
 
 export type PasteOperation = {
-  kind: 'paste', text: string, pose?: pose|null, poses?: pose[]|null, name?: string|null,
-  source?: string|null
+  kind: 'paste', text: string, poses?: pose[]|null, name?: string|null, source?: string|null
 };
 
 export type WrenchOperation = {

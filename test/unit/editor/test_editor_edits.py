@@ -334,7 +334,7 @@ def test_what_is_copied_can_be_pasted_together_with_its_places(case):
         text = (await browser.ask("copy", names=["a", "b"]))["text"]
         assert (await browser.edit("paste", text=text))["names"] == ["a_clone", "b_clone"]
         assert made.sim.states.model_state("a_clone")[0].position == (1.0, 0.0, 0.5)
-        names = (await browser.edit("paste", text=text, pose=[0, 7, 0.5, 0, 0, 0, 1]))["names"]
+        names = (await browser.edit("paste", text=text, poses=[[0, 7, 0.5, 0, 0, 0, 1]]))["names"]
         assert names == ["a_clone_0", "b_clone_0"]
         assert made.sim.states.model_state("b_clone_0")[0].position == pytest.approx((0, 7, 0.5))
         assert made.sim.states.model_state("a_clone_0")[0].position == pytest.approx((-2, 7, 0.5))
@@ -428,7 +428,7 @@ def test_a_model_with_nested_ones_is_copied_with_them(case):
 
     async def paste(browser):
         text = (await browser.ask("copy", names=["outer"]))["text"]
-        await browser.edit("paste", text=text, pose=[5, 0, 0.5, 0, 0, 0, 1])
+        await browser.edit("paste", text=text, poses=[[5, 0, 0.5, 0, 0, 0, 1]])
         links = made.sim.models.get("outer_clone").links
         assert [link.name for link in links] == ["link", "inner::link"]
         assert made.sim.states.link_state("outer_clone::inner::link")[0].position == (5.0, 0.0, 2.5)

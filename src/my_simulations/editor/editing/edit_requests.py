@@ -197,8 +197,7 @@ class EditRequests:
         if not entities:
             raise CommandError("the pasted text contains no models or lights")
         targets: List[Optional[Pose]] = [
-            _usable(pose_from(pose)) for pose in op.get("poses") or [op.get("pose")]
-            if pose is not None]
+            _usable(pose_from(pose)) for pose in op.get("poses") or ()]
         if len(entities) * len(targets) > _MOST_IN_A_GROUP:
             raise CommandError(f"one paste adds at most {_MOST_IN_A_GROUP} models and lights")
         free, groups = FreeNames(used_names(self._world)), self._taken_groups()
