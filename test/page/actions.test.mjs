@@ -181,5 +181,5 @@ test('keys are spelled as in the table', () => {
   assert.equal(hotkey({key: ' '}).action, 'togglePlay');
   assert.equal(hotkey({key: 's'}).action, 'scaleMode');
   assert.equal(hotkey({key: 's', ctrlKey: true}).action, 'save');
-  assert.equal(hotkey({key: 'q'}), undefined);
+  assert.equal(hotkey({key: 'j'}), undefined);
 });

@@ -11,6 +11,8 @@ export interface Hotkey {
    * describes a key that is held, or the mouse
    */
   action?: keyof Actions;
+  /** works only while something is being placed */
+  placing?: boolean;
 }
 
 /** Ctrl+N and Ctrl+T belong to the browser: New is Alt+N here, Topics Alt+T. */
@@ -50,7 +52,11 @@ export const HOTKEYS: readonly Hotkey[] = Object.freeze([
   {keys: 'Ctrl held', title: 'Snap to 1 m or 45 degrees', group: 'Tools'},
   {keys: 'Shift held', title: 'World frame; uniform scale', group: 'Tools'},
   {keys: 'Ctrl+click', title: 'Add to or remove from selection', group: 'Tools'},
-  {keys: 'Enter', title: 'Place what is being inserted where it is seen, or in the middle of the view', group: 'Tools', action: 'placeHere'},
+  {keys: 'Enter', title: 'Place what is being inserted where it is seen, or in the middle of the view', group: 'Tools', action: 'placeHere', placing: true},
+  {keys: 'Q', title: 'Turn what is being inserted left by 15 degrees', group: 'Tools', action: 'turnLeft', placing: true},
+  {keys: 'E', title: 'Turn what is being inserted right by 15 degrees', group: 'Tools', action: 'turnRight', placing: true},
+  {keys: 'Shift+Q', title: 'Turn what is being inserted left by 90 degrees', group: 'Tools', action: 'quarterLeft', placing: true},
+  {keys: 'Shift+E', title: 'Turn what is being inserted right by 90 degrees', group: 'Tools', action: 'quarterRight', placing: true},
   {keys: 'Space', title: 'Play or pause', group: 'Time', action: 'togglePlay'},
   {keys: 'Drag', title: 'Pan (FPS control: look around)', group: 'Camera'},
   {keys: 'Shift+drag, middle drag', title: 'Orbit around the point under the cursor',
@@ -84,6 +90,8 @@ export const HOTKEYS: readonly Hotkey[] = Object.freeze([
   {keys: 'F1', title: 'Hotkey chart', group: 'Help', action: 'hotkeys'},
 ]);
 
+/** A key that is held goes on with them. */
+const REPEATED: (keyof Actions)[] = ['undo', 'redo', 'turnLeft', 'turnRight'];
 const READ_ONLY_GROUPS = ['Camera', 'Window', 'Help'];
 const READ_ONLY_ACTIONS: (keyof Actions)[] = ['hide', 'showHidden', 'selectAll', 'find', 'escape', 'measureMode'];
 
@@ -139,11 +147,11 @@ export function mountKeys(target: Window, {store, actions}: {store: Store, actio
     const row = hotkey(event);
     // Walking has the keys W, A, S and D.
     if (row?.keys === 'S' && store.camera.controller === 'fps') return;
-    if (row?.keys === 'Enter' && !store.placing) return;
+    if (row?.placing && !store.placing) return;
     if (!row || event.defaultPrevented || belongsToControl(event)) return;
     if (store.readOnly && !isReading(row)) return event.preventDefault();
     event.preventDefault();
-    if (!event.repeat || row.action === 'undo' || row.action === 'redo') run(actions, row.action);
+    if (!event.repeat || row.action && REPEATED.includes(row.action)) run(actions, row.action);
   };
   target.addEventListener('keydown', pressed);
   return () => target.removeEventListener('keydown', pressed);

@@ -7,6 +7,10 @@ import type {LightType, ShapeName} from './new_entities.js';
 import type {Model, Operation, Requests} from './protocol.js';
 import type {Pose7, Vec3} from './pose.js';
 
+/** What a key turns the pending entity by, rad. */
+const STEP = Math.PI / 12;
+const QUARTER = Math.PI / 2;
+
 export function insertActions({store, ask, edit, dialog, view}: ActionParts) {
   const inserts = {
     insertShape(shape: ShapeName) {
@@ -49,6 +53,10 @@ export function insertActions({store, ask, edit, dialog, view}: ActionParts) {
     },
     /** Places the pending entity where it is seen, or in the middle of the view for use without a mouse. */
     placeHere: () => view()?.placeHere(),
+    turnLeft: () => view()?.turnPlacing(STEP),
+    turnRight: () => view()?.turnPlacing(-STEP),
+    quarterLeft: () => view()?.turnPlacing(QUARTER),
+    quarterRight: () => view()?.turnPlacing(-QUARTER),
     /**
      * Inserts the entity that follows the mouse.
      * @param pose  in the world

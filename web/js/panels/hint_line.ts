@@ -26,7 +26,8 @@ const BY_MODE: Record<Mode, Hints> = {
   scale: [['drag a handle', 'scale'], ['X Y Z', 'one axis'], ['Shift', 'all axes'], ['Ctrl', 'snap to 1 m'], ['Esc', 'end']],
   snap: [['click a face', 'that moves'], ['click a second face', 'where it goes'], ['Esc', 'end']],
   measure: [['click two points', 'distance'], ['click a third', 'angle'], ['Esc', 'end']],
-  insert: [['click', 'place'], ['Enter', 'place'], ['Ctrl', 'snap to 1 m'], ['Esc', 'cancel']],
+  insert: [['click', 'place'], ['Enter', 'place'], ['Q E', 'turn by 15°'], ['Shift+Q E', 'by 90°'], ['Ctrl', 'snap to 1 m'],
+    ['Esc', 'cancel']],
   connect: [['click a link', 'parent'], ['click another link', 'child'], ['Esc', 'cancel']],
 };
 

@@ -1,6 +1,8 @@
-/** The ghost of what is being added: it follows the mouse over the ground, a click puts it down. */
-import {rayPlane, WORLD_AXES} from '../drag_math.js';
+/** The ghost of what is being added: it follows the mouse over what is seen there, a click puts it down. */
+import {WORLD_AXES} from '../drag_math.js';
 import {magnetic} from '../drag_snap.js';
+import {axisAngle, multiply, orientation} from '../pose.js';
+import {Landing} from './landing.js';
 import {place} from './three_convert.js';
 import {lightIcon} from './light_views.js';
 import {free} from './markers.js';
@@ -17,23 +19,29 @@ const CLEAR = 0.01;
 /** Places that are tried beside a taken one, in widths. */
 const STEPS_ASIDE = [0, 1, -1, 2, -2, 3, -3, 4, -4];
 
+const NO_BOX = {min: [0, 0, 0], max: [0, 0, 0]};
+
 export class Placer {
   #store;
   #actions;
-  #picker;
+  #landing;
   #stage;
   #stock;
   #models;
+  /** How far it is turned about z, rad. */
+  #turn = 0;
+  /** Its box about its origin, along the world's axes, m. */
+  #box: {min: number[], max: number[]} = NO_BOX;
   #ghost: Group|null = null;
   /** Where the mouse was last. */
   #pointed: MousePoint|null = null;
   #dispose = () => {};
 
-  constructor({store, actions, picker, stage, stock, models}: ViewParts) {
+  constructor({store, actions, picker, batches, stage, stock, models}: ViewParts) {
+    this.#landing = new Landing({store, batches, picker});
     this.#models = models;
     this.#store = store;
     this.#actions = actions;
-    this.#picker = picker;
     this.#stage = stage;
     this.#stock = stock;
     store.listen('placing', () => this.#change());
@@ -56,9 +64,16 @@ export class Placer {
     this.#stage.shadowsChanged();
   }
 
-  /** The point of the ground under the mouse. */
-  groundAt({clientX, clientY}: MousePoint) {
-    return rayPlane(this.#picker.ray(clientX, clientY), [0, 0, 0], WORLD_AXES.z);
+  /** Turns it counterclockwise, seen from above. @param angle  rad */
+  turn(angle: number) {
+    this.#turn += angle;
+    this.#measure();
+    if (this.#pointed && this.#ghost?.visible) this.follow(this.#pointed);
+  }
+
+  /** Where something of 1 m lands under the mouse. */
+  placeAt(event: MousePoint) {
+    return this.#landing.under(event, {min: [-0.5, -0.5, 0], max: [0.5, 0.5, 1]})?.point ?? null;
   }
 
   /** Puts it down where the mouse is. */
@@ -69,7 +84,7 @@ export class Placer {
 
   /**
    * Puts it down where it is seen; without the mouse in the picture in the middle of the view, or below it
-   * where the middle shows no ground, beside the models that are there.
+   * where the middle shows no ground, beside the moving models that are there.
    */
   putHere() {
     if (this.#ghost?.visible && this.#pointed) {
@@ -78,7 +93,8 @@ export class Placer {
     }
     const {left, top, width, height} = this.#stage.canvas.getBoundingClientRect();
     for (const down of [0.5, 0.7, 0.9]) {
-      const pose = this.#pose({clientX: left + width / 2, clientY: top + height * down});
+      const pose = this.#pose({clientX: left + width / 2, clientY: top + height * down},
+        (model) => this.#store.model(model)?.static ?? false);
       if (pose) {
         this.#actions.place(this.#beside(pose));
         return;
@@ -107,21 +123,44 @@ export class Placer {
     return pose;
   }
 
-  /** Keeps its own height and turn (Gazebo behaviour). */
-  #pose({clientX, clientY, ctrlKey, metaKey}: MousePoint) {
+  /** Keeps its own height over what carries it (Gazebo behaviour: over the ground). */
+  #pose(event: MousePoint, accept?: (model: string) => boolean): Pose7|null {
     const {placing} = this.#store;
-    if (!placing) return null;
-    const ray = this.#picker.ray(clientX, clientY);
-    const hit = rayPlane(ray, [0, 0, 0], WORLD_AXES.z);
-    if (!hit) return null;
-    const [x, y] = ctrlKey || metaKey ? hit.map((part) => magnetic(part)) : hit;
-    return [x, y, ...placing.document.pose.slice(2)];
+    const place = placing && this.#landing.under(event, this.#box, accept);
+    if (!place) return null;
+    // Beside a wall, a whole metre may be inside of it.
+    const snaps = place.level && (event.ctrlKey || event.metaKey);
+    const [x, y] = snaps ? place.point.map((part) => magnetic(part)) : place.point;
+    const [, , ground] = place.point;
+    // What is copied may have stood on something itself.
+    const stands = placing.keepHeight && placing.kind === 'model' && Math.abs(ground) > CLEAR;
+    return [x, y, ground + (stands ? -this.#box.min[2] : placing.document.pose[2]), ...this.#orientation(placing.document.pose)];
+  }
+
+  #orientation(pose: Pose7) {
+    return multiply(axisAngle(WORLD_AXES.z, this.#turn), orientation(pose));
+  }
+
+  /** Finds the box of the ghost as it is turned. */
+  #measure() {
+    const {placing} = this.#store;
+    if (!this.#ghost || placing?.kind !== 'model') return;
+    const {position, quaternion} = this.#ghost;
+    const [at, turn] = [position.clone(), quaternion.clone()];
+    place(this.#ghost, [0, 0, 0, ...this.#orientation(placing.document.pose)]);
+    this.#ghost.updateMatrixWorld(true);
+    const box = new Box3().setFromObject(this.#ghost);
+    this.#box = box.isEmpty() ? NO_BOX : {min: box.min.toArray(), max: box.max.toArray()};
+    position.copy(at);
+    quaternion.copy(turn);
   }
 
   #change() {
     if (this.#ghost) this.#stage.scene.remove(this.#ghost);
     this.#dispose();
     this.#ghost = null;
+    this.#turn = 0;
+    this.#box = NO_BOX;
     this.#dispose = () => {};
     const {placing} = this.#store;
     if (placing) {
@@ -132,6 +171,7 @@ export class Placer {
       ghost.visible = false;
       this.#stage.scene.add(ghost);
       this.#ghost = ghost;
+      this.#measure();
     } else if (document.activeElement === document.body) {
       // The arrow keys drive a robot that was just placed.
       this.#stage.canvas.parentElement?.focus({preventScroll: true});
@@ -148,7 +188,10 @@ export class Placer {
   #modelGhost(document: Model) {
     const {group, ready, dispose} = standaloneModel(document, this.#stock, {opacity: 0.75});
     this.#dispose = dispose;
-    ready.then(() => this.#stage.shadowsChanged());
+    ready.then(() => {
+      if (this.#ghost === group) this.#measure();
+      this.#stage.shadowsChanged();
+    });
     return group;
   }
 }

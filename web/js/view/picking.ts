@@ -39,8 +39,20 @@ export class Picker {
   /** The nearest of some items. */
   nearest(items: Iterable<Item>, clientX: number, clientY: number, accept: (owner: Owner) =>
       boolean = () => true): Hit|null {
+    this.#aim(clientX, clientY);
+    return this.#nearest(items, accept);
+  }
+
+  /** The nearest of some items along a ray, world, m. */
+  along(items: Iterable<Item>, {origin, direction}: Ray, accept: (owner: Owner) => boolean): Hit|null {
+    this.#caster.ray.origin.fromArray(origin);
+    this.#caster.ray.direction.fromArray(direction);
+    return this.#nearest(items, accept);
+  }
+
+  #nearest(items: Iterable<Item>, accept: (owner: Owner) => boolean) {
     let best: Hit|null = null;
-    for (const {item, distance} of this.#candidates(items, clientX, clientY, accept)) {
+    for (const {item, distance} of this.#candidates(items, accept)) {
       if (best && distance > best.distance) break;
       best = this.#hit(item, best) ?? best;
     }
@@ -49,15 +61,14 @@ export class Picker {
 
   /** All of some items, also those that others cover, nearest first. */
   all(items: Iterable<Item>, clientX: number, clientY: number, accept: (owner: Owner) => boolean) {
-    return this.#candidates(items, clientX, clientY, accept)
+    this.#aim(clientX, clientY);
+    return this.#candidates(items, accept)
       .flatMap(({item}) => this.#hit(item, null) ?? [])
       .sort((a, b) => a.distance - b.distance);
   }
 
   /** Items whose bounding spheres the ray enters, nearest first. */
-  #candidates(items: Iterable<Item>, clientX: number, clientY: number, accept: (owner: Owner) =>
-      boolean) {
-    this.#aim(clientX, clientY);
+  #candidates(items: Iterable<Item>, accept: (owner: Owner) => boolean) {
     const candidates: {item: Item, distance: number}[] = [];
     for (const item of items) {
       if (!accept(item.owner)) continue;

@@ -255,7 +255,7 @@ export class Pointer {
       // What was dropped must be taken hold of before the event is over.
       const items = [...event.dataTransfer?.items ?? []].flatMap((item) =>
         item.webkitGetAsEntry?.() ?? item.getAsFile() ?? []);
-      const place = this.#parts.placer.groundAt({clientX, clientY});
+      const place = this.#parts.placer.placeAt({clientX, clientY});
       if (items.length && place) this.#parts.actions.dropFiles(items, place);
       return;
     }

@@ -245,6 +245,11 @@ export class View {
     this.#placer.putHere();
   }
 
+  /** Turns the pending entity. @param angle  rad, counterclockwise from above */
+  turnPlacing(angle: number) {
+    this.#placer.turn(angle);
+  }
+
   flyTo(view: import('../camera_math.js').View) {
     this.#rig.fly(view);
   }

@@ -34,7 +34,7 @@ export function commandsOf(page: Page): Command[] {
   }
   for (const row of HOTKEYS) {
     const {keys, title, group, action} = row;
-    if (store.readOnly && !isReading(row)) continue;
+    if (store.readOnly && !isReading(row) || row.placing && !store.placing) continue;
     if (action && action !== 'commands' && !known.has(keysOf(action))) {
       found.push({title, group, keys, run: () => run(actions, action)});
     }

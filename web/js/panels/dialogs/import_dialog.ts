@@ -10,7 +10,7 @@ import type {Page} from '../panels.js';
 
 const WATER = 1000;
 
-/** @param place  on the ground */
+/** @param place  on what carries it */
 export async function importDialog(page: Page, entries: Dropped[], place: Vec3) {
   const files: DroppedFile[] = await filesOf(entries);
   const found = kindOf(files);
@@ -34,9 +34,11 @@ export async function importDialog(page: Page, entries: Dropped[], place: Vec3) 
   }
 }
 
-/** It keeps its own height and turn. */
-const at = ([x, y]: Vec3, entity: {pose: number[]}|null|undefined) => [x, y,
-    ...(entity?.pose ?? [0, 0, 0, 0, 0, 0, 1]).slice(2)];
+/** It keeps its own turn, and its height over what carries it. */
+function at([x, y, z]: Vec3, entity: {pose: number[]}|null|undefined) {
+  const [, , height, ...turn] = entity?.pose ?? [0, 0, 0, 0, 0, 0, 1];
+  return [x, y, z + height, ...turn];
+}
 
 async function insert({actions, store: {select}, store}: Page, op: Operation) {
   const outcome = await actions.edit(op);
