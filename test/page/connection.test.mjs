@@ -6,6 +6,7 @@ import {backOff, Connection, webSocketUrl} from '../../web/js/connection.js';
 /** A web socket whose other end is the test. */
 class Socket {
   static made = [];
+  static session = 's1';
   readyState = 0;
   bufferedAmount = 0;
   sent = [];
@@ -20,7 +21,7 @@ class Socket {
     this.sent.push(message);
     if (message.type === 'hello') {
       this.push({type: 'reply', id: message.id, ok: true,
-        value: {session: 's1', version: 1, app: 'test'}});
+        value: {session: Socket.session, version: 1, app: 'test'}});
     }
   }
 
@@ -41,6 +42,7 @@ class Socket {
 
 async function connected() {
   Socket.made = [];
+  Socket.session = 's1';
   const timers = [];
   const connection = new Connection('ws://here/ws',
     {WebSocket: Socket, setTimeout: (what, wait) => timers.push({what, wait})});
@@ -103,6 +105,22 @@ test('a lost line fails what waits, and is made again with the session', async (
   Socket.made[1].accept();
   await again;
   assert.equal(Socket.made[1].sent[0].session, 's1');
+});
+
+test('a line to another start of a simulator is told from one to the same', async () => {
+  const {connection, socket, timers} = await connected();
+  let replaced = 0;
+  connection.listen('replaced', () => { replaced += 1; });
+  for (const [at, session] of ['s1', 's2', 's2'].entries()) {
+    Socket.session = session;
+    (Socket.made.at(-1) ?? socket).drop();
+    timers[at].what();
+    const again = once(connection, 'open');
+    Socket.made.at(-1).accept();
+    await again;
+    assert.equal(replaced, at === 0 ? 0 : 1);
+  }
+  assert.equal(Socket.made.at(-1).sent[0].session, 's2');
 });
 
 test('a line that was closed on purpose stays closed', async () => {

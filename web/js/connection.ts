@@ -6,7 +6,10 @@ import type {Notices, Push, Requests} from './protocol.js';
 
 /** What is told to the user; the page's own issues name no file. */
 export type Issue = Partial<import('./protocol.js').Issue> &
-    Pick<import('./protocol.js').Issue, 'severity'|'code'|'message'>;
+    Pick<import('./protocol.js').Issue, 'severity'|'code'|'message'> & {
+      /** Unix time in s of an issue that the simulator keeps */
+      time?: number|null,
+    };
 
 export interface ConnectionEvents {
   /** the greeting was answered */
@@ -14,8 +17,10 @@ export interface ConnectionEvents {
   close: undefined;
   /** the simulator that answers does not know this page's token */
   refused: undefined;
+  /** the line was made again, to another start of a simulator */
+  replaced: undefined;
   /** what the simulator pushed */
-  message: Push|{type: 'issue', issue: Issue};
+  message: Push|{type: 'issue', issue: Issue, time?: number|null};
   frame: ArrayBuffer;
   /** a request was sent */
   asked: AskedRequest;
@@ -179,11 +184,13 @@ export class Connection extends Emitter<ConnectionEvents> {
     try {
       const welcome = await this.request('hello', {version: PROTOCOL_VERSION, ...session,
         ...this.#identity()});
+      const replaced = this.#session !== null && this.#session !== welcome.session;
       this.#session = welcome.session;
       this.#attempt = 0;
       this.refused = false;
       this.connected = true;
       this.emit('open', welcome);
+      if (replaced) this.emit('replaced');
     } catch (error) {
       for (const issue of error instanceof RequestError ? error.issues : []) {
         // The page says all the time that there is no line.

@@ -507,7 +507,7 @@ export type LoadingPush = {
   type: 'loading', title: string, text: string, done: number, of: number
 };
 
-export type IssuePush = {type: 'issue', issue: Issue};
+export type IssuePush = {type: 'issue', issue: Issue, time?: number|null};
 
 export type LibraryPush = {type: 'library', locations: Location[]};
 

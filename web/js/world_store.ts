@@ -62,7 +62,7 @@ export class WorldStore extends Emitter<StoreEvents> {
   // ---- messages from the simulator
 
   /** Takes a pushed message. */
-  receive(message: Push|{type: 'issue', issue: Issue}) {
+  receive(message: Push|{type: 'issue', issue: Issue, time?: number|null}) {
     switch (message.type) {
       case 'world': this.#replaceWorld(message); break;
       case 'change': this.#change(message); break;
@@ -78,7 +78,7 @@ export class WorldStore extends Emitter<StoreEvents> {
         this.emit('history');
         break;
       }
-      case 'issue': this.addIssue(message.issue); break;
+      case 'issue': this.addIssue({...message.issue, ...(message.time ? {time: message.time} : {})}); break;
       case 'autosave': this.autosave = message; this.emit('autosave', message); break;
       case 'log': this.log = message; this.emit('log', message); break;
       case 'people': this.people = message.people; this.emit('people'); break;

@@ -53,6 +53,7 @@ class WorldRequests:
         self._edits = EditRequests(self._world, resolver, history, hub.protocol, report,
                             lambda names: self._drags.start_poses(self._acting, names))
         self._last_history: Dict[str, Any] = {}
+        self._start = secrets.token_hex(4) + "-"
         self.thread = ThreadPoolExecutor(1, "editor edits")
         self._disk = ThreadPoolExecutor(1, "editor folders")
 
@@ -124,7 +125,9 @@ class WorldRequests:
                 "version", f"the page uses protocol version {message['version']}, the server"
                 f" {version}", "reload the page")
         given = message.get("session") or ""
-        client.session = given or secrets.token_hex(8)
+        if not given.startswith(self._start):
+            given = ""  # of another simulator, which had this address before
+        client.session = given or self._start + secrets.token_hex(8)
         self._users.join(client.number, message.get("person") or client.session,
                           message.get("name") or "")
         await self._hub.add_client(client, new=not given)

@@ -189,10 +189,26 @@ def test_a_known_session_is_not_told_old_issues_again(case):
     async def see(first):
         made.server.show_issue(error("bad", "it is bad"))
         await first.until(lambda: first.last("issue"))
+        fresh = await Browser.open(first.session, made.url, hello=False)
+        known = (await fresh.ask("hello", version=1))["session"]
         again = await Browser.open(first.session, made.url, hello=False)
-        assert (await again.ask("hello", version=1, session="x"))["session"] == "x"
+        assert (await again.ask("hello", version=1, session=known))["session"] == known
         await again.until(lambda: again.last("history"))
         assert again.last("issue") is None
+
+    made.browse(see)
+
+
+def test_a_session_of_another_simulator_is_a_new_one_and_is_shown_all_issues(case):
+    made = case()
+
+    async def see(first):
+        made.server.show_issue(error("bad", "it is bad"))
+        await first.until(lambda: first.last("issue"))
+        other = await Browser.open(first.session, made.url, hello=False)
+        assert (await other.ask("hello", version=1, session="0a1b-2c3d"))["session"] != "0a1b-2c3d"
+        await other.until(lambda: other.last("issue"))
+        assert other.last("issue")["time"] == first.last("issue")["time"]
 
     made.browse(see)
 

@@ -3,7 +3,7 @@
  * with its file and line.
  */
 import {RequestError} from '../connection.js';
-import {fill, h} from '../ui/dom.js';
+import {fill, h, rememberedInTab} from '../ui/dom.js';
 import {faultText} from '../ui/dialog.js';
 import {icon} from '../ui/icons.js';
 import type {Issue} from '../connection.js';
@@ -11,12 +11,15 @@ import type {Issue} from '../connection.js';
 const SECONDS = {error: 12, warning: 8, note: 4};
 const KEPT = 500;
 const CARDS = 4;
+const SEEN = 'issues-seen';
 
 export class Notices {
   element;
   entries: {issue: Issue, count: number, at: Date}[];
   unseen;
   badge;
+  /** Unix time in s of the last issue that this tab showed before its page was loaded. */
+  #seenBefore = rememberedInTab.get(SEEN, 0);
   button;
 
   /** @param element  where the cards appear */
@@ -54,15 +57,19 @@ export class Notices {
 
   #list;
 
+  /** Shows an issue; one that this tab has shown before is only listed. */
   add(issue: Issue) {
+    const {time} = issue;
+    if (time) rememberedInTab.set(SEEN, Math.max(time, rememberedInTab.get(SEEN, 0)));
+    const isSeen = Boolean(time && time <= this.#seenBefore);
     const last = this.entries[0];
     const again = last && last.issue.message === issue.message && last.issue.line === issue.line;
     if (again) last.count += 1;
-    else this.entries.unshift({issue, count: 1, at: new Date()});
+    else this.entries.unshift({issue, count: 1, at: time ? new Date(1000 * time) : new Date()});
     this.entries.length = Math.min(this.entries.length, KEPT);
     if (!this.#list.hidden) this.#showList();
-    else if (issue.severity !== 'note') this.#markUnseen(this.unseen + 1);
-    if (!again || !this.#renew()) this.#card(issue);
+    else if (issue.severity !== 'note' && !isSeen) this.#markUnseen(this.unseen + 1);
+    if (!isSeen && (!again || !this.#renew())) this.#card(issue);
   }
 
   /** A word in passing: a path that was saved, an action that makes no sense now. */

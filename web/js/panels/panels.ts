@@ -73,10 +73,18 @@ export function mountPanels(parts: Omit<Page, 'request'|'notices'|'theme'>): Pag
       `The simulator has shut down${event.detail.reason ? `: ${event.detail.reason}` : ''}.`,
     ),
   );
+  parts.connection.listen('replaced', () => page.notices.say(
+    `This page now shows another start of a simulator, with the world ${worldFile(page.store)}.`,
+  ));
   mountConnectionNote(byId('centre'), page);
   mountHints(byId('view'), page.store);
   mountDrawer();
   return page;
+}
+
+/** The name of the file of a world, or of the world without a file. */
+function worldFile({document}: Store) {
+  return document?.file.split('/').pop() || document?.name || '';
 }
 
 /** In a narrow window the left panel lies over the view, while it is wanted. */

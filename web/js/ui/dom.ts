@@ -151,12 +151,12 @@ export function themeColor(name: string) {
   return color;
 }
 
-/** What is remembered in this browser only: widths, open rows, the theme. */
-export const remembered = {
+/** @param storage  of the browser, or of one tab */
+const memoryIn = (storage: () => Storage) => ({
   /** What was stored under a key, or the fallback. */
   get<T>(key: string, fallback: T): T {
     try {
-      const text = localStorage.getItem(`world-editor.${key}`);
+      const text = storage().getItem(`world-editor.${key}`);
       return text === null ? fallback : JSON.parse(text);
     } catch {
       // A private window without storage forgets; that is all.
@@ -165,9 +165,15 @@ export const remembered = {
   },
   set(key: string, value: unknown) {
     try {
-      localStorage.setItem(`world-editor.${key}`, JSON.stringify(value));
+      storage().setItem(`world-editor.${key}`, JSON.stringify(value));
     } catch {
       // As above.
     }
   },
-};
+});
+
+/** What is remembered in this browser only: widths, open rows, the theme. */
+export const remembered = memoryIn(() => localStorage);
+
+/** What a tab remembers until it is closed, also if its page is loaded again. */
+export const rememberedInTab = memoryIn(() => sessionStorage);

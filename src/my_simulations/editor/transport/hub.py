@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import asyncio
 import functools
+import time
 from collections import deque
 from concurrent.futures import ThreadPoolExecutor
 from typing import Any, Callable, Deque, Dict, Iterable, List, Optional, Tuple
@@ -65,7 +66,7 @@ class Hub:
         self._listeners = 0
         self._states_hz = 0.0
         self._stats_due = 0.0
-        self._issues: Deque[Issue] = deque(maxlen=_MOST_ISSUES)
+        self._issues: Deque[Dict[str, Any]] = deque(maxlen=_MOST_ISSUES)
         self._poses: Optional[Poses] = None
         self._reader = PoseReader(simulator)
 
@@ -126,8 +127,10 @@ class Hub:
                             if number in self.clients])
 
     def _show_issue(self, issue: Issue) -> None:
-        self._issues.append(issue)
-        self.push({"type": "issue", "issue": issue_document(issue)})
+        # A page that is loaded again compares the time with that of the last issue it has shown.
+        message = {"type": "issue", "issue": issue_document(issue), "time": time.time()}
+        self._issues.append(message)
+        self.push(message)
 
     # -- coming and going ------------------------------------------------------------------------
 
@@ -141,8 +144,8 @@ class Hub:
         client.live = True
         self._sequence = -1
         self.push(self.clock.read(), [client])
-        for issue in list(self._issues) if new else ():
-            self.push({"type": "issue", "issue": issue_document(issue)}, [client])
+        for message in list(self._issues) if new else ():
+            self.push(message, [client])
         for greeting in self.greetings:
             self.push(greeting(), [client])
         self._woken.set()
