@@ -9,6 +9,11 @@ from free_ports import free_port
 from pytest import approx
 from support import wait_for
 
+LOST_MESH = """<sdf version="1.6"><world name="default"><include><uri>model://sun</uri></include>
+  <model name="post"><static>1</static><link name="link"><visual name="visual"><geometry>
+    <mesh><uri>model://no_such/post.stl</uri></mesh>
+  </geometry></visual></link></model></world></sdf>"""
+
 
 def test_two_browsers_see_each_other_s_edits_and_share_one_history(launch, browser):
     node = launch("worlds/empty.world")
@@ -123,6 +128,43 @@ def test_an_open_page_says_how_to_open_a_simulator_that_was_started_again(launch
     assert not left_open.page.get_by_text("Run “gzclient”").is_visible()
     page.close()
     left_open.close()
+
+
+def test_a_page_that_is_loaded_again_shows_no_cards_of_old_issues(launch, browser, tmp_path):
+    world = tmp_path / "lost.world"
+    world.write_text(LOST_MESH, encoding="utf-8")
+    editor = browser.open(launch(str(world)).url)
+    cards = editor.page.locator("#notices .notice.warning")
+    cards.filter(has_text="no_such").wait_for()
+    unseen = editor.page.locator(".notices-button .badge")
+    assert unseen.text_content() == "1"
+    editor.page.reload()
+    editor.wait_for_world()
+    told(editor, "no_such")
+    assert cards.count() == 0 and not unseen.is_visible()
+    editor.button("Messages").click()
+    editor.page.get_by_role("dialog", name="All messages").get_by_text("no_such").wait_for()
+    # What comes later has a card again.
+    editor.get("editor.request('open', {path: %r, discard: true})" % str(world))
+    cards.filter(has_text="no_such").wait_for()
+    assert editor.faults == []
+    editor.close()
+
+
+def test_a_page_that_meets_another_simulator_without_a_token_says_which_world_it_shows(
+        launch, browser, tmp_path):
+    port = free_port()
+    options = f"editor_port:={port}", "editor_token:=false"
+    node = launch("worlds/empty.world", *options)
+    editor = browser.open(node.url)
+    node.close()
+    world = tmp_path / "lost.world"
+    world.write_text(LOST_MESH, encoding="utf-8")
+    launch(str(world), *options)
+    told(editor, "another start of a simulator, with the world lost.world")
+    told(editor, "no_such")
+    assert editor.faults == []
+    editor.close()
 
 
 def told(editor, text):

@@ -73,9 +73,10 @@ export function mountPanels(parts: Omit<Page, 'request'|'notices'|'theme'>): Pag
       `The simulator has shut down${event.detail.reason ? `: ${event.detail.reason}` : ''}.`,
     ),
   );
-  parts.connection.listen('replaced', () => page.notices.say(
-    `This page now shows another start of a simulator, with the world ${worldFile(page.store)}.`,
-  ));
+  parts.connection.listen('replaced', () => page.store.addIssue({
+    severity: 'note', code: 'another-simulator',
+    message: `This page now shows another start of a simulator, with the world ${worldFile(page.store)}.`,
+  }));
   mountConnectionNote(byId('centre'), page);
   mountHints(byId('view'), page.store);
   mountDrawer();
