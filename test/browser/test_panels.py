@@ -433,6 +433,49 @@ def test_a_force_from_the_dialog_pushes_the_box(editor):
     assert y / x == approx(80 / 60, rel=0.05)
 
 
+def opened_force_dialog(editor):
+    editor.click((0.0, 0.0, 0.5), button="right")
+    editor.page.get_by_role("menuitem", name="Apply Force/Torque").click()
+    dialog = editor.page.get_by_role("dialog", name="Apply Force/Torque")
+    dialog.wait_for()
+    return dialog
+
+
+def test_escape_in_the_view_closes_the_force_dialog_before_it_clears_the_selection(editor):
+    with_box(editor)
+    dialog = opened_force_dialog(editor)
+    editor.page.locator("#view").focus()
+    editor.page.keyboard.press("Escape")
+    dialog.wait_for(state="detached")
+    assert editor.get("editor.store.selection") == ["unit_box"]
+    editor.page.keyboard.press("Escape")
+    assert editor.get("editor.store.selection") == []
+
+
+def test_the_force_dialog_closes_with_its_model(editor):
+    with_box(editor)
+    dialog = opened_force_dialog(editor)
+    editor.page.locator("#view").focus()
+    editor.page.keyboard.press("Delete")
+    dialog.wait_for(state="detached")
+
+
+def test_the_hotkey_chart_is_scrolled_by_keys_in_a_small_window(editor):
+    page = editor.page
+    size = page.viewport_size
+    page.set_viewport_size({"width": 800, "height": 450})
+    page.keyboard.press("F1")
+    chart = page.get_by_role("dialog", name="Hotkeys")
+    last = chart.locator("dd").last
+    assert chart.get_by_role("button", name="Close").last.is_visible()
+    page.keyboard.press("End")
+    wait_for(lambda: last.bounding_box()["y"] + last.bounding_box()["height"] <
+             chart.locator(".dialog-buttons").bounding_box()["y"] + 1, "the chart's end")
+    page.keyboard.press("Escape")
+    chart.wait_for(state="detached")
+    page.set_viewport_size(size)
+
+
 def test_the_joints_panel_turns_a_hinge(editor):
     editor.get(f"editor.request('edit', {{op: {{kind: 'insert', sdf: {HINGED!r}}}}})")
     wait_for(lambda: "gate" in editor.names(), "the gate")

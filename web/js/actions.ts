@@ -58,6 +58,8 @@ export function createActions({store, connection}: {store: Store,
     connection: {request: RequestFunction}}) {
   /** Set by the view once it is there; without WebGL it never is. */
   let view: SceneView|null = null;
+  /** Closes the window of the force that is shown. */
+  let endForce: (() => void)|null = null;
 
   async function ask<T extends keyof Requests>(type: T, fields?: Requests[T]['fields'],
       {quiet = false}: AskOptions = {}): Promise<Outcome<Requests[T]['reply']>> {
@@ -155,6 +157,7 @@ export function createActions({store, connection}: {store: Store,
       if (store.placing) store.setPlacing(null);
       else if (store.camera.following) camera.follow(null);
       else if (store.mode !== 'select') store.setMode('select');
+      else if (endForce) endForce();
       else store.select([]);
     },
     selectMode: () => store.setMode('select'),
@@ -197,8 +200,15 @@ export function createActions({store, connection}: {store: Store,
     in_link_axes?: boolean, steps?: number}) => edit({kind: 'wrench', in_link_axes: false, steps: 1,
         ...wrench}),
     /** Arrows for the force dialog; `null` takes them away. */
-    showForce: (wrench: ShownWrench|null, onTurned?: (turned: Turned) => void) =>
-        view?.showForce(wrench, onTurned),
+    /**
+     * Shows the arrows of a force; `null` takes them away.
+     * @param onTurned  told while the mouse turns an arrow
+     * @param onEscape  called for Escape in the view
+     */
+    showForce(wrench: ShownWrench|null, onTurned?: (turned: Turned) => void, onEscape?: () => void) {
+      endForce = wrench ? onEscape ?? null : null;
+      view?.showForce(wrench, onTurned);
+    },
     joint: (fields: JointFields) => edit({kind: 'joint', ...fields}),
 
     // ---- pictures

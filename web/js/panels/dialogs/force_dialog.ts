@@ -7,6 +7,7 @@ import {makeInput} from '../property_inputs.js';
 import {modelOf} from '../world_rows.js';
 import type {Model} from '../../protocol.js';
 import type {Page} from '../panels.js';
+import type {Store} from '../../store.js';
 import type {Turned} from '../../view/force_arrows.js';
 
 /** Length of a vector. */
@@ -171,6 +172,11 @@ class ForceDialog {
     return h('div', {class: 'row'}, h('span', {text: 'Duration (steps)'}), input.element);
   }
 
+  /** Closes the window if there is no such link any more. */
+  closeIfGone(store: Store) {
+    if (!store.entity(this.#link.value)) this.dialog.close(undefined);
+  }
+
   /** Draws the arrows in the view, where it can. */
   preview() {
     this.#actions.showForce(
@@ -184,6 +190,7 @@ class ForceDialog {
         if (force) this.#force.set(force);
         if (torque) this.#torque.set(torque);
       },
+      () => this.dialog.close(undefined),
     );
   }
 
@@ -212,6 +219,9 @@ export async function forceDialog(page: Page, name: string): Promise<void> {
   const force = new ForceDialog(page, model, name);
   const closed = force.dialog.open();
   force.preview();
+  const check = () => force.closeIfGone(page.store);
+  const stop = [page.store.listen('entity', check), page.store.listen('document', check)];
   await closed;
+  for (const end of stop) end();
   page.actions.showForce(null);
 }

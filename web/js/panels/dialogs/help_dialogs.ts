@@ -28,7 +28,7 @@ export function hotkeyDialog(hotkeys: readonly Hotkey[]) {
   return new Dialog({
     title: 'Hotkeys',
     name: 'hotkeys',
-    content: [h('div', {class: 'hotkey-columns', role: 'group', 'aria-label': 'Hotkeys', tabindex: 0}, ...columns)],
+    content: [h('div', {class: 'hotkey-columns', role: 'group', 'aria-label': 'Hotkeys', tabindex: 0, autofocus: true}, ...columns)],
     buttons: [{title: 'Close', primary: true, value: true}],
   }).open();
 }
