@@ -3,8 +3,9 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from typing import List
+from typing import List, Tuple
 
+import pybullet
 import pytest
 from conftest import Lab, ground, inertial_of_box, slab
 from laws import Laws
@@ -128,6 +129,69 @@ def test_a_base_on_two_wheels_keeps_its_heading_as_it_starts_and_stops(
         before, heading = heading, _yaw(lab, base)
         laws.at_most("a base on two wheels: yaw by a start or a stop, degrees",
                      abs(heading - before), 0.03)
+
+
+def _motors(lab: Lab, base: int, rates: List[float], effort: float = 10.0) -> None:
+    lab.apply(SetMotors(tuple(JointMotor(lab.joint_rows[base, f"j{n}"], rate, effort)
+                              for n, rate in enumerate(rates))))
+
+
+@pytest.mark.parametrize("heading", [0.0, 0.5, math.pi / 4])
+def test_with_a_pyramid_motors_drive_a_base_as_its_wheels_turn(lab: Lab, laws: Laws,
+                                                               heading: float):
+    """Its wheels keep Bullet's contact points, which lag behind the axle."""
+    lab.configure(cone=False)
+    lab.load(ground())
+    base = lab.load(_two_wheeled(-math.pi / 2, 1.0), (0, 0, 0), quat_from_rpy(0, 0, heading))
+    _motors(lab, base, [0.3 / 0.033] * 2)
+    lab.seconds(1)
+    start, before = lab.pose(base).position, _yaw(lab, base)
+    lab.seconds(1)
+    laws.near("friction pyramid, a base on two driven wheels: way in 1 s, m",
+              math.dist(lab.pose(base).position, start), 0.3, rel=0.002)
+    laws.at_most("the same: yaw, degrees", abs(_yaw(lab, base) - before), 0.05)
+    laws.near("the same: height of the axle, m", lab.pose(base, "w0").position[2], 0.033, abs=1e-4)
+    _motors(lab, base, [-0.08 / 0.033, 0.08 / 0.033])   # 1 rad/s
+    lab.seconds(1)
+    before = _yaw(lab, base)
+    lab.seconds(1)
+    laws.near("the same, in place: turn in 1 s, degrees", (_yaw(lab, base) - before) % 360.0,
+              math.degrees(1.0), rel=0.03)
+
+
+def test_with_a_pyramid_free_wheels_roll_at_a_constant_speed(lab: Lab, laws: Laws):
+    lab.configure(cone=False)
+    lab.load(ground())
+    base = lab.load(_car(0.1, 0.03), (0, 0, 0.1))
+    lab.steps(100)
+    _motors(lab, base, [5.0] * 4)
+    lab.seconds(2)
+    _motors(lab, base, [0.0] * 4, 0.0)
+    lab.seconds(0.1)
+    before = lab.twist(base).linear
+    lab.seconds(5)
+    laws.near("friction pyramid, a car with free wheels after 5 s: speed, m/s",
+              math.hypot(*lab.twist(base).linear), math.hypot(*before), rel=0.01)
+
+
+@pytest.mark.parametrize("cone, effort, each_step", [
+    (False, 10.0, False), (False, 1e-3, True), (True, 10.0, True)])
+def test_steps_of_driven_wheels_need_no_python_with_a_pyramid(
+        lab: Lab, monkeypatch: pytest.MonkeyPatch, cone: bool, effort: float, each_step: bool):
+    """The contact points of wheels are dropped in each step otherwise."""
+    lab.configure(cone=cone)
+    lab.load(ground())
+    base = lab.load(_two_wheeled(-math.pi / 2, 1.0))
+    lab.steps(300)
+    _motors(lab, base, [5.0] * 2, effort)
+    lab.push(base, (5.0 * 0.033, 0, 0))
+    lab.steps(200)
+    dropped: List[Tuple[int, ...]] = []
+    monkeypatch.setattr(pybullet, "setCollisionFilterGroupMask",
+                        lambda *arguments: dropped.append(arguments))
+    lab.backend.step(lab.step, 100)
+    assert (len(dropped) >= 100) is each_step
+    assert each_step or not dropped
 
 
 @pytest.mark.parametrize("floor", ["plane", "box"])

@@ -85,12 +85,11 @@ class HelperSet:
         self._landing = LandingContacts(lambda uid, normal: self._rolling.landed(uid, normal),
                                         self._parameters)
         self._rolling = RollingContacts(self._landing, lambda: self.forces.loaded_bodies,
-                                        self._parameters.find_pairs)
+                                        self._parameters.find_pairs, self._holding)
         self._seams = SeamContacts(self._rolling, self._parameters)
         self._level = LevelSeams(lambda: self._residual.fast, self._parameters)
         self.wheel_friction = WheelFriction(
-            lambda row: max(self.motors.effort_of(row), self.forces.servos.motor_strength(row)),
-            lambda row: self.motors.rate_of(row),
+            self._holding, lambda row: self.motors.rate_of(row),
             lambda row, step: self.forces.effort_on(row, step))
         self.forces = Forces(self._waker_for(BodyEvent.FORCE_APPLIED),
                              lambda rows: self.motors.yield_to(rows),
@@ -138,6 +137,7 @@ class HelperSet:
         self._parameters.configure(settings)
         self.settling.configure(settings.step_size)
         self._decay.configure(settings.step_size)
+        self._rolling.configure(settings.cone)
         self.wheel_friction.configure(settings.cone)
         self.divergence.configure(settings.step_size)
 
@@ -169,6 +169,10 @@ class HelperSet:
         self.notices.forget_all()
         self.readout.clear()
         self._create()
+
+    def _holding(self, row: int) -> float:
+        """Return the effort, N m or N, with which the motor or brake of a joint row acts."""
+        return max(self.motors.effort_of(row), self.forces.servos.motor_strength(row))
 
     def _notify(self, event: BodyEvent, body: Body) -> None:
         """Pass an event to those that handle it, in the order of the helpers."""

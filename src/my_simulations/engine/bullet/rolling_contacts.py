@@ -9,6 +9,9 @@ A cylinder at rest would rock on such points. So a cylinder that hardly moves ke
 stopped in each step and set back, if the floor is level and no moving body, joint or timed force
 acts on it. For a cylinder that already rocks, the velocity of one step means nothing. Its motion
 between two checks, an even number of steps apart, decides instead.
+
+With a friction pyramid, which is the cheaper model, wheels that a motor holds keep their points: the
+motor takes up the small moment of points that lag.
 """
 from __future__ import annotations
 
@@ -56,6 +59,7 @@ _ASLEEP = 3       # checks without velocity: then it sleeps, and Bullet does not
 _HINGED = 3       # checks until a rolling wheel is checked again
 _PATIENCE = 8     # checks until a sleeping or upright cylinder is checked again
 _SHIFT = 1e-5     # m between two checks: a shorter motion is drift
+_LAG = 0.1        # of a wheel's radius: five times the largest lag of Bullet's contact points
 _NONE = (0.0, 0.0, 0.0)
 
 _PARTING = 5.0      # 1/s: separation rate of the overlaps of all other contacts
@@ -76,6 +80,8 @@ class _Roller:
         wait: checks for which it is left out.
         seen: its pose at the last check, if it lay on its side.
         seamed: whether it touches triangles.
+        joint_row: of its axle; -1 without.
+        reach: moment by which lagging points drive it, per gravity, N m / (m/s^2), at most.
     """
 
     body: Body
@@ -83,6 +89,8 @@ class _Roller:
     axis: Vec3
     meets: collision_groups.Filter
     hard: bool
+    joint_row: int = -1
+    reach: float = 0.0
     still: int = 0
     wait: int = 0
     seen: Optional[Pose] = None
@@ -98,6 +106,7 @@ class RollingContacts(StepHelper):
         loaded: returns the bodies that timed forces act on in this step.
         find_pairs: finds new pairs before a step with the point spacing for cylinders on
             triangles; otherwise all new pairs would get this spacing.
+        holding: returns the effort, N m, with which the motor or brake of a joint row acts.
 
     Attributes:
         on_seams: links that roll on triangles now, and their axes in their principal axes.
@@ -106,8 +115,9 @@ class RollingContacts(StepHelper):
     events = COMMANDED
 
     def __init__(self, landing: LandingContacts, loaded: Callable[[], AbstractSet[int]],
-                 find_pairs: Callable[[], None]) -> None:
+                 find_pairs: Callable[[], None], holding: Callable[[int], float]) -> None:
         self._landing, self._loaded, self._find_pairs = landing, loaded, find_pairs
+        self._holding, self._cone = holding, True
         self.on_seams: Dict[LinkKey, Vec3] = {}
         self._rollers: Dict[LinkKey, _Roller] = {}
         self._rolling: Dict[LinkKey, collision_groups.Filter] = {}
@@ -117,6 +127,10 @@ class RollingContacts(StepHelper):
         self.body_tables = (self.on_seams, self._rollers, self._rolling, self._standing,
                             self._moving, self._seams)
 
+    def configure(self, cone: bool) -> None:
+        """Drop the points of all wheels (friction cone), or of those without a strong motor."""
+        self._cone = cone
+
     def add(self, body: Body) -> None:
         """Register a new body; only moving links that are cylinders about one axis matter."""
         if body.moves:
@@ -124,13 +138,16 @@ class RollingContacts(StepHelper):
         elif any(isinstance(each.geometry, (Heightmap, Mesh)) for part in body.parts
                  for each in part.link.collisions):
             self._seams.update(set(body.uids) - body.with_role("faces"))
+        rows = {axis.index: axis.row for axis in body.axes}
+        total = sum(part.mass for part in body.parts)
         for part in body.parts if body.moves else ():
             axis = axis_of(part.link)
             if axis is not None:
                 self._rollers[body.uid, part.index] = _Roller(
                     body, part, rotate(conjugate(part.link_from_com.orientation), axis),
                     collision_groups.moving(part.link),
-                    part.link.collisions[0].surface.kp >= SOFT)
+                    part.link.collisions[0].surface.kp >= SOFT, rows.get(part.index, -1),
+                    _LAG * total * _widest(part.link))
 
     def handle_event(self, event: BodyEvent, body: Body) -> None:
         """Treat a rigid body as rolling after a command changed its pose or velocity.
@@ -231,6 +248,9 @@ class RollingContacts(StepHelper):
                 return False
             at = Pose(*pybullet.getBasePositionAndOrientation(uid))
             turn = at.orientation
+        elif self._is_held(roller, norm(gravity)):
+            roller.wait = _HINGED
+            return False
         elif index != BASE and abs(pybullet.getJointState(uid, index)[1]) < _TURNS:
             return False
         else:
@@ -266,6 +286,14 @@ class RollingContacts(StepHelper):
         else:
             roller.wait = _HINGED
         return True
+
+    def _is_held(self, roller: _Roller, weight: float) -> bool:
+        """Whether a wheel keeps its points, because a motor is stronger than their lag.
+
+        Not in worlds with triangles, whose edges push a wheel against its way.
+        """
+        return (not self._cone and roller.joint_row >= 0 and not self._seams
+                and self._holding(roller.joint_row) >= roller.reach * weight > 0.0)
 
     def _part(self, roller: _Roller, depth: float, dt: float, weight: float) -> None:
         """Set the separation rate of the overlaps of a link with static bodies, m deep.
@@ -327,3 +355,9 @@ def axis_of(link: Link) -> Optional[Vec3]:
     if any(abs(dot(axis, axes[0])) < 1.0 - 1e-6 for axis in axes):
         return None
     return axes[0]
+
+
+def _widest(link: Link) -> float:
+    """Return the largest radius of the cylinders and capsules of a link, m."""
+    return max(collision.geometry.radius for collision in link.collisions
+               if isinstance(collision.geometry, (Cylinder, Capsule)))
