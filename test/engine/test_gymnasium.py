@@ -75,6 +75,17 @@ def test_short_rules_solve_a_task(task, seeds):
     assert min(total for *_, total, _ in found) > 1.0
 
 
+@pytest.mark.parametrize("name", [PUSH, ALL[2]])
+def test_a_task_with_wheels_has_the_friction_that_is_asked_for(make, name):
+    def model(**options):
+        env = make(name, **options)
+        env.reset(seed=1)
+        return env.unwrapped.world.simulator.physics.settings.ode.friction_model
+
+    assert model() == "pyramid_model"
+    assert model(accurate_friction=True) in ("", "cone_model")
+
+
 def test_a_collision_ends_a_drive_without_success(make):
     env = make(ALL[2])
     env.reset(seed=0)

@@ -11,7 +11,7 @@ import numpy as np
 from ..geometry import Pose, rpy_from_quat
 from ..python_api import OpenWorld, Randomisation, WorldChoice
 from ..resources.package_files import own_directory
-from .task_models import box, disc
+from .task_models import box, disc, world_file
 from .world_env import Evaluation, View, WorldEnv, clipped_observation
 
 FASTEST = 0.5      # m/s
@@ -40,18 +40,20 @@ class Navigate:
     the robot (rad, 0 is ahead, to the left positive); forward speed (m/s) and turn rate (rad/s).
     Reward: metres by which the robot came nearer to the mark; 1 more on arrival, 1 less for a
     collision, which ends the episode.
+
+    `accurate_friction` selects Coulomb's friction for the wheels; see doc/gymnasium.md.
     """
 
     period = 0.1
     view = View((-3.4, -3.4, 4.2), (0.0, 0.0, 0.0))
 
-    def __init__(self) -> None:
+    def __init__(self, accurate_friction: bool = False) -> None:
         robot = os.path.join(own_directory(), "urdf", "robo.urdf")
         walls = [(f"wall_{n}", box(f"wall_{n}", size, "0.75 0.75 0.7 1"), Pose(position))
                  for n, (size, position) in enumerate(_walls())]
         boxes = [(name, box(name, (0.5, 0.5, 0.5), "0.8 0.5 0.2 1"), Pose((0.0, 0.0, -10.0 - n)))
                  for n, name in enumerate(_boxes())]
-        self.choice = WorldChoice(models=(
+        self.choice = WorldChoice(world_file(accurate_friction), models=(
             ("robo", robot, Pose()), ("mark", disc("mark", NEAR, "0.1 0.7 0.2 1"), Pose()),
             *walls, *boxes))
         self.action_space = gymnasium.spaces.Box(-1.0, 1.0, (2,), np.float32)
@@ -133,7 +135,7 @@ def _collides(world: OpenWorld) -> bool:
                for pair in world.contact_forces())
 
 
-def make(render_mode: Optional[str] = None,
-         randomisation: Optional[Randomisation] = None) -> WorldEnv:
+def make(render_mode: Optional[str] = None, randomisation: Optional[Randomisation] = None,
+         accurate_friction: bool = False) -> WorldEnv:
     """The environment `my_simulations/Navigate-v0`."""
-    return WorldEnv(Navigate(), render_mode, randomisation=randomisation)
+    return WorldEnv(Navigate(accurate_friction), render_mode, randomisation=randomisation)

@@ -9,8 +9,9 @@ import gymnasium
 import numpy as np
 
 from ..geometry import Pose, rpy_from_quat
-from ..python_api import OpenWorld, Randomisation, WorldChoice
+from ..python_api import OpenWorld, Randomisation, RobotOptions, WorldChoice
 from ..resources.package_files import own_directory
+from .task_models import world_file
 from .world_env import Evaluation, View, WorldEnv, clipped_observation, symmetric_box
 
 FASTEST = 0.5     # m/s
@@ -43,15 +44,17 @@ class PushBox:
     x, y of the box, x, y of the mark (m, m/s, rad/s, world frame), distance from box to mark (m).
     Reward: metres by which the box came nearer to the mark and, a tenth as much, the robot to the
     box; 1 more on arrival.
+
+    `accurate_friction` selects Coulomb's friction for the wheels; see doc/gymnasium.md.
     """
 
     period = 0.1
     view = View((-1.6, -2.4, 2.2), (0.6, 0.0, 0.0))
 
-    def __init__(self) -> None:
+    def __init__(self, accurate_friction: bool = False) -> None:
         robot = os.path.join(own_directory(), "urdf", "robo.urdf")
-        self.choice = WorldChoice(models=(("robo", robot, Pose()), ("box", _BOX, Pose()),
-                                          ("mark", _MARK, Pose())))
+        self.choice = WorldChoice(world_file(accurate_friction), models=(
+            ("robo", robot, Pose()), ("box", _BOX, Pose()), ("mark", _MARK, Pose())))
         self.action_space = gymnasium.spaces.Box(-1.0, 1.0, (2,), np.float32)
         self.observation_space = symmetric_box([_FAR, _FAR, 1.0, 1.0, _FAST, _FAST, *4 * [_FAR],
                                                 _FAR])
@@ -94,7 +97,8 @@ class PushBox:
         return Evaluation(reward + arrived, arrived or lost, {"is_success": arrived})
 
 
-def make(render_mode: Optional[str] = None,
-         randomisation: Optional[Randomisation] = None) -> WorldEnv:
+def make(render_mode: Optional[str] = None, randomisation: Optional[Randomisation] = None,
+         accurate_friction: bool = False) -> WorldEnv:
     """The environment `my_simulations/PushBox-v0`."""
-    return WorldEnv(PushBox(), render_mode, randomisation=randomisation)
+    return WorldEnv(PushBox(accurate_friction), render_mode, RobotOptions(plugins=False),
+                    randomisation)

@@ -10,7 +10,7 @@ import gymnasium
 import numpy as np
 
 from ..geometry import Pose
-from ..python_api import OpenWorld, Randomisation, WorldChoice
+from ..python_api import OpenWorld, Randomisation, RobotOptions, WorldChoice
 from ..resources.package_files import own_directory
 from .world_env import Evaluation, View, WorldEnv, clipped_observation, symmetric_box
 
@@ -131,4 +131,4 @@ class StackBoxes:
 def make(render_mode: Optional[str] = None,
          randomisation: Optional[Randomisation] = None) -> WorldEnv:
     """The environment `my_simulations/StackBoxes-v0`."""
-    return WorldEnv(StackBoxes(), render_mode, randomisation=randomisation)
+    return WorldEnv(StackBoxes(), render_mode, RobotOptions(plugins=False), randomisation)

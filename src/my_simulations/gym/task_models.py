@@ -1,9 +1,14 @@
-"""Documents of the boxes and marks in the worlds of tasks."""
+"""The world file of tasks with wheels, and documents of their boxes and marks."""
 from __future__ import annotations
 
 from typing import Optional, Sequence
 
 Size = Sequence[float]
+
+
+def world_file(accurate_friction: bool) -> str:
+    """Return the world of tasks with wheels; with False, the one that takes the least time."""
+    return "worlds/empty.world" if accurate_friction else "learning.world"
 
 _MODEL = ('<sdf version="1.6"><model name="{name}">{static}<link name="link">{parts}</link></model>'
           '</sdf>')

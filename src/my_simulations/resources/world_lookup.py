@@ -13,7 +13,7 @@ ENDINGS = (".world", ".sdf")
 
 SHIPPED = (
     "empty_world.world", "exercises.world", "house.world", "lab_course.world", "lab_room.world",
-    "street.world", "warehouse.world",
+    "learning.world", "street.world", "warehouse.world",
     "worlds/elevator_ros.world", "worlds/empty.world", "worlds/gazebo_ros_range.world",
     "worlds/mud.world", "worlds/rubble.world", "worlds/shapes.world", "worlds/willowgarage.world",
 )

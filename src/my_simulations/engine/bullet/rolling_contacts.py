@@ -10,8 +10,8 @@ stopped in each step and set back, if the floor is level and no moving body, joi
 acts on it. For a cylinder that already rocks, the velocity of one step means nothing. Its motion
 between two checks, an even number of steps apart, decides instead.
 
-With a friction pyramid, which is the cheaper model, wheels that a motor holds keep their points: the
-motor takes up the small moment of points that lag.
+With a friction pyramid, which is the cheaper model, wheels that a motor holds keep their points.
+The motor takes up the small moment of points that lag.
 """
 from __future__ import annotations
 
