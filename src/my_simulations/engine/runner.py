@@ -53,6 +53,7 @@ from .ring import (
 from .timed_forces import AddTimedForces
 
 _BURST_S = 0.0008        # bursts between two looks at the commands
+_ADVANCE_BURST_S = 0.004 # the same while the host waits for the end of an advance
 _MAX_LAG_S = 0.2        # a world that is later than this has given up the rest
 _IDLE_S = 2.0            # heartbeat while paused, or while the next step is far off
 _SYNC_S = 0.02           # between two looks at the budget while the host works; it notifies earlier
@@ -353,7 +354,7 @@ class Runner:
     def _free_burst(self) -> None:
         count = min(self._burst, min(self._horizon, self._limit) - self._step)
         if count > 0:
-            self._burst_of(count)
+            self._burst_of(count, _BURST_S)
             self._after_steps(_SHARE_LATE)
 
     def _advance_burst(self) -> None:
@@ -362,7 +363,7 @@ class Runner:
         number, last = self._advance
         count = min(self._burst, min(last, self._limit) - self._step)
         if count > 0:
-            self._burst_of(count)
+            self._burst_of(count, _ADVANCE_BURST_S)
         # The host acts at the last step, and that step is recorded, before the answer.
         if (self._step < last or self._step >= self._limit
                 or self._sync.records.next_step <= self._step):
@@ -374,12 +375,13 @@ class Runner:
         self._channel.reply(number, Reply(self._step, sequence, self._step))
         self._report_events()
 
-    def _burst_of(self, count: int) -> None:
+    def _burst_of(self, count: int, duration: float) -> None:
+        """Make steps, and choose how many the next burst has, so that it takes `duration` s."""
         started = time.perf_counter()
         made = self._make_steps(count)
         took = time.perf_counter() - started
         if made == self._burst:
-            fit = int(count * _BURST_S / max(took, 1e-9))
+            fit = int(count * duration / max(took, 1e-9))
             self._burst = max(1, min(fit, self._burst * 2, 1000))
 
     # -- snapshots -------------------------------------------------------------------------------

@@ -3,6 +3,7 @@ from __future__ import annotations
 
 import threading
 import time
+from types import SimpleNamespace
 
 import pytest
 from inline_engine import InlineEngine
@@ -10,6 +11,7 @@ from kinematic_backend import KinematicBackend
 from waiting import until
 
 from my_simulations.description.model import Inertial, Link, Model
+from my_simulations.engine import runner
 from my_simulations.engine.commands import (
     FOREVER,
     Advance,
@@ -41,6 +43,20 @@ class Slow(KinematicBackend):
         while time.perf_counter() < until:
             pass
         return super().read()
+
+
+class Timed(KinematicBackend):
+    """A world whose steps take 0.1 ms of a clock that does not run otherwise."""
+
+    def __init__(self):
+        super().__init__()
+        self.now = 1000.0
+        self.bursts = []
+
+    def step(self, first, count):
+        super().step(first, count)
+        self.now += 1e-4 * count
+        self.bursts.append(count)
 
 
 @pytest.fixture
@@ -293,3 +309,18 @@ def test_poses_can_be_had_more_often_than_states(slow):
     ask(slow, Run())
     until(lambda: words[LATEST_POSES] > 50)
     assert slow.ring.latest - first < 25
+
+
+def test_an_advance_is_made_in_few_bursts(monkeypatch):
+    """Each one costs a look at the commands; but one must follow soon."""
+    backend = Timed()
+    monkeypatch.setattr(runner, "time", SimpleNamespace(perf_counter=lambda: backend.now))
+    engine = InlineEngine(lambda: backend)
+    try:
+        ask(engine, Advance(1000))
+    finally:
+        monkeypatch.undo()
+        engine.close()
+    assert sum(backend.bursts) == 1000
+    assert max(backend.bursts) <= 50      # 5 ms
+    assert len(backend.bursts) < 40
