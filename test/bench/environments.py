@@ -1,68 +1,26 @@
 #!/usr/bin/env python3
-"""Prints how many steps a second environments make, beside loops of bare PyBullet.
+"""Prints how many steps a second the tasks of gymnasium make, beside loops of bare PyBullet.
 
-usage: environments.py [COUNT …]   COUNT: worlds side by side (default: 1 8 32)
+usage: environments.py [-t TASK]… [COUNT …]   TASK: a name of `bare_tasks.SCENES` (default: all)
+                                              COUNT: worlds side by side (default: 1 8 32)
 
-Both simulate the lab robot and the box of PushBox-v0 with random actions, 100 steps of 1 ms a
-step of the environment. Bare PyBullet loads the same URDF, keeps the rates of the wheels, and reads
-two poses; its worlds are clients of one process, stepped one after another. Rates are per second of
-wall time; a ratio of processor times counts all processes. Nothing here fails on a slow machine.
+Both simulate the same robots and boxes with random actions, steps of 1 ms, and read what the task
+observes (`bare_tasks.py`). Worlds of bare PyBullet are clients of one process, stepped one after
+another. Rates are per second of wall time; a ratio of processor times counts all processes. Nothing
+here fails on a slow machine.
 """
 from __future__ import annotations
 
+import argparse
 import os
-import pathlib
-import sys
 import time
 from typing import Callable, TextIO, Tuple
 
 import numpy as np
-import pybullet
+from bare_tasks import SCENES, Bare
 from server import children, processor
 
-ROBOT = str(pathlib.Path(__file__).resolve().parents[2] / "urdf" / "robo.urdf")
-INNER, SECONDS, PAIRS = 100, 2.0, 3
-WHEELS = ("left_wheel_joint", "right_wheel_joint")
-
-
-class Bare:
-    """Clients of PyBullet with its default settings."""
-
-    def __init__(self, count: int) -> None:
-        self._worlds = [self._world() for _ in range(count)]
-
-    @staticmethod
-    def _world() -> Tuple[int, int, int, Tuple[int, ...]]:
-        client = pybullet.connect(pybullet.DIRECT)
-        at = {"physicsClientId": client}
-        pybullet.setGravity(0, 0, -9.8, **at)
-        pybullet.setPhysicsEngineParameter(fixedTimeStep=0.001, **at)
-        pybullet.createMultiBody(
-            0, pybullet.createCollisionShape(pybullet.GEOM_PLANE, **at), **at)
-        robot = pybullet.loadURDF(ROBOT, **at)
-        shape = pybullet.createCollisionShape(pybullet.GEOM_BOX, halfExtents=[0.1] * 3, **at)
-        box = pybullet.createMultiBody(0.5, shape, -1, [0.7, 0.1, 0.1], **at)
-        names = [pybullet.getJointInfo(robot, joint, **at)[1].decode()
-                 for joint in range(pybullet.getNumJoints(robot, **at))]
-        return client, robot, box, tuple(map(names.index, WHEELS))
-
-    def step(self, actions: np.ndarray) -> None:
-        """One step of the environment in every world."""
-        for (client, robot, box, wheels), (forward, turn) in zip(self._worlds, actions):
-            at = {"physicsClientId": client}
-            rates = [(0.5 * forward - 0.24 * turn) / 0.05, (0.5 * forward + 0.24 * turn) / 0.05]
-            pybullet.setJointMotorControlArray(robot, wheels, pybullet.VELOCITY_CONTROL,
-                                               targetVelocities=rates, forces=[2.0, 2.0], **at)
-            for _ in range(INNER):
-                pybullet.stepSimulation(**at)
-            pybullet.getBasePositionAndOrientation(robot, **at)
-            pybullet.getBaseVelocity(robot, **at)
-            pybullet.getBasePositionAndOrientation(box, **at)
-
-    def close(self) -> None:
-        """End the clients."""
-        for client, *_ in self._worlds:
-            pybullet.disconnect(client)
+SECONDS, PAIRS = 2.0, 3
 
 
 def processor_time() -> float:
@@ -70,37 +28,54 @@ def processor_time() -> float:
     return processor([os.getpid(), *children(os.getpid())])
 
 
-def measured(step: Callable[[np.ndarray], object], count: int) -> Tuple[float, float]:
+def measured(step: Callable[[np.ndarray], object], count: int, actions: int,
+             ) -> Tuple[float, float]:
     """Steps of single worlds a second of wall time, and processor time of one, s."""
     random = np.random.default_rng(1)
     steps, busy, started = 0, processor_time(), time.perf_counter()
     while time.perf_counter() - started < SECONDS:
-        step(random.uniform(-1.0, 1.0, (count, 2)).astype(np.float32))
+        step(random.uniform(-1.0, 1.0, (count, actions)).astype(np.float32))
         steps += count
     return (steps / (time.perf_counter() - started), (processor_time() - busy) / steps)
 
 
-def compare(count: int, answers: TextIO) -> None:
+def compare(task: str, count: int, answers: TextIO) -> None:
     """Write one row."""
-    from my_simulations.gym import WorldVectorEnv
-    from my_simulations.gym.push_box import make
+    import gymnasium
 
-    envs, bare = WorldVectorEnv([make] * count), Bare(count)
+    from my_simulations.gym import WorldVectorEnv
+
+    name, _, camera = task.partition(" with ")
+    options = {"camera": True} if camera else {}
+    envs = WorldVectorEnv([lambda: gymnasium.make(f"my_simulations/{name}-v0", **options)] * count)
+    bare, actions = Bare(SCENES[task], count), SCENES[task].actions
     try:
         envs.reset(seed=1)
-        pairs = [(measured(envs.step, count), measured(bare.step, count)) for _ in range(PAIRS)]
+        pairs = [(measured(envs.step, count, actions), measured(bare.step, count, actions))
+                 for _ in range(PAIRS)]
     finally:
         envs.close()
         bare.close()
     (rate, used), (bare_rate, bare_used) = (np.median([pair[k] for pair in pairs], axis=0)
                                             for k in (0, 1))
-    print(f"{count:3d} worlds: {rate:7.0f} steps/s, bare {bare_rate:7.0f}: {rate / bare_rate:.2f}"
-          f" of bare (bar 0.7); processor time {1000 * used:.2f} ms a step,"
-          f" bare {1000 * bare_used:.2f} ms", file=answers, flush=True)
+    print(f"{task:17} {count:3d} worlds: {rate:7.0f} steps/s, bare {bare_rate:7.0f}:"
+          f" {rate / bare_rate:.2f} of bare; processor time {1000 * used:.2f} ms a step, bare"
+          f" {1000 * bare_used:.2f} ms: {bare_used / used:.2f} of bare (bar 0.7)",
+          file=answers, flush=True)
+
+
+def main() -> None:
+    """Compare the tasks that are asked for."""
+    parser = argparse.ArgumentParser(usage=__doc__)
+    parser.add_argument("-t", "--task", action="append", choices=SCENES)
+    parser.add_argument("counts", nargs="*", type=int, default=[1, 8, 32])
+    options = parser.parse_args()
+    answers = os.fdopen(os.dup(1), "w")
+    os.dup2(2, 1)  # PyBullet prints there, too
+    for task in options.task or SCENES:
+        for count in options.counts:
+            compare(task, count, answers)
 
 
 if __name__ == "__main__":
-    rows = os.fdopen(os.dup(1), "w")
-    os.dup2(2, 1)  # PyBullet prints there, too
-    for words in sys.argv[1:] or ["1", "8", "32"]:
-        compare(int(words), rows)
+    main()
