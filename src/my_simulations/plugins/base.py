@@ -6,7 +6,9 @@ that the plugin registered.
 """
 from __future__ import annotations
 
-from .context import Context
+import inspect
+
+from .context import Context, PluginError
 
 
 class Plugin:
@@ -22,7 +24,9 @@ class Plugin:
 
     def load(self) -> None:
         """Read parameters, find joints, advertise topics, schedule calls."""
-        raise NotImplementedError
+        own = type(self)
+        raise PluginError(f"the class '{own.__name__}' in {inspect.getfile(own)} has no method"
+                          " 'load'")
 
     def reset(self) -> None:
         """React to a reset: models are at their initial poses, at rest, and motors are off."""

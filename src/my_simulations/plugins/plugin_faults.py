@@ -23,13 +23,14 @@ class DescribedFaultError(PluginError):
 def describe_fault(fault: BaseException) -> str:
     """Type, message, and the innermost function, file and line of the plugin.
 
-    The message of a `PluginError` is one sentence for the user, and stands alone.
+    The message of a `PluginError` that a plugin raises is one sentence for the user, and stands
+    alone.
     """
     if isinstance(fault, DescribedFaultError):
         return str(fault)
     text = _message_of(fault)
     if isinstance(fault, PluginError):
-        return text
+        return text + _call_of_plugin(traceback.extract_tb(fault.__traceback__))
     name = type(fault).__name__
     said = f"{name}: {text}" if text else name
     if isinstance(fault, SyntaxError) and fault.filename:
@@ -47,6 +48,15 @@ def innermost_of_plugin(frames: Sequence[traceback.FrameSummary]) -> traceback.F
     own = [one for one in outside if not one.filename.startswith(_LIBRARIES)
            and not any(folder in one.filename for folder in _INSTALLED)]
     return (own or outside or frames)[-1]
+
+
+def _call_of_plugin(frames: Sequence[traceback.FrameSummary]) -> str:
+    """` (in f, file:line)` of the plugin whose call of the simulator failed; "" for none."""
+    if not frames or not frames[-1].filename.startswith(_OWN_FILES):
+        return ""
+    frame = innermost_of_plugin(frames)
+    return "" if frame.filename.startswith(_OWN_FILES) else (
+        f" (in {frame.name}, {frame.filename}:{frame.lineno})")
 
 
 def shortened(text: str) -> str:

@@ -227,5 +227,6 @@ def plugin_class(where: str) -> Type[Plugin]:
     if found is None:
         raise PluginError(f"{imported.__file__} has no class '{name}'")
     if not (isinstance(found, type) and issubclass(found, Plugin)):
-        raise PluginError(f"{where} is not a class derived from {Plugin.__module__}.Plugin")
+        raise PluginError(f"'{name}' in {imported.__file__} is not a class derived from"
+                          f" {Plugin.__module__}.Plugin")
     return found

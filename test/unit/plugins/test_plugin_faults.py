@@ -85,6 +85,9 @@ def case(tmp_path, monkeypatch, request):
     (LOAD + f"        {LONG}\n", 6, "49999500 more characters"),
     (LOAD + "        def again(): again()\n        again()\n", 6, "RecursionError"),
     (LOAD + "        self.context.every(100.0, None)\n", 0, "TypeError"),
+    (LOAD + "        self.context.link('nowhere')\n", 6, "nowhere"),
+    (HEAD + "    pass\n", 0, ".py has no method 'load'"),
+    ("Bad = 1\n", 0, ".py is not a class derived from"),
     (LOAD + "        def call():\n            exit(1)\n        self.context.every(100.0, call)\n",
      7, "SystemExit: 1"),
 ], ids=itertools.count())

@@ -73,7 +73,7 @@ class Connection:
         except BaseException as fault:  # whatever it is, the node reports it
             if self._forked:
                 os._exit(1)   # the plugin has returned, or raised, in a process that it forked
-            kept = fault if isinstance(fault, (PluginError, RequestError)) else None
+            kept = fault if isinstance(fault, RequestError) else None
             self.send(Raised(self._pop_handle_calls(), kept, describe_fault(fault)))
 
     def _done(self, call: Call) -> Done:
