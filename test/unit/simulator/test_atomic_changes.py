@@ -8,7 +8,9 @@ from inline_engine import InlineEngine
 from kinematic_backend import KinematicBackend
 from test_simulator import arm, box
 
+from my_simulations.description.light import Light
 from my_simulations.description.model import Joint
+from my_simulations.description.plugin import PluginSpec
 from my_simulations.description.world import World
 from my_simulations.engine.api import CommandRefusedError
 from my_simulations.engine.commands import Ping
@@ -16,7 +18,21 @@ from my_simulations.errors import CommandError
 from my_simulations.formats.sdf.writer.entities import write_world
 from my_simulations.geometry import Pose
 from my_simulations.simulator.history import History
-from my_simulations.simulator.operations import AddModel, Group, RemoveModel, SetPoses
+from my_simulations.simulator.operations import (
+    AddLight,
+    AddModel,
+    DriveJoint,
+    EditJoint,
+    EditModel,
+    Group,
+    RemoveLight,
+    RemoveModel,
+    Reset,
+    SetGroups,
+    SetPhysics,
+    SetPoses,
+    SetWorldPlugins,
+)
 from my_simulations.simulator.saving import present_world
 from my_simulations.simulator.simulator import Simulator
 
@@ -60,11 +76,12 @@ def saboteur(sabotage):
 class Case:
     """A running world with a joint between two of its models, a wrench, a pin and a history."""
 
-    def __init__(self):
+    def __init__(self, *joints):
         self.sabotage, self.issues = Sabotage(), []
         backend = saboteur(self.sabotage)
         self.engine = InlineEngine(backend)
-        self.sim = sim = Simulator(World(models=[arm("arm"), box("crate"), box("shelf")]),
+        self.sim = sim = Simulator(World(models=[arm("arm"), box("crate"), box("shelf")],
+                                         lights=[Light("lamp")], joints=list(joints)),
                                    engine_factory=lambda: self.engine, paused=True,
                                    log=self.issues.append)
         sim.start()
@@ -85,6 +102,10 @@ class Case:
                 links.pinned, links.held, sim.clock.step, sim.clock.sim_ns,
                 sim.wrenches.ids, self.history.undo_labels, self.history.redo_labels,
                 self.in_engine())
+
+    def lasting_state(self):
+        """What is saved, time and history; attached and driven models may be built again."""
+        return (*self.state()[:2], *self.state()[6:8], *self.state()[9:11])
 
     def in_engine(self):
         self.sim._session.call(Ping())
@@ -138,6 +159,78 @@ def renamed(case):
     sim.models.edit("crate", replace(sim.models.get("crate"), name="box"))
 
 
+def do(make):
+    """An edit with `make`, which returns an operation for a simulator."""
+    return lambda case: case.history.do("edit", make(case.sim))
+
+
+def copy_with_light(sim):
+    """A copy of a group with a light, as the editor makes an array."""
+    return Group((AddModel(arm("arm_1"), Pose((5.0, 0.0, 0.0))),
+                  AddLight(Light("lamp_1", pose=Pose((5.0, 0.0, 2.0)))),
+                  AddModel(box("crate_1"), Pose((6.0, 0.0, 0.0))),
+                  SetGroups({"arm_1": "row", "lamp_1": "row", "crate_1": "row"}),
+                  SetPoses({"crate_1": Pose((6.5, 0.0, 0.0)), "lamp_1": Pose((5.0, 1.0, 2.0))})))
+
+
+def delete_group(sim):
+    """Delete two models that are joined, and the light of their group."""
+    return Group((RemoveModel("crate"), RemoveLight("lamp"), RemoveModel("arm")))
+
+
+WIND = PluginSpec("wind", "libwind.so", '<plugin name="wind" filename="libwind.so"/>')
+
+
+def plugins_of_world(sim):
+    """Change a plugin of the world and the groups together with the models."""
+    return Group((SetWorldPlugins((WIND,)),
+                  SetGroups({"crate": "pair", "shelf": "pair", "lamp": "pair"}),
+                  AddModel(box("one"), Pose()), RemoveModel("shelf")))
+
+
+def duplicate_link(sim):
+    """Copy a link of a model with its joint."""
+    model = sim.models.get("arm")
+    return EditModel("arm", replace(
+        model, links=[*model.links, replace(model.links[-1], name="tip_1")],
+        joints=[*model.joints, replace(model.joints[-1], name="hinge_1", child="tip_1")]))
+
+
+def rename(sim):
+    return EditModel("crate", replace(sim.models.get("crate"), name="box"))
+
+
+def faster(sim):
+    joint = next(one for one in sim.models.get("arm").joints if one.name == "hinge")
+    return EditJoint("arm", replace(joint, axis=replace(joint.axis, damping=0.5)))
+
+
+def finer_steps(sim):
+    return SetPhysics(replace(sim.physics.settings, max_step_size=0.002), (0.0, 0.0, -1.0))
+
+
+EDITS = {
+    "array": copy_with_light,
+    "delete group": delete_group,
+    "plugins of the world": plugins_of_world,
+    "duplicate link": duplicate_link,
+    "rename of a joined model": rename,
+    "edit joint": faster,
+    "drive joint": lambda sim: DriveJoint("arm::hinge", (2.0,)),
+    "physics": finer_steps,
+    "move all": lambda sim: SetPoses({name: Pose((9.0, n, 1.0)) for n, name in enumerate(
+        ("arm", "lamp", "crate", "shelf"))}),
+    "reset of the editor": lambda sim: Reset("world"),
+}
+
+
+def edited_and_undone(make):
+    def prepare(case):
+        do(make)(case)
+        case.history.undo()
+    return prepare
+
+
 OPERATIONS = {
     "spawn": (nothing, lambda case: case.sim.models.spawn(box("new"))),
     "replace": (nothing, lambda case: case.sim.models.spawn(arm("shelf"), replace=True)),
@@ -164,14 +257,19 @@ OPERATIONS = {
         AddModel(box("one"), Pose()), SetPoses({"arm::tip": Pose((3.0, 0, 0))}),
         RemoveModel("crate"))).apply(case.sim)),
 }
+EDITS_AND_UNDO = {
+    **{name: (nothing, do(make)) for name, make in EDITS.items()},
+    **{f"undo of {name}": (do(make), undo) for name, make in EDITS.items()},
+    **{f"redo of {name}": (edited_and_undone(make), redo) for name, make in EDITS.items()},
+}
 
 
 @pytest.fixture
 def cases():
     made = []
 
-    def make():
-        made.append(Case())
+    def make(*joints):
+        made.append(Case(*joints))
         return made[-1]
 
     yield make
@@ -203,6 +301,38 @@ def test_a_change_that_fails_at_any_command_leaves_the_world_as_it_was(cases, na
             operation(case)
         assert case.sabotage.disarm()
         assert case.state() == before, f"command {number} of {count}"
+        case.check_agreement()
+        case.check_next_spawn()
+
+
+BOLT = Joint("bolt", "fixed", "arm::tip", "crate::link")
+
+
+FAILING = [*((name, "refused") for name in EDITS_AND_UNDO),
+           *((name, "raised") for name in EDITS if name != "move all")]
+"""Poses are set without an answer, so the engine of this test cannot report that it broke."""
+
+
+@pytest.mark.parametrize(("name", "kind"), FAILING)
+def test_an_edit_that_fails_at_any_command_is_not_saved(cases, name, kind):
+    prepare, operation = EDITS_AND_UNDO[name]
+    first = cases(BOLT)
+    prepare(first)
+    count = commands_of(first, operation)
+    assert count > 0
+    for number in range(count):
+        case = cases(BOLT)
+        prepare(case)
+        before = case.lasting_state()
+        case.sabotage.arm(number, kind)
+        try:
+            operation(case)
+        except CommandError as fault:
+            assert "by the test" in str(fault)
+            assert case.sabotage.disarm()
+            assert case.lasting_state() == before, f"command {number} of {count}"
+        case.sim._session.await_posted()   # the engine sets poses later: their faults are logged
+        assert case.sabotage.disarm() or number   # poses may go together with another command
         case.check_agreement()
         case.check_next_spawn()
 
