@@ -134,6 +134,13 @@ def test_a_plugin_that_fails_in_a_case_fails_only_this_case(folder, monkeypatch,
     assert (low["status"], low["issue"]) == ("ok", "")
     assert high["status"] == ("failed" if told else "ok") and told in high["issue"]
 
+    def ids():
+        return {case.id for case in CasePlan(read_study(str(folder / "s.yaml"))[0]).cases()}
+
+    assert ids() == {low["case"], high["case"]}
+    (folder / "ending.py").write_text((folder / "ending.py").read_text() + "# changed\n")
+    assert not ids() & {low["case"], high["case"]}
+
 
 def test_cases_that_crashed_run_again_on_request(folder, capsys):
     def crash(case, attempt, world):

@@ -9,12 +9,14 @@ from importlib import metadata
 from typing import Any, Dict, List, Sequence
 
 from .. import __version__
+from ..description.model import Model
 from ..errors import SimulationError
 from ..formats.reading import read_entity, read_world
 from ..objects.object_documents import Documents, package_finder
 from ..python_api.object_placement import selected_objects
 from ..resources.resolver import Resolver
 from ..resources.world_lookup import find_world
+from .plugin_files import PluginFiles
 
 _XACRO_SECONDS = 60.0
 
@@ -76,34 +78,37 @@ def digest_of_world(world: str, profile: str, objects: Sequence[str], object_lis
                     models: Sequence[str]) -> str:
     """A digest of the contents of all files that a world is read from.
 
-    Included models, meshes and the documents of objects (after xacro) count. A file that cannot
-    be read counts by its fault.
+    Included models, meshes, the documents of objects (after xacro) and plugins of users count. A
+    file that cannot be read counts by its fault.
     """
     resolver = RecordingResolver.from_environment()
     assert isinstance(resolver, RecordingResolver)
     parts: List[object] = []
+    plugins = PluginFiles()
     try:
         path = find_world(world, resolver, "")
         resolver.found[path] = None
-        read_world(path, resolver, seed=0, profile=profile)
+        plugins.add_world(read_world(path, resolver, seed=0, profile=profile).world)
     except SimulationError as fault:
         parts.append(str(fault))
     if objects:
-        parts += _object_texts(objects, object_list, world, resolver)
+        parts += _object_texts(objects, object_list, world, resolver, plugins)
     for model in models:
         resolver.found[model] = None
         try:
             with open(model, "rb") as stream:
-                read_entity(stream.read(), resolver, model)
+                entity, _ = read_entity(stream.read(), resolver, model)
+            plugins.add_models([entity] if isinstance(entity, Model) else [])
         except (OSError, SimulationError) as fault:
             parts.append(str(fault))
     # By base name: a study whose folder was moved, or is mounted elsewhere, keeps its ids.
-    parts += sorted((os.path.basename(name), digest_of_file(name)) for name in resolver.found)
+    parts += sorted((os.path.basename(name), digest_of_file(name))
+                    for name in (*resolver.found, *plugins.paths()))
     return digest_of(parts)
 
 
 def _object_texts(objects: Sequence[str], object_list: str, world: str,
-                  resolver: RecordingResolver) -> List[object]:
+                  resolver: RecordingResolver, plugins: PluginFiles) -> List[object]:
     parts: List[object] = []
     try:
         selection, issues = selected_objects(objects, object_list, world)
@@ -112,7 +117,8 @@ def _object_texts(objects: Sequence[str], object_list: str, world: str,
             for placed in selection.objects:
                 document = documents.of(placed)
                 parts += [placed.name, placed.position, placed.rpy, document.xml]
-                read_entity(document.xml, resolver, document.path)
+                entity, _ = read_entity(document.xml, resolver, document.path)
+                plugins.add_models([entity] if isinstance(entity, Model) else [])
     except SimulationError as fault:
         parts.append(str(fault))
     return parts
