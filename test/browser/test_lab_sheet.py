@@ -157,7 +157,7 @@ def test_a_robot_of_the_launch_file_is_saved_only_when_its_box_is_ticked(editor,
     editor.page.keyboard.press("Control+Shift+s")
     dialog = editor.page.get_by_role("dialog", name="Save World As")
     wait_for(lambda: dialog.get_by_role("checkbox", name="Include robo").is_checked(), "the tick")
-    assert not dialog.get_by_role("checkbox", name="With state").is_checked()
+    assert not dialog.get_by_role("checkbox", name="Include sim time").is_checked()
 
 
 def save_with(editor, node, launched):
@@ -219,7 +219,7 @@ def test_a_world_is_saved_in_a_new_folder(editor, node):
 
 def test_the_middle_of_the_drawn_view_is_where_a_person_points(editor):
     """The tests' own idea of the camera is the page's: a click on the ground lands there."""
-    for place in ((0.0, 0.0), (2.0, 1.0), (-3.0, 2.0)):
+    for place in ((-3.0, 2.0), (2.0, 1.0), (0.0, 0.0)):
         name = editor.place("Box", on_ground(*place))
         x, y = editor.model(name)["pose"][:2]
         assert math.hypot(x - place[0], y - place[1]) < 0.02

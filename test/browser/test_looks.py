@@ -306,12 +306,12 @@ def test_the_view_says_when_its_sky_is_not_that_of_cameras(editor):
         image = Image.open(io.BytesIO(editor.settled_picture(clip))).convert("RGB")
         return image.getpixel((image.width // 3, 4))
 
-    assert switch.inner_text() == "Sky of the editor"
+    assert switch.inner_text() == "Editor colors"
     assert switch.get_attribute("aria-pressed") == "false"
     red, _, blue = corner()
     assert blue > red + 2
     switch.click()
-    editor.until("document.querySelector('.look-switch').textContent === 'Sky as in cameras'",
+    editor.until("document.querySelector('.look-switch').textContent === 'Camera colors'",
                  "what the switch says")
     assert max(corner()) - min(corner()) < 6
     switch.click()   # the page and its world serve other tests

@@ -143,6 +143,20 @@ def test_the_palette_shows_its_headings_and_save_in_a_small_window(browser, node
     assert faults == []
 
 
+def test_the_palette_offers_only_links_until_there_is_one(editor):
+    editor.page.keyboard.press("Control+m")
+    palette = editor.page.get_by_role("region", name="Model editor")
+    palette.get_by_text("it becomes the first link").wait_for()
+    of_a_model = [palette.get_by_role("button", name=name, exact=True)
+                  for name in ("Connect", "Schematic", "Plugins…", "Save", "Save As…")]
+    of_a_model.append(palette.get_by_label("Model name"))
+    assert not any(element.is_visible() for element in of_a_model)
+    add_link(editor, "box", (0.0, 0.0, 0.0))
+    for element in of_a_model:
+        element.wait_for(state="visible")
+    assert not palette.get_by_text("it becomes the first link").is_visible()
+
+
 def test_a_link_is_moved_by_its_handles_and_back_by_undo(editor):
     editor.page.keyboard.press("Control+m")
     link = add_link(editor, "box", (0.0, 0.0, 0.0))

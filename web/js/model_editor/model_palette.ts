@@ -33,22 +33,23 @@ export class Palette {
       'aria-label': 'Exit model editor', title: 'Exit (Ctrl+M)', onclick: () => editor.close()}, icon('close')));
     this.#element = h('section', {class: 'model-palette', 'aria-label': 'Model editor'},
       header,
-      h('label', {class: 'model-name'}, 'Name', this.#name),
-      h('div', {class: 'flags'}, this.#flag('static', 'Static'), this.#flag('allow_auto_disable', 'Auto disable')),
+      this.#start,
+      this.#ofModel(h('label', {class: 'model-name'}, 'Name', this.#name)),
+      this.#ofModel(h('div', {class: 'flags'}, this.#flag('static', 'Static'), this.#flag('allow_auto_disable', 'Auto disable'))),
       h('h3', {text: 'Add link'}),
       h('div', {class: 'tools'}, ...SOLID_SHAPES.map((shape) =>
         button(capital(shape), () => this.#place(shape), {'aria-label': `Link: ${shape}`})),
       button('Mesh…', () => this.#addMesh()),
       button('SVG…', () => this.#addSvg(), {title: 'Extrude the outline of a drawing'}), button('Model…', () => this.#nest())),
-      h('h3', {text: 'Joints'}),
-      h('div', {class: 'row'}, this.#type, this.#connect),
-      button('Schematic', () => this.schematic.toggle(), {title: 'Links and joints as a diagram (Ctrl+E)'}),
+      this.#ofModel(h('h3', {text: 'Joints'})),
+      this.#ofModel(h('div', {class: 'row'}, this.#type, this.#connect)),
+      this.#ofModel(button('Schematic', () => this.schematic.toggle(), {title: 'Links and joints as a diagram (Ctrl+E)'})),
       this.#hint, this.#joints, this.#parts,
-      h('h3', {text: 'Model'}),
-      h('div', {class: 'tools'}, button('Plugins…', () => this.#plugins()),
-        button('Inertia…', () => this.#inertia(this.model?.name), {'aria-label': 'Inertia of all links'})),
-      h('div', {class: 'tools'}, button('Save', () => editor.save(), {class: 'primary', title: 'Save (Ctrl+S)'}),
-        button('Save As…', () => editor.save(true))));
+      this.#ofModel(h('h3', {text: 'Model'})),
+      this.#ofModel(h('div', {class: 'tools'}, button('Plugins…', () => this.#plugins()),
+        button('Inertia…', () => this.#inertia(this.model?.name), {'aria-label': 'Inertia of all links'}))),
+      this.#ofModel(h('div', {class: 'tools'}, button('Save', () => editor.save(), {class: 'primary', title: 'Save (Ctrl+S)'}),
+        button('Save As…', () => editor.save(true)))));
     movable(this.#element, header);
     // The view's mouse and keys are not for the palette.
     for (const event of ['pointerdown', 'wheel', 'dblclick']) {
@@ -66,12 +67,20 @@ export class Palette {
   #hint = h('p', {class: 'hint', role: 'status'});
   #joints = h('ul', {class: 'model-joints', 'aria-label': 'Joints of the model'});
   #parts = h('div', {class: 'model-parts'});
+  #start = h('p', {class: 'hint', text: 'Choose a shape and click in the view: it becomes the first link.'});
+  /** What is of use only once there is a model. */
+  #later: HTMLElement[] = [];
 
   get model() { return this.editor.model; }
 
   remove() {
     this.#element.remove();
     this.schematic.remove();
+  }
+
+  #ofModel(element: HTMLElement) {
+    this.#later.push(element);
+    return element;
   }
 
   #flag(path: 'static'|'allow_auto_disable', title: string) {
@@ -88,13 +97,13 @@ export class Palette {
     const {model} = this;
     const {connect} = this.editor;
     if (document.activeElement !== this.#name) this.#name.value = model?.name ?? '';
-    this.#name.disabled = !model;
+    this.#start.hidden = Boolean(model);
+    for (const element of this.#later) element.hidden = !model;
     for (const {path, input} of this.#flags) {
-      input.disabled = !model;
       input.checked = Boolean(model?.[path]);
     }
     this.#connect.setAttribute('aria-pressed', String(connect.active));
-    this.#hint.textContent = connect.hint || (model ? '' : 'Add a first link: it follows the mouse.');
+    this.#hint.textContent = connect.hint;
     const world = button('World as parent', () => connect.fromWorld(), {class: 'plain'});
     if (connect.active && model) this.#hint.append(' ', this.#linkList(model));
     if (connect.active && connect.parent === null) this.#hint.append(' ', world);
@@ -264,7 +273,7 @@ export class Palette {
       text.scrollTop = text.scrollHeight;
     }}, h('option', {value: '', text: 'Add…'}), ...PLUGIN_TITLES.map((title) => h('option', {value: title, text: title})));
     return new Dialog({title: `Plugins of ${model.name}`, name: 'model-plugins',
-      content: [h('p', {class: 'soft', text: '<plugin> elements as in an SDF file. Add fills in the joints of the model.'}),
+      content: [h('p', {class: 'soft', text: 'The plugins of the model, as <plugin> elements of SDF. Add… writes one with the joints of the model.'}),
         add, text],
       buttons: [{title: 'Cancel'}, {title: 'OK', primary: true, run: () =>
         this.#asked({kind: 'set_plugins', model: model.name, text: text.value})}]}).open();

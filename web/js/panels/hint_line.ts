@@ -10,7 +10,7 @@ export type Hints = [string, string][];
 
 const LOOKING: Hints = [
   ['drag', 'pan'], ['Shift+drag', 'turn'], ['wheel', 'zoom'], ['click', 'select'], ['T R S', 'move, rotate, scale'],
-  ['Space', 'play'], ['Ctrl+B', 'draw a building'], ['Ctrl+K', 'all commands'], ['F1', 'all keys'],
+  ['Space', 'play'], ['Ctrl+B', 'draw a building'], ['Ctrl+K', 'commands'], ['F1', 'keys'],
 ];
 
 const TOUCH: Hints = [

@@ -15,9 +15,9 @@ export function mountLookSwitch(parent: HTMLElement, {store, actions}: {store: S
     const scene = store.document?.scene;
     const asCameras = store.overlays.scene.cameraColors;
     button.hidden = !scene || !(leavesBackground(scene) || leavesAmbient(scene));
-    button.textContent = asCameras ? 'Sky as in cameras' : 'Sky of the editor';
-    button.title = asCameras ? 'Show the sky and the soft light of the editor'
-      : 'Only the editor shows this sky and this soft light; cameras see the background and the light of the world. Click to show these.';
+    button.textContent = asCameras ? 'Camera colors' : 'Editor colors';
+    button.title = asCameras ? 'Shown: the background and the light that cameras see. Click for the sky and the soft light of the editor.'
+      : 'Shown: a sky and a soft light that only the editor has. Click for the background and the light that cameras see.';
     button.setAttribute('aria-pressed', String(asCameras));
   };
   for (const event of ['document', 'entity', 'overlays'] as const) store.listen(event, show);

@@ -326,7 +326,7 @@ class SaveChoices {
         'label',
         {},
         this.state,
-        'With state: sim time and velocities, instead of a start at time 0',
+        'Include sim time and velocities; otherwise the world starts at time 0, at rest',
       ),
     );
   }
