@@ -254,3 +254,34 @@ def test_a_light_base_with_a_tall_mast_drives_upright(lab: Lab, laws: Laws, mu: 
         laws.at_most("a light base with a tall mast drives: tilt, rad", 2 * math.hypot(x, y), 0.05)
     laws.near("a light base with a tall mast drives for 2 s: way, m", lab.pose(base).position[0],
               0.02 * sum(min(0.02 * n, 0.2) for n in range(1, 101)), rel=0.03)
+
+
+def _arm_on_a_foot() -> Model:
+    """A cylinder that turns in the air, on a fixed foot that touches the ground."""
+    lying = Pose((0, 0, 0), LYING)
+    links = [Link("foot", Pose((0, 0, 0.1)), inertial_of_box(1, 0.2, 0.2, 0.2),
+                  [Collision("c", Box((0.2, 0.2, 0.2)))]),
+             Link("w0", Pose((0, 0, 0.5)), Inertial(0.5, lying, 1e-3, 0, 0, 1e-3, 0, 1e-3),
+                  [Collision("c", Cylinder(0.05, 0.1), lying, surface=Surface(mu=1.0))])]
+    return Model("arm", links=links, joints=[
+        Joint("stand", "fixed", "world", "foot"),
+        Joint("j0", "revolute", "foot", "w0", axis=JointAxis((0, 1, 0)))])
+
+
+def test_a_link_of_a_fixed_arm_that_touches_nothing_is_no_wheel(
+        lab: Lab, monkeypatch: pytest.MonkeyPatch):
+    lab.load(ground())
+    arm = lab.load(_arm_on_a_foot())
+    lab.steps(100)
+    taken: List[object] = []
+    change = pybullet.changeDynamics
+
+    def changed(*arguments: object, **values: object) -> None:
+        taken.extend(value for name, value in values.items() if name == "anisotropicFriction")
+        change(*arguments, **values)
+
+    monkeypatch.setattr(pybullet, "changeDynamics", changed)
+    _motors(lab, arm, [5.0])
+    lab.steps(50)
+    assert abs(lab.joint(arm, "j0")[1] - 5.0) < 0.01
+    assert not taken

@@ -90,7 +90,8 @@ class HelperSet:
         self._level = LevelSeams(lambda: self._residual.fast, self._parameters)
         self.wheel_friction = WheelFriction(
             self._holding, lambda row: self.motors.rate_of(row),
-            lambda row, step: self.forces.effort_on(row, step))
+            lambda row, step: self.forces.effort_on(row, step),
+            lambda uid: self._rolling.drops_points_of(uid))
         self.forces = Forces(self._waker_for(BodyEvent.FORCE_APPLIED),
                              lambda rows: self.motors.yield_to(rows),
                              lambda body, axis: self.motors.restore(body, axis),

@@ -176,6 +176,10 @@ class RollingContacts(StepHelper):
         """Whether a rigid body rolls on its side."""
         return (uid, BASE) in self._rolling
 
+    def drops_points_of(self, uid: int) -> bool:
+        """Whether a link of a body loses its contact points before each step."""
+        return any(key[0] == uid for key in self._rolling)
+
     @property
     def knows_seams(self) -> bool:
         """Whether something may roll on triangles."""

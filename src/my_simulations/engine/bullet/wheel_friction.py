@@ -90,14 +90,17 @@ class WheelFriction(StepHelper):
         rate: returns the rate, rad/s, to which it drives the joint.
         effort: returns the effort, N m, of loops, dampers and commands on a joint row in the step
             that begins at a count.
+        drops_points: returns whether links of a body have lost their contact points by now.
     """
 
     # A new force or motor target does not end the sliding of a wheel.
     events = frozenset({BodyEvent.ACTIVATED, BodyEvent.MOTOR_TARGET_CHANGED})
 
     def __init__(self, holding: Callable[[int], float], rate: Callable[[int], float],
-                 effort: Callable[[int, int], float]) -> None:
+                 effort: Callable[[int, int], float], drops_points: Callable[[int], bool],
+                 ) -> None:
         self._holding, self._rate, self._effort = holding, rate, effort
+        self._drops_points = drops_points
         self._commanded: Set[int] = set()
         self._links: Dict[LinkKey, SurfaceLink] = {}
         self._wheels: Dict[int, Dict[int, SurfaceLink]] = {}   # links that can slide, by body
@@ -272,9 +275,13 @@ class WheelFriction(StepHelper):
     def _begin(self, uid: int, gain: float) -> None:
         """Take the wheels of a body if one cannot follow its motor in a step without sliding.
 
+        No link of a fixed arm is a wheel while its joints move nothing that touches something.
         `gain`: speed that gravity gives in a step, m/s.
         """
         wheels = self._wheels[uid]
+        if uid in self._fixed and not self._drops_points(uid) and not any(
+                contact[LINK] in wheels for contact in pybullet.getContactPoints(bodyA=uid)):
+            return
         if any(link.axle is not None and abs(
                 self._rate(link.joint) - pybullet.getJointState(uid, index)[1]) * link.radius
                 > min(1.0, link.mus[0]) * gain for index, link in wheels.items()):
