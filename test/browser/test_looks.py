@@ -171,6 +171,28 @@ def test_of_two_faces_at_one_place_the_one_seen_from_its_front_is_drawn(node, ed
         assert all(red > 90 and blue < 60 for red, _, blue in middle(image))
 
 
+def wall(name, size, place, paint):
+    shape = f"<geometry><box><size>{size}</size></box></geometry>"
+    return (f"<link name='{name}'><pose>{place} 0 0 0</pose><visual name='v'>{shape}<material>"
+            f"<ambient>{paint}</ambient><diffuse>{paint}</diffuse></material></visual></link>")
+
+
+def test_faces_of_two_materials_at_one_place_have_no_stripes(editor):
+    # The end of one wall is in the plane of the other one's face.
+    sdf = ("<sdf version='1.6'><model name='tee'><static>true</static>" +
+           wall("along", "4 0.6 2.5", "0 0 1.25", "1 0 0 1") +
+           wall("across", "0.6 3.3 2.5", "0 1.35 1.25", "0 0 1 1") + "</model></sdf>")
+    editor.get(f"editor.request('edit', {{op: {{kind: 'insert', sdf: {sdf!r}}}}})")
+    editor.until("editor.store.model('tee')", "the walls")
+    x, y = editor.pixel((0.0, -0.3, 1.0))
+    data = editor.settled_picture({"x": x - 12, "y": y - 40, "width": 24, "height": 80})
+    pixels = np.asarray(Image.open(io.BytesIO(data)).convert("RGB")).reshape(-1, 3)
+    red, blue = (int((pixels[:, part] > 90).sum()) for part in (0, 2))
+    editor.get("editor.request('edit', {op: {kind: 'delete', names: ['tee']}})")
+    assert red + blue == len(pixels)
+    assert min(red, blue) <= 0.01 * len(pixels)
+
+
 def test_what_glows_has_the_colors_of_its_picture(node, editor):
     glowing = SAMPLED + lambert("<texture texture='r' texcoord='UV'/>",
                                 f"<emission>{color(1, 1, 1)}</emission>")

@@ -145,7 +145,7 @@ def test_a_page_that_is_loaded_again_shows_no_cards_of_old_issues(launch, browse
     editor.button("Messages").click()
     editor.page.get_by_role("dialog", name="All messages").get_by_text("no_such").wait_for()
     # What comes later has a card again.
-    editor.get("editor.request('open', {path: %r, discard: true})" % str(world))
+    editor.get(f"editor.request('open', {{path: {str(world)!r}, discard: true}})")
     cards.filter(has_text="no_such").wait_for()
     assert editor.faults == []
     editor.close()

@@ -23,6 +23,11 @@ export type MaterialUse = {doubleSided?: boolean, pushed?: boolean, endless?: bo
 
 const DULL = [0, 0, 0, 1];
 
+/** Faces of as many materials at one place are drawn without stripes. */
+const DEPTHS = 4;
+/** Steps of the depth buffer between them; all of them are less than those of `frontsFirst`. */
+const DEPTH_STEPS = 2;
+
 export interface Variant {
   /** times the material's own, 0..1 */
   opacity?: number;
@@ -35,6 +40,8 @@ export class Materials {
   #cache: Map<string, ThreeMaterial> = new Map();
   #textures: Map<string, Texture|null> = new Map();
   #manager;
+  /** Of the last material, as a number of levels behind the nearest. */
+  #depth = 0;
   /** Colour in which endless grounds end, as the screen shows it. */
   #distance = {value: new Vector3(0.7, 0.7, 0.7)};
 
@@ -86,7 +93,18 @@ export class Materials {
     const made = this.#plain(material, variant, surface);
     if (surface.endless) this.#fadeRim(made);
     else if (surface.doubleSided) frontsFirst(made);
+    if (!surface.pushed) this.#separate(made);
     return made;
+  }
+
+  /**
+   * Gives the next material another depth, so that one of two faces at the same place is drawn, such
+   * as those at the junction of two walls. Both would be drawn in stripes otherwise.
+   */
+  #separate(made: ThreeMaterial) {
+    this.#depth = (this.#depth + 1) % DEPTHS;
+    made.polygonOffset = true;
+    made.polygonOffsetUnits = DEPTH_STEPS * this.#depth;
   }
 
   /** Lets a plane end in the colour of what is behind it, from half of the way to its rim on. */
