@@ -6,7 +6,7 @@ from types import SimpleNamespace
 
 import pytest
 
-from my_simulations.ros.plugins import ros_graph
+from my_simulations.ros.plugins import deferred_closing, ros_graph
 from my_simulations.ros.plugins.deferred_closing import DeferredClosing
 from my_simulations.ros.plugins.ros_graph import RosGraph
 
@@ -91,3 +91,17 @@ def test_a_call_that_is_under_way_is_waited_for():
     go.set()
     waiting.join(SECONDS)
     assert done == ["slow", "used again"]
+
+
+def test_a_removal_that_fails_is_logged_and_the_others_go_on(monkeypatch):
+    logged, done = [], threading.Event()
+    monkeypatch.setattr(deferred_closing.rospy, "logerr", lambda *words: logged.append(words))
+    closing = DeferredClosing()
+
+    def fail():
+        raise ValueError("no answer")
+
+    closing.put("/a", fail)
+    closing.put("/b", done.set)
+    assert done.wait(SECONDS)
+    assert [words[1] for words in logged] == ["/a"]

@@ -8,6 +8,8 @@ from __future__ import annotations
 import threading
 from typing import Callable, Dict, List
 
+import rospy
+
 _PAUSE_S = 0.001   # between two removals: rospy holds a lock in each that others need as well
 
 
@@ -44,11 +46,12 @@ class DeferredClosing:
                     return
                 self._current = next(iter(self._waiting))
                 calls = self._waiting.pop(self._current)
-            try:
-                for call in calls:
+            for call in calls:
+                try:
                     call()
-            finally:
-                with self._changed:
-                    self._current = ""
-                    self._changed.notify_all()
-                    self._changed.wait(_PAUSE_S)
+                except Exception as fault:  # a thread that ended here would remove nothing more
+                    rospy.logerr("%s was not removed from the ROS graph: %r", self._current, fault)
+            with self._changed:
+                self._current = ""
+                self._changed.notify_all()
+                self._changed.wait(_PAUSE_S)
