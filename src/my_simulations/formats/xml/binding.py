@@ -219,13 +219,12 @@ class _Filler:
         parent = element if is_attribute else element.getparent()
         inside = parent.tag if parent is not None else self._table.name
         hint = closest(name, known)
-        if is_attribute:
-            code, what = "unknown-attribute", f"attribute {name}"
-        else:
-            code, what = "unknown-element", f"element <{name}>"
+        if not is_attribute:
             hint = hint or self._table.hint.format(name=name)
-        self._source.warn(code, f"{what} is unknown in <{inside}>; it is kept without effect",
-                          element, hint)
+        what = f"attribute {name}" if is_attribute else f"element <{name}>"
+        self._source.warn("unknown-attribute" if is_attribute else "unknown-element",
+                          f"{what} is unknown in <{inside}>; it is kept without effect", element,
+                          hint)
 
 
 def has_prefix(xml: str) -> bool:
