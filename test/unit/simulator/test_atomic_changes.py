@@ -17,11 +17,11 @@ from my_simulations.engine.commands import Ping
 from my_simulations.errors import CommandError
 from my_simulations.formats.sdf.writer.entities import write_world
 from my_simulations.geometry import Pose
+from my_simulations.simulator.effort_operations import DriveJoint
 from my_simulations.simulator.history import History
 from my_simulations.simulator.operations import (
     AddLight,
     AddModel,
-    DriveJoint,
     EditJoint,
     EditModel,
     Group,
