@@ -2,7 +2,9 @@
 from __future__ import annotations
 
 import math
+from typing import List
 
+import pybullet
 import pytest
 from conftest import Lab, arm, box, ground, inertial_of_box
 
@@ -64,6 +66,25 @@ def test_a_motor_that_cannot_overcome_the_damper_turns_more_slowly(lab: Lab):
     lab.apply(ClearTimedForces((1,)))
     lab.seconds(0.5)
     assert lab.joint(model)[1] == pytest.approx(2.0, rel=1e-3)
+
+
+def test_a_damper_that_a_motor_cancels_takes_no_time_until_the_motor_changes(
+        lab: Lab, monkeypatch: pytest.MonkeyPatch):
+    model, row = wheel(lab, damping=500.0)   # Bullet itself computes much weaker ones
+    lab.apply(SetMotors((JointMotor(row, 2.0, 2000.0),)))
+    lab.steps(50)
+    looks: List[int] = []
+    states = pybullet.getJointStates
+    monkeypatch.setattr(pybullet, "getJointStates",
+                        lambda uid, rows: looks.append(lab.step) or states(uid, rows))
+    lab.steps(80)
+    assert 0 < len(looks) <= 20
+    lab.apply(SetMotors((JointMotor(row, 3.0, 1200.0),)))   # 1500 N m are needed
+    looks.clear()
+    lab.steps(80)
+    assert len(looks) >= 80
+    lab.seconds(2.0)
+    assert lab.joint(model)[1] == pytest.approx(1200.0 / 500.0, rel=0.01)
 
 
 def test_light_wheels_with_strong_dampers_keep_the_rate_of_their_motors(lab: Lab):

@@ -47,6 +47,7 @@ class DamperMemory:
         given: rad/s^2 or m/s^2, the accelerations by springs and dampers in the last step.
         efforts: N m or N, of springs and dampers in the last step.
         spent: N m or N, by the motors of the axes in the last step.
+        cancelled: the motors cancelled all dampers at the last check.
     """
 
     other: Tuple[float, ...]
@@ -54,6 +55,7 @@ class DamperMemory:
     given: Tuple[float, ...]
     efforts: Tuple[float, ...]
     spent: Tuple[float, ...]
+    cancelled: bool = False
 
 
 @dataclass(frozen=True)

@@ -46,7 +46,7 @@ class Forces(StepHelper):
     """
 
     events = frozenset((BodyEvent.STATE_SET, BodyEvent.STATE_REPAIRED, BodyEvent.FIXED_AT_REST,
-                        BodyEvent.RELEASED))
+                        BodyEvent.RELEASED, BodyEvent.MOTOR_TARGET_CHANGED))
 
     def __init__(self, wake: Callable[[List[Body]], None],
                  loops_changed: Callable[[Set[int]], None] = lambda rows: None,
@@ -106,6 +106,9 @@ class Forces(StepHelper):
                 self._exchange_dampers(body, self._implicit, self._resting)
         elif event is BodyEvent.RELEASED:
             self._exchange_dampers(body, self._resting, self._implicit)
+        elif event is BodyEvent.MOTOR_TARGET_CHANGED:
+            if body.uid in self._implicit:
+                self._implicit[body.uid].is_cancelled = False
         else:
             if body.uid in self._implicit:
                 self._implicit[body.uid].reset_after_jump()
@@ -205,9 +208,10 @@ class Forces(StepHelper):
         return {self._target(force).uid for force in self._acting.values()} | self.servos.moving
 
     def due(self, step: int) -> int:
-        """Each step while any force acts, otherwise `FAR`."""
-        return step if (self._timed or self._weightless or self._implicit
-                        or not self.servos.idle) else FAR
+        """Each step while any force acts, otherwise the next check of cancelled dampers."""
+        if self._timed or self._weightless or not self.servos.idle:
+            return step
+        return min((axes.due(step) for axes in self._implicit.values()), default=FAR)
 
     def before(self, step: int, dt: float, gravity: Vec3) -> None:
         """Apply all forces of the step that begins at count `step`."""
@@ -225,7 +229,8 @@ class Forces(StepHelper):
                             | self._implicit.keys() if efforts or self._implicit else _NOBODY,
                             step)
         for implicit in self._implicit.values():
-            implicit.add_to(efforts, self._motor_of)
+            if implicit.due(step) == step:
+                implicit.add_to(efforts, self._motor_of)
         if efforts:
             self._apply_efforts(efforts)
         for body, part in self._weightless.values():

@@ -15,6 +15,8 @@ enter a directly; the rest of a is estimated from the steps before.
 A motor that keeps its rate cancels the damper of its axis. If both act, the solver must cancel them
 in each step, and does not converge within its iterations: wheels of 10 g with dampers of
 1 N m s/rad turned 0.6 and 0 % too fast. So such a damper acts only if the motor cannot overcome it.
+While the motors of a body cancel all its dampers, this is checked again only after a new motor
+target and every few steps; the dampers take no time in between.
 """
 from __future__ import annotations
 
@@ -28,6 +30,7 @@ from ...description.model import JointAxis
 from ..run_state import DamperMemory
 from .bodies import Axis, Body
 from .mass_matrix import MassMatrix
+from .step_helper import next_multiple
 
 _TRUST = 0.5       # weight of the newest estimate of the acceleration by other forces
 _FAR = 0.05        # rad or m: after this motion of an axis the mobility is recomputed
@@ -35,6 +38,8 @@ _EVERY = 100       # steps after which it is recomputed anyway, as other axes ca
 _STIFF = 10.0      # s is this times the spring's (w dt)^2, at most 1
 _MOST_DECAYS = 50.0
 _AT_RATE = 0.02    # of the rate of a motor: within it, the motor keeps the rate
+_SLIGHT = 1e-5     # of a motor's largest effort: a damper of a stalled axis does not matter
+_CHECKED = 8       # steps between two checks whether motors still cancel all dampers
 
 Motor = Optional[Tuple[float, float]]
 """The rate of a motor, rad/s or m/s, and its largest effort, N m or N; None without a motor."""
@@ -45,6 +50,7 @@ class ImplicitAxes:
 
     Attributes:
         has_springs: whether there are springs among them.
+        is_cancelled: motors cancelled all dampers at the last check, and have the same targets.
     """
 
     def __init__(self, body: Body, axes: List[Axis], specs: List[JointAxis], dt: float) -> None:
@@ -72,6 +78,7 @@ class ImplicitAxes:
         self._given: List[float] = []
         self._efforts = [0.0] * len(self._rows)
         self._spent: Optional[List[float]] = None   # by motors, read before a save
+        self.is_cancelled = False
 
     @property
     def first_row(self) -> int:
@@ -83,13 +90,19 @@ class ImplicitAxes:
         states = pybullet.getJointStates(self._body.uid, self._indices)
         return DamperMemory(tuple(self._other), None if self._rates is None else tuple(self._rates),
                             tuple(self._given), tuple(self._efforts),
-                            tuple(self._spent or [state[3] for state in states]))
+                            tuple(self._spent or [state[3] for state in states]),
+                            self.is_cancelled)
 
     def resume(self, memory: DamperMemory) -> None:
         """Continue from a saved state."""
         self._other, self._given = list(memory.other), list(memory.given)
         self._rates = None if memory.rates is None else list(memory.rates)
         self._efforts, self._spent = list(memory.efforts), list(memory.spent)
+        self.is_cancelled = memory.cancelled
+
+    def due(self, step: int) -> int:
+        """Return the first step, `step` or later, in which `add_to` must be called."""
+        return next_multiple(step, _CHECKED) if self.is_cancelled else step
 
     def add_to(self, efforts: Dict[int, float], motor_of: Callable[[int], Motor]) -> None:
         """Add the efforts of the next step, N m or N by row, to the other efforts.
@@ -98,6 +111,11 @@ class ImplicitAxes:
         """
         states = pybullet.getJointStates(self._body.uid, self._indices)
         positions, rates = [state[0] for state in states], [state[1] for state in states]
+        spent, self._spent = self._spent or [state[3] for state in states], None
+        self.is_cancelled = not self._acting(motor_of, rates, spent)
+        if self.is_cancelled:
+            self._rates, self._efforts = None, [0.0] * len(rates)   # the estimate begins again
+            return
         if self._rates is not None:
             # Acceleration by all other forces: (w - w_before) / dt - given, smoothed.
             kept, per_rate, trust = self._others
@@ -112,16 +130,26 @@ class ImplicitAxes:
             self.reset_after_jump()
             return
         self._rates, self._given = rates, answer[len(rates):]
-        spent = self._spent or [state[3] for state in states]
         cancelled = [n for n, row in enumerate(self._rows)
                      if self._cancels(n, motor_of(row), rates[n], spent[n])]
-        self._efforts, self._spent = answer[:len(rates)], None
+        self._efforts = answer[:len(rates)]
         if cancelled:
             for n in cancelled:
                 self._efforts[n] = 0.0
             self._given = (self._ease @ np.add(self._efforts, known)).tolist()
         for row, before, effort in zip(self._rows, known, self._efforts):
             efforts[row] = before + effort
+
+    def _acting(self, motor_of: Callable[[int], Motor], rates: List[float],
+                spent: List[float]) -> bool:
+        """Whether any spring or damper changes the motion."""
+        for n, row in enumerate(self._rows):
+            motor = motor_of(row)
+            if motor is None or self._stiffness[n] or not (
+                    abs(self._damping[n] * rates[n]) <= _SLIGHT * motor[1]
+                    or self._cancels(n, motor, rates[n], spent[n])):
+                return True
+        return False
 
     def _cancels(self, n: int, motor: Motor, rate: float, spent: float) -> bool:
         """Whether a motor keeps its rate against the damper of an axis.

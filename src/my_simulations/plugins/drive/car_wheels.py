@@ -12,8 +12,8 @@ def apply_torque(wheel: Joint, torque: float, friction: float = 0.0,
                  most_rate: float = FASTEST) -> None:
     """Apply a torque against Coulomb friction, N m, until the next call.
 
-    The joint's motor does both: what the torque has more than the friction accelerates the wheel,
-    to `most_rate` (rad/s); what the friction has more than the torque stops it.
+    The joint's motor does both. A torque above the friction accelerates the wheel, up to
+    `most_rate` (rad/s); a friction above the torque stops it.
     """
     friction += wheel.spec.axis.friction if wheel.spec.axis is not None else 0.0
     if torque * wheel.velocity < 0.0:
