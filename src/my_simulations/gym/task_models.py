@@ -8,7 +8,7 @@ Size = Sequence[float]
 
 def world_file(accurate_friction: bool) -> str:
     """Return the world of tasks with wheels; with False, the one that takes the least time."""
-    return "worlds/empty.world" if accurate_friction else "learning.world"
+    return "worlds/empty.world" if accurate_friction else "worlds/learning.world"
 
 _MODEL = ('<sdf version="1.6"><model name="{name}">{static}<link name="link">{parts}</link></model>'
           '</sdf>')

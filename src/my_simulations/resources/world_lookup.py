@@ -13,9 +13,10 @@ ENDINGS = (".world", ".sdf")
 
 SHIPPED = (
     "empty_world.world", "exercises.world", "house.world", "lab_course.world", "lab_room.world",
-    "learning.world", "street.world", "warehouse.world",
+    "street.world", "warehouse.world",
     "worlds/elevator_ros.world", "worlds/empty.world", "worlds/gazebo_ros_range.world",
-    "worlds/mud.world", "worlds/rubble.world", "worlds/shapes.world", "worlds/willowgarage.world",
+    "worlds/learning.world", "worlds/mud.world", "worlds/rubble.world", "worlds/shapes.world",
+    "worlds/willowgarage.world",
 )
 """The worlds of this package, in its folder `world`; all other files there are the user's."""
 
