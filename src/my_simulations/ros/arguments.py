@@ -25,9 +25,18 @@ class Parser(ArgumentParser):
     def parse_args(self, args: Any = None, namespace: Any = None) -> Any:
         """Parse; print usage, error and suggestion, and exit with status 2 for unknown options."""
         found, unknown = self.parse_known_args(args, namespace)
+        self._refuse(unknown)
+        return found
+
+    def parse_intermixed_args(self, args: Any = None, namespace: Any = None) -> Any:
+        """As `parse_args`, with options between arguments."""
+        found, unknown = self.parse_known_intermixed_args(args, namespace)
+        self._refuse(unknown)
+        return found
+
+    def _refuse(self, unknown: List[str]) -> None:
         if unknown:
             self.error(f"unrecognized arguments: {' '.join(unknown)}{self._suggestion(unknown)}")
-        return found
 
     def _suggestion(self, unknown: List[str]) -> str:
         known: List[str] = [option for action in self._actions
