@@ -155,8 +155,8 @@ class Control(unittest.TestCase):
         self.assertFalse(self.unload("elbow").ok)  # while it runs
         self.assertTrue(self.switch(["trajectory"], ["elbow"], STRICT, False, 0.0).ok)
         self.assertTrue(self.unload("elbow").ok)
-        topics = [name for name, _ in rospy.get_published_topics("/arm/elbow")]
-        self.assertNotIn("/arm/elbow/state", topics)
+        wait_for(lambda: not any(name == "/arm/elbow/state" for name, _ in
+                                 rospy.get_published_topics("/arm/elbow")), "the end of its topic")
 
     def test_a_reset_of_the_world_starts_controllers_anew(self):
         self.gazebo.reset_simulation()

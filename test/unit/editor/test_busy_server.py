@@ -111,7 +111,7 @@ def test_a_world_that_cannot_be_opened_leaves_the_old_one_editable(case):
 
 def test_other_pages_are_greeted_while_an_edit_takes_long(case, monkeypatch):
     made = case(box("old"))
-    gate = Gate(monkeypatch, Models, "delete")
+    gate = Gate(monkeypatch, Models, "delete_all")
 
     async def ask(browser):
         try:
@@ -132,7 +132,7 @@ def test_other_pages_are_greeted_while_an_edit_takes_long(case, monkeypatch):
 
 def test_a_flood_of_requests_is_refused_beyond_a_limit_and_others_are_answered(case, monkeypatch):
     made = case(box("old"))
-    gate = Gate(monkeypatch, Models, "delete")
+    gate = Gate(monkeypatch, Models, "delete_all")
     count = 4000
 
     async def ask(browser):
