@@ -141,6 +141,7 @@ def test_an_engine_without_memory_is_replaced_and_loses_nothing(record, monkeypa
 
 WALL_CLOCK = {
     "editor/library/autosave.py": "when changes were kept, for people, and how long they are kept",
+    "editor/transport/hub.py": "when an issue was shown, for people",
     "engine/convex/cache.py": "age of unfinished files",
 }
 """Modules that ask for the time of day, and what for: nothing that runs depends on it."""

@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import asyncio
+import time
 
 import aiohttp
 import pytest
@@ -142,6 +143,20 @@ def test_time_stands_and_goes_on_request(case):
         for steps in (0, -1, 10 ** 9):
             with pytest.raises(Refused):
                 await browser.ask("step", steps=steps)
+
+    made.browse(run)
+
+
+def test_the_times_of_issues_grow_also_if_the_clock_is_set_back(case, monkeypatch):
+    made = case()
+    monkeypatch.setattr(time, "time", iter(range(10 ** 9, 0, -1)).__next__)
+
+    async def run(browser):
+        for code in ("first", "second"):
+            made.server.show_issue(error(code, "text"))
+        await browser.until(lambda: sum(push["type"] == "issue" for push in browser.pushes) == 2)
+        first, second = (push["time"] for push in browser.pushes if push["type"] == "issue")
+        assert 0 < first < second
 
     made.browse(run)
 

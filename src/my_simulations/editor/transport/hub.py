@@ -23,6 +23,7 @@ from .pose_reader import PoseReader
 from .protocol import Protocol
 
 _MOST_ISSUES = 100
+_TICK = 1e-3           # s between the times of two issues, at least
 _DEMAND = "editor"
 _IDLE_S = 1.0
 _IDLE_PERIOD_S = 0.2
@@ -67,6 +68,7 @@ class Hub:
         self._states_hz = 0.0
         self._stats_due = 0.0
         self._issues: Deque[Dict[str, Any]] = deque(maxlen=_MOST_ISSUES)
+        self._issue_time = 0.0
         self._poses: Optional[Poses] = None
         self._reader = PoseReader(simulator)
 
@@ -127,8 +129,10 @@ class Hub:
                             if number in self.clients])
 
     def _show_issue(self, issue: Issue) -> None:
-        # A page that is loaded again compares the time with that of the last issue it has shown.
-        message = {"type": "issue", "issue": issue_document(issue), "time": time.time()}
+        # A page that is loaded again compares the time with that of the last issue it has shown: it
+        # must grow, whatever the clock does.
+        self._issue_time = max(time.time(), self._issue_time + _TICK)
+        message = {"type": "issue", "issue": issue_document(issue), "time": self._issue_time}
         self._issues.append(message)
         self.push(message)
 
