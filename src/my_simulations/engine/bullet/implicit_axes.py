@@ -112,7 +112,11 @@ class ImplicitAxes:
         states = pybullet.getJointStates(self._body.uid, self._indices)
         positions, rates = [state[0] for state in states], [state[1] for state in states]
         spent, self._spent = self._spent or [state[3] for state in states], None
-        self.is_cancelled = not self._acting(motor_of, rates, spent)
+        motors = [motor_of(row) for row in self._rows]
+        cancelled = [n for n, motor in enumerate(motors)
+                     if self._cancels(n, motor, rates[n], spent[n])]
+        self.is_cancelled = all(n in cancelled or self._is_slight(n, motor, rates[n])
+                                for n, motor in enumerate(motors))
         if self.is_cancelled:
             self._rates, self._efforts = None, [0.0] * len(rates)   # the estimate begins again
             return
@@ -130,8 +134,6 @@ class ImplicitAxes:
             self.reset_after_jump()
             return
         self._rates, self._given = rates, answer[len(rates):]
-        cancelled = [n for n, row in enumerate(self._rows)
-                     if self._cancels(n, motor_of(row), rates[n], spent[n])]
         self._efforts = answer[:len(rates)]
         if cancelled:
             for n in cancelled:
@@ -140,16 +142,10 @@ class ImplicitAxes:
         for row, before, effort in zip(self._rows, known, self._efforts):
             efforts[row] = before + effort
 
-    def _acting(self, motor_of: Callable[[int], Motor], rates: List[float],
-                spent: List[float]) -> bool:
-        """Whether any spring or damper changes the motion."""
-        for n, row in enumerate(self._rows):
-            motor = motor_of(row)
-            if motor is None or self._stiffness[n] or not (
-                    abs(self._damping[n] * rates[n]) <= _SLIGHT * motor[1]
-                    or self._cancels(n, motor, rates[n], spent[n])):
-                return True
-        return False
+    def _is_slight(self, n: int, motor: Motor, rate: float) -> bool:
+        """Whether the damper of an axis is too weak to matter beside its motor."""
+        return (motor is not None and not self._stiffness[n]
+                and abs(float(self._damping[n]) * rate) <= _SLIGHT * motor[1])
 
     def _cancels(self, n: int, motor: Motor, rate: float, spent: float) -> bool:
         """Whether a motor keeps its rate against the damper of an axis.
