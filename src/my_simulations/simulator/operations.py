@@ -149,8 +149,9 @@ def _joined(parts: Iterable[Operation]) -> Iterator[Operation]:
     for kind, run in groupby(_without_groups(parts), _joined_as):
         same = list(run)
         if kind == "add":
-            added = iter([one for one in same if isinstance(one, AddModel)])
-            for group in small_groups([one.model for one in same if isinstance(one, AddModel)]):
+            models = [one for one in same if isinstance(one, AddModel)]
+            added = iter(models)
+            for group in small_groups([one.model for one in models]):
                 few = tuple(islice(added, len(group)))
                 yield few[0] if len(few) == 1 else _AddModels(few)
         elif kind == "remove":
