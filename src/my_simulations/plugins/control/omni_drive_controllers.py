@@ -10,8 +10,9 @@ from __future__ import annotations
 import math
 from typing import Any, List, Optional
 
+from ...message_fields import fill_pose
 from ..context import PluginError, Publication
-from ..drive.odometry import diagonal, fill_pose, planar
+from ..drive.odometry import diagonal, planar
 from ..frames import stamped
 from ..stepwise_change import StepwiseChange
 from ..time_out import TimeOut

@@ -5,12 +5,10 @@ with the messages of /gazebo/model_states.
 """
 from __future__ import annotations
 
-from typing import Any
-
 from ...geometry import Twist, conjugate, rotate
+from ...message_fields import fill_twist
 from ..base import Plugin
-from ..frames import stamped
-from .odometry import fill_pose
+from ..state.world_odometry import odometry_message
 
 
 class CatVehicle(Plugin):
@@ -33,20 +31,11 @@ class CatVehicle(Plugin):
         context, pose, twist = self.context, self.context.pose, self.context.twist
         back = conjugate(pose.orientation)
         velocity = context.message("geometry_msgs/Twist")
-        _fill_twist(velocity, Twist(rotate(back, twist.linear), rotate(back, twist.angular)))
+        fill_twist(velocity, Twist(rotate(back, twist.linear), rotate(back, twist.angular)))
         self._velocity.publish(velocity)
         steering = context.message("geometry_msgs/Wrench")
         steering.torque.z = sum(joint.position for joint in self._steering) / 2.0   # rad
         self._angle.publish(steering)
         frame, base = f"{self._scope}/odom", f"{self._scope}/base_link"
         context.transform(frame, base, pose)
-        odom = stamped(context, "nav_msgs/Odometry", frame)
-        odom.child_frame_id = base
-        fill_pose(odom.pose.pose, pose)
-        _fill_twist(odom.twist.twist, twist)
-        self._odom.publish(odom)
-
-
-def _fill_twist(field: Any, twist: Twist) -> None:
-    field.linear.x, field.linear.y, field.linear.z = twist.linear
-    field.angular.x, field.angular.y, field.angular.z = twist.angular
+        self._odom.publish(odometry_message(context, frame, base, pose, twist, 0.0))

@@ -2,9 +2,10 @@
 from __future__ import annotations
 
 import math
-from typing import Any, List, Optional, Sequence, Tuple
+from typing import List, Optional, Sequence, Tuple
 
 from ...geometry import Pose, Twist, quat_from_rpy, rpy_from_quat
+from ...message_fields import fill_pose
 from ..context import Context, Joint, Publication
 from ..frames import prefixed, stamped
 
@@ -137,9 +138,3 @@ class Odometer:
         if yaw_variance is not None:
             message.pose.covariance[35] = message.twist.covariance[35] = yaw_variance
         self._topic.publish(message)
-
-
-def fill_pose(message: Any, pose: Pose) -> None:
-    at, turn = message.position, message.orientation
-    at.x, at.y, at.z = pose.position
-    turn.x, turn.y, turn.z, turn.w = pose.orientation

@@ -27,10 +27,11 @@ from ...geometry import (
     rotate,
     subtract,
 )
+from ...message_fields import fill_pose
 from ...sensing.noise import SampleGenerator
 from ..base import Plugin
 from ..context import Link, Publication
-from ..drive.odometry import diagonal, fill_pose
+from ..drive.odometry import diagonal
 from ..frames import stamped
 from ..parameters import namespace_or
 

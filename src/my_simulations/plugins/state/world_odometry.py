@@ -25,9 +25,10 @@ from ...geometry import (
     rpy_from_quat,
     subtract,
 )
+from ...message_fields import fill_pose, fill_twist
 from ..base import Plugin
 from ..context import Link, PluginError
-from ..drive.odometry import diagonal, fill_pose
+from ..drive.odometry import diagonal
 from ..frames import prefixed, stamped
 from ..noise import WhiteNoise
 from ..parameters import namespace_or
@@ -117,9 +118,7 @@ def odometry_message(context: Any, frame: str, child: str, pose: Pose, twist: Tw
     message = stamped(context, "nav_msgs/Odometry", frame)
     message.child_frame_id = child
     fill_pose(message.pose.pose, pose)
-    linear, angular = message.twist.twist.linear, message.twist.twist.angular
-    linear.x, linear.y, linear.z = twist.linear
-    angular.x, angular.y, angular.z = twist.angular
+    fill_twist(message.twist.twist, twist)
     message.pose.covariance = diagonal((variance,) * 6)
     message.twist.covariance = diagonal((variance,) * 6)
     return message

@@ -7,8 +7,9 @@ from typing import Any
 from ...description.model import Inertial
 from ...description.validate import inertial_faults
 from ...errors import CommandError
+from ...message_fields import fill_pose
 from ...simulator.simulator import Simulator
-from ..message_conversion import checked_number, fill_pose, pose_from_message
+from ..message_conversion import checked_number, pose_from_message
 from .entity_errors import gazebo_prefix
 
 MOMENTS = tuple(field.name for field in fields(Inertial) if field.name.startswith("i"))

@@ -9,10 +9,9 @@ import rospy
 from gazebo_msgs import srv
 
 from ...errors import CommandError
+from ...message_fields import fill_pose, fill_twist
 from ...simulator.simulator import Simulator
 from ..message_conversion import (
-    fill_pose,
-    fill_twist,
     pose_from_message,
     seconds_and_nanoseconds,
     twist_from_message,
