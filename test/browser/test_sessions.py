@@ -144,7 +144,7 @@ def test_a_page_that_is_loaded_again_shows_no_cards_of_old_issues(launch, browse
     assert cards.count() == 0 and not unseen.is_visible()
     editor.button("Messages").click()
     editor.page.get_by_role("dialog", name="All messages").get_by_text("no_such").wait_for()
-    # What comes later has a card again.
+    # A later issue has a card again.
     editor.get(f"editor.request('open', {{path: {str(world)!r}, discard: true}})")
     cards.filter(has_text="no_such").wait_for()
     assert editor.faults == []

@@ -199,7 +199,7 @@ class Models(ConnectedModels):
                 return list(map(self._deleted, entities))
 
     def _deleted(self, entity: Entity) -> DeletedModel:
-        """Remove an entity, which the engine has no more, from the registry."""
+        """Remove an entity, which the engine no longer has, from the registry."""
         registry, name = self._session.registry, entity.model.name
         deleted = DeletedModel(OrderSlot.of(registry.names(), name),
                                self._links.lasting_joints.of(name),
