@@ -71,7 +71,7 @@ BUILT_IN: Mapping[str, str] = {
     "libgazebo_ros_kobuki.so": "drive.kobuki:Kobuki",
     "libPriusHybridPlugin.so": "drive.prius:PriusHybrid",
     "libaudibot_interface_plugin.so": "drive.audibot:Audibot",
-    "libcatvehiclegazebo.so": "drive.catvehicle:CatVehicle",
+    "libcatvehiclegazebo.so": "state.catvehicle:CatVehicle",
     "libunitreeFootContactPlugin.so": "sensors.foot_contact:FootContact",
     "libLiftDragPlugin.so": "world.lift_drag:LiftDrag",
     "libgazebo_dipole_magnet.so": "world.dipole_magnet:DipoleMagnet",

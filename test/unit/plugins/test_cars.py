@@ -10,8 +10,8 @@ from my_simulations.geometry import Pose, Twist, quat_from_rpy
 from my_simulations.plugins.context import PluginError
 from my_simulations.plugins.drive.audibot import Audibot
 from my_simulations.plugins.drive.car_wheels import FASTEST, apply_torque
-from my_simulations.plugins.drive.catvehicle import CatVehicle
 from my_simulations.plugins.drive.prius import PriusHybrid
+from my_simulations.plugins.state.catvehicle import CatVehicle
 from my_simulations.plugins.testing import FakeContext
 from my_simulations.plugins.testing_joints import FakeJoint
 

@@ -13,7 +13,7 @@ from typing import Any, Deque, List, Optional, Tuple
 from ...description.model import Joint as JointSpec
 from ...description.shapes import Cylinder, Sphere
 from ...geometry import Vec3, transform
-from ...message_fields import fill_pose
+from ...geometry_messages import fill_pose
 from ..context import CallHandle, PluginError, Publication
 from ..drive.odometry import diagonal, planar
 from ..frames import stamped

@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 from typing import Any, List, Optional
 
-from ...message_fields import fill_pose
+from ...geometry_messages import fill_pose
 from ..context import PluginError, Publication
 from ..drive.odometry import diagonal, planar
 from ..frames import stamped

@@ -10,11 +10,11 @@ import math
 from typing import Any, List
 
 from ...engine.drive_commands import JointServo
-from ...message_fields import fill_pose
+from ...geometry import conjugate, rotate
+from ...geometry_messages import fill_pose
 from ..base import Plugin
 from ..context import Joint
 from ..finite_messages import finite_only
-from ..flight.body_wrench import body_twist
 from ..frames import stamped
 from ..time_out import TimeOut
 from .car_wheels import apply_torque
@@ -94,7 +94,8 @@ class Audibot(Plugin):
 
     def _speed(self) -> float:
         """Along the x axis of the car, m/s."""
-        return body_twist(self._footprint)[0][0]
+        return rotate(conjugate(self._footprint.pose.orientation),
+                      self._footprint.twist.linear)[0]
 
     def _drive(self) -> None:
         self._steer()
@@ -130,13 +131,14 @@ class Audibot(Plugin):
             joint.set_servo(JointServo(0, "position", target=angle))
 
     def _publish(self) -> None:
-        context, (velocity, spin) = self.context, body_twist(self._footprint)
+        context, pose, twist = self.context, self._footprint.pose, self._footprint.twist
         message = stamped(context, "geometry_msgs/TwistStamped", self._frame)
-        message.twist.linear.x, message.twist.angular.z = velocity[0], spin[2]
+        message.twist.linear.x = self._speed()
+        message.twist.angular.z = rotate(conjugate(pose.orientation), twist.angular)[2]
         self._twist.publish(message)
         odom = stamped(context, "nav_msgs/Odometry", self._frame)
         odom.twist.twist = message.twist
-        fill_pose(odom.pose.pose, self._footprint.pose)
+        fill_pose(odom.pose.pose, pose)
         self._odom.publish(odom)
         gear = context.message("std_msgs/UInt8")
         gear.data = self._gear

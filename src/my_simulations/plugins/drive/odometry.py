@@ -5,7 +5,7 @@ import math
 from typing import List, Optional, Sequence, Tuple
 
 from ...geometry import Pose, Twist, quat_from_rpy, rpy_from_quat
-from ...message_fields import fill_pose
+from ...geometry_messages import fill_pose
 from ..context import Context, Joint, Publication
 from ..frames import prefixed, stamped
 

@@ -27,7 +27,7 @@ from ...geometry import (
     rotate,
     subtract,
 )
-from ...message_fields import fill_pose
+from ...geometry_messages import fill_pose
 from ...sensing.noise import SampleGenerator
 from ..base import Plugin
 from ..context import Link, Publication

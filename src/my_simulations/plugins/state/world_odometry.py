@@ -25,7 +25,7 @@ from ...geometry import (
     rpy_from_quat,
     subtract,
 )
-from ...message_fields import fill_pose, fill_twist
+from ...geometry_messages import fill_pose, fill_twist
 from ..base import Plugin
 from ..context import Link, PluginError
 from ..drive.odometry import diagonal

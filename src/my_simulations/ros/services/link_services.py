@@ -7,7 +7,7 @@ from typing import Any
 from ...description.model import Inertial
 from ...description.validate import inertial_faults
 from ...errors import CommandError
-from ...message_fields import fill_pose
+from ...geometry_messages import fill_pose
 from ...simulator.simulator import Simulator
 from ..message_conversion import checked_number, pose_from_message
 from .entity_errors import gazebo_prefix

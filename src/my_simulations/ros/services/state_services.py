@@ -9,7 +9,7 @@ import rospy
 from gazebo_msgs import srv
 
 from ...errors import CommandError
-from ...message_fields import fill_pose, fill_twist
+from ...geometry_messages import fill_pose, fill_twist
 from ...simulator.simulator import Simulator
 from ..message_conversion import (
     pose_from_message,

@@ -6,9 +6,9 @@ with the messages of /gazebo/model_states.
 from __future__ import annotations
 
 from ...geometry import Twist, conjugate, rotate
-from ...message_fields import fill_twist
+from ...geometry_messages import fill_twist
 from ..base import Plugin
-from ..state.world_odometry import odometry_message
+from .world_odometry import odometry_message
 
 
 class CatVehicle(Plugin):
