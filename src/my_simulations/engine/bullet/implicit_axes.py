@@ -38,7 +38,8 @@ _EVERY = 100       # steps after which it is recomputed anyway, as other axes ca
 _STIFF = 10.0      # s is this times the spring's (w dt)^2, at most 1
 _MOST_DECAYS = 50.0
 _AT_RATE = 0.02    # of the rate of a motor: within it, the motor keeps the rate
-_SLIGHT = 1e-5     # of a motor's largest effort: a damper of a stalled axis does not matter
+_SLIGHT = 5e-3     # of a motor's largest effort: a damper below it does not matter
+_WEAK = 0.05       # of a motor's largest effort: a damper below it can use an old mobility
 _CHECKED = 8       # steps between two checks whether motors still cancel all dampers
 
 Motor = Optional[Tuple[float, float]]
@@ -115,7 +116,7 @@ class ImplicitAxes:
         motors = [motor_of(row) for row in self._rows]
         cancelled = [n for n, motor in enumerate(motors)
                      if self._cancels(n, motor, rates[n], spent[n])]
-        self.is_cancelled = all(n in cancelled or self._is_slight(n, motor, rates[n])
+        self.is_cancelled = all(n in cancelled or self._is_below(_SLIGHT, n, motor, rates[n])
                                 for n, motor in enumerate(motors))
         if self.is_cancelled:
             self._rates, self._efforts = None, [0.0] * len(rates)   # the estimate begins again
@@ -126,7 +127,10 @@ class ImplicitAxes:
             self._other = [kept * other + per_rate * (rate - before) - trust * given
                            for other, rate, before, given in zip(
                                self._other, rates, self._rates, self._given)]
-        self._prepare_again(positions)
+        if self._prepared_at is None or not all(
+                n in cancelled or self._is_below(_WEAK, n, motor, rates[n])
+                for n, motor in enumerate(motors)):
+            self._prepare_again(positions)
         known = [efforts.get(row, 0.0) for row in self._rows]
         answer = (self._answer @ np.array(rates + positions + self._other + known)
                   + self._at_rest).tolist()
@@ -142,10 +146,10 @@ class ImplicitAxes:
         for row, before, effort in zip(self._rows, known, self._efforts):
             efforts[row] = before + effort
 
-    def _is_slight(self, n: int, motor: Motor, rate: float) -> bool:
-        """Whether the damper of an axis is too weak to matter beside its motor."""
+    def _is_below(self, share: float, n: int, motor: Motor, rate: float) -> bool:
+        """Whether the damper of an axis is weaker than a share of the largest motor effort."""
         return (motor is not None and not self._stiffness[n]
-                and abs(float(self._damping[n]) * rate) <= _SLIGHT * motor[1])
+                and abs(float(self._damping[n]) * rate) <= share * motor[1])
 
     def _cancels(self, n: int, motor: Motor, rate: float, spent: float) -> bool:
         """Whether a motor keeps its rate against the damper of an axis.
