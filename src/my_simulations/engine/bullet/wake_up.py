@@ -6,7 +6,7 @@ command and its contact island are woken first.
 """
 from __future__ import annotations
 
-from typing import Callable, Dict, Iterable, List, Set
+from typing import Callable, Dict, Iterable, List, Sequence, Set, Tuple
 
 import pybullet
 
@@ -15,6 +15,9 @@ from .bodies import Body
 
 _REACH = 0.02  # m: Bullet makes contacts slightly before surfaces touch
 _WORLD_SIZE = 1e9
+
+_AxisAlignedBox = Tuple[List[float], List[float]]
+"""The least and the largest corner, m, world frame."""
 
 
 class WakeUp:
@@ -40,10 +43,7 @@ class WakeUp:
             body = queue.pop()
             if body.uid not in woken:
                 self._rouse(body)
-            for uid in self._overlapping(body):
-                near = self._bodies.get(uid)
-                if near is None or near.uid in seen or not near.moves:
-                    continue
+            for near in self._moving_near(body, seen):
                 seen.add(near.uid)
                 queue.append(near)
 
@@ -53,15 +53,35 @@ class WakeUp:
                                     activationState=pybullet.ACTIVATION_STATE_WAKE_UP)
         self._touch(body)
 
-    @staticmethod
-    def _overlapping(body: Body) -> Set[int]:
-        found: Set[int] = set()
-        for uid in body.uids:
-            for index in sorted({BASE, *(part.index for part in body.colliders)}):
-                low, high = pybullet.getAABB(uid, index)
-                if high[0] < low[0]:
-                    continue
-                reach = 0.0 if high[0] - low[0] > _WORLD_SIZE else _REACH
-                found.update(pair[0] for pair in pybullet.getOverlappingObjects(
-                    [c - reach for c in low], [c + reach for c in high]) or ())
-        return found
+    def _moving_near(self, body: Body, seen: Set[int]) -> List[Body]:
+        """Return the moving bodies, except those in `seen`, that overlap a link of a body."""
+        boxes = _link_boxes(body)
+        # One query for all links is enough if only static bodies are near.
+        if len(boxes) > 1 and not self._moving_in(_hull(boxes), seen):
+            return []
+        return list({near.uid: near for box in boxes for near in self._moving_in(box, seen)}
+                    .values())
+
+    def _moving_in(self, box: _AxisAlignedBox, seen: Set[int]) -> List[Body]:
+        found = {uid: self._bodies.get(uid)
+                 for uid, _ in pybullet.getOverlappingObjects(*box) or ()}
+        return [body for body in found.values()
+                if body is not None and body.moves and body.uid not in seen]
+
+
+def _link_boxes(body: Body) -> List[_AxisAlignedBox]:
+    """Return the bounding boxes of the links of a body, which are a little larger, in m."""
+    found: List[_AxisAlignedBox] = []
+    for uid in body.uids:
+        for index in sorted({BASE, *(part.index for part in body.colliders)}):
+            low, high = pybullet.getAABB(uid, index)
+            if high[0] < low[0]:
+                continue
+            reach = 0.0 if high[0] - low[0] > _WORLD_SIZE else _REACH
+            found.append(([c - reach for c in low], [c + reach for c in high]))
+    return found
+
+
+def _hull(boxes: Sequence[_AxisAlignedBox]) -> _AxisAlignedBox:
+    lows, highs = zip(*boxes)
+    return [min(edge) for edge in zip(*lows)], [max(edge) for edge in zip(*highs)]
