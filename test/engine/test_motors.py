@@ -11,6 +11,7 @@ from conftest import Lab, arm, box, ground, inertial_of_box
 from my_simulations.description.model import Inertial, Joint, JointAxis, Link, Model
 from my_simulations.description.shapes import Box, Collision, Cylinder, Surface
 from my_simulations.engine.api import CommandRefusedError
+from my_simulations.engine.bullet.mass_matrix import MassMatrix
 from my_simulations.engine.commands import PhysicsSettings
 from my_simulations.engine.drive_commands import (
     JointMotor,
@@ -85,6 +86,28 @@ def test_a_damper_that_a_motor_cancels_takes_no_time_until_the_motor_changes(
     assert len(looks) >= 80
     lab.seconds(2.0)
     assert lab.joint(model)[1] == pytest.approx(1200.0 / 500.0, rel=0.01)
+
+
+def test_motors_that_dominate_their_dampers_do_not_need_the_mobility_of_each_new_pose(
+        lab: Lab, monkeypatch: pytest.MonkeyPatch):
+    axis = JointAxis(Z, damping=500.0)
+    links = [Link(name, pose=Pose((x, 0.0, 0.0)),
+                  inertial=Inertial(1.0, Pose((0.5, 0.0, 0.0)), 0.1, 0, 0, 0.1, 0, 0.1))
+             for name, x in (("upper", 0.0), ("lower", 1.0))]
+    model = lab.load(Model("arm", links=links, joints=[
+        Joint("shoulder", "revolute", "world", "upper", axis=axis),
+        Joint("elbow", "revolute", "upper", "lower", axis=axis)]))
+    rows = [lab.joint_rows[model, name] for name in ("shoulder", "elbow")]
+    computed: List[int] = []
+    now = MassMatrix.now
+    monkeypatch.setattr(MassMatrix, "now", lambda self: computed.append(lab.step) or now(self))
+    for n in range(10):
+        rates = [(-1) ** (n // 5) * 2.0, 1.0 + n]
+        lab.apply(SetMotors(tuple(JointMotor(row, rate, 1e5) for row, rate in zip(rows, rates))))
+        lab.steps(50)
+        assert [lab.joint(model, name)[1] for name in ("shoulder", "elbow")] == pytest.approx(
+            rates, rel=1e-3)
+    assert len(computed) <= 1
 
 
 def test_light_wheels_with_strong_dampers_keep_the_rate_of_their_motors(lab: Lab):

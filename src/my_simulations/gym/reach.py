@@ -10,7 +10,7 @@ import numpy as np
 from ..geometry import Pose
 from ..python_api import OpenWorld, Randomisation, RobotOptions, WorldChoice
 from . import arm_scene
-from .task_models import ball
+from .task_models import ball, world_file
 from .world_env import Evaluation, View, WorldEnv, clipped_observation, symmetric_box
 
 NEAR = 0.03         # m: the tool has arrived
@@ -31,7 +31,7 @@ class Reach:
     view = View((1.1, -1.0, 0.9), (0.2, 0.0, 0.25))
 
     def __init__(self, camera: bool = False) -> None:
-        self.choice = WorldChoice(models=(
+        self.choice = WorldChoice(world_file(accurate_friction=False), models=(
             arm_scene.document(), ("target", ball("target", 0.02, "0.9 0.1 0.1 1"), Pose())))
         self.action_space = gymnasium.spaces.Box(-1.0, 1.0, (6,), np.float32)
         self._numbers = symmetric_box([*6 * [_FAR], *6 * [_FAST], *6 * [_FAR]])

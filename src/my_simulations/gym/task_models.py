@@ -1,4 +1,4 @@
-"""The world file of tasks with wheels, and documents of their boxes and marks."""
+"""The world file of tasks, and documents of their boxes and marks."""
 from __future__ import annotations
 
 from typing import Optional, Sequence
@@ -7,8 +7,9 @@ Size = Sequence[float]
 
 
 def world_file(accurate_friction: bool) -> str:
-    """Return the world of tasks with wheels; with False, the one that takes the least time."""
+    """Return the world of a task; with False, the one that takes the least processor time."""
     return "worlds/empty.world" if accurate_friction else "worlds/learning.world"
+
 
 _MODEL = ('<sdf version="1.6"><model name="{name}">{static}<link name="link">{parts}</link></model>'
           '</sdf>')

@@ -17,6 +17,9 @@ in each step, and does not converge within its iterations: wheels of 10 g with d
 1 N m s/rad turned 0.6 and 0 % too fast. So such a damper acts only if the motor cannot overcome it.
 While the motors of a body cancel all its dampers, this is checked again only after a new motor
 target and every few steps; the dampers take no time in between.
+
+Bullet computes dampers below d dt / I = 0.01 (`joint_axes`). A stronger one with less than 0.5 % of
+the effort of its motor can act for half a step only, until the axis has its rate: it is left out.
 """
 from __future__ import annotations
 
