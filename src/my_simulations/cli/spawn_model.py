@@ -273,11 +273,14 @@ def _set_joints(options: argparse.Namespace) -> None:
         joint_names=list(positions), joint_positions=list(positions.values()))
     said = _call(options, "set_model_configuration", SetModelConfiguration, request)
     print(f"spawn_model: {said}", flush=True)
-    _check_joints(options, list(positions))
+    _warn_of_unknown_joints(options, list(positions))
 
 
-def _check_joints(options: argparse.Namespace, wanted: List[str]) -> None:
-    """Raise SpawnError for a joint that does not exist; Gazebo ignores those."""
+def _warn_of_unknown_joints(options: argparse.Namespace, wanted: List[str]) -> None:
+    """Name the joints that do not exist on stderr. Gazebo's spawn_model ignores them.
+
+    Launch files name the joints of optional parts, so an unknown joint is not a failure.
+    """
     from gazebo_msgs.srv import GetModelProperties, GetModelPropertiesRequest
 
     answer = _answer(options, "get_model_properties", GetModelProperties,
@@ -290,8 +293,8 @@ def _check_joints(options: argparse.Namespace, wanted: List[str]) -> None:
         near = difflib.get_close_matches(plain, known, 1)
         hint = (f"did you mean {near[0]}?" if near else
                 f"its joints are {', '.join(known)}" if known else "it has no joints")
-        raise SpawnError(f"model {options.model!r} was spawned, but has no joint "
-                          f"{joint!r}; {hint}")
+        print(f"spawn_model: model {options.model!r} was spawned, but has no joint "
+              f"{joint!r}; {hint}", file=sys.stderr, flush=True)
 
 
 def _call(options: argparse.Namespace, name: str, kind: Any, request: Any) -> str:
