@@ -11,12 +11,11 @@ from ..commands import PhysicsSettings
 from . import bodies, extra_surfaces, joint_axes
 from .bodies import Body, Part
 from .body_events import BodyEvent
-from .constraint_book import ConstraintBook
 from .contact_settling import ContactSettling
 from .divergence_stop import DivergenceStop
 from .forces import Forces
 from .gyroscopic_rigid import GyroscopicRigid
-from .inter_model_joints import InterModelJoints
+from .joint_constraints import ConstraintBook, InterModelJoints
 from .joint_motors import JointMotors
 from .joint_wrenches import JointKey, JointWrenches
 from .landing_contacts import LandingContacts

@@ -1,16 +1,26 @@
-"""Make constraints for joints outside the tree: closed loops, screws, gearboxes, mimics."""
+"""Make constraints for joints outside the tree: closed loops, screws, gearboxes, mimics, and joints
+between models.
+
+PyBullet 3.2 has a fault: when it removes a constraint of a multibody, it also frees the last
+constraint of its table if that one is between two rigid bodies (it reads the slot into which the
+last one was moved). The next use of the freed constraint crashes the process. So constraints
+between rigid bodies are removed first, and made again afterwards.
+"""
 from __future__ import annotations
 
 import math
-from typing import Dict, List, Optional, Sequence, Tuple
+from dataclasses import dataclass
+from typing import Any, Dict, List, Mapping, Optional, Sequence, Set, Tuple
 
 import pybullet
 
 from ...description.model import WORLD, Joint, Model
-from ...geometry import Pose, Vec3, compose, inverse, rotate, scale, transform
-from ..body_plan import NO_LINK, BodyPlan
-from .bodies import Axis, Body, Part
-from .constraint_book import ConstraintBook, Number
+from ...geometry import IDENTITY, Pose, Vec3, compose, inverse, rotate, scale, transform
+from ..api import CommandRefusedError, RemovedError
+from ..body_plan import BASE, NO_LINK, TIE_TYPES, BodyPlan
+from ..commands import ConnectModels
+from .bodies import Axis, Body, Part, set_sleep
+from .body_events import BodyObserver
 
 _FORCE = 1e7          # N or N m: largest force or torque of a closed loop or a gear
 _HINGE_LENGTH = 0.1   # m between the two points that represent a hinge
@@ -20,15 +30,62 @@ _ERP = 0.2
 End = Tuple[Body, Part]
 """A link as the end of a joint."""
 
+_BodyAxis = Tuple[Body, Axis]
+
+
+@dataclass(eq=False)
+class Constraint:
+    """A constraint between two links, rigid bodies or not, and the arguments that make it.
+
+    Attributes:
+        made_with: the arguments of pybullet.createConstraint.
+        changed_to: the keyword arguments of pybullet.changeConstraint.
+        uid: PyBullet's number, which can change.
+    """
+
+    is_rigid: bool
+    made_with: Tuple[Any, ...]
+    changed_to: Mapping[str, Any]
+    uid: int = -1
+
+    def make(self) -> None:
+        """Create the constraint in PyBullet."""
+        self.uid = int(pybullet.createConstraint(*self.made_with))
+        pybullet.changeConstraint(self.uid, **self.changed_to)
+
+
+class ConstraintBook:
+    """All constraints of a world."""
+
+    def __init__(self) -> None:
+        self._made: List[Constraint] = []
+
+    def make(self, is_rigid: bool, made_with: Tuple[Any, ...], **changed_to: Any) -> Constraint:
+        """Make a constraint; its arguments are attributes of `Constraint`."""
+        made = Constraint(is_rigid, made_with, changed_to)
+        made.make()
+        self._made.append(made)
+        return made
+
+    def remove(self, going: Sequence[Constraint]) -> None:
+        """Remove constraints; their bodies must still exist."""
+        self._made = [one for one in self._made if one not in going]
+        lifted = [] if all(one.is_rigid for one in going) else [
+            one for one in self._made if one.is_rigid]
+        for one in (*lifted, *sorted(going, key=lambda each: not each.is_rigid)):
+            pybullet.removeConstraint(one.uid)
+        for one in lifted:
+            one.make()
+
 
 def connect_links(book: ConstraintBook, joint: Joint, child: End, child_from_joint: Pose,
-                  parent: Optional[End], parent_from_joint: Pose) -> List[Number]:
+                  parent: Optional[End], parent_from_joint: Pose) -> List[Constraint]:
     """Connect two links like a joint, without limits and other properties of its axes.
 
     PyBullet has no hinge between bodies; two point-to-point constraints represent one. Universal
     joints act as ball joints. Prismatic joints require links of articulated bodies. Only type and
     axis of the joint are used; its frame is given in the frames of both links, or of the world for
-    `parent` None. Returns the numbers of the constraints in the book.
+    `parent` None.
     """
     points: List[Vec3] = [(0.0, 0.0, 0.0)]
     kind = {"fixed": pybullet.JOINT_FIXED, "prismatic": pybullet.JOINT_PRISMATIC}.get(
@@ -56,7 +113,7 @@ def _about_the_centre(part: Part, link_from_joint: Pose) -> List[Vec3]:
 
 
 def _add_constraint(book: ConstraintBook, one: End, mine: Pose, other: Optional[End], theirs: Pose,
-                    kind: int, axis: Vec3) -> Number:
+                    kind: int, axis: Vec3) -> Constraint:
     (body, part), uid, index = one, -1, -1
     mine = compose(inverse(part.link_from_com), mine)
     if other is not None:
@@ -75,7 +132,8 @@ class Constraints:
     """The constraints of one model; call `remove` before its bodies are removed.
 
     Attributes:
-        closing: constraints of joints that close loops: numbers in the book by joint name.
+        closing: constraints of joints that close loops, by joint name.
+        links: the links of the model by name, as ends of joints.
     """
 
     def __init__(self, book: ConstraintBook, model: Model, plans: Sequence[BodyPlan],
@@ -83,115 +141,168 @@ class Constraints:
                  first_row: int) -> None:
         self._book = book
         self._model = model
-        self._pose = pose
-        self._parts = {part.row - first_row: (body, part)
-                       for body in bodies for part in body.parts}
+        self.links: Dict[str, End] = {model.links[part.row - first_row].name: (body, part)
+                                      for body in bodies for part in body.parts}
         self._axes = {(axis.name, axis.number): (body, axis)
                       for body in bodies for axis in body.axes}
-        self._made: List[int] = []
-        self.closing: Dict[str, List[int]] = {}
+        self._made: List[Constraint] = []
+        self.closing: Dict[str, List[Constraint]] = {}
         for joint in open_joints:
             if joint.type == "gearbox":
-                self._gearbox(joint)
+                self._gear(self._axis_between(joint.gearbox_reference, joint.child),
+                           self._axis_between(joint.gearbox_reference, joint.parent),
+                           joint.gearbox_ratio)
             else:
-                self._close(joint)
+                self._close(joint, pose)
         for plan, body in zip(plans, bodies):
             self._screws(plan, body)
-        self._mimics()
-
-    def end(self, name: str) -> Optional[End]:
-        """A link of the model by its name; None for the world."""
-        return self._end(name)
+        for joint in model.joints:
+            mimic = joint.axis.mimic if joint.axis is not None else None
+            if mimic is not None:
+                self._gear(self._axes.get((joint.name, 0)), self._axes.get((mimic.joint, 0)),
+                           -mimic.multiplier, mimic.offset)
 
     def remove(self) -> None:
         self._book.remove(self._made)
         self._made.clear()
 
-    # -- loops -----------------------------------------------------------------------------------
+    def _close(self, joint: Joint, pose: Pose) -> None:
+        """Close a loop; `pose`: of the model."""
+        poses = {link.name: link.pose for link in self._model.links}
+        at = compose(poses.get(joint.child, IDENTITY), joint.pose)
+        # The frame of the joint in those of the links, at joint positions 0, or of the world.
+        child, parent = sorted((joint.child, joint.parent), key=lambda name: name == WORLD)
+        self.closing[joint.name] = connect_links(
+            self._book, joint, self.links[child], compose(inverse(poses[child]), at),
+            self.links.get(parent),
+            compose(pose if parent == WORLD else inverse(poses[parent]), at))
+        self._made += self.closing[joint.name]
 
-    def _close(self, joint: Joint) -> None:
-        parent, child = self._end(joint.parent), self._end(joint.child)
-        at = self._model_from_joint(joint)
-        made: List[int] = []
-        if child is not None:
-            made = connect_links(self._book, joint, child, self._seen_from(child, at), parent,
-                                 compose(self._pose, at) if parent is None
-                                 else self._seen_from(parent, at))
-        elif parent is not None:
-            made = connect_links(self._book, joint, parent, self._seen_from(parent, at), None,
-                                 compose(self._pose, at))
-        self._made += made
-        self.closing[joint.name] = made
-
-    def _seen_from(self, end: End, at: Pose) -> Pose:
-        """Return a pose given in the model frame in the frame of a link, at joint positions 0."""
-        index = next(n for n, (_, other) in self._parts.items() if other is end[1])
-        return compose(inverse(self._model.links[index].pose), at)
-
-    def _end(self, name: str) -> Optional[End]:
-        if name == WORLD:
-            return None
-        return self._parts[self._index(name)]
-
-    def _index(self, name: str) -> int:
-        return next(n for n, link in enumerate(self._model.links) if link.name == name)
-
-    def _model_from_joint(self, joint: Joint) -> Pose:
-        if joint.child == WORLD:
-            return joint.pose
-        return compose(self._model.links[self._index(joint.child)].pose, joint.pose)
-
-    # -- gears -----------------------------------------------------------------------------------
-
-    def _gear(self, follower: Tuple[Body, int], leader: Tuple[Body, int], ratio: float,
+    def _gear(self, follower: Optional[_BodyAxis], leader: Optional[_BodyAxis], ratio: float,
               target: float = 0.0) -> None:
-        """Constrain two axes of one body: follower + ratio leader = target."""
-        if follower[0].uid != leader[0].uid:
-            return
+        """Constrain two axes, if they are in one body: follower + ratio leader = target.
+
+        A gearbox constrains the angles of child and parent to the reference link.
+        """
+        if follower is not None and leader is not None and follower[0].uid == leader[0].uid:
+            self._mesh(follower[0], follower[1].index, leader[1].index, ratio, target)
+
+    def _mesh(self, body: Body, follower: int, leader: int, ratio: float, target: float) -> None:
+        """Make the constraint of `_gear`, by PyBullet's indices of the axes."""
         self._made.append(self._book.make(False, (
-            follower[0].uid, follower[1], leader[0].uid, leader[1], pybullet.JOINT_GEAR,
+            body.uid, follower, body.uid, leader, pybullet.JOINT_GEAR,
             (0.0, 0.0, 1.0), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)),
             gearRatio=ratio, maxForce=_FORCE, erp=_ERP, relativePositionTarget=target))
+
+    def _axis_between(self, one: str, other: str) -> Optional[_BodyAxis]:
+        for joint in self._model.joints:
+            if {joint.parent, joint.child} == {one, other}:
+                return self._axes.get((joint.name, 0))
+        return None
 
     def _screws(self, plan: BodyPlan, body: Body) -> None:
         """Constrain screws to thread_pitch rad per metre; positive is left-handed in Gazebo."""
         offset = 0 if plan.fixed_base else 1
         for n, node in enumerate(plan.links[:-1]):
-            following = plan.links[n + 1]
             if node.index == NO_LINK and node.joint is not None and node.joint.type == "screw":
                 turning, sliding = n - offset, n + 1 - offset
                 if node.kind == "prismatic":
                     turning, sliding = sliding, turning
-                assert following.joint is node.joint
                 pitch = node.joint.thread_pitch
-                self._gear((body, turning), (body, sliding), pitch)
+                self._mesh(body, turning, sliding, pitch, 0.0)
                 for axis in body.axes:
                     if axis.index == turning and pitch:
                         axis.follower = sliding, -1.0 / pitch
                     elif axis.index == sliding:
                         axis.follower = turning, -pitch
 
-    def _gearbox(self, joint: Joint) -> None:
-        """Constrain theta2 = -ratio theta1: angles of child and parent to the reference link."""
-        first = self._axis_between(joint.gearbox_reference, joint.parent)
-        second = self._axis_between(joint.gearbox_reference, joint.child)
-        if first is not None and second is not None:
-            self._gear((second[0], second[1].index), (first[0], first[1].index),
-                       joint.gearbox_ratio)
 
-    def _axis_between(self, one: str, other: str) -> Optional[Tuple[Body, Axis]]:
-        for joint in self._model.joints:
-            if {joint.parent, joint.child} == {one, other}:
-                return self._axes.get((joint.name, 0))
-        return None
+@dataclass(eq=False)
+class _Tie:
+    name: str
+    ends: Tuple[End, ...]
+    constraints: List[Constraint]
 
-    def _mimics(self) -> None:
-        for joint in self._model.joints:
-            mimic = joint.axis.mimic if joint.axis is not None else None
-            if mimic is None:
-                continue
-            follower, leader = self._axes.get((joint.name, 0)), self._axes.get((mimic.joint, 0))
-            if follower is not None and leader is not None:
-                self._gear((follower[0], follower[1].index), (leader[0], leader[1].index),
-                           -mimic.multiplier, mimic.offset)
+    @property
+    def uids(self) -> Set[int]:
+        """PyBullet's numbers of the bodies that are tied."""
+        return {body.uid for body, _ in self.ends}
 
+    def count(self, change: int) -> None:
+        """Add to the number of ties of the bodies; tied ones do not sleep."""
+        for body, _ in self.ends:
+            body.ties += change
+            set_sleep(body)
+
+    def set_collision(self, collide: bool) -> None:
+        for (body, part), (other, its) in [self.ends] if len(self.ends) == 2 else []:
+            for uid in body.uids:
+                for near in other.uids:
+                    pybullet.setCollisionFilterPair(uid, near, part.index, its.index, int(collide))
+
+
+class InterModelJoints(BodyObserver):
+    """Joints between links of different models, or between a rigid body and the world.
+
+    Constraints hold them, so limits, friction, damping, springs and motors of their axes do not
+    act. Tied bodies do not sleep, and those that are tied to each other do not collide (Gazebo
+    behaviour). Joints go with either of the models they connect.
+    """
+
+    def __init__(self, book: ConstraintBook) -> None:
+        self._book = book
+        self._ties: List[_Tie] = []
+        self._anchor: Optional[End] = None
+
+    def connect(self, command: ConnectModels, rows: Dict[int, End]) -> None:
+        """Tie two links. Raises `CommandRefusedError`."""
+        joint = command.joint
+        if joint.type not in TIE_TYPES:
+            raise CommandRefusedError(
+                f"joint '{joint.name}' of type {joint.type} cannot connect two models"
+            )
+        ends = [(command.child_row, command.child_from_joint),
+                (command.parent_row, command.parent_from_joint)]
+        ends.sort(key=lambda end: end[0] < 0)  # the world last
+        if ends[0][0] not in rows or not (ends[1][0] < 0 or ends[1][0] in rows):
+            raise RemovedError(f"a link of joint '{joint.name}' no longer exists")
+        one = rows[ends[0][0]]
+        other = rows[ends[1][0]] if ends[1][0] >= 0 else self._world()
+        if joint.type == "prismatic" and (one[0].rigid or other[0].rigid):
+            raise CommandRefusedError(
+                f"joint '{joint.name}' slides between bodies that are not articulated"
+            )
+        made = connect_links(self._book, joint, one, ends[0][1], other, ends[1][1])
+        tie = _Tie(joint.name, tuple(end for end in (one, other) if end is not self._anchor), made)
+        self._ties.append(tie)
+        tie.set_collision(False)
+        tie.count(1)
+
+    def _world(self) -> End:
+        """An immovable body without a shape: PyBullet ties rigid bodies to bodies only."""
+        if self._anchor is None:
+            uid = pybullet.createMultiBody(0.0)
+            part = Part(-1, BASE, IDENTITY, 0.0, (0.0, 0.0, 0.0), 0.0, 0.0, False)
+            self._anchor = Body(uid, -1, [part], moves=False, rigid=False, may_sleep=False), part
+        return self._anchor
+
+    def forget(self, body: Body) -> None:
+        """A body goes: untie it from the others."""
+        for tie in [tie for tie in self._ties if body.uid in tie.uids]:
+            self._disconnect(tie)
+            # Bullet keeps pairs that do not collide by numbers, which the next body gets.
+            tie.set_collision(True)
+
+    def disconnect(self, names: Sequence[str]) -> List[Body]:
+        """Untie joints by name; returns the bodies that are free, which collide again."""
+        found = [tie for tie in self._ties if tie.name in names]
+        for tie in found:
+            self._disconnect(tie)
+            if not any(other.uids == tie.uids for other in self._ties):
+                tie.set_collision(True)
+        return [body for tie in found for body, _ in tie.ends]
+
+    def _disconnect(self, tie: _Tie) -> None:
+        self._ties.remove(tie)
+        self._book.remove(tie.constraints)
+        tie.count(-1)

@@ -6,12 +6,18 @@ not used (doc/dev/contacts.md, "Joint wrenches").
 
 The last step before a read-out is measured, including all helpers that act before and after it. So
 the forces of a model that is held or moved by command match its visible motion.
+
+Bullet computes joint accelerations from the forces in the configuration at the start of a step. The
+difference of a link's world velocities over the step also contains the rotation of the links in it.
+This error is proportional to the step size (1 % of the torques of an arm in fast motion). So the
+accelerations at the start are computed link by link, from the root. Each link adds the change of
+its velocity relative to its parent, in the parent's axes.
 """
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Dict, List, Mapping, Optional, Sequence, Tuple
+from typing import Dict, List, Mapping, NamedTuple, Optional, Sequence, Tuple
 
 from ...description.model import Joint
 from ...geometry import (
@@ -31,14 +37,14 @@ from ...geometry import (
     subtract,
     transform,
 )
-from ..body_plan import NO_LINK, TreeLink
+from ..body_plan import BASE, NO_LINK, TreeLink
 from ..commands import JointWrench, ReadJointWrenches
 from .acting_forces import Acting, constraint_forces, note, note_constraints, note_contacts
 from .bodies import Body, Part
 from .body_events import BodyObserver
 from .forces import Forces
-from .link_motion import Acceleration, Chain, accelerations, inertial_wrench
-from .link_states import Motion, link_motions
+from .joint_constraints import Constraint
+from .link_states import AT_REST, Motion, link_motions
 from .state_restore import Entry
 from .wheel_friction import WheelFriction
 
@@ -47,6 +53,21 @@ FORGOTTEN = 100_000
 
 JointKey = Tuple[int, str]
 """The number of a model, and the name of one of its joints."""
+
+
+_Chain = Tuple[Tuple[Part, Optional[Part], Vec3], ...]
+"""The links of a body, parents first: each with its parent and the joint between them.
+
+The joint is a point relative to the link's centre of mass, in its principal axes. The parent of
+a root, and of the first links on a fixed base, is None.
+"""
+
+
+class _Acceleration(NamedTuple):
+    """Accelerations of the centre of mass, m/s^2, and angular, rad/s^2; world axes."""
+
+    linear: Vec3 = ZERO3
+    angular: Vec3 = ZERO3
 
 
 @dataclass(frozen=True)
@@ -63,7 +84,7 @@ class _Cut:
     """
 
     body: Body
-    chain: Chain
+    chain: _Chain
     joint: Joint
     child: Optional[Part]
     parent: Optional[Part]
@@ -71,33 +92,30 @@ class _Cut:
     parent_from_joint: Pose
 
 
+@dataclass
 class _Seen:
     """The state of a body before and after a step.
 
     Attributes:
         before, after: states of its links; Bullet keeps its contact forces until the next step.
-        outside: forces on it, besides gravity, that Bullet does not report.
+        outside: forces on it, besides gravity; those that Bullet reports are added when needed.
+        accelerations: of its links; computed when needed.
     """
 
-    def __init__(self, body: Body, chain: Chain) -> None:
-        self.body = body
-        self.before = link_motions(body)
-        self.after = self.before
-        self.outside: Acting = {}
-        self._chain = chain
-        self._answer: Optional[_WorkedOut] = None
+    body: Body
+    chain: _Chain
+    before: Dict[int, Motion]
+    after: Dict[int, Motion]
+    outside: Acting
+    accelerations: Optional[Dict[int, _Acceleration]] = None
 
-    def worked_out(self, dt: float) -> "_WorkedOut":
-        """Return the states of its links, their accelerations, and the forces on them."""
-        if self._answer is None:
+    def compute(self, dt: float) -> Dict[int, _Acceleration]:
+        """Return the accelerations, with all forces in `outside`."""
+        if self.accelerations is None:
             note_contacts(self.outside, self.body)
             note_constraints(self.outside, self.body, self.before)
-            self._answer = (self.before,
-                            accelerations(self._chain, self.before, self.after, dt), self.outside)
-        return self._answer
-
-
-_WorkedOut = Tuple[Dict[int, Motion], Dict[int, Acceleration], Acting]
+            self.accelerations = _accelerations(self.chain, self.before, self.after, dt)
+        return self.accelerations
 
 
 class JointWrenches(BodyObserver):
@@ -153,9 +171,9 @@ class JointWrenches(BodyObserver):
         self._found.clear()
         self._seen.clear()
         for cut in self._cuts.values():
-            body = cut.body
-            if body.uid not in self._seen:
-                self._seen[body.uid] = _Seen(body, cut.chain)
+            if cut.body.uid not in self._seen:
+                states = link_motions(cut.body)
+                self._seen[cut.body.uid] = _Seen(cut.body, cut.chain, states, states, {})
 
     def after(self, dt: float, gravity: Vec3) -> None:
         """Record the states after that step, after all helpers have acted."""
@@ -172,30 +190,25 @@ class JointWrenches(BodyObserver):
 
     def _wrench(self, cut: _Cut, seen: _Seen) -> Optional[JointWrench]:
         """Return the wrench of a joint; None if a state is not finite."""
-        before, motions, acting = seen.worked_out(self._dt)
+        before, found = seen.before, seen.compute(self._dt)
         child, parent = _link_pose(cut.child, before), _link_pose(cut.parent, before)
         anchor = (transform(child, cut.joint.pose.position) if cut.child is not None
                   else transform(parent, cut.parent_from_joint.position))
         force, torque = ZERO3, ZERO3
         for part in cut.hung:
             state = before[part.index]
-            pull, turn = inertial_wrench(part, state, motions[part.index],
-                                         self._gravity if part.gravity else ZERO3)
+            pull, turn = _inertial_wrench(part, state, found[part.index],
+                                          self._gravity if part.gravity else ZERO3)
             force = add(force, pull)
             torque = add(torque, add(turn, cross(subtract(state.position, anchor), pull)))
-            for outer, at, moment in acting.get(part.index, ()):
+            for outer, at, moment in seen.outside.get(part.index, ()):
                 force = subtract(force, outer)
                 torque = subtract(torque, add(moment, cross(subtract(at, anchor), outer)))
         if not all(map(math.isfinite, (*force, *torque))):
             return None
         if cut.child is not cut.hung[0]:
             force, torque = subtract(ZERO3, force), subtract(ZERO3, torque)
-        back = conjugate(child.orientation)
-        return JointWrench(rotate(back, force), rotate(back, torque),
-                           IDENTITY_QUAT if cut.parent is None
-                           else multiply(conjugate(parent.orientation), child.orientation))
-
-    # -- joints ------------------------------------------------------------------------------------
+        return _in_child(force, torque, child, None if cut.parent is None else parent)
 
     def _cut(self, key: JointKey) -> Optional[_Cut]:
         entry = self._models.get(key[0])
@@ -220,7 +233,7 @@ def _cut_at(entry: Entry, body: Body, links: Sequence[TreeLink], n: int) -> _Cut
         if links[m].parent in within:
             within.add(m)
     hung = [parts[links[m].index] for m in sorted(within) if links[m].index != NO_LINK]
-    return _Cut(body, Chain.of(parts, links), joint, names.get(joint.child),
+    return _Cut(body, _chain(parts, links), joint, names.get(joint.child),
                 names.get(joint.parent), hung,
                 compose(inverse(poses.get(joint.parent, IDENTITY)), joint.pose))
 
@@ -234,9 +247,9 @@ def _without_a_cut(entry: Entry, name: str) -> Optional[JointWrench]:
     return _closing_wrench(entry, joint, constraints) if joint and constraints else None
 
 
-def _closing_wrench(entry: Entry, joint: Joint, constraints: Sequence[int]) -> JointWrench:
+def _closing_wrench(entry: Entry, joint: Joint, constraints: Sequence[Constraint]) -> JointWrench:
     """Return the wrench of a loop-closing joint from its constraints."""
-    ends = [entry.constraints.end(joint.child), entry.constraints.end(joint.parent)]
+    ends = [entry.constraints.links.get(name) for name in (joint.child, joint.parent)]
     poses = [IDENTITY if end is None else _link_pose(end[1], link_motions(end[0]))
              for end in ends]
     held, sign = (ends[0], 1.0) if ends[0] is not None else (ends[1], -1.0)
@@ -247,14 +260,19 @@ def _closing_wrench(entry: Entry, joint: Joint, constraints: Sequence[int]) -> J
               else transform(compose(poses[1], inverse(links[joint.parent])),
                              joint.pose.position))
     force, torque = ZERO3, ZERO3
-    for number in constraints:
-        one, at, moment = constraint_forces(number, held[0], held[1].index, link)
+    for constraint in constraints:
+        one, at, moment = constraint_forces(constraint.uid, held[0], held[1].index, link)
         force = add(force, one)
         torque = add(torque, add(moment, cross(subtract(at, anchor), one)))
-    back = conjugate(poses[0].orientation)
-    return JointWrench(rotate(back, scale(force, sign)), rotate(back, scale(torque, sign)),
-                       IDENTITY_QUAT if ends[1] is None
-                       else multiply(conjugate(poses[1].orientation), poses[0].orientation))
+    return _in_child(scale(force, sign), scale(torque, sign), poses[0],
+                     None if ends[1] is None else poses[1])
+
+
+def _in_child(force: Vec3, torque: Vec3, child: Pose, parent: Optional[Pose]) -> JointWrench:
+    """Turn a wrench from world axes into those of the child; `parent` None: the world."""
+    back = conjugate(child.orientation)
+    return JointWrench(rotate(back, force), rotate(back, torque), IDENTITY_QUAT if parent is None
+                       else multiply(conjugate(parent.orientation), child.orientation))
 
 
 def _link_pose(part: Optional[Part], found: Dict[int, Motion]) -> Pose:
@@ -263,3 +281,76 @@ def _link_pose(part: Optional[Part], found: Dict[int, Motion]) -> Pose:
         return IDENTITY
     state = found[part.index]
     return compose(Pose(state.position, state.orientation), inverse(part.link_from_com))
+
+
+def _chain(parts: Mapping[int, Part], links: Sequence[TreeLink]) -> _Chain:
+    """Return the chain of a body; `parts` by the link's index in the model."""
+    found: List[Tuple[Part, Optional[Part], Vec3]] = []
+    for link in links:
+        if link.index == NO_LINK:
+            continue
+        above = link.parent
+        while above != BASE and links[above].index == NO_LINK:
+            above = links[above].parent
+        part = parts[link.index]
+        found.append((part, None if above == BASE else parts[links[above].index],
+                      transform(inverse(part.link_from_com), link.link_from_frame.position)))
+    return tuple(found)
+
+
+def _accelerations(chain: _Chain, before: Mapping[int, Motion], after: Mapping[int, Motion],
+                   dt: float) -> Dict[int, _Acceleration]:
+    """Return the accelerations of all links at the start of a step of `dt` s, by index."""
+    found: Dict[int, _Acceleration] = {}
+    for part, parent, joint in chain:
+        state, later = before[part.index], after[part.index]
+        if parent is None and part.index == BASE:
+            found[BASE] = _Acceleration(scale(subtract(later.linear, state.linear), 1.0 / dt),
+                                       scale(subtract(later.angular, state.angular), 1.0 / dt))
+            continue
+        over, over_later, above = (AT_REST, AT_REST, _Acceleration()) if parent is None else (
+            before[parent.index], after[parent.index], found[parent.index])
+        sliding, turning = _against(over, state, joint)
+        sliding_later, turning_later = _against(over_later, later, joint)
+        gain = rotate(over.orientation, scale(subtract(sliding_later, sliding), 1.0 / dt))
+        twist = rotate(over.orientation, scale(subtract(turning_later, turning), 1.0 / dt))
+        arm = rotate(state.orientation, joint)          # from the centre of mass to the joint
+        reach = subtract(add(state.position, arm), over.position)
+        angular = add(above.angular, add(twist, cross(over.angular,
+                                                      subtract(state.angular, over.angular))))
+        linear = add(above.linear, _about(above.angular, over.angular, reach))
+        drift = rotate(over.orientation, sliding)
+        linear = add(linear, add(gain, scale(cross(over.angular, drift), 2.0)))
+        linear = subtract(linear, _about(angular, state.angular, arm))
+        found[part.index] = _Acceleration(linear, angular)
+    return found
+
+
+def _inertial_wrench(part: Part, state: Motion, acceleration: _Acceleration,
+                     gravity: Vec3) -> Tuple[Vec3, Vec3]:
+    """Return the wrench, without gravity, that gives a link its acceleration.
+
+    Force, N, and torque about the centre of mass, N m, world axes.
+    """
+    back = conjugate(state.orientation)
+    spin, gain = rotate(back, state.angular), rotate(back, acceleration.angular)
+    a, b, c = part.moments
+    momentum = (a * spin[0], b * spin[1], c * spin[2])
+    torque = add((a * gain[0], b * gain[1], c * gain[2]), cross(spin, momentum))
+    return (scale(subtract(acceleration.linear, gravity), part.mass),
+            rotate(state.orientation, torque))
+
+
+def _against(over: Motion, state: Motion, joint: Vec3) -> Tuple[Vec3, Vec3]:
+    """Return the linear and angular velocity of a joint relative to the parent, in its axes."""
+    arm = rotate(state.orientation, joint)
+    reach = subtract(add(state.position, arm), over.position)
+    sliding = subtract(add(state.linear, cross(state.angular, arm)),
+                       add(over.linear, cross(over.angular, reach)))
+    back = conjugate(over.orientation)
+    return rotate(back, sliding), rotate(back, subtract(state.angular, over.angular))
+
+
+def _about(angular: Vec3, rate: Vec3, arm: Vec3) -> Vec3:
+    """Return the acceleration of a point of a body relative to another one, `arm` away."""
+    return add(cross(angular, arm), cross(rate, cross(rate, arm)))
