@@ -21,8 +21,7 @@ from .joint_wrenches import JointKey, JointWrenches
 from .landing_contacts import LandingContacts
 from .level_seams import LevelSeams
 from .notices import Notices
-from .pair_friction import FrictionBalance
-from .pair_restitution import PairRestitution
+from .pair_coefficients import FrictionBalance, PairRestitution
 from .pinned_bodies import PinnedBodies
 from .planar_motion import PlanarMotion
 from .residual_friction import ResidualFriction
@@ -96,8 +95,8 @@ class HelperSet:
                              lambda body, axis: self.motors.restore(body, axis),
                              lambda row: self.motors.driven(row),
                              self.row_reader.read_links, self.row_reader.read_axes)
-        self._friction = FrictionBalance(self.notices.report_friction_misfit)
-        self._bounces = PairRestitution(self._parameters, self.notices.report_restitution_misfit)
+        self._friction = FrictionBalance(self.notices.misfit)
+        self._bounces = PairRestitution(self._parameters, self.notices.misfit)
         self._spin = GyroscopicRigid(lambda: self.forces.wrenched_links)
         self.holds = PinnedBodies(self.waker.around)
         self.book = ConstraintBook()

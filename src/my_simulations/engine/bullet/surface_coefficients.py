@@ -1,8 +1,8 @@
 """Compute the coefficients to store in PyBullet, so that pairs match Gazebo.
 
 PyBullet multiplies the coefficients of the two surfaces; Gazebo takes the smaller one. With these
-values, pairs of moving surfaces with mu 1 (the default) and static ones are exact; `pair_friction`
-corrects the others.
+values, pairs of moving surfaces with mu 1 (the default) and static ones are exact;
+`pair_coefficients` corrects the others.
 """
 from __future__ import annotations
 
