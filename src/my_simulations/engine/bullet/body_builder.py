@@ -147,6 +147,7 @@ class Builder:
             # All have the surface of the first collision: the pieces of a link may be thousands.
             alike = replace(carrier, collisions=carrier.collisions[:1]) if static else carrier
             found += [(recipe, alike) for recipe in recipes]
+        found = found or [(self._shapes.empty(self._first_row + number), link)]
         return _Rigid(number, static, masses, compose(link.pose, masses.com),
                       tuple(recipe for recipe, _ in found),
                       tuple(carrier for _, carrier in found))
@@ -155,14 +156,10 @@ class Builder:
         link, masses = self._model.links[rigid.number], rigid.masses
         at = compose(pose, rigid.model_from_com)
         taken = tuple((piece, self._shapes.take(piece)) for piece in rigid.pieces)
-        places = [(shape, piece_pose(at, piece)) for piece, shape in taken]
-        places = places or [(self._shapes.empty.take(), at)]
-        uids = [self._create(masses, shape, stand) for shape, stand in places]
-        if not rigid.pieces:
-            collision_groups.NOTHING.set(uids[0], BASE)  # else Bullet keeps a pair for any two
+        uids = [self._create(masses, shape, piece_pose(at, piece)) for piece, shape in taken]
         for uid, piece, carrier in zip(uids, rigid.pieces, rigid.carriers):
-            (collision_groups.static(carrier, piece.role) if rigid.static
-             else collision_groups.moving(carrier)).set(uid, BASE)
+            (collision_groups.static if rigid.static else collision_groups.moving)(
+                carrier, piece.role).set(uid, BASE)
             _remove_margin(uid, BASE, piece)
         part = self._part(rigid.number, BASE, masses, link)
         carriers = tuple(self._part(rigid.number, BASE, masses, carrier)
@@ -177,7 +174,7 @@ class Builder:
             if body.rigid and rigid.static:
                 mark_asleep(uid)
         body.radius = radius_of(uids[0])
-        if body.rigid and body.moves and rigid.pieces:
+        if body.rigid and body.moves:
             body.swept = sweep(uids[0])
         return body
 

@@ -36,11 +36,13 @@ class Filter(NamedTuple):
 
 
 NOTHING = Filter(0, 0)
-"""Filter of a link without collisions: it collides with no link."""
+"""Filter of a rigid link without collisions; with another Bullet keeps a pair for any two."""
 
 
-def moving(link: Link) -> Filter:
-    """Return the filter of a moving link; it collides if collide_bitmasks share a bit."""
+def moving(link: Link, role: str = "") -> Filter:
+    """Return the filter of a moving link; `role`: `Recipe.role` of its shape."""
+    if role == "empty":
+        return NOTHING
     bits = _bits(link)
     solid = [c.geometry for c in link.collisions if not isinstance(c.geometry, Empty)]
     kind = _BOXES if all(isinstance(geometry, Box) for geometry in solid) else _OTHERS
@@ -49,6 +51,8 @@ def moving(link: Link) -> Filter:
 
 def static(link: Link, role: str = "") -> Filter:
     """Return the filter of a static link; `role`: `Recipe.role` of its shape."""
+    if role == "empty":
+        return NOTHING
     bits = _bits(link)
     return Filter(bits << _SHIFT, {"plane": _OTHERS, "floor": _BOXES}.get(role, _BOXES | _OTHERS))
 
