@@ -33,7 +33,7 @@ from ..commands import (
 )
 from ..drive_commands import ReadEfforts, SetMotors, SetPlanarVelocities, SetServos, SetWheelSlips
 from ..ring import JOINTS, LINKS
-from ..run_state import ReadRunState, SetRunState
+from ..run_state import ReadRunState, RunState, SetRunState
 from ..timed_forces import AddTimedForces, ClearTimedForces
 from . import bodies
 from .bodies import Body, Part
@@ -42,11 +42,9 @@ from .closing_joints import closing_joints
 from .collision_shapes import ShapeError, ShapeFactory
 from .contact_readout import read_contacts
 from .helper_set import HelperSet
-from .initial_state_cache import InitialStateCache, Start
 from .joint_constraints import Constraints
-from .run_states import RunStates
 from .shape_preparation import ShapePreparation
-from .state_restore import Entry, inherited, restore
+from .state_restore import Entry, Start, inherited, keep_starts, restore, show_starts
 
 
 class BulletBackend:
@@ -64,8 +62,6 @@ class BulletBackend:
         self._readout, self._waker = self._helpers.readout, self._helpers.waker
         self._mover, self._notices = self._helpers.mover, self._helpers.notices
         self._row_reader = self._helpers.row_reader
-        self._starts = InitialStateCache(self._readout)
-        run_states = RunStates(self._helpers, self._bodies, self._rows)
         self._put_off: Optional[List[Start]] = None
         self._is_fresh = True   # nothing has moved since the world began
         self._appliers: Dict[Type[Command], Callable[[Any], object]] = {
@@ -90,8 +86,7 @@ class BulletBackend:
             ReadEfforts: lambda command: self._helpers.forces.servos.efforts(command.rows),
             AddTimedForces: self._add_timed_forces,
             ClearTimedForces: lambda command: self._helpers.forces.drop(command.force_ids),
-            ReadRunState: run_states.read,
-            SetRunState: run_states.set,
+            ReadRunState: self._read_run_state, SetRunState: self._set_run_state,
         }
         self._helpers.configure(self._helpers.settings)
 
@@ -214,11 +209,11 @@ class BulletBackend:
         starts = [(self._entry(number), pose) for number, pose in command.models]
         if command.states:
             self._build_again(starts, command.states)
-        elif len(starts) == len(self._models) and self._starts.show(starts):
+        elif len(starts) == len(self._models) and show_starts(self._readout, starts):
             self._put_off = starts
         else:
             self._build_again(starts)
-            self._starts.keep(starts)
+            keep_starts(self._readout, starts)
 
     def _build_deferred(self) -> None:
         """Build the bodies of a reset whose build was deferred."""
@@ -322,6 +317,29 @@ class BulletBackend:
     def _hold(self, command: PinModels) -> None:
         self._helpers.holds.set(body for number in command.model_ids
                         for body in self._entry(number).bodies)
+
+    def _read_run_state(self, _: ReadRunState) -> RunState:
+        helpers = self._helpers
+        resting = dict(helpers.settling.held)
+        for body in self._bodies.values():
+            place = helpers.restored_sleep.place_of(body)
+            if place is not None:
+                resting[body.lead_row] = place
+        return RunState(
+            tuple(resting.items()),
+            helpers.forces.servos.memories(), helpers.forces.loop_memories(),
+            helpers.forces.damper_memories(), helpers.settling.parting_end,
+            tuple(body.lead_row for body in helpers.divergence.stopped))
+
+    def _set_run_state(self, command: SetRunState) -> None:
+        state, forces = command.state, self._helpers.forces
+        forces.servos.resume(state.servos)
+        forces.resume_loops(state.loops)
+        forces.resume_dampers(state.dampers)
+        self._helpers.settling.resume_parting(state.parting_end)
+        self._helpers.divergence.stop(self._rows[row][0] for row in state.stopped)
+        self._helpers.restored_sleep.put(
+            (self._rows[row][0], place) for row, place in state.resting)
 
     # -- timed forces ----------------------------------------------------------------------------
 

@@ -5,6 +5,7 @@ import itertools
 from dataclasses import dataclass, replace
 from typing import Any, Dict, Iterable, List, Optional, Sequence, Tuple
 
+import numpy as np
 import pybullet
 
 from ...description.model import Link, Model
@@ -85,6 +86,7 @@ class Builder:
         model_id: the model's number.
         plans: the links of each body.
         link_rows, joint_rows: the rows of the model in the link and the joint table.
+        start: the values of these rows after it was built at a pose, for resets.
     """
 
     def __init__(self, command: LoadModel, shapes: ShapeFactory) -> None:
@@ -103,6 +105,7 @@ class Builder:
                                command.first_link_row + len(command.model.links))
         self.joint_rows = slice(command.first_joint_row,
                                 command.first_joint_row + len(self._axis_rows))
+        self.start: Optional[Tuple[Pose, np.ndarray, np.ndarray]] = None
         self._mobilities: Dict[int, float] = {}
         self.plans = [plan if self._is_rigid(plan) else in_pieces(plan, command.model)
                       for plan in plan_bodies(command.model)]

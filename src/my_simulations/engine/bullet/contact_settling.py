@@ -30,7 +30,7 @@ from ..run_state import PARTING_NOT_BEGUN, RestPose
 from .bodies import Body
 from .body_events import COMMANDED, BodyEvent
 from .contact_points import DISTANCE, FRICTION, FRICTION_2, LOAD, OTHER_BODY
-from .rest_place import put_at_rest, read_place
+from .rest import put_at_rest, read_place
 from .step_helper import FAR, StepHelper, next_multiple
 from .world_parameters import USUAL_ACCURACY, Accuracy, WorldParameters
 

@@ -12,13 +12,13 @@ from typing import Callable, Dict, Iterable, List, NamedTuple, Optional, Set
 
 import pybullet
 
-from ...geometry import Pose, Vec3, norm, scale, subtract
+from ...geometry import Vec3, norm, scale, subtract
 from ..run_state import RestPose
 from .bodies import Axis, Body
 from .body_events import BodyEvent
 from .link_states import motion
-from .rest_place import put_at_rest, read_place
-from .step_helper import FAR, StepHelper
+from .rest import put_at_rest, read_place
+from .step_helper import FAR, StepHelper, next_multiple
 
 RANGE = 1e4
 """m."""
@@ -35,7 +35,7 @@ _FAST_JOINT = 100.0     # rad/s or m/s
 class _Start(NamedTuple):
     """Where a body was put, at which step, how fast, and how fast it may become."""
 
-    pose: Pose
+    place: Vec3
     velocity: Vec3
     step: int
     limit: float
@@ -56,7 +56,7 @@ class DivergenceStop(StepHelper):
                  moved: Callable[[Body], None]) -> None:
         self._report, self._loaded, self._moved = report, loaded, moved
         self._bodies: Dict[int, Body] = {}
-        self._starts: Dict[int, Optional[_Start]] = {}
+        self._starts: Dict[int, _Start] = {}
         self._new: Dict[int, Body] = {}
         self._stops: Dict[int, RestPose] = {}
         self._period = 1
@@ -90,13 +90,13 @@ class DivergenceStop(StepHelper):
         """Each step while a body is stopped or new, else each period."""
         if self._stops or self._new:
             return step
-        return step + -step % self._period if self._bodies else FAR
+        return next_multiple(step, self._period) if self._bodies else FAR
 
     def before(self, step: int, dt: float, gravity: Vec3) -> None:
         """Record where new bodies begin, and check all bodies once in a period."""
         for body in self._new.values():
             now = motion(body.uid, body.parts[0].index)
-            self._starts[body.uid] = _Start(Pose(now.position, now.orientation), now.linear, step,
+            self._starts[body.uid] = _Start(now.position, now.linear, step,
                                             max(SPEED, 2.0 * norm(now.linear)))
         self._new.clear()
         if step % self._period == 0:
@@ -116,7 +116,7 @@ class DivergenceStop(StepHelper):
         speed = norm(now.linear)
         if speed > start.limit:
             what = f"became faster than the speed of sound ({speed:.0f} m/s)"
-        elif norm(subtract(now.position, start.pose.position)) > RANGE:
+        elif norm(subtract(now.position, start.place)) > RANGE:
             what = f"went further than {RANGE / 1000:g} km"
         else:
             return

@@ -8,7 +8,7 @@ import pybullet
 
 from ...description.link_surface import dominant_collision
 from ...description.model import Link
-from ...description.shapes import Collision, Surface
+from ...description.shapes import Collision
 from ...geometry import Vec3, conjugate, norm, rotate, scale
 from ..surface_pieces import by_friction
 from .bodies import Body, Part
@@ -34,25 +34,24 @@ def store(body: Body, dt: float) -> None:
     """
     for uid, part in body.surfaces:
         collision = dominant_collision(part.link)
-        if collision is not None:
-            _store(body, uid, part, collision, dt)
-
-
-def _store(body: Body, uid: int, part: Part, collision: Collision, dt: float) -> None:
-    surface = collision.surface
-    settings: Dict[str, Any] = {}
-    if is_direction_dependent(surface):
-        settings["anisotropicFriction"] = anisotropy(
-            (surface.mu, surface.mu2), first_direction(collision, part))
-    if surface.kp < SOFT and body.moves and not body.rigid:
-        settings["contactStiffness"] = max(surface.kp, 1e-9)
-        settings["contactDamping"] = _damping(surface, dt)
-    if surface.torsion > 0.0 and surface.use_patch_radius and surface.patch_radius > 0.0:
-        # Gazebo's limit: 3 pi / 16 times radius, coefficient and normal force.
-        settings["spinningFriction"] = _TORSION * surface.patch_radius * surface.torsion
-        settings["rollingFriction"] = _ROLLING  # Bullet looks at torsion only where this is not 0
-    if settings:
-        pybullet.changeDynamics(uid, part.index, **settings)
+        if collision is None:
+            continue
+        surface = collision.surface
+        settings: Dict[str, Any] = {}
+        if is_direction_dependent(surface):
+            settings["anisotropicFriction"] = anisotropy(
+                (surface.mu, surface.mu2), first_direction(collision, part))
+        if surface.kp < SOFT and body.moves and not body.rigid:
+            # kd, N s/m, or what keeps an overlap from springing out faster than max_vel.
+            rate = max(_PUSHED_OUT, surface.max_vel / _DEEP)
+            settings["contactStiffness"] = max(surface.kp, 1e-9)
+            settings["contactDamping"] = max(surface.kd, surface.kp * (1.0 / rate - dt), 1e-9)
+        if surface.torsion > 0.0 and surface.use_patch_radius and surface.patch_radius > 0.0:
+            # Gazebo's limit: 3 pi / 16 times radius, coefficient and normal force.
+            settings["spinningFriction"] = _TORSION * surface.patch_radius * surface.torsion
+            settings["rollingFriction"] = _ROLLING  # if it is 0, Bullet does not look at torsion
+        if settings:
+            pybullet.changeDynamics(uid, part.index, **settings)
 
 
 def is_soft(link: Link) -> bool:
@@ -84,9 +83,3 @@ def anisotropy(mus: Tuple[float, float], first: Vec3, left: Tuple[float, float] 
                      for mu, share in zip(mus, left))
     x, y, z = (across + (along - across) * value ** 2 for value in first)
     return (x, y, z)
-
-
-def _damping(surface: Surface, dt: float) -> float:
-    """kd, N s/m, or what keeps an overlap from springing out faster than max_vel."""
-    rate = max(_PUSHED_OUT, surface.max_vel / _DEEP)
-    return max(surface.kd, surface.kp * (1.0 / rate - dt), 1e-9)

@@ -11,6 +11,7 @@ from ..commands import PhysicsSettings
 from . import bodies, extra_surfaces, joint_axes
 from .bodies import Body, Part
 from .body_events import BodyEvent
+from .commanded_motion import PinnedBodies, PlanarMotion
 from .contact_settling import ContactSettling
 from .divergence_stop import DivergenceStop
 from .forces import Forces
@@ -22,10 +23,8 @@ from .landing_contacts import LandingContacts
 from .level_seams import LevelSeams
 from .notices import Notices
 from .pair_coefficients import FrictionBalance, PairRestitution
-from .pinned_bodies import PinnedBodies
-from .planar_motion import PlanarMotion
 from .residual_friction import ResidualFriction
-from .restored_sleep import RestoredSleep
+from .rest import RestoredSleep
 from .rolling_contacts import RollingContacts
 from .row_reader import RowReader
 from .seam_contacts import SeamContacts
@@ -53,7 +52,7 @@ class HelperSet:
         mover: sets poses and velocities of models, links and joints.
         book: the constraints of joints.
         forces, motors, planar, holds, wheel_friction, ties, wrenches: targets of commands.
-        settling, divergence, restored_sleep: store parts of the run state (`RunStates`).
+        settling, divergence, restored_sleep: store parts of the run state (`RunState`).
 
     Args:
         models: by id.

@@ -1,8 +1,8 @@
-"""Models that begin where others, or they themselves before a crash, were."""
+"""Models that begin where others, or they themselves before a crash or a reset, were."""
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, Callable, Dict, List
+from typing import Any, Callable, Dict, List, Sequence, Tuple
 
 import numpy as np
 import pybullet
@@ -16,6 +16,7 @@ from .bodies import Body
 from .body_builder import Builder
 from .joint_constraints import Constraints
 from .link_states import place
+from .state_readout import StateReadout
 
 
 @dataclass
@@ -30,21 +31,47 @@ class Entry:
     constraints: Constraints
 
 
+Start = Tuple[Entry, Pose]
+"""A model, and the initial world pose of its frame."""
+
+
+def keep_starts(readout: StateReadout, starts: Sequence[Start]) -> None:
+    """Store the rows of models that were just built; no step may have been made since.
+
+    The same builder and the same pose give the same rows, bit for bit.
+    """
+    readout.read()
+    for entry, pose in starts:
+        built = entry.builder
+        built.start = (pose, readout.links[built.link_rows].copy(),
+                       readout.joints[built.joint_rows].copy())
+
+
+def show_starts(readout: StateReadout, starts: Sequence[Start]) -> bool:
+    """Write the stored rows to the tables; return False and write none if any is missing."""
+    if any(entry.builder.start is None or entry.builder.start[0] != pose for entry, pose in starts):
+        return False
+    for built in (entry.builder for entry, _ in starts):
+        if built.start is not None:
+            _, readout.links[built.link_rows], readout.joints[built.joint_rows] = built.start
+    return True
+
+
 def restore(entry: Entry, state: ModelState) -> None:
     """Give a model just built the state; links and joint axes in the description's order."""
     rates = {row.name: values
              for row, values in zip(axis_rows(entry.model), state.joints)}
     for body in entry.bodies:
         link = state.links[body.parts[0].row - entry.first_row]
-        if body.rigid or body.base is not None:
+        if body.base is not None:
             bodies.place(body, link.pose)
         for axis in body.axes:
             bodies.put_axis(body, axis, *rates[row_name(axis.name, axis.number)])
         for ball in body.balls:
             set_ball(body, ball, entry.pose, lambda row: state.links[row - entry.first_row])
-        if not body.rigid and body.base is None:
+        if body.base is None:
             _restore_base(body, link.pose)
-        if body.moves and (body.rigid or body.base is not None):
+        elif body.moves:
             bodies.launch(body, link.pose, link.twist)
 
 

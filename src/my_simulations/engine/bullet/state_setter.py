@@ -1,8 +1,13 @@
-"""Set poses, velocities and joint positions, and notify the helpers that store them."""
+"""Set poses, velocities and joint positions, and notify the helpers that store them.
+
+In Gazebo the anchor of a joint to the world stays in the world, and its position follows from the
+pose of the link. PyBullet stores joint positions instead, so they are set together with the pose.
+"""
 from __future__ import annotations
 
+import math
 import struct
-from typing import Callable, Dict, Optional, Sequence, Tuple
+from typing import Callable, Dict, List, Optional, Sequence, Tuple
 
 import pybullet
 
@@ -11,28 +16,39 @@ from ...geometry import (
     Pose,
     Twist,
     Vec3,
-    add,
     compose,
     conjugate,
-    cross,
+    dot,
     inverse,
     multiply,
+    norm,
     pose_is_finite,
     rotate,
+    rotation_vector,
     subtract,
+    twist_at,
 )
 from ..api import CommandRefusedError, RemovedError
+from ..body_plan import BASE
 from ..commands import Frame, LinkState, SetJoints, SetLinkState, SetModelState
 from ..ring import LINK_WIDTH
-from . import anchored_bodies, bodies
-from .bodies import Axis, Body, Part
+from . import bodies
+from .bodies import Axis, Body, Part, put_axis
 from .body_events import BodyEvent
+from .link_states import place
 from .row_reader import RowReader
 from .state_readout import StateReadout
 from .state_restore import Entry, set_ball
 from .wake_up import WakeUp
 
 _ROW = struct.Struct(f"={LINK_WIDTH}d")
+
+_NEAR = 2e-5
+"""m and rad: a pose as near as this to one that the joint allows is meant to be that one. Saved
+poses have six digits."""
+_SAME = 1e-12
+
+_TYPE, _AXIS, _PARENT = 2, 13, 16     # of pybullet.getJointInfo
 
 
 class StateSetter:
@@ -87,7 +103,7 @@ class StateSetter:
         self._readout.read()
         body, part = self._rows[command.row]
         held = part.link is not None and part.link.kinematic
-        if not body.rigid and body.base is None and not held:
+        if body.base is None and not held:
             raise CommandRefusedError("the link belongs to a body that is joined to the world")
         pose, twist = self._in_world(command.pose, command.twist, command.frame)
         current = self.link_state(part.row).pose
@@ -116,7 +132,7 @@ class StateSetter:
     def put_back(self, body: Body) -> None:
         """Put a body whose state is no number back where it last was one, at rest."""
         last = self.link_state(body.parts[0].row)
-        if body.rigid or body.base is not None:
+        if body.base is not None:
             bodies.place(body, last.pose)
             bodies.launch(body, last.pose, STILL)
         for axis in body.axes:
@@ -146,32 +162,28 @@ class StateSetter:
 
         `twist` is the velocity there; None keeps it, turned.
         """
-        at = wanted.position
         lead = self.link_state(body.parts[0].row)
         target = lead.pose
-        is_anchored = not body.rigid and body.base is None
-        before = {axis.index: pybullet.getJointState(body.uid, axis.index)[1] for axis in body.axes}
-        if is_anchored:
+        rates = {axis.index: pybullet.getJointState(body.uid, axis.index)[1] for axis in body.axes}
+        if body.base is None:
             way = compose(wanted, inverse(current))
-            if not anchored_bodies.move_by_joints(body, way):
-                base = compose(way, Pose(*pybullet.getBasePositionAndOrientation(body.uid)))
-                pybullet.resetBasePositionAndOrientation(body.uid, base.position,
-                                                         base.orientation)
+            if not _move_by_joints(body, way):
+                pybullet.resetBasePositionAndOrientation(body.uid, *compose(
+                    way, Pose(*pybullet.getBasePositionAndOrientation(body.uid))))
         else:
             target = wanted if row == body.parts[0].row else compose(
                 wanted, compose(inverse(current), lead.pose))
             bodies.place(body, target)
-        rates = before if twist is None else (
-            anchored_bodies.rates(body, twist) if is_anchored else {})
-        for axis in body.axes:
-            bodies.put_axis(body, axis, pybullet.getJointState(body.uid, axis.index)[0],
-                            rates.get(axis.index, 0.0))
         if twist is not None:
-            for ball in body.balls:
-                turn = pybullet.getJointStateMultiDof(body.uid, ball.index)[0]
-                pybullet.resetJointStateMultiDof(body.uid, ball.index, turn, (0.0, 0.0, 0.0))
-        if body.moves and not is_anchored:
-            bodies.launch(body, target, _carried(lead, target, at, twist))
+            rates = _first_rates(body, twist) if body.base is None else {}
+        for axis in body.axes:
+            put_axis(body, axis, pybullet.getJointState(body.uid, axis.index)[0],
+                     rates.get(axis.index, 0.0))
+        for ball in body.balls if twist is not None else ():
+            turn = pybullet.getJointStateMultiDof(body.uid, ball.index)[0]
+            pybullet.resetJointStateMultiDof(body.uid, ball.index, turn, (0.0, 0.0, 0.0))
+        if body.moves and body.base is not None:
+            bodies.launch(body, target, _carried(lead, target, wanted.position, twist))
         self._notify(BodyEvent.STATE_SET, body)
 
 
@@ -202,5 +214,61 @@ def _carried(lead: LinkState, target: Pose, at: Vec3, twist: Optional[Twist]) ->
     if twist is None:
         turn = multiply(target.orientation, conjugate(lead.pose.orientation))
         return Twist(rotate(turn, lead.twist.linear), rotate(turn, lead.twist.angular))
-    lever = subtract(target.position, at)
-    return Twist(add(twist.linear, cross(twist.angular, lever)), twist.angular)
+    return twist_at(twist, subtract(target.position, at))
+
+
+def _first_joints(body: Body) -> Dict[int, Optional[Axis]]:
+    """Of a body with a fixed base: the indices of the joints next to it, with their axes."""
+    axes = {axis.index: axis for axis in body.axes}
+    return {index: axes.get(index) for index in range(pybullet.getNumJoints(body.uid))
+            if pybullet.getJointInfo(body.uid, index)[_PARENT] == BASE}
+
+
+def _first_rates(body: Body, twist: Twist) -> Dict[int, float]:
+    """The rates, rad/s or m/s, of first joints whose links move with `twist`, by joint index."""
+    return {index: _along(body, index, twist)[0]
+            for index, axis in _first_joints(body).items() if axis is not None}
+
+
+def _along(body: Body, index: int, moved: Twist) -> Tuple[float, bool]:
+    """Return the motion of a joint for that of its link, rad or m, or rates; whether it turns."""
+    info = pybullet.getJointInfo(body.uid, index)
+    turns: bool = info[_TYPE] == pybullet.JOINT_REVOLUTE
+    direction = rotate(place(body.uid, index)[1], info[_AXIS])
+    return dot(direction, moved.angular if turns else moved.linear), turns
+
+
+def _move_by_joints(body: Body, way: Pose) -> bool:
+    """Move a body with a fixed base by setting the joints next to the base; rates become 0.
+
+    `way` maps old world poses to new ones. Returns False, and changes nothing, if the joints do not
+    allow it.
+    """
+    done: List[Tuple[Axis, float]] = []
+    for index, axis in _first_joints(body).items():
+        before = Pose(*place(body.uid, index))
+        after = compose(way, before)
+        if _is_near(before, after, _SAME if axis is not None else _NEAR):
+            continue
+        # The half of a screw that turns does not say where its link is.
+        if axis is not None and axis.follower is None:
+            start: float = pybullet.getJointState(body.uid, index)[0]
+            done.append((axis, start))
+            travel, turns = _along(body, index, Twist(
+                subtract(after.position, before.position),
+                rotation_vector(multiply(after.orientation, conjugate(before.orientation)))))
+            position = start + travel
+            least = math.remainder(position, 2.0 * math.pi)   # as Gazebo has angles
+            put_axis(body, axis, least if turns and axis.lower <= least <= axis.upper
+                     else position)
+            if _is_near(Pose(*place(body.uid, index)), after, _NEAR):
+                continue
+        for other, old in done:
+            put_axis(body, other, old)
+        return False
+    return True
+
+
+def _is_near(one: Pose, other: Pose, bound: float) -> bool:
+    apart = compose(inverse(one), other)
+    return norm(apart.position) < bound and norm(rotation_vector(apart.orientation)) < bound

@@ -1,4 +1,4 @@
-"""Move models in the horizontal plane at commanded velocities, regardless of forces."""
+"""Move models as commands say, regardless of forces: in the plane, or where they are dragged."""
 from __future__ import annotations
 
 import math
@@ -6,15 +6,16 @@ from typing import Callable, Dict, Iterable, List, Mapping
 
 import pybullet
 
-from ...geometry import Pose, Vec3, cross, rpy_from_quat, subtract
+from ...geometry import STILL, Pose, Vec3, cross, rpy_from_quat, subtract
 from ..drive_commands import PlanarVelocity
 from .bodies import Body, set_sleep
+from .body_events import BodyEvent
 from .state_restore import Entry
 from .step_helper import FAR, StepHelper
 
 
 class PlanarMotion(StepHelper):
-    """Sets the commanded velocities of models before each step."""
+    """Sets the commanded velocities of models in the horizontal plane before each step."""
 
     def __init__(self, models: Mapping[int, Entry], model_pose: Callable[[Entry], Pose],
                  wake: Callable[[List[Body]], None]) -> None:
@@ -57,9 +58,52 @@ class PlanarMotion(StepHelper):
             linear = (c * wanted.x - s * wanted.y, s * wanted.x + c * wanted.y, 0.0)
             angular = (0.0, 0.0, wanted.yaw_rate)
             for body in entry.bodies:
-                if not body.moves or (not body.rigid and body.base is None):
+                if not body.moves or body.base is None:
                     continue
                 com = pybullet.getBasePositionAndOrientation(body.uid)[0]
                 lever = cross(angular, subtract(com, at))
                 pybullet.resetBaseVelocity(
                     body.uid, (linear[0] + lever[0], linear[1] + lever[1], 0.0), angular)
+
+
+class PinnedBodies(StepHelper):
+    """Puts bodies that are dragged by hand back where they were put, at rest, after every step."""
+
+    events = frozenset({BodyEvent.STATE_SET})
+
+    def __init__(self, wake: Callable[[List[Body]], None]) -> None:
+        self._wake = wake
+        self._bodies: Dict[int, Body] = {}
+        self._poses: Dict[int, Pose] = {}
+
+    def set(self, bodies: Iterable[Body]) -> None:
+        """Hold these bodies and release all others."""
+        before = self._bodies
+        self._bodies = {body.uid: body for body in bodies
+                        if body.moves and body.base is not None}
+        self._poses.clear()
+        for body in self._bodies.values():
+            self._store_pose(body)
+        self._wake([body for uid, body in before.items() if uid not in self._bodies])
+
+    def handle_event(self, event: BodyEvent, body: Body) -> None:
+        """Keep a body at the pose that a command has set."""
+        if body.uid in self._bodies:
+            self._store_pose(body)
+
+    def _store_pose(self, body: Body) -> None:
+        self._poses[body.uid] = Pose(*pybullet.getBasePositionAndOrientation(body.uid))
+
+    def forget(self, body: Body) -> None:
+        self._bodies.pop(body.uid, None)
+        self._poses.pop(body.uid, None)
+
+    def due(self, step: int) -> int:
+        """Each step while a body is held, otherwise `FAR`."""
+        return step if self._poses else FAR
+
+    def after(self, step: int, dt: float, gravity: Vec3) -> None:
+        """Restore the poses of held bodies after a step, at rest."""
+        for uid, pose in self._poses.items():
+            pybullet.resetBasePositionAndOrientation(uid, pose.position, pose.orientation)
+            pybullet.resetBaseVelocity(uid, *STILL)

@@ -1,37 +1,49 @@
-"""Puts bodies to sleep again that slept when the state of the world was saved.
-
-A world that was built again has no contacts. A body that sleeps finds none, and what reads contacts
-would miss it. So it stays awake for some steps, in which Bullet finds its contacts and their
-forces, and is then put back to its pose, at rest and asleep. Bullet wakes it, as every sleeper, if
-something that moves touches it. Articulated bodies do not sleep; those that `ContactSettling` held
-are held again.
-"""
+"""Put bodies to rest: where they rest, and which are to sleep again in a restored world."""
 from __future__ import annotations
 
-from typing import Callable, Dict, Iterable, NamedTuple, Optional, Set, Tuple
+from typing import Any, Callable, Dict, Iterable, Optional, Sequence, Set, Tuple
 
 import pybullet
 
-from ...geometry import Vec3, norm, subtract
+from ...geometry import STILL, ZERO3, Pose, Vec3, norm, subtract
 from ..body_plan import BASE
 from ..run_state import RestPose
-from .bodies import Body
+from .bodies import Body, put_axis
 from .body_events import COMMANDED, BodyEvent
-from .rest_place import put_at_rest, read_place
 from .step_helper import FAR, StepHelper
 
 _AWAKE_STEPS = 16      # contact forces of six boxes on each other are right within 5 % after these
 _MOST_SHIFT = 1e-4     # m, rad in these steps: a body that went farther was pushed
-_AT_REST = (0.0, 0.0, 0.0)
 
 
-class _Rest(NamedTuple):
-    body: Body
-    place: RestPose
+def read_place(body: Body, states: Optional[Sequence[Any]] = None) -> RestPose:
+    """Return where a body is; `states`: PyBullet's of its axes, if they were read already."""
+    if states is None:
+        states = pybullet.getJointStates(body.uid, [axis.index for axis in body.axes]) or ()
+    return RestPose(Pose(*pybullet.getBasePositionAndOrientation(body.uid))
+                     if body.base is not None else None, tuple(state[0] for state in states))
+
+
+def put_at_rest(body: Body, place: RestPose) -> None:
+    """Put a body with its joints at a place, at rest. Ball joints keep their orientations."""
+    if place.base is not None:
+        pybullet.resetBasePositionAndOrientation(body.uid, *place.base)
+        pybullet.resetBaseVelocity(body.uid, *STILL)
+    for axis, position in zip(body.axes, place.positions):
+        put_axis(body, axis, position)
+    for ball in body.balls:
+        turn = pybullet.getJointStateMultiDof(body.uid, ball.index)[0]
+        pybullet.resetJointStateMultiDof(body.uid, ball.index, turn, ZERO3)
 
 
 class RestoredSleep(StepHelper):
-    """Finds out which bodies sleep, and puts bodies to rest.
+    """Finds out which bodies sleep, and puts bodies to sleep that slept in a saved state.
+
+    A world that was built again has no contacts. A body that sleeps finds none, and what reads
+    contacts would miss it. So it stays awake for some steps, in which Bullet finds its contacts and
+    their forces, and is then put back to its pose, at rest and asleep. Bullet wakes it, as every
+    sleeper, if something that moves touches it. Articulated bodies do not sleep; those that
+    `ContactSettling` held are held again.
 
     Args:
         hold: holds an articulated body at a place.
@@ -42,12 +54,14 @@ class RestoredSleep(StepHelper):
     def __init__(self, hold: Callable[[Body, RestPose], None]) -> None:
         self._hold = hold
         self._commanded: Set[int] = set()      # reached by a command since the last step
-        self._rests: Dict[int, _Rest] = {}     # by PyBullet's number
+        self._rests: Dict[int, Tuple[Body, RestPose]] = {}
         self._sleep_step: Optional[int] = None
+        self.body_tables = (self._rests,)
 
     def put(self, rests: Iterable[Tuple[Body, RestPose]]) -> None:
         """Put these bodies to rest at these places some steps from now on."""
-        self._rests = {body.uid: _Rest(body, place) for body, place in rests}
+        self._rests.clear()
+        self._rests.update((body.uid, (body, place)) for body, place in rests)
         self._sleep_step = None
 
     def place_of(self, body: Body) -> Optional[RestPose]:
@@ -57,9 +71,9 @@ class RestoredSleep(StepHelper):
         that stands as still as if it slept counts as asleep.
         """
         if body.uid in self._rests:
-            return self._rests[body.uid].place
+            return self._rests[body.uid][1]
         if (body.sleeps and body.uid not in self._commanded
-                and pybullet.getBaseVelocity(body.uid) == (_AT_REST, _AT_REST)
+                and pybullet.getBaseVelocity(body.uid) == STILL
                 and pybullet.getContactPoints(bodyA=body.uid)):
             return read_place(body)
         return None
@@ -73,9 +87,6 @@ class RestoredSleep(StepHelper):
         self._rests.pop(body.uid, None)
         self._commanded.add(body.uid)
 
-    def forget(self, body: Body) -> None:
-        self._rests.pop(body.uid, None)
-
     def due(self, step: int) -> int:
         """The next step, and the one in which they fall asleep."""
         if not self._rests:
@@ -84,14 +95,13 @@ class RestoredSleep(StepHelper):
 
     def before(self, step: int, dt: float, gravity: Vec3) -> None:
         """Put the bodies to rest once the time has come."""
-        if not self._rests:
-            return
         if self._sleep_step is None:
             self._sleep_step = step + _AWAKE_STEPS
         elif step >= self._sleep_step:
-            rests, self._rests = self._rests, {}
-            for body, place in rests.values():
-                if not _is_near(place, read_place(body)):
+            rests = list(self._rests.values())
+            self._rests.clear()
+            for body, place in rests:
+                if _shift(place, read_place(body)) > _MOST_SHIFT:
                     continue
                 if body.rigid:
                     put_at_rest(body, place)
@@ -101,8 +111,8 @@ class RestoredSleep(StepHelper):
                     self._hold(body, place)
 
 
-def _is_near(one: RestPose, other: RestPose) -> bool:
+def _shift(one: RestPose, other: RestPose) -> float:
+    """Return how far a body is from a place, m or rad; the most of its base and its joints."""
     moved = (norm(subtract(one.base.position, other.base.position))
              if one.base is not None and other.base is not None else 0.0)
-    turned = max([abs(a - b) for a, b in zip(one.positions, other.positions)], default=0.0)
-    return max(moved, turned) <= _MOST_SHIFT
+    return max([moved, *(abs(a - b) for a, b in zip(one.positions, other.positions))])
