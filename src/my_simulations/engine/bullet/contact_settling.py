@@ -96,14 +96,9 @@ class ContactSettling(StepHelper):
         self._moving: Set[int] = set()
         self._rigid: Dict[int, Body] = {}     # awake, or changed by a command since the last check
         self._leaning = False
-        self._parting_steps, self._least_steps = 1000, 100
         self._new = False                     # a body was added since the last check
         self._arrived: List[_Tree] = []       # added articulated bodies
         self._until: Optional[int] = None     # the step at which split impulses end
-
-    def configure(self, dt: float) -> None:
-        """Use steps of `dt` s."""
-        self._parting_steps, self._least_steps = round(_PARTING / dt), round(_LEAST / dt)
 
     def add(self, body: Body) -> None:
         """Register a body; only articulated ones and those that may not sleep matter."""
@@ -175,7 +170,7 @@ class ContactSettling(StepHelper):
     def before(self, step: int, dt: float, gravity: Vec3) -> None:
         """Check periodically which bodies are at rest, and request the solver accuracy."""
         if self._new:
-            self._new, self._until = False, step + self._parting_steps
+            self._new, self._until = False, step + round(_PARTING / dt)
             self._parameters.split_impulses(True)
             # At once: an arm whose zero pose is past its limits may be inside the ground there.
             for tree in self._arrived if step % EVERY else ():
@@ -184,7 +179,7 @@ class ContactSettling(StepHelper):
         if step % EVERY:
             return
         if self._until is not None and (step >= self._until or (
-                step % _OVERLAPS_EVERY == 0 and self._is_parted(step))):
+                step % _OVERLAPS_EVERY == 0 and self._is_parted(step, dt))):
             self._until = None
             self._parameters.split_impulses(False)
         if step % _RIGID_EVERY == 0:
@@ -203,10 +198,10 @@ class ContactSettling(StepHelper):
             _FOR_STANDING_ROBOTS if standing else
             _FOR_LEANING_BODIES if self._leaning else USUAL_ACCURACY)
 
-    def _is_parted(self, step: int) -> bool:
+    def _is_parted(self, step: int, dt: float) -> bool:
         """Whether no contact overlaps by more than `_SHALLOW`."""
         assert self._until is not None
-        if step < self._until - self._parting_steps + self._least_steps:
+        if step < self._until - round(_PARTING / dt) + round(_LEAST / dt):
             return False
         return all(contact[DISTANCE] > -_SHALLOW for contact in pybullet.getContactPoints())
 

@@ -20,14 +20,13 @@ from .joint_constraints import ConstraintBook, InterModelJoints
 from .joint_motors import JointMotors
 from .joint_wrenches import JointKey, JointWrenches
 from .landing_contacts import LandingContacts
-from .level_seams import LevelSeams
 from .notices import Notices
 from .pair_coefficients import FrictionBalance, PairRestitution
 from .residual_friction import ResidualFriction
 from .rest import RestoredSleep
 from .rolling_contacts import RollingContacts
 from .row_reader import RowReader
-from .seam_contacts import SeamContacts
+from .seams import LevelSeams, SeamContacts
 from .state_readout import StateReadout
 from .state_restore import Entry
 from .state_setter import StateSetter
@@ -133,7 +132,6 @@ class HelperSet:
         """Use these settings from the next step on, and have Bullet use them."""
         self.settings = settings
         self._parameters.configure(settings)
-        self.settling.configure(settings.step_size)
         self._decay.configure(settings.step_size)
         self._rolling.configure(settings.cone)
         self.wheel_friction.configure(settings.cone)
