@@ -44,11 +44,11 @@ def child_environment() -> Dict[str, str]:
 
 
 @contextlib.contextmanager
-def shielded() -> Iterator[None]:
-    """Block SIGINT and SIGTERM for the children that this thread starts in the `with` block.
+def signals_blocked() -> Iterator[None]:
+    """Block SIGINT and SIGTERM in this thread, and in the children that it starts meanwhile.
 
-    Ctrl-C is sent to the whole foreground group, and would end a starting interpreter with a
-    traceback. Blocked signals are inherited; the parent ends the child.
+    A context manager. Ctrl-C is sent to the whole foreground group, and would end a starting
+    interpreter with a traceback. Children inherit blocked signals; the parent ends the child.
     """
     before = signal.pthread_sigmask(signal.SIG_BLOCK, (signal.SIGINT, signal.SIGTERM))
     try:

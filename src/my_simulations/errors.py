@@ -19,7 +19,7 @@ import enum
 from dataclasses import dataclass, replace
 from typing import Dict, Iterable, List, Optional, Sequence
 
-_MOST_LINES = 5   # that `grouped` names
+_MOST_LINES = 5   # that `group_repeated` names
 
 
 class Severity(enum.Enum):
@@ -90,7 +90,7 @@ def errors_of(issues: Iterable[Issue]) -> List[Issue]:
     return [issue for issue in issues if issue.severity is Severity.ERROR]
 
 
-def grouped(issues: Iterable[Issue]) -> List[Issue]:
+def group_repeated(issues: Iterable[Issue]) -> List[Issue]:
     """The first of the issues that differ in their place only, with the lines of the others.
 
     Robots repeat an element in each of their joints or wheels: the log then has one line for it.
@@ -111,7 +111,7 @@ def grouped(issues: Iterable[Issue]) -> List[Issue]:
     return found
 
 
-def strictly(issues: Iterable[Issue]) -> List[Issue]:
+def tolerated_as_errors(issues: Iterable[Issue]) -> List[Issue]:
     """The same issues, those that were tolerated as errors."""
     return [replace(issue, severity=Severity.ERROR) if issue.tolerated else issue
             for issue in issues]

@@ -144,7 +144,7 @@ def compose(a: Pose, b: Pose) -> Pose:
 
 
 def inverse(pose: Pose) -> Pose:
-    """child_from_parent."""
+    """Return child_from_parent of the pose parent_from_child."""
     q = conjugate(pose.orientation)
     return Pose(scale(rotate(q, pose.position), -1.0), q)
 

@@ -16,8 +16,8 @@ INTERRUPTED, READER_GONE = 130, 141
 _NO_ROOM = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO)
 
 
-def program(main: Main) -> Main:
-    """Let the main function of a program end without a traceback.
+def exit_cleanly(main: Main) -> Main:
+    """Decorate the main function of a program so that it ends without a traceback.
 
     Its exit code is 141 if the reader of its output has gone (`study status | head -1`), 74 (with
     a message) if the output could not be written, and 130 after a Ctrl-C that it does not handle.

@@ -24,8 +24,11 @@ def wait_until_readable(descriptor: int, timeout: float) -> bool:
     return bool(poll.poll(1000.0 * timeout))
 
 
-def with_lowest_number(descriptor: int) -> int:
-    """The same open file under the lowest free number above 2; the other number is closed."""
+def lowest_descriptor(descriptor: int) -> int:
+    """Move an open file to the lowest free descriptor above 2, and return that descriptor.
+
+    The higher of both descriptors is closed; this can be the new one.
+    """
     lowest = fcntl.fcntl(descriptor, fcntl.F_DUPFD_CLOEXEC, 3)
     os.close(max(lowest, descriptor))
     return min(lowest, descriptor)

@@ -13,11 +13,11 @@ from ..description.flatten import flattened
 from ..description.light import Light
 from ..description.model import Model
 from ..description.world import World
-from ..errors import InputError, Issue, Severity, error, errors_of, strictly
+from ..errors import InputError, Issue, Severity, error, errors_of, tolerated_as_errors
 from ..formats.reading import read_any
 from ..formats.xml.parsing import content
 from ..objects.object_documents import run_xacro
-from ..program_end import program
+from ..program_end import exit_cleanly
 from ..resources.database.download_notes import DownloadNotes
 from ..resources.model_config import description_in
 from ..resources.resolver import Resolver, ResourceNotFoundError
@@ -51,7 +51,7 @@ def parser() -> argparse.ArgumentParser:
     return made
 
 
-@program
+@exit_cleanly
 def main(argv: Optional[Sequence[str]] = None) -> int:
     """Run a command line, program name first; return the exit code that `parser` lists."""
     made = parser()
@@ -65,7 +65,7 @@ def main(argv: Optional[Sequence[str]] = None) -> int:
     for file in options.files:
         loaded, issues = check(file, resolver, options.run_xacro)
         if options.strict:
-            issues = strictly(issues)
+            issues = tolerated_as_errors(issues)
         failed = failed or bool(errors_of(issues))
         if options.json:
             print(json.dumps({"file": file, **counts(loaded),

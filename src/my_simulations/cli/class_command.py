@@ -21,7 +21,7 @@ from ..classroom.manifests import compose, kubernetes
 from ..classroom.student_files import collect, send_file
 from ..errors import CommandError, InputError
 from ..grading.box_support import isolation
-from ..program_end import program
+from ..program_end import exit_cleanly
 from ..ros.arguments import Parser
 
 NAME = "class"
@@ -64,7 +64,7 @@ def parser() -> argparse.ArgumentParser:
     return made
 
 
-@program
+@exit_cleanly
 def main(argv: Optional[Sequence[str]] = None) -> int:
     """Run a command line, program name first; return the exit code that `parser` lists."""
     options = parser().parse_args((sys.argv if argv is None else list(argv))[1:])

@@ -13,7 +13,7 @@ from ..grading.assignment_file import read_assignment
 from ..grading.grade import grade
 from ..grading.mark import GRADED, Mark
 from ..grading.shipped import shipped_assignment
-from ..program_end import program
+from ..program_end import exit_cleanly
 from ..ros.arguments import Parser
 
 NAME = "grade"
@@ -40,7 +40,7 @@ def parser() -> argparse.ArgumentParser:
     return made
 
 
-@program
+@exit_cleanly
 def main(argv: Optional[Sequence[str]] = None) -> int:
     """Run a command line, program name first; return the exit code that `parser` lists."""
     made = parser()

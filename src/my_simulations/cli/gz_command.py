@@ -13,7 +13,7 @@ from ..description.light import Light
 from ..description.model import Model
 from ..description.world import World
 from ..errors import CommandError, InputError
-from ..program_end import program
+from ..program_end import exit_cleanly
 from ..resources.database.download_notes import DownloadNotes
 from ..resources.resolver import Resolver
 from ..ros.arguments import Parser
@@ -39,7 +39,7 @@ class _Parser(Parser):
         self.exit(USAGE, f"{self.prog}: {message}; see {self.prog} --help\n")
 
 
-@program
+@exit_cleanly
 def main(argv: Optional[Sequence[str]] = None) -> int:
     """Run a command line, program name first.
 

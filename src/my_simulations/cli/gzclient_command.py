@@ -7,7 +7,7 @@ import threading
 from typing import Any, List, Optional
 
 from ..editor.web_browser import show
-from ..program_end import program
+from ..program_end import exit_cleanly
 from ..ros.lifecycle import master_api
 from ..ros.own_server import EDITOR_REQUESTED
 
@@ -26,7 +26,7 @@ Open the world editor of the running node `gazebo` in a browser, or print its UR
 display. Exits when the node exits."""
 
 
-@program
+@exit_cleanly
 def main(argv: Optional[List[str]] = None) -> int:
     """Open the editor of the node `gazebo`, and wait until that node or this program ends.
 

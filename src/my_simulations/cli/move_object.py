@@ -11,7 +11,7 @@ from ..errors import InputError, SimulationError
 from ..geometry import Pose, quat_from_rpy
 from ..objects.motion_path import Circle, Polygon, parse_numbers, parse_points
 from ..objects.selection import unknown_name
-from ..program_end import program
+from ..program_end import exit_cleanly
 from ..ros.arguments import Parser
 from . import object_client as client
 
@@ -60,7 +60,7 @@ def parser() -> argparse.ArgumentParser:
     return made
 
 
-@program
+@exit_cleanly
 def main(argv: Optional[Sequence[str]] = None) -> int:
     """Run a command line, program name first; return the exit code that `parser` lists."""
     words, remappings = client.plain_words(argv)

@@ -8,7 +8,7 @@ from typing import Dict, List, Mapping, Optional, Sequence, Tuple
 from ..errors import Issue
 from ..objects.object_list import ObjectList
 from ..objects.selection import ALL, select, unknown_name
-from ..program_end import program
+from ..program_end import exit_cleanly
 from ..ros.arguments import Parser
 from . import object_client as client
 from .loaded_list import missing_list_message, read_list
@@ -30,7 +30,7 @@ def parser() -> argparse.ArgumentParser:
     return made
 
 
-@program
+@exit_cleanly
 def main(argv: Optional[Sequence[str]] = None) -> int:
     """Run a command line, program name first; return the exit code that `parser` lists."""
     return client.run_tool(NAME, parser(), argv, _remove_all)

@@ -10,7 +10,7 @@ from typing import List, Optional, Sequence
 from ..editor.logs.replay_page import STATES_HZ, write_replay
 from ..editor.logs.state_log import FILE
 from ..errors import CommandError
-from ..program_end import program
+from ..program_end import exit_cleanly
 from ..resources.resolver import Resolver
 from ..ros.arguments import Parser
 
@@ -39,7 +39,7 @@ def parser() -> argparse.ArgumentParser:
     return made
 
 
-@program
+@exit_cleanly
 def main(argv: Optional[Sequence[str]] = None) -> int:
     """Run a command line, program name first; return the exit code that `parser` lists."""
     options = parser().parse_args((sys.argv if argv is None else list(argv))[1:])

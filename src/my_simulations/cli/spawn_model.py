@@ -11,7 +11,7 @@ import time
 from typing import Any, Dict, List, Optional
 
 from ..errors import InputError, SimulationError
-from ..program_end import program
+from ..program_end import exit_cleanly
 from ..ros.arguments import Parser, number, seconds
 from ..ros.call_deadline import CallTimeoutError, within
 from ..ros.lifecycle.launch_info import Launch
@@ -82,7 +82,7 @@ def joint_positions(options: argparse.Namespace) -> Dict[str, float]:
     return positions
 
 
-@program
+@exit_cleanly
 def main(argv: Optional[List[str]] = None) -> int:
     """Run a command line, program name first.
 

@@ -9,7 +9,7 @@ from ..errors import InputError
 from ..objects.object_documents import Document, Documents, package_finder
 from ..objects.object_list import PlacedObject
 from ..objects.selection import select
-from ..program_end import program
+from ..program_end import exit_cleanly
 from ..ros.arguments import Parser
 from ..ros.lifecycle.launch_info import Launch
 from . import object_client as client
@@ -36,7 +36,7 @@ def parser() -> argparse.ArgumentParser:
     return made
 
 
-@program
+@exit_cleanly
 def main(argv: Optional[Sequence[str]] = None) -> int:
     """Run a command line, program name first; return the exit code that `parser` lists."""
     return client.run_tool(NAME, parser(), argv, _spawn_all)

@@ -3,12 +3,12 @@ from __future__ import annotations
 
 from typing import Optional, Sequence
 
-from ..program_end import program
+from ..program_end import exit_cleanly
 from ..studies.command import main as study
 from ..studies.replays import Record
 
 
-@program
+@exit_cleanly
 def main(argv: Optional[Sequence[str]] = None) -> int:
     """Run the command; see `studies.command.main`."""
     return study(argv, records={"bag": _bag, "log": _log}, write_replay=_write_replay)

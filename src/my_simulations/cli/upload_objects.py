@@ -8,7 +8,7 @@ from typing import Optional, Sequence
 
 from ..objects.list_files import list_file, world_name
 from ..objects.object_documents import package_finder
-from ..program_end import program
+from ..program_end import exit_cleanly
 from ..resources.package_files import PACKAGE
 from ..resources.ros_packages import package_of
 from ..ros.arguments import Parser
@@ -34,7 +34,7 @@ def parser() -> argparse.ArgumentParser:
     return made
 
 
-@program
+@exit_cleanly
 def main(argv: Optional[Sequence[str]] = None) -> int:
     """Run a command line, program name first; return the exit code that `parser` lists."""
     return client.run_tool(NAME, parser(), argv, _upload)

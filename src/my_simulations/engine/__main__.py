@@ -9,7 +9,7 @@ import sys
 from typing import Iterator, List, Tuple
 
 from ..child_process import die_with_parent, keep_freed_memory
-from ..readable import with_lowest_number
+from ..readable import lowest_descriptor
 from .api import Event, Reply
 from .commands import Command, Post, SetModelState
 from .message_pipe import Wire
@@ -77,7 +77,7 @@ def main(argv: List[str]) -> int:
 
     backend = made_without_zero_pages(BulletBackend)
     keep_freed_memory()
-    wire = Wire(socket.socket(fileno=with_lowest_number(commands)))
+    wire = Wire(socket.socket(fileno=lowest_descriptor(commands)))
     try:
         Runner(backend, RingWriter(states), _Pipes(wire, wake_pipe, notices)).run()
     finally:

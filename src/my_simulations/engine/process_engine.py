@@ -14,8 +14,8 @@ from ..child_process import (
     await_end,
     child_command,
     child_environment,
-    shielded,
     signal_name,
+    signals_blocked,
     wait_or_kill,
 )
 from . import ring as ring_module
@@ -104,7 +104,7 @@ class ProcessEngine:
         """
         ours, theirs = socket.socketpair()
         descriptors = (theirs.fileno(), self._ring_fd, self._wake_pipe.input, self._notices.input)
-        with self._lock, shielded():
+        with self._lock, signals_blocked():
             self._child = subprocess.Popen(
                 child_command("engine", *map(str, descriptors)),
                 pass_fds=descriptors, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,

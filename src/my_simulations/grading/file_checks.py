@@ -9,7 +9,7 @@ from typing import Callable, Dict, List, Optional, Sequence
 from ..description.flatten import flattened
 from ..description.model import Model
 from ..description.world import World
-from ..errors import InputError, Issue, Severity, error, errors_of, strictly
+from ..errors import InputError, Issue, Severity, error, errors_of, tolerated_as_errors
 from ..formats.reading import read_any
 from ..formats.xml.parsing import STRAY_END_TAG, content
 from ..resources.resolver import Resolver
@@ -99,7 +99,7 @@ def check_files(assignment: Assignment, file: "WorldFile | None", missing: str
 
 
 def _valid(check: ValidFile, file: WorldFile) -> CheckResult:
-    faults = sorted(errors_of(strictly(file.issues) if check.strict else file.issues),
+    faults = sorted(errors_of(tolerated_as_errors(file.issues) if check.strict else file.issues),
                     key=lambda one: one.line or math.inf)
     if not faults and file.world is None:
         return result(check, 0.0, NO_WORLD, file.name)

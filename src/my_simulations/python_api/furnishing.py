@@ -5,7 +5,7 @@ from dataclasses import replace
 from typing import Optional, Sequence
 
 from ..description.plugin_namespace import with_namespace
-from ..errors import CommandError, InputError, Issue, errors_of, grouped
+from ..errors import CommandError, InputError, Issue, errors_of, group_repeated
 from ..formats.reading import LoadedWorld, Text
 from ..geometry import Pose, compose
 from ..resources.resolver import ResourceNotFoundError
@@ -72,7 +72,7 @@ class Furnisher:
         return model.name
 
     def _judge(self, issues: Sequence[Issue]) -> None:
-        for issue in grouped(issues):
+        for issue in group_repeated(issues):
             self._log(issue)
         if errors_of(issues):
             raise InputError(issues)

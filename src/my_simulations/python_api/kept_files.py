@@ -9,7 +9,7 @@ from typing import Any, Callable, Dict, Hashable, List, Optional, Sequence, Tupl
 
 from ..description.model import Model
 from ..description.shapes import MeshTable
-from ..errors import InputError, Issue, error, grouped
+from ..errors import InputError, Issue, error, group_repeated
 from ..formats.mesh.loading import collision_meshes
 from ..formats.reading import Entity, LoadedWorld, Text, read_entity, read_file
 from ..resources.resolver import Resolver, ResourceNotFoundError
@@ -54,7 +54,7 @@ class FileCache:
         # A seed matters to files with populations alone.
         seed = choice.seed if self._keep and self._has_population(choice.world) else 0
         world, (meshes, issues) = self._found(("world", choice.world, choice.profile, seed), read)
-        for issue in grouped(issues):
+        for issue in group_repeated(issues):
             log(issue)
         return LoadedWorld(world, meshes, issues)
 

@@ -15,8 +15,8 @@ from ..child_process import (
     await_end,
     child_command,
     child_environment,
-    shielded,
     signal_name,
+    signals_blocked,
     wait_or_kill,
 )
 from ..engine.message_pipe import Wire
@@ -217,7 +217,7 @@ class SensingProcess:
         inherited = [theirs.fileno()] + ([self._ring_fd] if self._ring_fd >= 0 else [])
         arguments = [str(theirs.fileno()), str(self._ring_fd)]
         try:
-            with shielded():
+            with signals_blocked():
                 child = subprocess.Popen(
                     child_command("sensing", *arguments), pass_fds=inherited,
                     stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, env=child_environment())

@@ -6,7 +6,7 @@ from typing import Callable
 
 from ..engine.api import Engine
 from ..engine.commands import FOREVER
-from ..errors import InputError, Issue, error, grouped
+from ..errors import InputError, Issue, error, group_repeated
 from ..formats.reading import LoadedWorld, read_world
 from ..resources.resolver import Resolver, ResourceNotFoundError
 from ..resources.world_lookup import advice_on, find_world, similar_world
@@ -82,6 +82,6 @@ def load_world(name: str, resolver: Resolver, log: Log, *, seed: int = 0, profil
         progress(title, model and f"meshes of {model}", done, of)
 
     loaded = read_world(path, resolver, seed=seed, profile=profile, progress=read_meshes)
-    for issue in grouped(loaded.issues):
+    for issue in group_repeated(loaded.issues):
         log(issue)
     return loaded

@@ -1,7 +1,7 @@
 """`python -m my_simulations.studies` is the command `study`."""
 import sys
 
-from ..program_end import program
+from ..program_end import exit_cleanly
 from .command import main
 
-sys.exit(program(main)())
+sys.exit(exit_cleanly(main)())

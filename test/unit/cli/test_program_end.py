@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from my_simulations.program_end import program
+from my_simulations.program_end import exit_cleanly
 
 ROOT = Path(__file__).resolve().parents[3]
 CHECK_MODEL = [sys.executable, str(ROOT / "scripts" / "check_model")]
@@ -72,7 +72,7 @@ def test_an_interrupted_program_ends_without_a_traceback(tmp_path):
 
 
 def test_other_faults_pass(capsys):
-    @program
+    @exit_cleanly
     def main() -> int:
         raise FileNotFoundError(2, "gone")
 
@@ -81,7 +81,7 @@ def test_other_faults_pass(capsys):
 
 
 def test_the_exit_code_is_that_of_the_program(capsys):
-    @program
+    @exit_cleanly
     def main(code: int) -> int:
         print("done")
         return code

@@ -1,7 +1,7 @@
 """Issues that a file repeats are logged once."""
 from __future__ import annotations
 
-from my_simulations.errors import error, grouped, warning
+from my_simulations.errors import error, group_repeated, warning
 
 
 def unknown(line, joint, file="a.urdf", name="K"):
@@ -10,20 +10,20 @@ def unknown(line, joint, file="a.urdf", name="K"):
 
 
 def test_issues_that_differ_in_their_place_become_the_first_with_the_lines_of_the_others():
-    found = grouped([unknown(9, 3), unknown(3, 1), unknown(5, 2), unknown(7, 1, name="D")])
+    found = group_repeated([unknown(9, 3), unknown(3, 1), unknown(5, 2), unknown(7, 1, name="D")])
     assert [str(issue) for issue in found] == [
         "a.urdf:9: warning: attribute K is unknown; also in lines 3, 5 [/robot/joint[3]] (remove"
         " it)", "a.urdf:7: warning: attribute D is unknown [/robot/joint[1]] (remove it)"]
 
 
 def test_many_lines_are_counted():
-    (found,) = grouped([unknown(line, line) for line in range(1, 11)])
+    (found,) = group_repeated([unknown(line, line) for line in range(1, 11)])
     assert found.message.endswith("also in lines 2, 3, 4, 5, 6 and 4 more")
 
 
 def test_issues_of_other_files_severities_and_places_without_lines_stay():
     issues = [unknown(1, 1), unknown(1, 1, file="b.urdf"), unknown(0, 2), unknown(0, 3),
               error("unknown", "attribute K is unknown", file="a.urdf", line=4)]
-    kept = grouped([*issues[1:], unknown(0, 3)])
+    kept = group_repeated([*issues[1:], unknown(0, 3)])
     assert kept == issues[1:]
-    assert grouped([]) == []
+    assert group_repeated([]) == []

@@ -15,7 +15,7 @@ import subprocess
 import time
 from typing import Callable, List, Optional
 
-from ...child_process import child_command, child_environment, shielded
+from ...child_process import child_command, child_environment, signals_blocked
 from ...description.shapes import MeshData
 from ...errors import Issue, warning
 from ...readable import wait_until_readable
@@ -142,7 +142,7 @@ class MeshDecomposer:
         return in_time
 
     def _start_worker(self, folder: str) -> "subprocess.Popen[bytes]":
-        with open(os.path.join(folder, _FAULTS), "wb") as faults, shielded():
+        with open(os.path.join(folder, _FAULTS), "wb") as faults, signals_blocked():
             self._worker = subprocess.Popen(
                 child_command("engine.convex.worker", folder, *self._limits), bufsize=0,
                 stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=faults, cwd=folder,

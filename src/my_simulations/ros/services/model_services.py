@@ -8,7 +8,7 @@ from ...description.compare import differences
 from ...description.flatten import flattened
 from ...description.light import Light
 from ...description.model import Model
-from ...errors import CommandError, InputError, Issue, Severity, errors_of, grouped, warning
+from ...errors import CommandError, InputError, Issue, Severity, errors_of, group_repeated, warning
 from ...formats.mesh.loading import collision_meshes
 from ...formats.reading import ParsedDocument, parse_document
 from ...geometry import IDENTITY, Pose, compose
@@ -186,7 +186,7 @@ class ModelServices:
         return "Successfully spawned entity"
 
     def _report(self, issues: List[Issue]) -> None:
-        for issue in grouped(issues):
+        for issue in group_repeated(issues):
             self._log(issue)
 
     def delete(self, request: Any, _response: Any) -> str:
