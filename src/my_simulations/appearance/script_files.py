@@ -59,7 +59,7 @@ def _read(script: str, _changed: int, _size: int) -> Dict[str, ScriptMaterial]:
 
 
 def _scripts_in(folder: str) -> List[str]:
-    """The scripts of a folder, as many as may be read."""
+    """Return the *.material files of a folder, sorted, up to the limit of their total size."""
     try:
         names = [name for name in sorted(os.listdir(folder)) if name.endswith(".material")]
     except OSError:

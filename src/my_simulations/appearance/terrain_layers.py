@@ -47,10 +47,10 @@ class TerrainLayer:
     fade_dist: float = 1.0
 
 
-def stand_in(uri: str) -> Optional[str]:
-    """The generated image, "" for none, in place of a picture that Gazebo brings along.
+def substitute_pattern(uri: str) -> Optional[str]:
+    """Return the name of the generated pattern that replaces an image of Gazebo's media folder.
 
-    None for any other picture.
+    "" for an image that is left out, such as a flat normal map; None for any other image.
     """
     name = posixpath.basename(uri)
     return "" if name in _FLAT else _DRAWN.get(name)
@@ -67,13 +67,13 @@ def terrain_layers(visual: Visual, resolver: Resolver) -> Tuple[TerrainLayer, ..
         return ()
     blends = [TerrainBlend(), *shape.blends]
     return tuple(
-        TerrainLayer(_path(one.diffuse, resolver), stand_in(one.diffuse) or "",
-                     _path(one.normal, resolver), one.size, blend.min_height,
+        TerrainLayer(_path_or_empty(one.diffuse, resolver), substitute_pattern(one.diffuse) or "",
+                     _path_or_empty(one.normal, resolver), one.size, blend.min_height,
                      blend.fade_dist or _SHORTEST_FADE)
         for one, blend in zip(shape.textures, blends))
 
 
-def _path(uri: str, resolver: Resolver) -> str:
+def _path_or_empty(uri: str, resolver: Resolver) -> str:
     try:
         return resolver.resolve(uri)
     except ResourceNotFoundError:

@@ -13,30 +13,31 @@ _BESIDE = (os.path.join("..", "materials", "textures"), os.path.join("materials"
            "textures", os.path.join("..", "textures"))
 
 
-def places_of_script(name: str, folders: List[str], resource_folders: List[str]) -> Iterator[str]:
-    """Candidate paths of a script's image, beside the script first (Gazebo behaviour)."""
+def script_image_candidates(name: str, folders: List[str],
+                            resource_folders: List[str]) -> Iterator[str]:
+    """Yield candidate paths of a script's image, beside the script first (Gazebo behaviour)."""
     for folder in folders:
         for place in (os.path.join(folder, name), os.path.join(folder, "..", "textures", name)):
             yield os.path.normpath(place)
-    yield from _shared(name, resource_folders)
+    yield from _media_candidates(name, resource_folders)
 
 
-def places_of_mesh(path: str, resource_folders: List[str]) -> Iterator[str]:
-    """Candidate paths of a mesh's image that is not at `path` (Gazebo behaviour)."""
+def mesh_image_candidates(path: str, resource_folders: List[str]) -> Iterator[str]:
+    """Yield candidate paths of a mesh's image that is not at `path` (Gazebo behaviour)."""
     folder, name = os.path.split(path)
     for beside in _BESIDE:
         yield os.path.normpath(os.path.join(folder, beside, name))
-    yield from _shared(name, resource_folders)
+    yield from _media_candidates(name, resource_folders)
 
 
-def _shared(name: str, resource_folders: List[str]) -> Iterator[str]:
+def _media_candidates(name: str, resource_folders: List[str]) -> Iterator[str]:
     for base in resource_folders:
         for media in MEDIA:
             yield os.path.join(base, media, "materials", "textures", name)
 
 
-def existing(path: str) -> Optional[str]:
-    """The real path of a file, ignoring the letter case of its name; None if there is none."""
+def existing_path(path: str) -> Optional[str]:
+    """Return the real path of a file, ignoring the letter case of its name; None if missing."""
     real = os.path.realpath(path)
     if os.path.isfile(real):
         return real
@@ -57,5 +58,5 @@ class TextureFiles:
 
     def texture(self, name: str, folders: List[str]) -> Optional[str]:
         """The path of a script's image; None if there is none."""
-        places = places_of_script(name, folders, self._resolver.resource_folders())
-        return next((found for found in map(existing, places) if found), None)
+        places = script_image_candidates(name, folders, self._resolver.resource_folders())
+        return next((found for found in map(existing_path, places) if found), None)

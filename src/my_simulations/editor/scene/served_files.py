@@ -13,7 +13,7 @@ import threading
 from typing import Dict, List, Optional
 from urllib.parse import quote
 
-from ...appearance.textures import existing, places_of_mesh, places_of_script
+from ...appearance.textures import existing_path, mesh_image_candidates, script_image_candidates
 from ...resources.resolver import Resolver, ResourceNotFoundError
 from ...resources.ros_packages import package_above
 from .content_types import MESHES, PICTURES, extension
@@ -87,7 +87,7 @@ class ServedFiles:
             return None
         found = self._existing(wanted)
         if found is None and kind in PICTURES:
-            places = places_of_mesh(wanted, self._resolver.resource_folders())
+            places = mesh_image_candidates(wanted, self._resolver.resource_folders())
             found = next((hit for hit in map(self._existing, places) if hit), None)
         return found
 
@@ -100,7 +100,7 @@ class ServedFiles:
 
     def texture(self, name: str, folders: List[str]) -> Optional[str]:
         """The path of a picture that may be served, looked for in these folders first."""
-        places = places_of_script(name, folders, self._resolver.resource_folders())
+        places = script_image_candidates(name, folders, self._resolver.resource_folders())
         return next((found for found in map(self._existing, places) if found), None)
 
     def _existing(self, path: str) -> Optional[str]:
@@ -108,7 +108,7 @@ class ServedFiles:
 
         A link may have the name of a picture and lead to something else.
         """
-        real = existing(path)
+        real = existing_path(path)
         served = real is not None and extension(real) in SERVED
         return real if served and self._root_of(real or "") is not None else None
 

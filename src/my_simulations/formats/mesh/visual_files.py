@@ -5,7 +5,7 @@ import os
 from dataclasses import replace
 from typing import Iterable, Iterator, List, Optional, Tuple
 
-from ...appearance.textures import existing, places_of_mesh
+from ...appearance.textures import existing_path, mesh_image_candidates
 from ...description.model import Model
 from ...description.shapes import Mesh
 from ...errors import InputError, Issue, Severity, warning
@@ -131,5 +131,5 @@ def _find(one: NamedFile, mesh: str, resolver: Resolver) -> Optional[str]:
         except ResourceNotFoundError:
             return None
     path = os.path.normpath(os.path.join(os.path.dirname(mesh), name))
-    places = places_of_mesh(path, resolver.resource_folders()) if one.kind == IMAGE else ()
-    return existing(path) or next((hit for hit in map(existing, places) if hit), None)
+    places = mesh_image_candidates(path, resolver.resource_folders()) if one.kind == IMAGE else ()
+    return existing_path(path) or next((hit for hit in map(existing_path, places) if hit), None)

@@ -3,7 +3,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from ...appearance.terrain_layers import stand_in
+from ...appearance.terrain_layers import substitute_pattern
 from ...description.shapes import Heightmap, TerrainTexture
 from ...resources.resolver import ResourceNotFoundError
 from ..xml.source import Source
@@ -44,7 +44,7 @@ def _found(uri: str, what: str, element: Any, source: Source) -> str:
     try:
         path = source.resolve(uri, element)
     except ResourceNotFoundError as missing:
-        if stand_in(uri) is None:
+        if substitute_pattern(uri) is None:
             without = "grey is shown instead" if what == "texture" else "it is left out"
             text, hint = source.resolver.explain(
                 missing, "check the path, GAZEBO_MODEL_PATH and GAZEBO_RESOURCE_PATH")

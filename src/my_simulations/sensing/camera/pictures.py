@@ -7,7 +7,7 @@ from typing import Any, Optional, Tuple
 import numpy as np
 
 from ...appearance.palette import PATTERNS
-from ...appearance.textures import existing, places_of_mesh
+from ...appearance.textures import existing_path, mesh_image_candidates
 from ...formats.image.pixels import picture as read
 from ...formats.image.pixels import pixels_of
 
@@ -37,8 +37,8 @@ def state_of(picture: str) -> Optional[Tuple[str, int, int]]:
 
 
 def _found(picture: str) -> Optional[str]:
-    return existing(picture) or next(
-        (hit for hit in map(existing, places_of_mesh(picture, [])) if hit), None)
+    return existing_path(picture) or next(
+        (hit for hit in map(existing_path, mesh_image_candidates(picture, [])) if hit), None)
 
 
 def draw_pattern(name: str) -> Optional[np.ndarray]:
