@@ -67,6 +67,7 @@ class _ClassReader(ValueReader):
             self._containers(top.get("containers")))
 
     def _students(self, value: Any, port: int) -> Tuple[Student, ...]:
+        """Read the students, a number or a list of names; their ports follow `port`."""
         path = ("students",)
         if isinstance(value, int) and not isinstance(value, bool):
             count = self.integer(value, path, 1, _MOST_STUDENTS)

@@ -70,7 +70,7 @@ class ContainerWorld:
             _, said = starting.communicate()
             if starting.returncode:
                 lines = said.decode("utf-8", "replace").strip().splitlines()
-                self._end(ENDED, lines[-1][:300] if lines else "the container does not start")
+                self._set_ended(ENDED, lines[-1][:300] if lines else "the container does not start")
                 return
         self._measure()
 
@@ -85,7 +85,7 @@ class ContainerWorld:
         measuring, self._measuring = self._measuring, None
         output, _ = measuring.communicate()
         if measuring.returncode:
-            self._end(ENDED, "the container has ended")
+            self._set_ended(ENDED, "the container has ended")
             return
         with contextlib.suppress(ValueError):
             self.memory_mb = int(output) / 1e6
@@ -100,9 +100,10 @@ class ContainerWorld:
         except subprocess.TimeoutExpired:
             stopping.kill()
             stopping.communicate()
-        self._end(STOPPED, reason)
+        self._set_ended(STOPPED, reason)
 
-    def _end(self, state: str, reason: str) -> None:
+    def _set_ended(self, state: str, reason: str) -> None:
+        """End the programs that watch the container, and store its state."""
         for process in filter(None, (self._starting, self._measuring)):
             process.kill()
             process.communicate()

@@ -11,6 +11,7 @@ from typing import IO, Any, Dict, List, Sequence
 
 import yaml
 
+from ..child_process import wait_or_kill
 from ..errors import CommandError
 from .class_plan import ClassPlan, Student
 from .manifests import ENTRY, WORLD, container_name, label
@@ -20,6 +21,7 @@ DOCKER, PODMAN, KUBECTL = "docker", "podman", "kubectl"
 PROGRAMS = (DOCKER, PODMAN, KUBECTL)
 """Programs that manage containers."""
 
+_END_S = 1.0   # that a program gets to end by itself
 _CALL_S = 120.0
 _HEAD_BYTES = 4096      # of the archive, for each file
 _MEMORY = ("cat /sys/fs/cgroup/memory.current 2>/dev/null"
@@ -83,7 +85,8 @@ class Containers:
             process.stdout.close()     # a program that still writes ends
             said = process.stderr.read()
             process.stderr.close()
-            status = _ended(process)
+            wait_or_kill(process, _END_S)
+            status = process.returncode
         if status and (is_whole or not archive.read_bytes):
             problem = _last_line(said)
         if problem:
@@ -108,7 +111,7 @@ class Containers:
         except subprocess.TimeoutExpired:
             raise CommandError(f"the container of {student.name} does not answer") from None
         finally:
-            _ended(process)
+            wait_or_kill(process, _END_S)
         if process.returncode:
             raise CommandError(f"container of {student.name}: {_last_line(said)}")
         return output
@@ -169,12 +172,3 @@ def _unpack(stream: Any, limit: int, store: Store) -> bool:
 def _last_line(said: bytes) -> str:
     lines = said.decode("utf-8", "replace").strip().splitlines()
     return lines[-1][:300] if lines else "the command failed"
-
-
-def _ended(process: "subprocess.Popen[bytes]") -> int:
-    """End a program; returns its exit status."""
-    try:
-        return process.wait(1.0)
-    except subprocess.TimeoutExpired:
-        process.kill()
-        return process.wait()

@@ -38,7 +38,7 @@ def send_file(plan: ClassPlan, student: Student, name: str, content: bytes) -> s
     return os.path.join(RECEIVED, name)
 
 
-def collect(plan: ClassPlan, student: Student, out: str) -> int:
+def collect_submission(plan: ClassPlan, student: Student, out: str) -> int:
     """Copy the submission of a student to OUT/NAME; returns the number of files.
 
     Replaces an earlier collection. Links, and files beyond the limits of the class, are left out.

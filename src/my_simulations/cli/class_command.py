@@ -18,7 +18,7 @@ from ..classroom.class_plan import ClassPlan, Student
 from ..classroom.class_state import ClassState
 from ..classroom.containers import KUBECTL, Containers
 from ..classroom.manifests import compose, kubernetes
-from ..classroom.student_files import collect, send_file
+from ..classroom.student_files import collect_submission, send_file
 from ..errors import CommandError, InputError
 from ..grading.box_support import isolation
 from ..program_end import exit_cleanly
@@ -147,7 +147,7 @@ def _collect(plan: ClassPlan, options: argparse.Namespace) -> int:
     def copy(student: Student) -> int:
         if plan.containers:
             return Containers(plan).collect(student, options.out)
-        return collect(plan, student, options.out)
+        return collect_submission(plan, student, options.out)
 
     def describe(student: Student) -> str:
         count = copy(student)
