@@ -6,7 +6,7 @@ import threading
 from typing import List, Optional
 
 from . import gzserver_command
-from .signals import end_quietly, ignore
+from .signals import exit_on_signals, ignore_signals
 
 
 def main(argv: Optional[List[str]] = None) -> int:
@@ -15,14 +15,14 @@ def main(argv: Optional[List[str]] = None) -> int:
     Returns 0 after SIGINT or SIGTERM, 1 if the node could not start.
     """
     words = sys.argv if argv is None else argv
-    end_quietly()
+    exit_on_signals()
     from ..ros.lifecycle import master_api
 
     if master_api.fault_of(master_api.uri(words), "/gazebo"):
         from . import standalone
 
         status = standalone.main(words, "gazebo")
-        ignore()
+        ignore_signals()
         return status
     threading.Thread(target=_show, args=(words,), daemon=True).start()
     return gzserver_command.main(words, program="gazebo", gui=True)

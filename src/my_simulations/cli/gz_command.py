@@ -45,7 +45,7 @@ def main(argv: Optional[Sequence[str]] = None) -> int:
 
     Returns 0 on success, 1 on failure, 2 for an invalid command line.
     """
-    words, remappings = object_client.plain_words(argv)
+    words, remappings = object_client.split_command_line(argv)
     if not words or words[0] in ("help", "-h", "--help"):
         asked = words[1:2]
         if asked and asked[0] in _COMMANDS:

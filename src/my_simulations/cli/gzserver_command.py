@@ -5,7 +5,7 @@ import io
 import sys
 from typing import Any, List, Optional
 
-from .signals import end_quietly, ignore
+from .signals import exit_on_signals, ignore_signals
 
 
 def main(argv: Optional[List[str]] = None, program: str = "gzserver", gui: bool = False) -> int:
@@ -20,7 +20,7 @@ def main(argv: Optional[List[str]] = None, program: str = "gzserver", gui: bool 
         0 after SIGINT or SIGTERM, 1 if the node could not start.
     """
     words = sys.argv if argv is None else argv
-    end_quietly()
+    exit_on_signals()
     from ..ros.lifecycle.server_options import parse
     from ..ros.lifecycle.start_profile import StartProfile
 
@@ -47,7 +47,7 @@ def main(argv: Optional[List[str]] = None, program: str = "gzserver", gui: bool 
     with rostest_replay(options, words, say) as options:
         status = Server(options, words, say, engines, profile, _make_node, front_ends.edit, gui,
                         front_ends.record, front_ends.await_world).run()
-    ignore()
+    ignore_signals()
     return status
 
 

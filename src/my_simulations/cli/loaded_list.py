@@ -230,7 +230,7 @@ def _load(parameters: client.Parameters, file: str, param: str, package: str
     if not isinstance(tree, Mapping) or not tree:
         parameters.delete(param)
         return 0, issues
-    kept, more = transferable(tree, source.where)
+    kept, more = storable_entries(tree, source.where)
     if kept:
         parameters.set(param, kept)
     else:
@@ -240,8 +240,9 @@ def _load(parameters: client.Parameters, file: str, param: str, package: str
         path.startswith(issue.xpath + "/") for path in faulty)]
 
 
-def transferable(tree: Mapping[Any, Any], source_where: Any) -> Tuple[Dict[str, Any], List[Issue]]:
-    """The entries of a list that can be stored on the parameter server.
+def storable_entries(tree: Mapping[Any, Any], source_where: Any) -> Tuple[Dict[str, Any],
+                                                                          List[Issue]]:
+    """Return the entries of a list that can be stored on the parameter server.
 
     Args:
         tree: the entries by name.

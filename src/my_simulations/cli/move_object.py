@@ -56,14 +56,14 @@ def parser() -> argparse.ArgumentParser:
                       help="distance for --stop-objects (m, default %(default)g)")
     made.add_argument("--laps", type=int, default=0,
                       help="exit after this many rounds (default: never)")
-    client.common_options(made)
+    client.add_common_options(made)
     return made
 
 
 @exit_cleanly
 def main(argv: Optional[Sequence[str]] = None) -> int:
     """Run a command line, program name first; return the exit code that `parser` lists."""
-    words, remappings = client.plain_words(argv)
+    words, remappings = client.split_command_line(argv)
     made = parser()
     options = made.parse_args(words)
     try:
@@ -237,6 +237,10 @@ class _Clock:
         return now
 
     def _wait_until(self, due: Callable[[float], bool]) -> float:
+        """Wait until `due` is true of the ROS time, s; return that time.
+
+        Raises MotionStoppedError if ROS shuts down, ToolError if ROS time stands still.
+        """
         import rospy
 
         seen, since = self.now(), time.monotonic()

@@ -39,7 +39,7 @@ class ToolError(SimulationError):
     """A tool failed; the text says what failed and what to do."""
 
 
-def common_options(parser: argparse.ArgumentParser) -> None:
+def add_common_options(parser: argparse.ArgumentParser) -> None:
     """Add the options common to all object tools."""
     parser.add_argument("--timeout", type=seconds, default=TIMEOUT, metavar="SECONDS",
                         help="wall-clock timeout of each call (default %(default)g)")
@@ -47,8 +47,8 @@ def common_options(parser: argparse.ArgumentParser) -> None:
                         help="name of the simulator node (default %(default)s)")
 
 
-def plain_words(argv: Optional[Sequence[str]]) -> Tuple[List[str], List[str]]:
-    """The command line without the program's name: (arguments, ROS remappings)."""
+def split_command_line(argv: Optional[Sequence[str]]) -> Tuple[List[str], List[str]]:
+    """Return the arguments and the ROS remappings of a command line, without the program."""
     words = list(sys.argv if argv is None else argv)[1:]
     return ([word for word in words if ":=" not in word],
             [word for word in words if ":=" in word])
@@ -57,7 +57,7 @@ def plain_words(argv: Optional[Sequence[str]]) -> Tuple[List[str], List[str]]:
 def run_tool(name: str, parser: argparse.ArgumentParser, argv: Optional[Sequence[str]],
              work: Callable[[argparse.Namespace, Sequence[str]], int]) -> int:
     """Read a command line, program name first, and `run` the tool with options and remappings."""
-    words, remappings = plain_words(argv)
+    words, remappings = split_command_line(argv)
     options = parser.parse_args(words)
     return run(name, lambda: work(options, remappings))
 

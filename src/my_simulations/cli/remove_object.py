@@ -26,7 +26,7 @@ def parser() -> argparse.ArgumentParser:
         epilog="Exit code: 0 on success, 1 on failure, 2 for an invalid command line.")
     made.add_argument("names", nargs="+", metavar="NAME",
                       help="a model, a group of /object_groups, or 'all'")
-    client.common_options(made)
+    client.add_common_options(made)
     return made
 
 

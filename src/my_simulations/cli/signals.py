@@ -5,7 +5,7 @@ import os
 import signal
 
 
-def end_quietly() -> None:
+def exit_on_signals() -> None:
     """Have SIGINT and SIGTERM exit at once with status 0 and without a traceback.
 
     For the time until the program installs its own handlers: during imports there is nothing to
@@ -15,7 +15,7 @@ def end_quietly() -> None:
         signal.signal(number, lambda _number, _frame: os._exit(0))
 
 
-def ignore() -> None:
+def ignore_signals() -> None:
     """Ignore SIGINT, SIGTERM and SIGHUP: the program has done its work and is about to end.
 
     Python restores the default of signals that it handles before it exits: another Ctrl-C would

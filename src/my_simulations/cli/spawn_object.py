@@ -32,7 +32,7 @@ def parser() -> argparse.ArgumentParser:
     made.add_argument("--package", default="", metavar="PKG",
                       help="package whose folder 'objects' contains the files of entries with "
                       "model_type (default: the package of the list, then my_simulations)")
-    client.common_options(made)
+    client.add_common_options(made)
     return made
 
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Callable, Dict, List, Optional, Tuple
 from ..editor.web_browser import show
 from ..errors import CommandError, InputError, Issue, Severity
 from .front_ends import FrontEnds
-from .signals import end_quietly
+from .signals import exit_on_signals
 
 if TYPE_CHECKING:
     from ..editor.logs.recorder import Recorder
@@ -30,7 +30,7 @@ def main(words: List[str], program: str) -> int:
     """
     from ..ros.lifecycle.server_options import parse
 
-    end_quietly()  # also while the world is read
+    exit_on_signals()  # also while the world is read
     options = parse(words[1:], program)
     def say(line: object) -> None:
         print(f"{program}: {line}", file=sys.stderr, flush=True)
@@ -60,7 +60,7 @@ def main(words: List[str], program: str) -> int:
     log.add_receiver(lambda issue: page.show_line(issue.message) if issue.code == "meshes"
                      else None)
     # A world that cannot be read is no reason to open a browser; one that takes long is.
-    opening = Opening(page.url, program)
+    opening = BrowserOpening(page.url, program)
     try:
         simulator, resolver = _load(options, engines, log, page.show)
     except InputError as fault:
@@ -78,7 +78,7 @@ def main(words: List[str], program: str) -> int:
             simulator.clock.unpause()
         editor = front_ends.edit(simulator, resolver, settings, page)
         log.add_receiver(editor.show_issue)
-        opening.now()
+        opening.open_now()
         ended.wait()
         editor.stop()
         return OK
@@ -90,18 +90,18 @@ def main(words: List[str], program: str) -> int:
         simulator.close()
 
 
-class Opening:
-    """Opens the browser once: soon, or at once when the world is there."""
+class BrowserOpening:
+    """Opens the browser once: after a delay, or earlier by `open_now`."""
 
     def __init__(self, url: str, program: str) -> None:
         self._page = (url, program)
         self._lock = threading.Lock()
         self._opened = False
-        self._timer = threading.Timer(_EARLY_S, self.now)
+        self._timer = threading.Timer(_EARLY_S, self.open_now)
         self._timer.daemon = True
         self._timer.start()
 
-    def now(self) -> None:
+    def open_now(self) -> None:
         with self._lock:
             opened, self._opened = self._opened, True
         self._timer.cancel()

@@ -30,7 +30,7 @@ def parser() -> argparse.ArgumentParser:
     made.add_argument("--package", default="", metavar="PKG",
                       help="package whose folder 'config' contains the list (default: the package "
                       "of the world's file, then my_simulations)")
-    client.common_options(made)
+    client.add_common_options(made)
     return made
 
 

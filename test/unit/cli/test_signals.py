@@ -18,7 +18,7 @@ from my_simulations.cli import signals
 signal.signal({number}, lambda *_: None)
 print("ready", flush=True)
 sys.stdin.readline()
-signals.ignore()
+signals.ignore_signals()
 """
 
 

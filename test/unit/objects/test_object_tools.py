@@ -7,8 +7,8 @@ import os
 import pytest
 
 from my_simulations.cli import move_object, spawn_object
-from my_simulations.cli.loaded_list import transferable
-from my_simulations.cli.object_client import full_name, plain_words
+from my_simulations.cli.loaded_list import storable_entries
+from my_simulations.cli.object_client import full_name, split_command_line
 from my_simulations.cli.progress import Progress, bar
 from my_simulations.cli.remove_object import chosen_models
 from my_simulations.errors import InputError
@@ -71,7 +71,7 @@ def test_a_bar_fits_its_terminal_and_is_full_at_the_end(columns, done):
 
 
 def test_ros_words_are_kept_apart_from_names():
-    words, remappings = plain_words(["tool", "MY_OBJECT", "__name:=x", "_p:=1", "all"])
+    words, remappings = split_command_line(["tool", "MY_OBJECT", "__name:=x", "_p:=1", "all"])
     assert (words, remappings) == (["MY_OBJECT", "all"], ["__name:=x", "_p:=1"])
 
 
@@ -122,13 +122,13 @@ def test_a_worlds_name_is_the_base_name_of_its_file(world, name):
 
 @pytest.mark.parametrize("value", [{1: 2}, 2 ** 40, {"a": [None]}])
 def test_an_entry_that_no_parameter_can_hold_is_an_error_and_the_rest_is_kept(value):
-    kept, issues = transferable({"bad": value, "good": entry()}, SOURCE.where)
+    kept, issues = storable_entries({"bad": value, "good": entry()}, SOURCE.where)
     assert kept == {"good": entry()}
     assert [(i.code, i.xpath) for i in issues] == [("not-a-parameter", "/objects/bad")]
 
 
 def test_an_entry_without_a_value_is_left_to_the_reader_of_the_list():
-    assert transferable({"bad": None, "good": entry()}, SOURCE.where) == ({"good": entry()}, [])
+    assert storable_entries({"bad": None, "good": entry()}, SOURCE.where) == ({"good": entry()}, [])
 
 
 def options(*words):
