@@ -32,7 +32,7 @@ _AHEAD = math.pi / 2.0                          # from the heading to the yaw of
 _Place = Tuple[float, float]
 
 
-def walking(actor: Actor) -> Actor:
+def with_random_walk(actor: Actor) -> Actor:
     """Return the actor with the script of its walk; the same actor if it has no ActorPlugin.
 
     The walk depends on the name of the actor only.

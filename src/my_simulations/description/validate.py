@@ -247,8 +247,8 @@ def _not_positive(what: str, values: Sequence[float]) -> str:
     return f"the {what} must be above 0, found {shown}"
 
 
-def closest(name: str, known: List[str]) -> str:
-    """Hint with the known name most similar to `name`; "" if none is."""
+def closest_name_hint(name: str, known: List[str]) -> str:
+    """Return the hint `did you mean X?` with the known name most like `name`; "" if none is."""
     near = difflib.get_close_matches(name, known, 1)
     return f"did you mean {near[0]}?" if near else ""
 
@@ -261,7 +261,8 @@ def joint_faults(joint: Joint, links: Set[str]) -> Iterator[Fault]:
             yield Fault("joint-link-missing", f"joint {name!r} has no {role} link", joint)
         elif link not in links and (link != WORLD or role == "child"):
             yield Fault("joint-link-unknown", f"joint {name!r} names {link!r} as its {role}, which"
-                        " is not a link of the model", joint, hint=closest(link, sorted(links)))
+                        " is not a link of the model", joint,
+                        hint=closest_name_hint(link, sorted(links)))
     if joint.parent and joint.parent == joint.child:
         yield Fault("joint-link-repeated", f"joint {name!r} connects {joint.child!r} with itself",
                     joint)

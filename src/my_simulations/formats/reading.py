@@ -9,7 +9,7 @@ from ..description.actor import Actor
 from ..description.light import Light
 from ..description.model import Model
 from ..description.shapes import MeshTable
-from ..description.validate import closest
+from ..description.validate import closest_name_hint
 from ..description.world import World
 from ..errors import InputError, Issue, error, errors_of
 from ..resources.resolver import Resolver
@@ -284,7 +284,8 @@ def _spawn_hint(element: Any, kind: str, file: str) -> str:
 
 def _suggestion(element: Any, known: Sequence[str]) -> str:
     """Hint for an unknown element: the known name most similar to its tag."""
-    return closest(element.tag.lower() if isinstance(element.tag, str) else "", list(known))
+    return closest_name_hint(element.tag.lower() if isinstance(element.tag, str) else "",
+                             list(known))
 
 
 def _child_suggestion(root: Any, known: Sequence[str]) -> str:

@@ -8,7 +8,7 @@ from ..appearance.mesh_formats import MOVEMENTS, PAGE_FORMATS
 from ..description.actor import Actor
 from ..description.light import Light
 from ..description.model import Model
-from ..description.random_walk import walking
+from ..description.random_walk import with_random_walk
 from ..description.shapes import Mesh
 from ..description.surroundings import Scene
 from ..description.world import World
@@ -59,7 +59,7 @@ def _figure(actor: Actor, resolver: "Resolver") -> Figure:
 
     skin = Mesh(actor.skin, path_of(actor.skin), (actor.skin_scale,) * 3)
     paths = [path_of(animation.filename) for animation in actor.animations]
-    return Figure(walking(actor), skin, tuple(
+    return Figure(with_random_walk(actor), skin, tuple(
         path if path.lower().endswith((*PAGE_FORMATS, *MOVEMENTS)) and path != skin.path else ""
         for path in paths))
 

@@ -7,7 +7,7 @@ import pytest
 
 from my_simulations.description.actor import Actor, Animation, Trajectory, Waypoint
 from my_simulations.description.plugin import PluginSpec
-from my_simulations.description.random_walk import walking
+from my_simulations.description.random_walk import with_random_walk
 from my_simulations.description.world import World
 from my_simulations.geometry import Pose, quat_from_rpy, rpy_from_quat
 from my_simulations.plugins.registry import PluginRegistry
@@ -26,7 +26,7 @@ def actor(name="person", xml=PLUGIN, library="libActorPlugin.so", animation="wal
 
 
 def sampled(one, seconds, dt=0.05):
-    path = ActorPath(walking(one), {"walking": 1.0})
+    path = ActorPath(with_random_walk(one), {"walking": 1.0})
     return [path.pose_at(n * dt) for n in range(round(seconds / dt))]
 
 
@@ -58,7 +58,7 @@ def test_it_reaches_its_first_target_and_goes_on():
 
 def test_its_way_depends_on_its_name_only():
     one, other = actor("one"), actor("other")
-    assert walking(one) == walking(actor("one"))
+    assert with_random_walk(one) == with_random_walk(actor("one"))
     assert places(sampled(one, 60.0)) != places(sampled(other, 60.0))
 
 
@@ -72,12 +72,13 @@ def test_the_weight_of_the_target_sets_the_speed():
 @pytest.mark.parametrize("one", [
     actor(library="libother.so"), actor(animation="running")], ids=["plugin", "animation"])
 def test_other_actors_keep_their_script(one):
-    assert walking(one) is one
+    assert with_random_walk(one) is one
 
 
 def test_a_weight_that_is_no_number_is_the_default():
-    assert walking(actor(xml="<plugin><target_weight>x</target_weight></plugin>")) == replaced(
-        walking(actor(xml="<plugin/>")), "<plugin><target_weight>x</target_weight></plugin>")
+    xml = "<plugin><target_weight>x</target_weight></plugin>"
+    assert with_random_walk(actor(xml=xml)) == replaced(
+        with_random_walk(actor(xml="<plugin/>")), xml)
 
 
 def replaced(one, xml):
@@ -87,7 +88,7 @@ def replaced(one, xml):
 
 def test_cameras_and_rays_see_the_walk():
     (figure,) = scenery(World("w", actors=[actor()]), None, Resolver()).figures
-    assert figure.actor == walking(actor())
+    assert figure.actor == with_random_walk(actor())
 
 
 def test_no_warning_names_the_plugin():

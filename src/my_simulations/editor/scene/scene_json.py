@@ -10,7 +10,7 @@ from ...description.light import Light
 from ...description.model import Joint, Link, Model
 from ...description.model_group import group_of
 from ...description.picture_size import picture_size_of
-from ...description.random_walk import walking
+from ...description.random_walk import with_random_walk
 from ...description.shapes import (
     Box,
     Capsule,
@@ -99,7 +99,7 @@ class Documents:
 
     def actor(self, actor: Actor) -> Dict[str, Any]:
         """The protocol's `Actor`: its skin is a geometry, "empty" for an actor without one."""
-        return {**plain_fields(walking(actor), "plugins", "skin_scale", "include"),
+        return {**plain_fields(with_random_walk(actor), "plugins", "skin_scale", "include"),
                 "geometry": self._found_mesh(actor.skin, actor.base_dir, actor.skin_scale),
                 "animations": [{**plain_fields(one, "scale"), "geometry":
                                 self._found_mesh(one.filename, actor.base_dir, one.scale)}

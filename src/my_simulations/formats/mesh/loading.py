@@ -10,7 +10,7 @@ from typing import Any, Callable, Iterator, List, Optional, Tuple
 from ...description.cost_budget import Cost, budget_faults
 from ...description.model import Link, Model
 from ...description.shapes import SOLIDS, Collision, Mesh, MeshData, MeshTable, Solid, mesh_key
-from ...description.validate import closest
+from ...description.validate import closest_name_hint
 from ...errors import InputError, Issue, Severity, error
 from ...resources.lfs_pointer import LFS_HINT, LFS_POINTER, is_lfs_pointer
 from ..loading_advice import UNKNOWN, Written, located_issue
@@ -251,7 +251,7 @@ def _chosen(parts: List[MeshPart], submesh: str, path: str) -> List[MeshPart]:
     if not chosen:
         known = [name for part in parts for name in part.names]
         raise _fault("mesh-empty", f"the mesh has no part {submesh!r}", path,
-                     hint=closest(submesh, known))
+                     hint=closest_name_hint(submesh, known))
     return chosen
 
 

@@ -15,7 +15,7 @@ from ...description.shapes import (
     Polyline,
     Visual,
 )
-from ...description.validate import closest, geometry_fault, has_zero_size
+from ...description.validate import closest_name_hint, geometry_fault, has_zero_size
 from ...resources.resolver import ResourceNotFoundError
 from ..xml.binding import BAD, REFUSED, Found, fill, read_text, to_xml
 from ..xml.source import FaultLevel, Source
@@ -136,7 +136,7 @@ def unknown_shape(shape: Any, owner: str, level: FaultLevel, source: Source,
     """Report a shape that is skipped."""
     source.report(level, "geometry-unknown",
                   f"<{shape.tag}> is not a known shape; this {owner} is skipped", shape,
-                  closest(shape.tag, list(known)))
+                  closest_name_hint(shape.tag, list(known)))
 
 
 def checked(geometry: Geometry, shape: Any, owner: str, source: Source) -> Optional[Geometry]:

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import Any, Callable, List, Optional, Tuple
 
 from ...description.model import INFINITE, Joint, JointAxis, Mimic
-from ...description.validate import JOINT_TYPES, closest
+from ...description.validate import JOINT_TYPES, closest_name_hint
 from ...geometry import Pose, Quat, Vec3, conjugate, norm, rotate, scale
 from ..xml.binding import REFUSED, Found, fill, read_text
 from ..xml.source import FaultLevel, Source
@@ -154,7 +154,7 @@ def _type(element: Any, source: Source) -> str:
     elif joint_type not in JOINT_TYPES:
         source.tolerate("joint-type-unknown", f"joint {name!r} has the unknown type"
                         f" {joint_type!r}; it is skipped", element,
-                        closest(joint_type, list(JOINT_TYPES)))
+                        closest_name_hint(joint_type, list(JOINT_TYPES)))
     return joint_type
 
 

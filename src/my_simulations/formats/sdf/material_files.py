@@ -11,7 +11,7 @@ from ...appearance.script_files import materials_of, scripts_of, shared_material
 from ...appearance.textures import TextureFiles
 from ...description.compare import BUILT_IN as BUILT_IN_SCRIPT
 from ...description.shapes import Material
-from ...description.validate import closest
+from ...description.validate import closest_name_hint
 from ...errors import warning
 from ...resources.resolver import ResourceNotFoundError
 from ..xml.source import Source
@@ -35,7 +35,7 @@ def check_script(material: Material, element: Any, source: Source) -> None:
         _check_texture(*found, folders, source)
     elif name and name not in BUILT_IN and material.script_uris and complete:
         source.warn("material-unknown", f"no material script defines {name!r}; white is shown",
-                    element, closest(name, [*known, *BUILT_IN]))
+                    element, closest_name_hint(name, [*known, *BUILT_IN]))
 
 
 def _read_scripts(uris: List[str], element: Any, source: Source
@@ -76,7 +76,7 @@ def _check_texture(material: ScriptMaterial, script: str, folders: List[str],
         "image-not-found", f"the texture {material.texture!r} of material {material.name!r} was"
         " not found; the material is shown without it", file=script,
         line=_line_of(material.texture, script),
-        hint=closest(name, _files_of([*folders, expected])) or f"copy it to {expected}"))
+        hint=closest_name_hint(name, _files_of([*folders, expected])) or f"copy it to {expected}"))
 
 
 def _files_of(folders: List[str]) -> List[str]:

@@ -7,7 +7,7 @@ from typing import Any, List, Optional, Sequence, Set, Tuple
 
 from ...description.cost_budget import MODEL_BUDGET, budget_faults, cost_of
 from ...description.model import WORLD, Link, Model
-from ...description.validate import closest, link_names, name_and_pose_faults, own_faults
+from ...description.validate import closest_name_hint, link_names, name_and_pose_faults, own_faults
 from ...errors import Issue, Severity
 from ...geometry import IDENTITY, Pose, compose, inverse
 from ..include_overrides import IncludeOverrides
@@ -331,7 +331,7 @@ class _ModelReader:
             self._source.tolerate("joint-link-unknown", f"joint {joint.name!r} names"
                                   f" {' and '.join(map(repr, strangers))}, which the model does not"
                                   " have; the joint is skipped", element,
-                                  closest(strangers[0], sorted(names)))
+                                  closest_name_hint(strangers[0], sorted(names)))
             return _End.NOWHERE
         if joint.child == WORLD and joint.parent in names:
             # In the description the world can only be the parent.

@@ -7,7 +7,7 @@ from typing import Any, DefaultDict, List, Sequence, Set
 
 from ...description.model import Model
 from ...description.shapes import Material
-from ...description.validate import closest
+from ...description.validate import closest_name_hint
 from ...geometry import Pose, compose
 from ..sdf.collision_visual import fill_material
 from ..sdf.material_files import check_script
@@ -135,7 +135,7 @@ class Extensions:
         if tag not in GAZEBO_LINK_KEPT and ":" not in tag and tag[0] != "{":
             known = [*GAZEBO_COLLISION, *GAZEBO_LINK, *GAZEBO_LINK_KEPT, "material"]
             self._source.warn("unknown-element", f"element <{tag}> is unknown in <gazebo>; it is"
-                              " kept without effect", child, closest(tag, known))
+                              " kept without effect", child, closest_name_hint(tag, known))
         body.link.extra.append(to_xml(child))
         if tag in _TOLD:
             self._source.report_unused(child)

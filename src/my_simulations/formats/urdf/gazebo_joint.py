@@ -4,7 +4,7 @@ from __future__ import annotations
 from typing import Any, Dict, Optional
 
 from ...description.model import WORLD, Joint
-from ...description.validate import closest
+from ...description.validate import closest_name_hint
 from ...geometry import IDENTITY, Pose, compose, inverse
 from ..sdf.frame_graph import FrameError
 from ..sdf.joint import UnresolvedJoint, is_complete, place_axes, read_joint, reverse_axes
@@ -34,7 +34,7 @@ def read_sdf_joint(element: Any, source: Source, bodies: Dict[str, Body],
         if own not in bodies and own != WORLD:
             source.tolerate("joint-link-unknown", f"joint {joint.name!r} names {name!r}, which is"
                             " not a link of the robot; it is skipped", element,
-                            closest(own, list(bodies)))
+                            closest_name_hint(own, list(bodies)))
             return None
     at = compose(poses.get(joint.child, IDENTITY), joint.pose)
     for role in ("parent", "child"):

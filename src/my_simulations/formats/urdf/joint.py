@@ -4,7 +4,7 @@ from __future__ import annotations
 from typing import Any, Dict, Optional
 
 from ...description.model import INFINITE, Joint, JointAxis, Mimic, SoftLimits
-from ...description.validate import closest
+from ...description.validate import closest_name_hint
 from ...geometry import Quat, conjugate, norm, rotate, scale
 from ..xml.binding import Found, fill
 from ..xml.source import FaultLevel, Source
@@ -36,7 +36,7 @@ def read_connection(element: Any, source: Source, bodies: Dict[str, Body]) -> Op
     found = fill(ends, element, JOINT, source, [])
     if joint_type not in TYPES:
         source.report(FaultLevel.FATAL, "joint-type-unknown", f"joint {name!r} has the unknown type"
-                      f" {joint_type!r}", element, closest(joint_type, list(TYPES)))
+                      f" {joint_type!r}", element, closest_name_hint(joint_type, list(TYPES)))
         return None
     for role, link in (("parent", ends.parent), ("child", ends.child)):
         if link not in bodies:
@@ -44,7 +44,7 @@ def read_connection(element: Any, source: Source, bodies: Dict[str, Body]) -> Op
                 f"has no {role} link")
             source.report(FaultLevel.FATAL, "joint-link-unknown" if link else "joint-link-missing",
                           f"joint {name!r} {what} of the robot", element,
-                          closest(link, list(bodies)))
+                          closest_name_hint(link, list(bodies)))
             return None
     joint = Joint(name, joint_type, ends.parent, ends.child)
     joint.axis = _axis(joint, found, element, source)

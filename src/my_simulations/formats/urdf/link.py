@@ -6,7 +6,7 @@ from typing import Any, Dict, Optional, Sequence
 
 from ...description.model import Inertial, Link
 from ...description.shapes import Collision, Empty, Geometry, Material, Visual
-from ...description.validate import closest
+from ...description.validate import closest_name_hint
 from ...geometry import IDENTITY, Pose
 from ..sdf.collision_visual import checked, unknown_shape
 from ..sdf.material_files import check_texture_uri
@@ -123,7 +123,7 @@ def read_material(element: Any, source: Source, palette: Palette) -> Material:
     if paint.color is None and not paint.texture:
         if paint.name not in palette:
             source.warn("material-unknown", f"there is no material {paint.name!r}", element,
-                        closest(paint.name, list(palette)))
+                        closest_name_hint(paint.name, list(palette)))
             return Material()
         return replace(palette[paint.name])
     if paint.texture:

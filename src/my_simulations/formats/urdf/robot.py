@@ -5,7 +5,7 @@ from typing import Any, Dict, List, Optional, Sequence, Union
 
 from ...description.cost_budget import MODEL_BUDGET, budget_faults, cost_of
 from ...description.model import WORLD, Joint, JointAxis, Link, Model
-from ...description.validate import closest, faults
+from ...description.validate import closest_name_hint, faults
 from ...errors import Issue, Severity
 from ...geometry import IDENTITY, Pose, compose
 from ..default_inertia import usable_inertia
@@ -301,7 +301,7 @@ class _RobotReader:
             if mimic is not None and mimic.joint not in known:
                 self._source.warn("mimic-joint-unknown", f"joint {joint.name!r} follows"
                                   f" {mimic.joint!r}, which is not a joint of the model",
-                                  self._elements[id(joint)], closest(mimic.joint, known))
+                                  self._elements[id(joint)], closest_name_hint(mimic.joint, known))
         for fault in (*faults(self._model), *budget_faults(cost_of(self._model), self._model)):
             element = self._elements.get(id(fault.subject), self._element)
             self._source.log.add(

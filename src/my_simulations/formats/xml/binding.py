@@ -5,7 +5,7 @@ import math
 import re
 from typing import Any, Dict, List, Mapping, Optional, Set, Tuple, Union
 
-from ...description.validate import closest
+from ...description.validate import closest_name_hint
 from .source import FaultLevel, Source
 from .tables import Entry, Group, Kept, Nested, Part, Table, Value
 from .values import LIMIT, UNSET, Kind
@@ -218,7 +218,7 @@ class _Filler:
             return
         parent = element if is_attribute else element.getparent()
         inside = parent.tag if parent is not None else self._table.name
-        hint = closest(name, known)
+        hint = closest_name_hint(name, known)
         if not is_attribute:
             hint = hint or self._table.hint.format(name=name)
         what = f"attribute {name}" if is_attribute else f"element <{name}>"
