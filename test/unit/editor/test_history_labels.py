@@ -5,7 +5,7 @@ from my_simulations.description.model import Link, Model
 from my_simulations.description.shapes import Box, Collision, Visual
 from my_simulations.editor.editing.history_labels import (
     apply_wrench,
-    listed,
+    join_names,
     set_joint,
     set_property,
 )
@@ -70,5 +70,5 @@ def test_a_wrench_is_told_by_what_acts(force, torque, label):
 
 
 def test_many_names_are_cut_short():
-    assert listed(["a", "b"]) == "a, b"
-    assert listed(["a", "b", "c", "d", "e"]) == "a, b, c and 2 more"
+    assert join_names(["a", "b"]) == "a, b"
+    assert join_names(["a", "b", "c", "d", "e"]) == "a, b, c and 2 more"

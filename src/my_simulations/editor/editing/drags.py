@@ -49,7 +49,7 @@ class Drags:
         return {client: sorted(before) for client, before in self._before.items() if before}
 
     def others(self, client: int, names: List[str]) -> Dict[int, List[str]]:
-        """Which of these others drag, by client."""
+        """Return the entities among `names` that other clients drag, by client."""
         return {other: shared for other, held in self.dragged().items()
                 for shared in [[name for name in names if name in held]]
                 if shared and other != client}

@@ -7,7 +7,7 @@ from typing import Iterator, List, Sequence, Tuple
 from ...errors import Issue, Severity
 from ..transport.hub import Hub
 from .drags import Drags
-from .history_labels import listed
+from .history_labels import join_names
 from .users import Users
 
 CODE = "shared-edit"
@@ -32,17 +32,19 @@ class EditNotices:
         me = self._users.name_of(client)
         for other, shared in self._drags.others(client, names).items():
             they = self._users.name_of(other)
-            self._notify([client], f"{they} is dragging {listed(shared)} too; the last release "
-                                 "counts")
-            self._notify([other], f"{me} is dragging {listed(shared)} too; the last release counts")
+            self._notify([client], f"{they} is dragging {join_names(shared)} too; the last release "
+                         "counts")
+            self._notify([other],
+                         f"{me} is dragging {join_names(shared)} too; the last release counts")
         self.push_drags()
 
     def drag_ended(self, client: int, names: List[str]) -> None:
         """Notify users who still drag the same entities, after a client has released them."""
         me = self._users.name_of(client)
         for other, shared in self._drags.others(client, names).items():
-            self._notify([other], f"{me} released {listed(shared)}, which you are dragging; your "
-                                "release counts")
+            self._notify([other],
+                         f"{me} released {join_names(shared)}, which you are dragging; "
+                         "your release counts")
         self._drags.moved(client, names)
         self.push_drags()
 
@@ -60,10 +62,11 @@ class EditNotices:
             if other == client:
                 continue
             verb = "were" if len(names) > 1 else "was"
-            self._notify([other], f"{listed(names)}, which you were dragging, {verb} deleted by "
-                                f"{me}")
-            self._notify([client], f"{self._users.name_of(other)} was dragging {listed(names)}, "
-                                 "which you deleted")
+            self._notify([other],
+                         f"{join_names(names)}, which you were dragging, {verb} deleted by {me}")
+            self._notify([client],
+                         f"{self._users.name_of(other)} was dragging {join_names(names)}, "
+                         "which you deleted")
         self.push_drags()
 
     def notify_of_undo(self, client: int, verb: str,
@@ -75,7 +78,8 @@ class EditNotices:
         keys = [key for key in dict.fromkeys(key for key, _ in steps) if key and key != mine]
         for key in keys:
             labels = [label for author, label in steps if author == key]
-            self._notify(self._users.clients_of(key), f"{me} {done} your edit: {listed(labels)}")
+            self._notify(self._users.clients_of(key),
+                         f"{me} {done} your edit: {join_names(labels)}")
         return self._users.names(keys)
 
     def notify_others(self, client: int, what: str) -> None:

@@ -39,22 +39,22 @@ from ...simulator.spawn_advice import overlap_advice
 from ..scene.plain_json import pose_of as pose_from
 from ..transport.protocol import Protocol
 from . import history_labels
-from .history_labels import listed
+from .history_labels import join_names
 from .inserts import (
     Entity,
-    checked,
+    checked_meshes,
     entities_of_text,
     entity_of_text,
     entity_of_uri,
-    regrouped,
     simple_shape,
     used_names,
+    with_new_groups,
     world_of,
 )
 from .model_building import ModelBuilding
 from .model_parts import FreeNames, free_name
 from .model_scaling import resized
-from .property_path import made
+from .property_path import dataclass_from_json
 from .property_target import is_of_light, property_change, split_target
 
 _MOST_IN_A_GROUP = 5000
@@ -156,7 +156,7 @@ class EditRequests:
             return AddLight(replace(entity, name=name, pose=pose))
         model = replace(entity, name=name, pose=pose)
         if meshes is None:
-            meshes, issues = checked(model)
+            meshes, issues = checked_meshes(model)
             for issue in issues:
                 self._report(issue)
         return AddModel(model, pose, meshes)
@@ -174,7 +174,7 @@ class EditRequests:
             wanted = name if name not in taken else ""
             number += 1
         given["name"] = free_name(wanted, taken)
-        light = made(Light, given)
+        light = dataclass_from_json(Light, given)
         light = replace(light, pose=_usable(light.pose))
         return f"Insert {light.name}", AddLight(light), {"name": light.name}
 
@@ -188,7 +188,7 @@ class EditRequests:
             if not is_light:
                 self._world.models.get(name)
             parts.append(RemoveLight(name) if is_light else RemoveModel(name))
-        return f"Delete {listed(names)}", _as_one(parts), {"names": names}
+        return f"Delete {join_names(names)}", _as_one(parts), {"names": names}
 
     def _paste(self, op: Dict[str, Any]) -> Planned:
         entities, issues = entities_of_text(op["text"], self._resolver, op.get("source"))
@@ -204,7 +204,7 @@ class EditRequests:
         meshes: Dict[int, MeshTable] = {}
         names, parts = [], []
         for target in targets or [None]:
-            copies = regrouped(entities, groups)
+            copies = with_new_groups(entities, groups)
             groups.update(map(group_of, copies))
             for number, entity in enumerate(copies):
                 # An entity from a file is the first of its name, not a copy.
@@ -219,7 +219,7 @@ class EditRequests:
                     meshes[number] = part.meshes
                 parts.append(part)
         verb = "Insert" if op.get("source") else "Paste"
-        return f"{verb} {listed(names)}", _as_one(parts), {"names": names, "name": names[-1]}
+        return f"{verb} {join_names(names)}", _as_one(parts), {"names": names, "name": names[-1]}
 
     # -- changing --------------------------------------------------------------------------------
 
@@ -231,13 +231,13 @@ class EditRequests:
             pose_of(self._world, name)
         label = str(op.get("label") or "move")[:40]
         operation = SetPoses(poses, self._dragged(list(poses)))
-        return f"{label.capitalize()} {listed(list(poses))}", operation, {}
+        return f"{label.capitalize()} {join_names(list(poses))}", operation, {}
 
     def _scale(self, op: Dict[str, Any]) -> Planned:
         model = self._world.models.get(op["name"])
         x, y, z = op["scale"]
         new = resized(model, (float(x), float(y), float(z)))
-        meshes, _ = checked(new)
+        meshes, _ = checked_meshes(new)
         return f"Scale {model.name}", EditModel(model.name, new, meshes), {"name": model.name}
 
     def _rename(self, op: Dict[str, Any]) -> Planned:
@@ -269,7 +269,7 @@ class EditRequests:
         if group is None:
             group = free_name("group", self._taken_groups())
         group = group.strip()
-        label = f"Group {listed(names)}" if group else f"Ungroup {listed(names)}"
+        label = f"Group {join_names(names)}" if group else f"Ungroup {join_names(names)}"
         if group and len(set(groups)) == 1 and groups[0]:
             label = f"Rename group {groups[0]} to {group}"
         return label, SetGroups({name: group for name in names}), {"name": group}

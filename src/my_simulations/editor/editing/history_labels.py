@@ -27,14 +27,14 @@ UNITS = {"prismatic": ("N", "m")}
 """Units of the effort and the position of a joint's axis, by its type; others turn."""
 
 
-def listed(names: Sequence[str]) -> str:
+def join_names(names: Sequence[str]) -> str:
     """`a, b, c and 2 more`."""
     shown = ", ".join(names[:_MOST_NAMES])
     more = len(names) - _MOST_NAMES
     return shown if more <= 0 else f"{shown} and {more} more"
 
 
-def short(target: str, model: Optional[Model]) -> str:
+def short_target(target: str, model: Optional[Model]) -> str:
     """A scoped name without redundant parts: a model's only link, and so on.
 
     `unit_box::link::collision:collision` of a box is `unit_box`; of a robot it stays
@@ -60,9 +60,9 @@ def set_property(target: str, path: str, value: Any, model: Optional[Model] = No
         target: scoped name of what has the property; "" for the world.
         path: of the property, e.g. `surface.mu`.
         value: JSON.
-        model: the target's, if it is of one; see `short`.
+        model: the target's, if it is of one; see `short_target`.
     """
-    of = f" of {short(target, model)}" if target else ""
+    of = f" of {short_target(target, model)}" if target else ""
     shown = _shown(value)
     return f"Set {_property(path)}{of}" + (f" to {shown}" if shown else "")
 

@@ -107,7 +107,7 @@ def _usable(entity: Entity, issues: List[Issue]) -> Tuple[Entity, List[Issue]]:
     return entity, [issue for issue in issues if issue not in errors_of(issues)]
 
 
-def checked(model: Model) -> Tuple[MeshTable, List[Issue]]:
+def checked_meshes(model: Model) -> Tuple[MeshTable, List[Issue]]:
     """The collision meshes of a model that can be simulated, and what is odd about it.
 
     Raises InputError for one that cannot.
@@ -126,7 +126,7 @@ def used_names(simulator: Simulator) -> Collection[str]:
     return {*simulator.models.names(), *(light.name for light in simulator.lights.all())}
 
 
-def regrouped(entities: Sequence[Entity], taken: Collection[str]) -> List[Entity]:
+def with_new_groups(entities: Sequence[Entity], taken: Collection[str]) -> List[Entity]:
     """Copies in groups of their own: those of one group in a group with a free name.
 
     A copy of one member of a group is in none.

@@ -27,10 +27,10 @@ from ...simulator.simulator import Simulator
 from ..scene.plain_json import pose_of as pose_from
 from ..scene.scene_json import NAMES
 from . import model_parts as parts
-from .inserts import checked, entity_of_text, entity_of_uri, shape_material, used_names
+from .inserts import checked_meshes, entity_of_text, entity_of_uri, shape_material, used_names
 from .model_parts import free_name
 from .part_inertia import inertial_of
-from .property_path import made
+from .property_path import dataclass_from_json
 from .property_target import split_target
 from .sensor_edits import sensor_of, with_new_sensor, without_sensor
 
@@ -77,7 +77,7 @@ class ModelBuilding:
         if not op.get("model"):
             return self._new_model(geometry, pose)
         model = self._world.models.get(op["model"])
-        name = parts.numbered("link", parts.part_names(model))
+        name = parts.numbered_name("link", parts.part_names(model))
         link = _solid_link(name, geometry, self._in_model(model, pose))
         return self._edited(f"Add {name} to {model.name}", model,
                             replace(model, links=[*model.links, link]), f"{model.name}::{name}")
@@ -141,7 +141,7 @@ class ModelBuilding:
 
     def _add_joint(self, op: Dict[str, Any]) -> Planned:
         model = self._world.models.get(op["model"])
-        joint = made(Joint, {"name": "", **op["joint"]})
+        joint = dataclass_from_json(Joint, {"name": "", **op["joint"]})
         self._ends_exist(model, joint)
         changed = parts.with_joint(model, joint)
         name = changed.joints[-1].name
@@ -153,7 +153,7 @@ class ModelBuilding:
         old = next((one for one in model.joints if one.name == rest), None)
         if old is None:
             raise CommandError(f"model {model.name!r} has no joint {rest!r}")
-        new = made(Joint, op["values"], old)
+        new = dataclass_from_json(Joint, op["values"], old)
         if new.name != old.name and (not new.name or new.name in parts.part_names(model)):
             raise CommandError(f"{new.name!r} is not a free name in model {model.name!r}")
         self._ends_exist(model, new)
@@ -214,7 +214,7 @@ class ModelBuilding:
         model, rest = split_target(self._world, op["target"])
         if not rest:
             raise CommandError(f"{op['target']} is a whole model")
-        left = without_sensor(model, rest) if sensor_of(rest) else parts.without(model, rest)
+        left = without_sensor(model, rest) if sensor_of(rest) else parts.without_part(model, rest)
         return self._edited(f"Remove {op['target']}", model, left, model.name)
 
     def _add_sensor(self, op: Dict[str, Any]) -> Planned:
@@ -236,7 +236,7 @@ class ModelBuilding:
         return compose(inverse(self._world.states.model_state(model.name)[0]), pose)
 
     def _checked(self, model: Model) -> Any:
-        meshes, issues = checked(model)
+        meshes, issues = checked_meshes(model)
         for issue in issues:
             self._report(issue)
         return meshes
@@ -282,7 +282,7 @@ def _solid_link(name: str, geometry: Geometry, pose: Pose) -> Link:
 
 def _polyline(given: Dict[str, Any]) -> Polyline:
     """An extruded outline. Raises CommandError."""
-    shape = made(Polyline, given)
+    shape = dataclass_from_json(Polyline, given)
     corners = sum(map(len, shape.loops))
     if not shape.loops or min(map(len, shape.loops)) < 3 or corners > _MOST_CORNERS:
         raise CommandError("a polyline needs outlines of at least 3 corners, and has at most "

@@ -27,7 +27,7 @@ _AXES: Dict[str, List[Vec3]] = {
 """First axes of a new joint, by its type."""
 
 
-def numbered(wanted: str, taken: Collection[str]) -> str:
+def numbered_name(wanted: str, taken: Collection[str]) -> str:
     """`wanted`_0, `wanted`_1, …: the first that is free."""
     number = 0
     while f"{wanted}_{number}" in taken:
@@ -37,7 +37,7 @@ def numbered(wanted: str, taken: Collection[str]) -> str:
 
 def free_name(wanted: str, taken: Collection[str]) -> str:
     """`wanted`, or with the first free number: name_0, name_1, … (Gazebo behaviour)."""
-    return wanted if wanted not in taken else numbered(wanted, taken)
+    return wanted if wanted not in taken else numbered_name(wanted, taken)
 
 
 class FreeNames:
@@ -90,17 +90,17 @@ def with_joint(model: Model, joint: Joint) -> Model:
     if not name:
         name = f"{joint.child}_joint".replace(SCOPE, "_")
         name = free_name(name, part_names(model))
-    return replace(model, joints=[*model.joints, complete(model, replace(joint, name=name))])
+    return replace(model, joints=[*model.joints, complete_joint(model, replace(joint, name=name))])
 
 
 def with_changed_joint(model: Model, old: Joint, new: Joint) -> Model:
     """Return the model with a joint replaced; references follow a new name of the joint."""
-    new = complete(model, new)
+    new = complete_joint(model, new)
     joints = [new if one is old else one for one in model.joints]
     return _followed(replace(model, joints=joints), old.name, new.name)
 
 
-def complete(model: Model, joint: Joint) -> Joint:
+def complete_joint(model: Model, joint: Joint) -> Joint:
     """The joint with as many axes as its type has, and a gearbox with its reference.
 
     Raises CommandError.
@@ -137,7 +137,7 @@ def with_nested(model: Model, nested: Model) -> Model:
     return flattened(replace(whole, models=[*whole.models, replace(nested, uri="")], guide=None))
 
 
-def without(model: Model, rest: str) -> Model:
+def without_part(model: Model, rest: str) -> Model:
     """The model without a link, joint, nested model, collision or visual.
 
     Joints of a link that goes, go with it.

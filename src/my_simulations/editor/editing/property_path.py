@@ -34,7 +34,7 @@ def with_value(target: T, path: str, value: Any) -> T:
     return _replaced(target, path.split("."), value, path)  # type: ignore[no-any-return]
 
 
-def made(kind: Type[T], values: Dict[str, Any], base: Any = None) -> T:
+def dataclass_from_json(kind: Type[T], values: Dict[str, Any], base: Any = None) -> T:
     """An object of a dataclass from JSON fields, others as in `base` or by default.
 
     Raises CommandError.

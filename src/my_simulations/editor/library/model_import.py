@@ -17,7 +17,7 @@ from ...formats.mesh.loading import load_mesh
 from ...formats.sdf.writer.entities import write_entity
 from ...geometry import Pose
 from ...resources.resolver import Resolver
-from ..editing.inserts import checked, entity_of_uri
+from ..editing.inserts import checked_meshes, entity_of_uri
 from ..editing.part_inertia import mesh_solid, with_density
 from ..transport.error_messages import EditRefusedError
 
@@ -74,7 +74,7 @@ def _stored(files: Dict[str, bytes], name: str, target: str, density: float,
             else:
                 issues += _mesh_model(folder, name, files, density)
             issues += check_loading(folder, resolver)
-            _name_meshes(folder, name)
+            _use_model_uris(folder, name)
         except InputError as fault:
             raise InputError([relocated(issue, folder, target)
                               for issue in fault.issues]) from fault
@@ -182,8 +182,8 @@ def _mesh_model(folder: str, name: str, files: Dict[str, bytes], density: float)
     return issues
 
 
-def _name_meshes(folder: str, name: str) -> None:
-    """Meshes by the model's name, as Gazebo finds them, where the writer has put their paths."""
+def _use_model_uris(folder: str, name: str) -> None:
+    """Replace the absolute path of `folder` in its model.sdf by `model://NAME`."""
     path = os.path.join(folder, "model.sdf")
     if not os.path.isfile(path):
         return
@@ -235,7 +235,7 @@ def check_loading(folder: str, resolver: Resolver) -> List[Issue]:
     entity, issues = entity_of_uri(f"file://{folder}",
                                    resolver.with_first_folder(os.path.dirname(folder)))
     if isinstance(entity, Model):
-        issues += checked(entity)[1]
+        issues += checked_meshes(entity)[1]
     return issues
 
 

@@ -80,7 +80,7 @@ class WorldFiles:
         """
         with self._lock:
             if message.get("copy"):
-                return self._copy(message)
+                return self._save_copy(message)
             path, overwrite = message.get("path") or "", bool(message.get("overwrite"))
             if not path:
                 if self.file not in self._ours or ships(self.file):
@@ -103,7 +103,8 @@ class WorldFiles:
             self._history.saved()
             return {"path": self.file, "left_out": left_out}
 
-    def _copy(self, message: Dict[str, Any]) -> Dict[str, Any]:
+    def _save_copy(self, message: Dict[str, Any]) -> Dict[str, Any]:
+        """Save the running world with its state to another file; the world keeps its own file."""
         overwrite = bool(message.get("overwrite"))
         target = self._target(message.get("path") or "", overwrite)
         path = save_world(self._world, target, roots=self.roots(), resolver=self._resolver,

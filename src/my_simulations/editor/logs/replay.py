@@ -139,7 +139,7 @@ class Logs:
         try:
             writer.poses(poses)
         except CommandError as fault:
-            self._fail(fault)
+            self._end_recording(fault)
 
     async def _describe(self, writer: LogWriter) -> None:
         """Write the world's description into the log."""
@@ -150,11 +150,12 @@ class Logs:
             self._hub.resend_poses()
         except (CommandError, ValueError) as fault:  # ValueError: it was closed meanwhile
             if self._writer is writer:
-                self._fail(CommandError(str(fault)))
+                self._end_recording(CommandError(str(fault)))
         finally:
             self._fetching = None
 
-    def _fail(self, fault: CommandError) -> None:
+    def _end_recording(self, fault: CommandError) -> None:
+        """End the recording after a fault; warn the users and push the new state."""
         self._report(warning("log", f"the log {self._name!r} ends here: {fault}"))
         with contextlib.suppress(CommandError):  # this fault was reported
             self.close()
