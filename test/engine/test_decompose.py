@@ -20,7 +20,7 @@ from my_simulations.engine.convex.cache import (
     load,
     save,
 )
-from my_simulations.engine.convex.decomposition import notices
+from my_simulations.engine.convex.decomposition import decomposition_issues
 from my_simulations.engine.convex.hulls import (
     full_hull,
     hull_of,
@@ -73,7 +73,7 @@ def holds(part, point):
 def divided(mesh, folder):
     told = []
     (made,) = batch.decompose_all([("m::l", mesh)], told.append, cache_dir=str(folder))
-    return made.parts, [issue.code for issue in notices(made)], told
+    return made.parts, [issue.code for issue in decomposition_issues(made)], told
 
 
 def test_a_convex_mesh_is_its_own_hull(tmp_path):
@@ -359,8 +359,9 @@ def test_a_crash_leaves_the_hull_and_a_warning(tmp_path, monkeypatch, body):
 
 def test_work_that_stands_still_is_ended_and_not_kept(tmp_path, monkeypatch):
     with_vhacd(monkeypatch, tmp_path / "fake", "time.sleep(600)")
-    made = decomposition.divided(angle(), cache_dir=str(tmp_path / "cache"), deadline=3.0)
-    assert len(made.parts) == 1 and [one.code for one in notices(made)] == ["mesh-not-decomposed"]
+    made = decomposition.decompose_mesh(angle(), cache_dir=str(tmp_path / "cache"), deadline=3.0)
+    assert len(made.parts) == 1
+    assert [one.code for one in decomposition_issues(made)] == ["mesh-not-decomposed"]
     assert not (tmp_path / "cache").exists()
 
 
@@ -368,10 +369,10 @@ def test_a_mesh_that_takes_too_much_processor_time_keeps_its_hull_at_once_the_ne
         tmp_path, monkeypatch):
     with_vhacd(monkeypatch, tmp_path / "fake", "[None for _ in iter(int, 1)]")
     folder = str(tmp_path / "cache")
-    for made in (decomposition.divided(angle(), cache_dir=folder, cpu_seconds=2),
+    for made in (decomposition.decompose_mesh(angle(), cache_dir=folder, cpu_seconds=2),
                  decomposition.ready_parts(angle(), cache_dir=folder)):
         assert len(made.parts) == 1
-        assert [one.code for one in notices(made)] == ["mesh-not-decomposed"]
+        assert [one.code for one in decomposition_issues(made)] == ["mesh-not-decomposed"]
 
 
 def arrays(made):
@@ -383,7 +384,7 @@ def test_a_worker_divides_one_mesh_after_the_other_and_none_depends_on_those_bef
     with decomposition.MeshDecomposer(cache_dir=str(tmp_path / "one")) as divider:
         for mesh in (wide, angle()):
             last = divider.decompose(mesh)
-    alone = decomposition.divided(angle(), cache_dir=str(tmp_path / "other"))
+    alone = decomposition.decompose_mesh(angle(), cache_dir=str(tmp_path / "other"))
     assert len(last.parts) > 1 and arrays(last) == arrays(alone)
 
 
@@ -396,8 +397,8 @@ def test_a_mesh_that_ends_a_worker_leaves_the_next_one_as_it_would_be_alone(tmp_
                "v {n + 1} 0 0\\n' for n in range(2)))")
     with decomposition.MeshDecomposer(cache_dir=str(tmp_path / "cache")) as divider:
         first, second = divider.decompose(angle()), divider.decompose(angle())
-    assert [one.code for one in notices(first)] == ["mesh-not-decomposed"]
-    assert len(second.parts) == 2 and notices(second) == []
+    assert [one.code for one in decomposition_issues(first)] == ["mesh-not-decomposed"]
+    assert len(second.parts) == 2 and decomposition_issues(second) == []
 
 
 def test_a_thin_plate_gets_no_finer_voxels_than_a_block(tmp_path, monkeypatch):
@@ -406,7 +407,7 @@ def test_a_thin_plate_gets_no_finer_voxels_than_a_block(tmp_path, monkeypatch):
     with_vhacd(monkeypatch, tmp_path / "fake",
                f"import shutil; shutil.copy(a[0], {seen!r}); os.abort()")
     plate = MeshData(angle().vertices * (1.0, 1.0, 0.01), angle().triangles)
-    decomposition.divided(plate, cache_dir=str(tmp_path / "cache"))
+    decomposition.decompose_mesh(plate, cache_dir=str(tmp_path / "cache"))
     lines = Path(seen).read_text().splitlines()
     points = np.array([line.split()[1:] for line in lines if line.startswith("v ")], float)
     used = {int(n) for line in lines if line.startswith("f ") for n in line.split()[1:]}

@@ -16,7 +16,7 @@ from my_simulations.description.model import Link, Model
 from my_simulations.description.shapes import Collision, Mesh, MeshData, mesh_key
 from my_simulations.engine.commands import LoadModel
 from my_simulations.engine.process_engine import ProcessEngine
-from my_simulations.engine.scratch_folder import Scratch, sweep
+from my_simulations.engine.scratch_folder import Scratch, remove_stale_folders
 from my_simulations.geometry import Pose
 
 
@@ -42,7 +42,7 @@ def test_a_folder_is_made_when_needed_and_removed_at_the_end(temporary):
         assert not list(temporary.iterdir())
         with open(os.path.join(scratch.path, "file"), "w", encoding="ascii") as stream:
             stream.write("x")
-        sweep()
+        remove_stale_folders()
         assert os.listdir(scratch.path) == ["file"]
     assert not list(temporary.iterdir())
 
@@ -77,7 +77,7 @@ def test_the_folder_of_a_killed_owner_goes_when_the_next_engine_starts(temporary
                              stdout=subprocess.PIPE, text=True,
                              env={**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)})
     left = owner.stdout.readline().strip()
-    sweep()
+    remove_stale_folders()
     assert os.path.isdir(left)   # its owner lives
     owner.kill()
     owner.communicate()

@@ -24,7 +24,7 @@ from .commands import Command, Post, SetJoints, SetLinkState, SetModelState
 from .message_pipe import Wire
 from .posted_commands import PostedCommands
 from .ring import RingReader
-from .scratch_folder import sweep
+from .scratch_folder import remove_stale_folders
 from .wake_pipe import WakePipe
 
 _log = logging.getLogger(__name__)
@@ -57,7 +57,7 @@ class ProcessEngine:
         self._child: Optional[subprocess.Popen[bytes]] = None
         self._wire: Optional[Wire] = None
         self._reader: Optional[threading.Thread] = None
-        sweep()  # files left behind when a whole node was killed
+        remove_stale_folders()  # files left behind when a whole node was killed
         self.restart()
 
     @property
@@ -223,7 +223,7 @@ class ProcessEngine:
                 if waiting is not None:
                     waiting[1].set_result(message)
         await_end(process, wire)
-        sweep()  # what a killed child could not take along
+        remove_stale_folders()  # what a killed child could not take along
         self._reap(process, wire)
 
     def _reap(self, process: "subprocess.Popen[bytes]", wire: Wire) -> None:

@@ -34,7 +34,7 @@ class Scratch:
     def path(self) -> str:
         """The path of the folder. Raises OSError if it cannot be created."""
         while not self._path:
-            sweep()
+            remove_stale_folders()
             made = tempfile.mkdtemp(prefix=_PREFIX)
             self._lock = _locked(made)
             if self._lock >= 0:  # otherwise another process removed it in between
@@ -48,7 +48,7 @@ class Scratch:
             self._path, self._lock = "", -1
 
 
-def sweep() -> None:
+def remove_stale_folders() -> None:
     """Remove folders of processes that have ended without removing them."""
     try:
         parent = tempfile.gettempdir()

@@ -21,7 +21,7 @@ Advance = Callable[[float, float, int], float]
 _Target = Callable[[int], Tuple[float, float]]
 
 
-def shortest(angle: float) -> float:
+def wrapped_angle(angle: float) -> float:
     """An angle in -pi to pi."""
     return math.remainder(angle, _TWO_PI)
 
@@ -152,7 +152,7 @@ class ServoLaw:
         if self.loop is not None:
             error = wanted - (rate if servo.of_rate else position)
             if servo.wraps and not servo.of_rate:
-                error = shortest(error)
+                error = wrapped_angle(error)
             command = servo.feedforward * wanted_rate + self.loop.command(
                 error, dt, wanted_rate - rate if servo.by_rates else None)
         if servo.drive == "effort":
@@ -202,7 +202,7 @@ class ServoLaw:
             self.before = command
             error = command - position
             if servo.wraps:
-                error = shortest(error)
+                error = wrapped_angle(error)
             return max(-servo.most_effort, min(servo.most_effort, self._inner.command(error, dt)))
         # A motor arrives at the end of the step where the spline is then.
         ahead = command

@@ -44,14 +44,14 @@ class ConvexParts:
         if not wanted:
             return
         from ..engine.convex.batch import decompose_all
-        from ..engine.convex.decomposition import notices
+        from ..engine.convex.decomposition import decomposition_issues
 
         named = list(wanted.values())
         made = decompose_all(named, self._progress, gently=gently)
         if len(self._divided) > _MOST_KEPT:
             self._divided.clear()
         for (whose, mesh), parts in zip(named, made):
-            for issue in notices(parts):
+            for issue in decomposition_issues(parts):
                 self._log(replace(issue, message=f"{whose}: {issue.message}"))
             self._divided[id(mesh.vertices)] = replace(mesh, parts=parts.parts)
 

@@ -74,7 +74,8 @@ class _Work:
                        f"are kept in {cache_folder_of(self._cache_dir)}")
         for n in sorted(range(count), key=lambda n: -len(self._meshes[n][1].triangles)):
             self._waiting.put(n)  # the longest work first, so that all workers end together
-        threads = [threading.Thread(target=self._divide, name="convex parts", daemon=True)
+        threads = [threading.Thread(target=self._decompose_waiting, name="convex parts",
+                                    daemon=True)
                    for _ in range(min(count, _MOST_WORKERS, len(os.sched_getaffinity(0))))]
         for thread in threads:
             thread.start()
@@ -85,7 +86,7 @@ class _Work:
         self._progress(f"convex parts are ready after {self._seconds(self._began)}")
         return [self._made[n] for n in range(count)]
 
-    def _divide(self) -> None:
+    def _decompose_waiting(self) -> None:
         with MeshDecomposer(cache_dir=self._cache_dir, gently=self._gently) as decomposer:
             while True:
                 try:

@@ -156,8 +156,9 @@ class MeshDecomposer:
                 self._worker = None
 
 
-def divided(mesh: MeshData, *, cache_dir: Optional[str] = None, deadline: float = _DEADLINE_S,
-            cpu_seconds: int = _CPU_S) -> Decomposition:
+def decompose_mesh(mesh: MeshData, *, cache_dir: Optional[str] = None,
+                   deadline: float = _DEADLINE_S,
+                   cpu_seconds: int = _CPU_S) -> Decomposition:
     """The convex parts of one mesh by a worker of its own; see `MeshDecomposer`."""
     with MeshDecomposer(cache_dir=cache_dir, deadline=deadline,
                         cpu_seconds=cpu_seconds) as decomposer:
@@ -168,7 +169,7 @@ def hull_only(mesh: MeshData) -> Decomposition:
     return Decomposition([mesh], NOT_DIVIDED)
 
 
-def notices(made: Decomposition) -> List[Issue]:
+def decomposition_issues(made: Decomposition) -> List[Issue]:
     """The warning of a decomposition, if any, without a file."""
     if not made.notice:
         return []

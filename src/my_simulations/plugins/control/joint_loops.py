@@ -5,7 +5,7 @@ from functools import partial
 from typing import Dict
 
 from ...engine.drive_commands import PidGains
-from ...engine.servo_law import shortest
+from ...engine.servo_law import wrapped_angle
 from ..frames import stamped
 from .controller import Controller
 from .forward import ForwardGroupController
@@ -52,7 +52,7 @@ class JointLoop(Controller):
         message.process_value = joint.velocity if self.of_rate else joint.position
         message.process_value_dot = 0.0 if self.of_rate else joint.velocity
         error = self._wanted - message.process_value
-        message.error = shortest(error) if joint.limits.wraps and not self.of_rate else error
+        message.error = wrapped_angle(error) if joint.limits.wraps and not self.of_rate else error
         message.time_step = self.period or self.context.step_size
         message.command = self.hardware.efforts([joint.name])[0]
         message.p, message.i, message.d = gains.p, gains.i, gains.d

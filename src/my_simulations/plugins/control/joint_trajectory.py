@@ -9,7 +9,7 @@ from functools import partial
 from typing import Any, List, NamedTuple, Optional, Sequence, Set, Tuple
 
 from ...engine.drive_commands import PidGains
-from ...engine.servo_law import shortest
+from ...engine.servo_law import wrapped_angle
 from ...engine.spline import Spline, constant_segment, segment_between
 from ..actions import ActionServer, Goal
 from ..context import CallHandle, RequestError
@@ -304,7 +304,7 @@ def _tracked(joint: HardwareJoint, spline: Spline, now: float) -> _Tracked:
     position, velocity = joint.position, joint.velocity
     error = wanted[0] - position
     return _Tracked(now, wanted, position, velocity,
-                    shortest(error) if joint.limits.wraps else error, wanted[1] - velocity)
+                    wrapped_angle(error) if joint.limits.wraps else error, wanted[1] - velocity)
 
 
 class _Following:

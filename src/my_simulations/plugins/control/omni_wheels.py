@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from typing import Any, Dict, List, NamedTuple, Optional, Sequence, Tuple
 
 from ...description.model import Joint as JointSpec
-from ...engine.servo_law import shortest
+from ...engine.servo_law import wrapped_angle
 from ..context import Context, PluginError
 from .base_controller import STANDING, Planar
 from .four_wheel_steering_controller import Corner, fitted_motion
@@ -119,9 +119,9 @@ class OmniWheel:
         v = y + yaw * (self.x + self.offset * math.sin(angle))
         forward = math.atan2(v, u) if u or v else 0.0
         rate = math.hypot(u, v) / self.radius
-        choices = (WheelTarget(forward, rate), WheelTarget(shortest(forward + math.pi), -rate))
-        return min(choices, key=lambda one: _NEAR * abs(shortest(one.angle - angle))
-                   + _LAST * abs(shortest(one.angle - last)))
+        choices = (WheelTarget(forward, rate), WheelTarget(wrapped_angle(forward + math.pi), -rate))
+        return min(choices, key=lambda one: _NEAR * abs(wrapped_angle(one.angle - angle))
+                   + _LAST * abs(wrapped_angle(one.angle - last)))
 
 
 def base_displacement(wheels: Sequence[OmniWheel], before: Sequence[WheelState],

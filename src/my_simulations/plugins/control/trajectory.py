@@ -4,7 +4,7 @@ from __future__ import annotations
 import math
 from typing import Any, Dict, List, NamedTuple, Sequence, Tuple
 
-from ...engine.servo_law import shortest
+from ...engine.servo_law import wrapped_angle
 from ...engine.spline import Segment, Spline, State, segment_between
 from ..context import PluginError
 
@@ -93,7 +93,7 @@ def spliced_spline(current: Spline, start: float, now: float, points: Sequence[W
     before: State = current.at(begin)
     offset = 0.0
     if wraps:
-        way = shortest(coming[0][1][0] - before[0])
+        way = wrapped_angle(coming[0][1][0] - before[0])
         if abs(abs(way) - math.pi) < 1e-9:
             way = math.copysign(way, coming[0][1][0] - before[0])
         offset = before[0] + way - coming[0][1][0]
