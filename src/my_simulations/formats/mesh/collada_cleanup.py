@@ -172,7 +172,10 @@ class _Document:
                 mesh.remove(child)
 
     def _positions(self, entry: Any) -> Any:
-        """The source of an input, as x y z numbers."""
+        """Return the `<source>` of an input, after its array was rearranged as x y z numbers.
+
+        Raises MeshError: it is missing.
+        """
         source = self._target(entry, "source")
         accessor = source.find("{*}technique_common/{*}accessor") if source is not None else None
         array = self._target(accessor, "source") if accessor is not None else None

@@ -90,7 +90,7 @@ def _covers(triangle: Sequence[Point], point: Point) -> bool:
 
 
 def _steepness(start: Point, end: Point) -> float:
-    """The slope against the direction of x, of a way that does not lead back."""
+    """Return |dy| / dx of a segment; infinite if it does not lead in the direction of x."""
     ahead, aside = end[0] - start[0], abs(end[1] - start[1])
     return aside / ahead if ahead > 0 else math.inf
 

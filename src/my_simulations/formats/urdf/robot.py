@@ -129,7 +129,7 @@ class _RobotReader:
             connection = read_connection(element, self._source, self._bodies)
             if connection is None:
                 continue
-            if not self._is_only_parent(connection):
+            if not self._keep_last_parent(connection):
                 continue
             self._connections.append(connection)
             connection.child.up = connection
@@ -137,8 +137,11 @@ class _RobotReader:
         for body in self._bodies.values():
             body.down.sort(key=lambda c: c.joint.name)
 
-    def _is_only_parent(self, connection: Connection) -> bool:
-        """Whether the joint is used: of several with one child, the last by name (urdfdom)."""
+    def _keep_last_parent(self, connection: Connection) -> bool:
+        """Keep the last joint by name of those with one child (urdfdom), and report the other.
+
+        Returns whether `connection` is used; a joint that it replaces is removed.
+        """
         other = connection.child.up
         if other is None:
             return True

@@ -87,7 +87,7 @@ class _Filler:
             element.remove(child)
 
     def _has_more(self, path: str) -> bool:
-        """Whether something below a path is written that its object does not show."""
+        """Return whether a required value or a part is below a path; defaults do not show it."""
         return any(each.startswith(f"{path}/") for each in (*self._required, *self._parts))
 
     def _value(self, element: Any, source: Any, of: Any, name: str, value: Value,
