@@ -15,7 +15,7 @@ from ...description.shapes import Cylinder, Sphere
 from ...geometry import Vec3, transform
 from ...geometry_messages import fill_pose
 from ..context import CallHandle, PluginError, Publication
-from ..drive.odometry import diagonal, planar
+from ..drive.odometry import diagonal_covariance, planar_pose
 from ..frames import stamped
 from ..stepwise_change import StepwiseChange
 from ..time_out import TimeOut
@@ -105,8 +105,9 @@ class BaseController(Controller):
         self.window = max(1, round(window))
         self._frames = (s.text("odom_frame_id", "odom"), s.text("base_frame_id", "base_link"))
         self.broadcasts = s.flag("enable_odom_tf", True)
-        self._covariances = [diagonal(tuple(s.numbers(f"{what}_covariance_diagonal", 6,
-                                                      [0.0] * 6))) for what in ("pose", "twist")]
+        self._covariances = [
+            diagonal_covariance(tuple(s.numbers(f"{what}_covariance_diagonal", 6, [0.0] * 6)))
+            for what in ("pose", "twist")]
         self._odom = self.publish("odom", "nav_msgs/Odometry", 100)
         self._limited = self.publish("cmd_vel_out", "geometry_msgs/TwistStamped", 100) \
             if s.flag("publish_cmd", False) else None
@@ -203,7 +204,7 @@ class BaseController(Controller):
         return forward, sideways, turn
 
     def _publish_odometry(self) -> None:
-        pose = planar(*self._pose)
+        pose = planar_pose(*self._pose)
         if self.broadcasts:
             self.context.transform(*self._frames, pose)
         self.publish_more()
@@ -213,7 +214,7 @@ class BaseController(Controller):
     def _odometry(self) -> Any:
         message = stamped(self.context, "nav_msgs/Odometry")
         message.header.frame_id, message.child_frame_id = self._frames
-        fill_pose(message.pose.pose, planar(*self._pose))
+        fill_pose(message.pose.pose, planar_pose(*self._pose))
         message.pose.covariance, message.twist.covariance = map(list, self._covariances)
         twist = message.twist.twist
         twist.linear.x, twist.linear.y, twist.angular.z = self.velocity

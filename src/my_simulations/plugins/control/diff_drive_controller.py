@@ -102,17 +102,17 @@ class DiffDriveController(BaseController):
                 wheel.command(rate)
 
     def begin_count(self) -> None:
-        self._turned = [_mean(side) for side in self._sides]
+        self._turned = [_mean_position(side) for side in self._sides]
 
     def displacement(self, dt: float) -> Planar:
         """Return the motion of the base from the rotation of the wheels."""
         if self.open_loop:
             return self.last[0] * dt, 0.0, self.last[2] * dt
-        before, self._turned = self._turned, [_mean(side) for side in self._sides]
+        before, self._turned = self._turned, [_mean_position(side) for side in self._sides]
         left, right = (radius * (now - then) for radius, now, then in zip(
             self._radii, self._turned, before))
         return (left + right) / 2.0, 0.0, (right - left) / self._separation
 
 
-def _mean(wheels: List[HardwareJoint]) -> float:
+def _mean_position(wheels: List[HardwareJoint]) -> float:
     return sum(wheel.position for wheel in wheels) / len(wheels)

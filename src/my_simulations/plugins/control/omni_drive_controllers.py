@@ -12,7 +12,7 @@ from typing import Any, List, Optional
 
 from ...geometry_messages import fill_pose
 from ..context import PluginError, Publication
-from ..drive.odometry import diagonal, planar
+from ..drive.odometry import diagonal_covariance, planar_pose
 from ..frames import stamped
 from ..stepwise_change import StepwiseChange
 from ..time_out import TimeOut
@@ -139,7 +139,7 @@ class OdometryController(Controller):
         if self._publish_hz <= 0.0:
             raise PluginError(f"parameter {s.name}/publish_rate must be positive")
         self._frames = (s.text("frame_id", "odom"), s.text("child_frame_id", "base_footprint"))
-        self._covariances = [diagonal((s.number(f"cov_{what}", 0.1),) * 6)
+        self._covariances = [diagonal_covariance((s.number(f"cov_{what}", 0.1),) * 6)
                              for what in ("pose", "twist")]
         self._broadcasts = s.flag("broadcast_tf", True)
         self._odometry = self.publish("odometry", "nav_msgs/Odometry")
@@ -178,7 +178,7 @@ class OdometryController(Controller):
         self._velocity = (way[0] / dt, way[1] / dt, way[2] / dt)
 
     def _publish(self) -> None:
-        pose = planar(*self._pose)
+        pose = planar_pose(*self._pose)
         if self._broadcasts:
             self.context.transform(*self._frames, pose)
         if not self._odometry.wanted:

@@ -19,7 +19,7 @@ from ..base import Plugin
 from ..context import PluginError
 from ..parameters import namespace_or
 from ..stepwise_change import StepwiseChange
-from .odometry import Odometer, planar
+from .odometry import Odometer, planar_pose
 from .wheels import VelocityCommand
 
 _STRAIGHT = 1e-4  # rad/s: at most this, a robot counts as moving straight (hector_gazebo)
@@ -103,7 +103,7 @@ class ForceBasedMove(Plugin):
         dx, dy = pose.position[0] - x0, pose.position[1] - y0
         c, s = math.cos(yaw0), math.sin(yaw0)
         yaw = rpy_from_quat(pose.orientation)[2]
-        here = planar(c * dx + s * dy, c * dy - s * dx, yaw - yaw0)
+        here = planar_pose(c * dx + s * dy, c * dy - s * dx, yaw - yaw0)
         if self._broadcasts:
             self._odometer.transform(here)
         c, s = math.cos(yaw), math.sin(yaw)

@@ -18,7 +18,7 @@ from ..frames import prefixed, stamped
 from ..parameters import namespace_or
 from ..stepwise_change import StepwiseChange
 from .floor_rays import FloorRays, sensor_named
-from .odometry import Odometer, WheelRotations, planar
+from .odometry import Odometer, WheelRotations, planar_pose
 from .wheels import VelocityCommand, WheelStates
 
 _HERTZ = 50.0
@@ -118,7 +118,7 @@ class Kobuki(Plugin):
         x, y, yaw = self._place
         self._place = (x + way * math.cos(yaw + turn / 2.0), y + way * math.sin(yaw + turn / 2.0),
                        yaw + turn)
-        pose = planar(*self._place)
+        pose = planar_pose(*self._place)
         if self._broadcasts:
             self._odometer.transform(pose)
         self._odometer.publish(pose, (way / dt, 0.0, turn / dt))

@@ -14,7 +14,7 @@ _UNKNOWN_VARIANCE = 1e12  # of what a wheeled robot does not measure
 DRIVE_COVARIANCE = (1e-5, 1e-5, _UNKNOWN_VARIANCE, _UNKNOWN_VARIANCE, _UNKNOWN_VARIANCE, 1e-3)
 
 
-def planar(x: float, y: float, yaw: float) -> Pose:
+def planar_pose(x: float, y: float, yaw: float) -> Pose:
     """Return a pose in the plane of the ground."""
     return Pose((x, y, 0.0), quat_from_rpy(0.0, 0.0, yaw))
 
@@ -26,7 +26,7 @@ def in_base(pose: Pose, twist: Twist) -> Tuple[float, float, float]:
     return c * vx + s * vy, c * vy - s * vx, twist.angular[2]
 
 
-def diagonal(values: Tuple[float, ...]) -> List[float]:
+def diagonal_covariance(values: Tuple[float, ...]) -> List[float]:
     """A 6 x 6 covariance matrix with this diagonal."""
     matrix = [0.0] * 36
     matrix[::7] = values
@@ -84,7 +84,7 @@ class WheelCounter:
     @property
     def pose(self) -> Pose:
         """The pose in the plane of the ground."""
-        return planar(self._x, self._y, self._yaw)
+        return planar_pose(self._x, self._y, self._yaw)
 
     def count(self, dt: float) -> Tuple[float, float, float]:
         """Add up what has been turned; returns the velocity (forward, 0, yaw) over the last dt."""
@@ -113,7 +113,8 @@ class Odometer:
         self.frame, self.base = prefixed(context, frame), prefixed(context, base)
         self._topic = context.publish(topic, "nav_msgs/Odometry") if topic else None
         self.topics: List[Publication] = [self._topic] if self._topic is not None else []
-        self._covariance, self._twist_covariance = diagonal(covariance), diagonal(twist_covariance)
+        self._covariance = diagonal_covariance(covariance)
+        self._twist_covariance = diagonal_covariance(twist_covariance)
 
     def transform(self, pose: Pose) -> None:
         """Broadcast odom -> base."""

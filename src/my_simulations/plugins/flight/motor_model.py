@@ -68,14 +68,15 @@ class MotorModel(Plugin):
     def _offer_states(self) -> None:
         """Speed, and with a topic also position and effort, in every step with a subscriber."""
         p, joint = self.context.parameters, self._joint
-        self._offer(p.text("motorSpeedPubTopic", "motor_speed"), lambda: joint.velocity)
+        self._publish_value(p.text("motorSpeedPubTopic", "motor_speed"), lambda: joint.velocity)
         if p.text("motorPositionPubTopic"):
-            self._offer(p.text("motorPositionPubTopic"), lambda: joint.position)
+            self._publish_value(p.text("motorPositionPubTopic"), lambda: joint.position)
         if p.text("motorForcePubTopic"):
-            self._offer(p.text("motorForcePubTopic"),
-                        lambda: self.context.efforts([joint.name])[0], [joint.name])
+            self._publish_value(p.text("motorForcePubTopic"),
+                                lambda: self.context.efforts([joint.name])[0], [joint.name])
 
-    def _offer(self, name: str, read: Callable[[], float], efforts: Sequence[str] = ()) -> None:
+    def _publish_value(self, name: str, read: Callable[[], float],
+                       efforts: Sequence[str] = ()) -> None:
         topic = self.context.publish(name, "std_msgs/Float32")
 
         def publish() -> None:

@@ -31,7 +31,7 @@ from ...geometry_messages import fill_pose
 from ...sensing.noise import SampleGenerator
 from ..base import Plugin
 from ..context import Link, Publication
-from ..drive.odometry import diagonal
+from ..drive.odometry import diagonal_covariance
 from ..frames import stamped
 from ..parameters import namespace_or
 
@@ -57,7 +57,8 @@ class RotorsOdometry(Plugin):
         self._noisy = any(any(vector) for vector in (*self._normal, *self._uniform))
         self._draws = SampleGenerator(context.seed, f"{context.model}::{self._link.name}",
                                       self._frames[1])
-        self._covariances = [diagonal(tuple(value ** 2 for vector in pair for value in vector))
+        self._covariances = [diagonal_covariance(tuple(value ** 2 for vector in pair
+                                                       for value in vector))
                              for pair in (self._normal[:2], self._normal[2:])]
         self._delay = max(0, p.integer("measurementDelay", 0))
         self._stamp_ns = round(p.number("unknownDelay", 0.0) * 1e9)

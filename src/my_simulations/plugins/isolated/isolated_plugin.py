@@ -124,6 +124,7 @@ class IsolatedPlugin(Plugin):
             return QueryFailed(fault if known else PluginError(describe_fault(fault)))
 
     def _value(self, query: Query) -> Any:
+        """Return what the plugin's process asks of the context in this process."""
         name, context = query.name, self._simulated
         if name == "readings":
             return self._readings()

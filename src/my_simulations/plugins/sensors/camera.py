@@ -72,7 +72,7 @@ class Trigger:
 
     def _receive(self, message: Any) -> None:
         self._triggers += 1
-        self._soon()
+        self._schedule_picture()
 
     def reset(self) -> None:
         """Discard triggers that came before the reset."""
@@ -86,14 +86,15 @@ class Trigger:
         elif self._triggers:
             self._take_due()
 
-    def _soon(self) -> None:
+    def _schedule_picture(self) -> None:
+        """Take the next triggered picture in this step, unless one is being drawn."""
         if self._triggers and not self._drawing:
             self._context.once(self._context.now_ns, self._take_due)
 
     def _take_due(self) -> None:
         if self._triggers and (not self._stream.wanted or self._drawn(self._seen)):
             self._triggers -= 1
-            self._soon()
+            self._schedule_picture()
 
     def _drawn(self, call: Callable[[List[Any], int], None]) -> bool:
         self._drawing = True   # the pictures can come before the request returns
@@ -107,7 +108,7 @@ class Trigger:
 
     def _warmed(self, pictures: List[Any], ns: int) -> None:
         self._drawing = False
-        self._soon()
+        self._schedule_picture()
 
 
 class _Triggered(Plugin):

@@ -28,7 +28,7 @@ from ...geometry import (
 from ...geometry_messages import fill_pose, fill_twist
 from ..base import Plugin
 from ..context import Link, PluginError
-from ..drive.odometry import diagonal
+from ..drive.odometry import diagonal_covariance
 from ..frames import prefixed, stamped
 from ..noise import WhiteNoise
 from ..parameters import namespace_or
@@ -119,6 +119,6 @@ def odometry_message(context: Any, frame: str, child: str, pose: Pose, twist: Tw
     message.child_frame_id = child
     fill_pose(message.pose.pose, pose)
     fill_twist(message.twist.twist, twist)
-    message.pose.covariance = diagonal((variance,) * 6)
-    message.twist.covariance = diagonal((variance,) * 6)
+    message.pose.covariance = diagonal_covariance((variance,) * 6)
+    message.twist.covariance = diagonal_covariance((variance,) * 6)
     return message
