@@ -32,7 +32,7 @@ def users_folder() -> str:
     return os.path.join(os.path.expanduser("~"), WORLDS)
 
 
-def ships(path: str) -> bool:
+def is_shipped(path: str) -> bool:
     """Whether an existing file ships with this package: a world of `SHIPPED`, a model, an object.
 
     Symbolic links are resolved: files that are linked into the package do not count.
@@ -56,7 +56,7 @@ def folder_of_users(world_file: str) -> str:
         return ""
     real = os.path.realpath(world_file)
     folder = os.path.dirname(real)
-    if ships(real) or real.startswith(_SYSTEM) or not os.access(folder, os.W_OK):
+    if is_shipped(real) or real.startswith(_SYSTEM) or not os.access(folder, os.W_OK):
         return ""
     return folder
 

@@ -23,7 +23,7 @@ from ..formats.sdf.writer.entities import write_world
 from ..geometry import STILL, Pose, compose, inverse
 from ..resources.package_files import package_directories
 from ..resources.resolver import Resolver, ResourceNotFoundError
-from ..resources.world_lookup import ENDINGS, folder_of_users, ships, users_folder
+from ..resources.world_lookup import ENDINGS, folder_of_users, is_shipped, users_folder
 from ..xml_characters import check_file_name
 from .entity import Entity
 from .safe_file import write_atomically
@@ -190,7 +190,7 @@ class _Includes:
 
 def refuse_shipped(target: str) -> None:
     """Raises CommandError for a file that ships with this package."""
-    if ships(target):
+    if is_shipped(target):
         raise CommandError(f"{target} ships with my_simulations and is never overwritten; choose "
                            "another name or folder")
 

@@ -15,7 +15,7 @@ from my_simulations.resources.world_lookup import (
     advice_on,
     find_world,
     folder_of_users,
-    ships,
+    is_shipped,
 )
 from my_simulations.simulator.world_loading import load_world
 
@@ -123,10 +123,11 @@ def test_a_students_file_in_the_packages_folder_is_the_students(tmp_path, monkey
     (tmp_path / "theirs.world").write_text("<sdf/>")
     os.symlink(tmp_path / "theirs.world", package / "world" / "empty_world.world")
     (package / "model.sdf").write_text("<sdf/>")
-    assert ships(str(package / "world/lab_room.world")) and ships(str(package / "model.sdf"))
-    assert not ships(str(package / "world/test.world"))
-    assert not ships(str(package / "world/empty_world.world"))
-    assert not ships(str(package / "world/lab_course.world"))
+    assert is_shipped(str(package / "world/lab_room.world"))
+    assert is_shipped(str(package / "model.sdf"))
+    assert not is_shipped(str(package / "world/test.world"))
+    assert not is_shipped(str(package / "world/empty_world.world"))
+    assert not is_shipped(str(package / "world/lab_course.world"))
     assert folder_of_users(str(package / "world/test.world")) == str(package / "world")
     assert folder_of_users(str(package / "world/empty_world.world")) == str(tmp_path)
     assert folder_of_users(str(package / "world/lab_room.world")) == ""

@@ -10,7 +10,7 @@ from ...description.world import World
 from ...errors import Issue, Severity
 from ...formats.sdf.writer.entities import write_world
 from ...resources.resolver import Resolver
-from ...resources.world_lookup import folder_of_users, ships
+from ...resources.world_lookup import folder_of_users, is_shipped
 from ...simulator.history import History
 from ...simulator.saving import (
     EXTENSIONS,
@@ -83,7 +83,7 @@ class WorldFiles:
                 return self._save_copy(message)
             path, overwrite = message.get("path") or "", bool(message.get("overwrite"))
             if not path:
-                if self.file not in self._ours or ships(self.file):
+                if self.file not in self._ours or is_shipped(self.file):
                     raise EditRefusedError(
                         "path-needed", "not everything in the file could be loaded; choose another "
                         "file name" if self._world.models.losses

@@ -168,9 +168,9 @@ class _Downloads:
 
     def download(self, uri: FuelUri) -> None:
         """Download a model into the cache. Raises ModelNotProvidedError."""
-        self._time.once(uri.archive, uri.server, lambda: self._fetched(uri))
+        self._time.once(uri.archive, uri.server, lambda: self._fetch(uri))
 
-    def _fetched(self, uri: FuelUri) -> None:
+    def _fetch(self, uri: FuelUri) -> None:
         import tempfile
 
         from .archive import install, unpack
