@@ -31,7 +31,7 @@ def _part(name: str, height: float, length: float, thickness: float, mass: float
     """A part of the arm that stands on its joint at a height above the ground; m, kg."""
     size, center = (thickness, thickness, length), (0.0, 0.0, length / 2.0)
     return sdf.link(name, sdf.pose((0.0, 0.0, height)), sdf.box_inertial(mass, size, center),
-                    sdf.solid(name, sdf.box(size), color, sdf.pose(center)))
+                    sdf.collision_and_visual(name, sdf.box(size), color, sdf.pose(center)))
 
 
 def _finger(side: str, sign: float, height: float, values: Values) -> str:
@@ -39,9 +39,10 @@ def _finger(side: str, sign: float, height: float, values: Values) -> str:
     at = sdf.pose((0.0, sign * _FINGER[1] / 2.0, height + _FINGER[2] / 2.0))
     name = f"{side}_finger"
     return (sdf.link(name, at, sdf.box_inertial(_FINGER_MASS, _FINGER),
-                     sdf.solid(name, sdf.box(_FINGER), "dark", surface=sdf.friction(1.5)))
-            + sdf.moving(f"{name}_joint", "prismatic", "hand", name, (0.0, sign, 0.0),
-                         (0.0, values["opening"] / 2.0, values["grip_force"], 0.5), 2.0))
+                     sdf.collision_and_visual(name, sdf.box(_FINGER), "dark",
+                                              surface=sdf.friction(1.5)))
+            + sdf.moving_joint(f"{name}_joint", "prismatic", "hand", name, (0.0, sign, 0.0),
+                               (0.0, values["opening"] / 2.0, values["grip_force"], 0.5), 2.0))
 
 
 def arm_with_gripper(values: Values) -> str:
@@ -59,21 +60,23 @@ def arm_with_gripper(values: Values) -> str:
     parts = [
         sdf.link("base_link", sdf.pose((0.0, 0.0, _BASE_HEIGHT / 2.0)),
                  sdf.cylinder_inertial(4.0, _BASE_RADIUS, _BASE_HEIGHT),
-                 sdf.solid("base", base, "dark")),
+                 sdf.collision_and_visual("base", base, "dark")),
         sdf.link("turret", sdf.pose((0.0, 0.0, _BASE_HEIGHT + 0.04)),
-                 sdf.cylinder_inertial(mass, 0.05, 0.08), sdf.solid("turret", turret, "light")),
+                 sdf.cylinder_inertial(mass, 0.05, 0.08),
+                 sdf.collision_and_visual("turret", turret, "light")),
         _part("upper_arm", shoulder, upper, 0.06, mass, "orange"),
         _part("forearm", elbow, fore, 0.05, mass, "orange"),
         sdf.link("hand", sdf.pose((0.0, 0.0, wrist)),
                  sdf.box_inertial(mass / 2.0, hand_size, (0.0, 0.0, 0.03)),
-                 sdf.solid("hand", sdf.box(hand_size), "light", sdf.pose((0.0, 0.0, 0.03)))),
+                 sdf.collision_and_visual("hand", sdf.box(hand_size), "light",
+                                          sdf.pose((0.0, 0.0, 0.03)))),
         _finger("left", 1.0, palm, values), _finger("right", -1.0, palm, values),
-        sdf.fixed("fixed_to_world", "world", "base_link"),
-        sdf.moving(JOINTS[0], "revolute", "base_link", "turret", (0.0, 0.0, 1.0),
-                   (-math.pi, math.pi, most, 3.0), 0.5),
-        sdf.moving(JOINTS[1], "revolute", "turret", "upper_arm", (0.0, 1.0, 0.0), bend, 0.5),
-        sdf.moving(JOINTS[2], "revolute", "upper_arm", "forearm", (0.0, 1.0, 0.0), bend, 0.5),
-        sdf.moving(JOINTS[3], "revolute", "forearm", "hand", (0.0, 1.0, 0.0), bend, 0.2),
+        sdf.fixed_joint("fixed_to_world", "world", "base_link"),
+        sdf.moving_joint(JOINTS[0], "revolute", "base_link", "turret", (0.0, 0.0, 1.0),
+                         (-math.pi, math.pi, most, 3.0), 0.5),
+        sdf.moving_joint(JOINTS[1], "revolute", "turret", "upper_arm", (0.0, 1.0, 0.0), bend, 0.5),
+        sdf.moving_joint(JOINTS[2], "revolute", "upper_arm", "forearm", (0.0, 1.0, 0.0), bend, 0.5),
+        sdf.moving_joint(JOINTS[3], "revolute", "forearm", "hand", (0.0, 1.0, 0.0), bend, 0.2),
     ]
     stiff = values["stiffness"]
     hold = f"{stiff:g} 0 {stiff / 20.0:g}"

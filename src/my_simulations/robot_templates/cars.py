@@ -61,9 +61,10 @@ def _wheel(name: str, place: sdf.Triple, values: Values, mu: float) -> str:
     hub = sdf.visual("hub", sdf.box((radius, radius / 3.0, width * 1.02)), "light")
     return (sdf.link(f"{name}_wheel", sdf.pose(place, (-math.pi / 2.0, 0.0, 0.0)),
                      sdf.cylinder_inertial(values["wheel_mass"], radius, width),
-                     sdf.solid("tire", round_, "dark", surface=sdf.friction(mu)), hub)
-            + sdf.moving(f"{name}_wheel_joint", "revolute", "base_link", f"{name}_wheel",
-                         (0.0, 0.0, 1.0), _NO_LIMIT))
+                     sdf.collision_and_visual("tire", round_, "dark",
+                                              surface=sdf.friction(mu)), hub)
+            + sdf.moving_joint(f"{name}_wheel_joint", "revolute", "base_link", f"{name}_wheel",
+                               (0.0, 0.0, 1.0), _NO_LIMIT))
 
 
 def _body(values: Values, offset: float, *more: str) -> str:
@@ -72,7 +73,8 @@ def _body(values: Values, offset: float, *more: str) -> str:
     center = (offset, 0.0, _middle(values))
     return sdf.link("base_link", sdf.pose((0.0, 0.0, 0.0)),
                     sdf.box_inertial(values["mass"], size, center),
-                    sdf.solid("body", sdf.box(size), "orange", sdf.pose(center)), *more)
+                    sdf.collision_and_visual("body", sdf.box(size), "orange",
+                                             sdf.pose(center)), *more)
 
 
 def _sensors(values: Values, offset: float) -> str:
@@ -82,13 +84,15 @@ def _sensors(values: Values, offset: float) -> str:
     parts = []
     if values["camera"]:
         place = (front - CAMERA_SIZE[0] / 2.0, 0.0, roof + CAMERA_SIZE[2] / 2.0)
-        parts += [camera_link(values, place), sdf.fixed("camera_joint", "base_link", "camera_link")]
+        parts += [camera_link(values, place),
+                  sdf.fixed_joint("camera_joint", "base_link", "camera_link")]
     if values["laser"]:
         place = (offset, 0.0, roof + LASER_LENGTH / 2.0)
-        parts += [laser_link(values, place), sdf.fixed("laser_joint", "base_link", "laser_link")]
+        parts += [laser_link(values, place),
+                  sdf.fixed_joint("laser_joint", "base_link", "laser_link")]
     if values["imu"]:
         place = (offset - values["length"] / 2.0 + IMU_SIZE[0], 0.0, roof + IMU_SIZE[2] / 2.0)
-        parts += [imu_link(values, place), sdf.fixed("imu_joint", "base_link", "imu_link")]
+        parts += [imu_link(values, place), sdf.fixed_joint("imu_joint", "base_link", "imu_link")]
     return "".join(parts)
 
 
@@ -100,7 +104,7 @@ def differential_drive(values: Values) -> str:
     # The ball touches the ground, and its top is inside of the body.
     ball = (_middle(values) - values["body_height"] / 2.0) / 2.0 + _GAP / 2.0
     at = sdf.pose((offset - values["length"] / 2.0 + ball, 0.0, ball))
-    caster = sdf.solid("caster", sdf.sphere(ball), "light", at, sdf.friction(0.0))
+    caster = sdf.collision_and_visual("caster", sdf.sphere(ball), "light", at, sdf.friction(0.0))
     wheels = "".join(_wheel(side, (0.0, sign * track / 2.0, radius), values, 1.0)
                      for side, sign in (("left", 1.0), ("right", -1.0)))
     drive = sdf.plugin("drive", "libgazebo_ros_diff_drive.so", robotNamespace=namespace(values),

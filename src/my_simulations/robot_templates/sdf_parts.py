@@ -76,8 +76,9 @@ def visual(name: str, geometry: str, color: str, at: str = "") -> str:
             "</diffuse><specular>0.1 0.1 0.1 1</specular></material></visual>")
 
 
-def solid(name: str, geometry: str, color: str, at: str = "", surface: str = "") -> str:
-    """A collision and a visual of one shape."""
+def collision_and_visual(name: str, geometry: str, color: str, at: str = "",
+                         surface: str = "") -> str:
+    """Return the SDF of a collision and a visual of one shape."""
     return (collision(f"{name}_collision", geometry, at, surface)
             + visual(f"{name}_visual", geometry, color, at))
 
@@ -87,14 +88,14 @@ def link(name: str, at: str, *content: str) -> str:
     return f'<link name="{name}">{at}{"".join(content)}</link>'
 
 
-def fixed(name: str, parent: str, child: str) -> str:
+def fixed_joint(name: str, parent: str, child: str) -> str:
     return (f'<joint name="{name}" type="fixed"><parent>{parent}</parent><child>{child}</child>'
             "</joint>")
 
 
-def moving(name: str, kind: str, parent: str, child: str, axis: Triple,
-           limits: Tuple[float, float, float, float], damping: float = 0.0) -> str:
-    """A revolute or prismatic joint.
+def moving_joint(name: str, kind: str, parent: str, child: str, axis: Triple,
+                 limits: Tuple[float, float, float, float], damping: float = 0.0) -> str:
+    """Return the SDF of a revolute or prismatic joint.
 
     Args:
         name: of the joint.

@@ -121,9 +121,10 @@ def _on_post(values: Values, sensor: str, child: str) -> str:
     return sdf.document(
         values["name"],
         sdf.link("post", sdf.pose((0.0, 0.0, 0.0)),
-                 sdf.solid("foot", base, "dark", sdf.pose((0.0, 0.0, 0.01))),
-                 sdf.solid("post", post, "light", sdf.pose((0.0, 0.0, height / 2.0)))),
-        sensor, sdf.fixed("mount", "post", child), static=True)
+                 sdf.collision_and_visual("foot", base, "dark", sdf.pose((0.0, 0.0, 0.01))),
+                 sdf.collision_and_visual("post", post, "light",
+                                          sdf.pose((0.0, 0.0, height / 2.0)))),
+        sensor, sdf.fixed_joint("mount", "post", child), static=True)
 
 
 def camera_on_post(values: Values) -> str:
@@ -145,6 +146,6 @@ def imu_box(values: Values) -> str:
     return sdf.document(
         values["name"],
         sdf.link("base_link", sdf.pose((0.0, 0.0, size / 2.0)), sdf.box_inertial(mass, sides),
-                 sdf.solid("case", sdf.box(sides), "light")),
+                 sdf.collision_and_visual("case", sdf.box(sides), "light")),
         imu_link(values, (0.0, 0.0, size + IMU_SIZE[2] / 2.0)),
-        sdf.fixed("mount", "base_link", "imu_link"))
+        sdf.fixed_joint("mount", "base_link", "imu_link"))
