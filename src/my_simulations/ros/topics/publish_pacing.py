@@ -116,22 +116,23 @@ class StateSchedule:
         self._published_ns = -(1 << 62)
         self._shown: Optional[Tuple[int, int]] = None
 
-    def due(self, step: int, sim_ns: int, owed: bool,
-            standing: Callable[[], Optional[Tuple[int, int]]]) -> bool:
+    def due(self, step: int, sim_ns: int, has_new_subscriber: bool,
+            paused_state: Callable[[], Optional[Tuple[int, int]]]) -> bool:
         """Whether to publish a message now.
 
         Args:
             step: current step count.
             sim_ns: its sim time.
-            owed: there is a new subscriber.
-            standing: returns a key of the state of a paused world; None while it runs.
+            has_new_subscriber: there is a new subscriber.
+            paused_state: returns a key of the state of a paused world; None while it runs.
         """
         waited = sim_ns - self._published_ns
         stepped, self._step = step != self._step, step
-        if owed or (stepped and (waited < 0 or waited >= self._period_ns - ROUNDING_NS)):
+        if has_new_subscriber or (
+                stepped and (waited < 0 or waited >= self._period_ns - ROUNDING_NS)):
             found = True
         else:
-            key = standing()
+            key = paused_state()
             found = key is not None and key != self._shown
         if found:
             # What is published late does not delay what follows: the rate is kept on average.
