@@ -13,7 +13,7 @@ from typing import List, Mapping, NamedTuple, Optional, Tuple
 
 from ...description.actor import Actor, Trajectory, Waypoint
 from ...geometry import Pose, Quat, Vec3, add, norm, scale, subtract
-from .turn_spline import controls_of, on_turn, with_neighbours
+from .turn_spline import controls_of, squad, with_neighbours
 
 _CHORDS = 32
 """Into which a segment is divided to measure it."""
@@ -81,7 +81,7 @@ class _Leg:
         if not part:
             return start.pose
         goal = self.keys[n + 1]
-        return Pose(_on_spline(start, goal, part), on_turn(
+        return Pose(_on_spline(start, goal, part), squad(
             start.pose.orientation, start.control, goal.control, goal.pose.orientation, part))
 
     def stride(self, time: float) -> Stride:

@@ -43,8 +43,8 @@ def controls_of(turns: Sequence[Quat]) -> List[Quat]:
     return found
 
 
-def on_turn(start: Quat, start_control: Quat, goal_control: Quat, goal: Quat, part: float) -> Quat:
-    """The orientation at a part, 0 to 1, of a segment."""
+def squad(start: Quat, start_control: Quat, goal_control: Quat, goal: Quat, part: float) -> Quat:
+    """Return the orientation at a part, 0 to 1, of a segment (Shoemake's squad)."""
     straight = slerp(start, goal, part)
     bent = _along_arc(start_control, goal_control, part)
     return normalised(_along_arc(straight, bent, 2.0 * part * (1.0 - part)))
