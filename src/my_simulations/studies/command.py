@@ -21,7 +21,7 @@ from .command_line import parser
 from .folder import REPORT, StudyFolder, shard_of
 from .journal import Journal, finished_cases
 from .plan import ALL_CASES, Case, CasePlan, Shard, number_of
-from .replacing import replaced
+from .replacing import replacement_file
 from .replays import Record, WriteReplay, keep_replays
 from .report import write_report
 from .row import OK
@@ -291,7 +291,7 @@ def _record(options: argparse.Namespace, records: Records) -> int:
         world = stack.enter_context(open_case(plan, case))
         files = []
         for kind, path in wanted.items():
-            part = stack.enter_context(replaced(path))
+            part = stack.enter_context(replacement_file(path))
             files.append(stack.enter_context(contextlib.closing(records[kind](part))))
         run_case(world, plan.study.duration, options.every, [file.record_state for file in files])
         found = final_hash(world)

@@ -241,6 +241,7 @@ class DaskRunner:
     # -- sharing out -------------------------------------------------------------------------------
 
     def _drive(self, client: Client, name: str, shard: Shard) -> None:
+        """Send the cases of a shard to the workers and collect the rows, until all have run."""
         cases = waiting_cases(self._plan, shard, self._finished)
         self._left = len(range(shard.index - 1, len(self._plan), shard.of)) - len(self._finished)
         first = next(cases, None)

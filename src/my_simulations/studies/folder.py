@@ -11,7 +11,7 @@ from ..errors import CommandError
 from ..program_end import is_disk_full
 from .journal import has_header, header_of, statuses
 from .plan import ALL_CASES, CasePlan, Shard, number_of
-from .replacing import replaced
+from .replacing import replacement_file
 from .row import STATUSES
 from .table import parquet_fault, write_csv, write_parquet
 
@@ -111,7 +111,7 @@ class StudyFolder:
 
     def copy_study_file(self, study_file: str) -> None:
         """Copy the study file for the record; the caller has opened a journal of the folder."""
-        with replaced(os.path.join(self.path, COPY)) as part:
+        with replacement_file(os.path.join(self.path, COPY)) as part:
             shutil.copyfile(study_file, part)
 
     def write_tables(self, plan: CasePlan, say: Callable[[str], None]) -> List[str]:

@@ -113,7 +113,7 @@ def header_of(path: str) -> Dict[str, Any]:
 
 
 def lines(path: str) -> Iterator[Tuple[int, bytes]]:
-    """Offset and text of each finished row."""
+    """Yield the offset and the text of each complete row, without the header."""
     with open(path, "rb") as stream:
         offset = len(stream.readline())
         for line in stream:

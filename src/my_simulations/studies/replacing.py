@@ -8,7 +8,7 @@ from typing import Iterator
 
 
 @contextlib.contextmanager
-def replaced(path: str) -> Iterator[str]:
+def replacement_file(path: str) -> Iterator[str]:
     """The name of a file to write; it takes the place of `path` at the end.
 
     Its name is that of this process alone, also in a folder that several machines share.

@@ -7,7 +7,7 @@ from html import escape
 from typing import Any, Dict, List, Sequence, Tuple
 
 from .plots import scatter
-from .replacing import replaced
+from .replacing import replacement_file
 from .replays import replay_of
 from .row import OK, STATUSES, Row
 from .study import Study
@@ -45,7 +45,7 @@ def write_report(path: str, study: Study, paths: Sequence[str], have_run: int, c
              _summary(study, found, have_run), _plots(study, found),
              _failures(found, command, os.path.dirname(path)),
              _table(study, found), "</body></html>\n"]
-    with replaced(path) as part, open(part, "w", encoding="utf-8") as stream:
+    with replacement_file(path) as part, open(part, "w", encoding="utf-8") as stream:
         stream.write("\n".join(text for text in parts if text))
 
 

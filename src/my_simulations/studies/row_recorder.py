@@ -12,7 +12,7 @@ import numpy as np
 
 from .journal import Journal
 from .kept import Kept, ScenarioFiles
-from .replacing import replaced
+from .replacing import replacement_file
 from .row import Row
 
 SCENARIOS = "scenarios"
@@ -85,7 +85,7 @@ class Recorder:
         self._number += 1
         name = f"{self._prefix}-{self._number:06d}.npz"
         path = os.path.join(self._folder, name)
-        with replaced(path) as part, open(part, "wb") as stream:
+        with replacement_file(path) as part, open(part, "wb") as stream:
             np.savez_compressed(stream, **self._arrays)  # type: ignore[arg-type]
             stream.flush()
             os.fsync(stream.fileno())

@@ -10,7 +10,7 @@ import sys
 from typing import List, Sequence
 
 from ..errors import CommandError
-from .replacing import replaced
+from .replacing import replacement_file
 
 SCRIPT = "study.sbatch"
 _OPTION = re.compile(r"[a-z][a-z-]*(=[^\n]*)?\Z")
@@ -68,7 +68,7 @@ def write_script(folder: str, text: str) -> str:
     path = os.path.join(folder, SCRIPT)
     try:
         os.makedirs(os.path.join(folder, "slurm"), exist_ok=True)
-        with replaced(path) as part, open(part, "w", encoding="utf-8") as stream:
+        with replacement_file(path) as part, open(part, "w", encoding="utf-8") as stream:
             stream.write(text)
     except OSError as fault:
         raise CommandError(f"{path} cannot be written: {fault.strerror}") from None

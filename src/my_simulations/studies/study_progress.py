@@ -29,6 +29,7 @@ class Progress:
         self._told = time.monotonic()
 
     def count_case(self, row: Row) -> None:
+        """Count the row of a case that has run; write the progress if it is due."""
         self._rate.add(row)
         now = time.monotonic()
         if now - self._told >= (_EVERY_S if self._live else _EVERY_LOG_S):

@@ -8,7 +8,7 @@ import itertools
 from typing import Any, Dict, Iterator, List, Optional, Sequence, Tuple
 
 from .journal import lines
-from .replacing import replaced
+from .replacing import replacement_file
 from .row import Row, row_of
 from .study import Study
 
@@ -60,7 +60,7 @@ def write_csv(path: str, study: Study, paths: Sequence[str]) -> int:
     empty, and NaN is `nan`.
     """
     columns, count = columns_of(study), 0
-    with replaced(path) as part, open(part, "w", encoding="utf-8", newline="") as stream:
+    with replacement_file(path) as part, open(part, "w", encoding="utf-8", newline="") as stream:
         writer = csv.writer(stream)
         writer.writerow(columns)
         for row in rows_in_order(paths):
@@ -93,7 +93,7 @@ def write_parquet(path: str, study: Study, paths: Sequence[str]) -> int:
     types = {int: arrow.int64(), str: arrow.string(), float: arrow.float64(), bool: arrow.bool_()}
     schema = arrow.schema([(name, types[kind]) for name, kind in kinds.items()])
     count = 0
-    with replaced(path) as part, parquet.ParquetWriter(part, schema) as writer:
+    with replacement_file(path) as part, parquet.ParquetWriter(part, schema) as writer:
         group: List[Dict[str, Any]] = []
         for row in rows_in_order(paths):
             group.append({name: _of_kind(value, kinds[name])
