@@ -53,7 +53,7 @@ class ConfinedResolver(Resolver):
         return path
 
     def add_unlisted_folder(self, uri: str, base_dir: str) -> str:
-        """As `Resolver.add_unlisted_folder`; what is added does not become permitted."""
+        """As `Resolver.add_unlisted_folder`; the added folder does not become permitted."""
         self._installed()
         return super().add_unlisted_folder(uri, base_dir)
 

@@ -48,7 +48,7 @@ export class Selector {
     return {name: model, link, point: body.point, plane};
   }
 
-  /** What a drag may take hold of; what is locked is passed over. */
+  /** Returns the model that a drag can move; locked models are skipped. */
   movable(event: MousePoint) {
     const hit = this.under(event, (name) => !this.#store.overlay('locked', name));
     return hit && !hit.plane ? hit : null;

@@ -25,7 +25,7 @@ def _load() -> ModuleType:
     """pip's xacro, as `sys.modules["xacro"]`. Raises ImportError."""
     ours = sys.modules[__name__]
     for folder in _site_folders():
-        # This package has an __init__.py and no more.
+        # This package has an __init__.py only.
         if not os.path.isfile(os.path.join(folder, "xacro", "cli.py")):
             continue
         spec = importlib.machinery.PathFinder.find_spec("xacro", [folder])
