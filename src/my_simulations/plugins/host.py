@@ -27,8 +27,7 @@ from .graph import Graph, TopicUse
 from .nested_turns import NestedTurns
 from .observations import Observation, Observations, StepView
 from .outgoing import Outgoing
-from .plugin_faults import describe_fault
-from .plugin_guard import PluginGuard
+from .plugin_faults import PluginGuard, describe_fault
 from .plugin_loader import PluginLoader
 from .plugin_state import PluginState
 from .record_handover import RecordHandover

@@ -9,11 +9,10 @@ from my_simulations.description.model import JointAxis
 from my_simulations.geometry import Pose, Twist, quat_from_rpy
 from my_simulations.plugins.context import PluginError
 from my_simulations.plugins.drive.audibot import Audibot
-from my_simulations.plugins.drive.car_wheels import FASTEST, apply_torque
 from my_simulations.plugins.drive.prius import PriusHybrid
-from my_simulations.plugins.state.catvehicle import CatVehicle
-from my_simulations.plugins.testing import FakeContext
-from my_simulations.plugins.testing_joints import FakeJoint
+from my_simulations.plugins.drive.wheels import FASTEST, apply_torque
+from my_simulations.plugins.state.world_odometry import CatVehicle
+from my_simulations.plugins.testing import FakeContext, FakeJoint
 
 PRIUS = ("fl", "fr", "bl", "br", "sl", "sr", "hand")
 MPH = 1.0 / 2.23694   # m/s

@@ -12,7 +12,7 @@ from my_simulations.engine.servo_law import ServoLaw
 from my_simulations.geometry import Pose, Twist, quat_from_rpy
 from my_simulations.plugins.context import PluginError
 from my_simulations.plugins.gripping.harness import Harness
-from my_simulations.plugins.sensors.foot_contact import FootContact
+from my_simulations.plugins.sensors.bumper import FootContact
 from my_simulations.plugins.state.f3d import F3d
 from my_simulations.plugins.state.joint_control import JointControl
 from my_simulations.plugins.testing import FakeContext

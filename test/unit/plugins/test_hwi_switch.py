@@ -6,9 +6,8 @@ from robot_control import NS, Arm, transmission
 
 from my_simulations.description.model import Joint, Link, Model
 from my_simulations.plugins.context import PluginError
-from my_simulations.plugins.control.gazebo_ros_control import GazeboRosControl
+from my_simulations.plugins.control.gazebo_ros_control import PATIENCE_S, GazeboRosControl
 from my_simulations.plugins.control.hwi_switch import HwiSwitchGazeboRosControl
-from my_simulations.plugins.control.initial_hold import PATIENCE_S
 from my_simulations.plugins.registry import PluginRegistry, plugin_class
 from my_simulations.plugins.testing import FakeContext
 

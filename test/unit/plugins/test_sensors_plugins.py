@@ -22,7 +22,7 @@ from my_simulations.geometry import Twist
 from my_simulations.plugins.context import PluginError
 from my_simulations.plugins.sensors.bumper import Bumper
 from my_simulations.plugins.sensors.imu import ModelImu, SensorImu
-from my_simulations.plugins.sensors.laser import Laser
+from my_simulations.plugins.sensors.laser_points import Laser
 from my_simulations.plugins.sensors.range import Range
 from my_simulations.plugins.state.force import Force
 from my_simulations.plugins.state.joint_state_publisher import JointStatePublisher

@@ -10,11 +10,9 @@ from my_simulations.geometry import Pose, Twist, quat_from_rpy
 from my_simulations.plugins.context import PluginError
 from my_simulations.plugins.state.gimbal import Gimbal
 from my_simulations.plugins.state.hand_of_god import HandOfGod
-from my_simulations.plugins.state.initial_velocity import InitialVelocity
 from my_simulations.plugins.state.joint_pose_trajectory import JointPoseTrajectory
-from my_simulations.plugins.state.joint_springs import Differential, WarthogSuspension
-from my_simulations.plugins.state.mimic_joint import MimicJoint
-from my_simulations.plugins.state.random_velocity import RandomVelocity
+from my_simulations.plugins.state.joint_springs import Differential, MimicJoint, WarthogSuspension
+from my_simulations.plugins.state.random_velocity import InitialVelocity, RandomVelocity
 from my_simulations.plugins.state.world_odometry import (
     PalWorldOdometry,
     RobotnikGroundTruthOdometry,

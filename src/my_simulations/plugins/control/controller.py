@@ -7,8 +7,7 @@ from ...engine.drive_commands import PidGains
 from ..context import CallHandle, Context, Handle, Publication
 from ..finite_messages import finite_only
 from .hardware import Hardware, HardwareJoint
-from .settings import Settings
-from .tuning import offer_gains
+from .settings import Settings, offer_gains
 
 INITIALIZED, RUNNING, STOPPED = "initialized", "running", "stopped"
 

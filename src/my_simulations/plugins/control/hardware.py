@@ -14,8 +14,7 @@ from ...engine.spline import Spline
 from ..context import Context, Joint, PluginError
 from ..reconfigure import Reconfigure
 from .limits import JointLimits, holding_effort, limits_of
-from .settings import Settings
-from .tuning import offer_gains
+from .settings import Settings, offer_gains
 
 STATE, EFFORT, VELOCITY, POSITION = (f"hardware_interface::{kind}Interface" for kind in (
     "JointState", "EffortJoint", "VelocityJoint", "PositionJoint"))

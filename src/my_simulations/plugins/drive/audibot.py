@@ -17,7 +17,7 @@ from ..context import Joint
 from ..finite_messages import finite_only
 from ..frames import stamped
 from ..time_out import TimeOut
-from .car_wheels import apply_torque
+from .wheels import apply_torque
 
 _HERTZ, _FEEDBACK_HERTZ = 100.0, 50.0
 _PATIENCE = 0.25                      # s, for the next throttle and brake

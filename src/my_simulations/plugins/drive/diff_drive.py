@@ -10,8 +10,7 @@ from typing import Tuple
 
 from ..parameters import namespace_or
 from ..stepwise_change import StepwiseChange
-from .odometry import Odometer, WheelCounter
-from .odometry_drive import OdometryDrive
+from .odometry import Odometer, OdometryDrive, WheelCounter
 from .wheels import VelocityCommand, WheelFrames, WheelStates
 
 _REACHED = 0.01  # m/s: a wheel that is so near to its speed has it (gazebo_plugins)

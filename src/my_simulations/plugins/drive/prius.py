@@ -19,7 +19,7 @@ from ..base import Plugin
 from ..context import Joint
 from ..finite_messages import finite_only
 from ..time_out import TimeOut
-from .car_wheels import apply_torque
+from .wheels import apply_torque
 
 _KIND = "prius_msgs/Control"
 _HERTZ = 100.0

@@ -17,8 +17,7 @@ from ...geometry import inverse, transform
 from ..context import Joint
 from ..parameters import namespace_or
 from ..stepwise_change import StepwiseChange
-from .odometry import Odometer, WheelCounter
-from .odometry_drive import OdometryDrive
+from .odometry import Odometer, OdometryDrive, WheelCounter
 from .wheels import VelocityCommand, WheelFrames, WheelStates
 
 _MOST_STEERING = math.pi / 2.0

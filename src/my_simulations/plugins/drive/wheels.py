@@ -1,6 +1,7 @@
 """What drives with wheels share: commands, wheel frames, joint states of wheels."""
 from __future__ import annotations
 
+import math
 from typing import Any, List, Optional, Sequence
 
 from ...geometry import compose, inverse
@@ -98,3 +99,23 @@ class WheelStates:
             message.velocity = [joint.velocity for joint in self._joints]
             message.effort = [0.0] * len(self._joints)
         self._topic.publish(message)
+
+
+FASTEST = 1e3  # rad/s: no wheel of a car turns as fast
+
+
+def apply_torque(wheel: Joint, torque: float, friction: float = 0.0,
+                 most_rate: float = FASTEST) -> None:
+    """Apply a torque against Coulomb friction, N m, until the next call.
+
+    The joint's motor does both. A torque above the friction accelerates the wheel, up to
+    `most_rate` (rad/s); a friction above the torque stops it.
+    """
+    friction += wheel.spec.axis.friction if wheel.spec.axis is not None else 0.0
+    if torque * wheel.velocity < 0.0:
+        friction = -friction   # both act against the motion
+    left = friction - abs(torque)
+    if left < 0.0:
+        wheel.drive(math.copysign(most_rate, torque), -left)
+    else:
+        wheel.drive(0.0, left)

@@ -13,8 +13,7 @@ from ..context import PluginError
 from ..frames import stamped
 from ..parameters import namespace_or
 from .image_messages import FLOAT32, point_field
-from .laser import Laser
-from .laser_points import BlockLaser, Points
+from .laser_points import BlockLaser, Laser, Points
 from .rays import RayPlugin
 
 _ULTRASOUND, _INFRARED = 0, 1   # of sensor_msgs/Range

@@ -4,6 +4,10 @@ Parameters and defaults are those of Gazebo: `<link>`, `<initial_velocity>` and 
 (m/s), `<update_period>` (s), and the limits `<min_x>`, `<max_x>` and so on of each world axis, in
 either order. Where it differs: all links of the model get the velocity, not only the one named;
 the directions depend on the seed of the world and on sim time, so a run can be repeated.
+
+libInitialVelocityPlugin.so: a model that begins with a velocity.
+
+Parameters are those of Gazebo: `<linear>` m/s and `<angular>` rad/s, world axes.
 """
 from __future__ import annotations
 
@@ -54,3 +58,15 @@ class RandomVelocity(Plugin):
         x, y, z = (max(low, min(high, self._speed * value / length))
                    for value, (low, high) in zip(drawn, self._limits))
         return (x, y, z)
+
+
+class InitialVelocity(Plugin):
+    """Sets the velocity of all links when the model comes, and after a reset."""
+
+    def load(self) -> None:
+        p = self.context.parameters
+        self._twist = Twist(p.vector("linear"), p.vector("angular"))
+        self.reset()
+
+    def reset(self) -> None:
+        self.context.move(self.context.pose, self._twist)

@@ -6,6 +6,11 @@ whether or not there are subscribers, and is drawn from the seed of the world; i
 dynamic_reconfigure sets there, are 0. The second gives a velocity in the axes that the link has now
 (original: those of the message before), and rotates in the frame of `<worldBodyName>` the right
 way.
+
+libcatvehiclegazebo.so: what the car of catvehicle reports of its motion.
+
+Topics, frames and fields are those of catvehicle's CatSteering. It publishes at its rate, and not
+with the messages of /gazebo/model_states.
 """
 from __future__ import annotations
 
@@ -122,3 +127,33 @@ def odometry_message(context: Any, frame: str, child: str, pose: Pose, twist: Tw
     message.pose.covariance = diagonal_covariance((variance,) * 6)
     message.twist.covariance = diagonal_covariance((variance,) * 6)
     return message
+
+
+class CatVehicle(Plugin):
+    """Publishes `vel`, `steering` and `odom`, and broadcasts odom to tf."""
+
+    def load(self) -> None:
+        context, p = self.context, self.context.parameters
+        namespace = p.text("robotNamespace")
+        context.use_namespace(namespace)
+        self._scope = namespace.strip("/")
+        self._steering = [context.joint(f"front_{side}_steering_joint")
+                          for side in ("left", "right")]
+        self._velocity = context.publish("vel", "geometry_msgs/Twist")
+        self._angle = context.publish("steering", "geometry_msgs/Wrench")
+        self._odom = context.publish("odom", "nav_msgs/Odometry")
+        context.observe(p.number("updateRate", 100.0), self._publish,
+                        [self._velocity, self._angle, self._odom], transforms=True)
+
+    def _publish(self) -> None:
+        context, pose, twist = self.context, self.context.pose, self.context.twist
+        back = conjugate(pose.orientation)
+        velocity = context.message("geometry_msgs/Twist")
+        fill_twist(velocity, Twist(rotate(back, twist.linear), rotate(back, twist.angular)))
+        self._velocity.publish(velocity)
+        steering = context.message("geometry_msgs/Wrench")
+        steering.torque.z = sum(joint.position for joint in self._steering) / 2.0   # rad
+        self._angle.publish(steering)
+        frame, base = f"{self._scope}/odom", f"{self._scope}/base_link"
+        context.transform(frame, base, pose)
+        self._odom.publish(odometry_message(context, frame, base, pose, twist, 0.0))
