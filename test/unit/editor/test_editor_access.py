@@ -12,7 +12,7 @@ from editor_case import Browser, box, cases
 
 from my_simulations.editor import web_browser
 from my_simulations.editor.editor_options import TOKEN_VARIABLE
-from my_simulations.editor.transport import address_file, connection_limits
+from my_simulations.editor.transport import access_guard, address_file
 
 case = pytest.fixture(cases)
 
@@ -154,7 +154,7 @@ def test_a_browser_is_started_without_the_token_in_its_command_line(monkeypatch,
 @pytest.mark.parametrize("sent", [b"", b"GET / HT", b"GET / HTTP/1.1\r\nHost: 127.0.0.1\r\n"],
                          ids=["nothing", "half a line", "half a header"])
 def test_half_open_connections_end(guarded, monkeypatch, sent):
-    monkeypatch.setattr(connection_limits, "SILENCE_S", 1.0)
+    monkeypatch.setattr(access_guard, "SILENCE_S", 1.0)
     made, base, token = guarded
     port = int(base.rstrip("/").rpartition(":")[2])
 
@@ -181,7 +181,7 @@ def test_hundreds_of_half_open_connections_do_not_use_up_the_descriptors(guarded
     async def run():
         opened = [await asyncio.open_connection("127.0.0.1", port) for _ in range(300)]
         # The server closes all but the newest MOST_SILENT connections.
-        ended = [reader for reader, _ in opened[:-connection_limits.MOST_SILENT]]
+        ended = [reader for reader, _ in opened[:-access_guard.MOST_SILENT]]
         for reader in ended:
             try:
                 assert await asyncio.wait_for(reader.read(), 60) == b""

@@ -10,7 +10,7 @@ from my_simulations.appearance.gazebo_materials import BUILT_IN as TABLE
 from my_simulations.appearance.material_script import ScriptMaterial, read_materials
 from my_simulations.description.compare import BUILT_IN
 from my_simulations.description.shapes import Material
-from my_simulations.editor.scene.materials import Materials
+from my_simulations.editor.scene.scene_json import Materials
 from my_simulations.editor.scene.served_files import ServedFiles
 from my_simulations.resources.resolver import Resolver
 

@@ -3,7 +3,7 @@ from __future__ import annotations
 
 from pytest import approx
 
-from my_simulations.editor.transport.watched_values import WatchedValues
+from my_simulations.editor.transport.watch_requests import WatchedValues
 from my_simulations.engine.ring import Clock, Snapshot
 
 

@@ -31,7 +31,7 @@ export function numbersOf(view: View, payload: ArrayBuffer): Map<string, number>
 const named = (path: string, values: number[]): [string, number][] =>
   values.map((value, at) => [`${path}.${AXES[at]}`, value]);
 
-/** The numbers of a message as text (`editor/topics/message_text.py`). */
+/** The numbers of a message as text (`editor/topics/message_views.py`). */
 function textNumbers(text: string): Map<string, number> {
   const found = new Map<string, number>();
   const names: string[] = [];

@@ -5,8 +5,8 @@ from dataclasses import replace
 
 from ...description.model import Inertial, Model
 from ...errors import CommandError
-from ...formats.combined_inertia import combined_inertia
-from ...formats.sdf.state_scale import scaled
+from ...formats.inertia import combined_inertia
+from ...formats.sdf.state_applied import scaled
 from ...geometry import IDENTITY, Pose, Vec3, is_finite
 from ..scene.scene_json import is_scalable
 

@@ -17,8 +17,7 @@ from ...description.shapes import (
     Polyline,
 )
 from ...errors import CommandError
-from ...formats.combined_inertia import combined_inertia
-from ...formats.default_inertia import solid_moments
+from ...formats.inertia import combined_inertia, solid_moments
 from ...formats.mesh.loading import load_mesh, load_solid
 from ...geometry import Pose
 

@@ -1,23 +1,39 @@
-"""The requests about models that may be inserted."""
+"""The requests about models that may be inserted, and models saved to a folder of the user."""
 from __future__ import annotations
 
 import asyncio
+import os
+import tempfile
 from concurrent.futures import Executor
-from typing import Any, Callable, Dict, Optional
+from dataclasses import replace
+from typing import Any, Callable, Dict, List, Mapping, Optional, Tuple
 
 from ...description.flatten import flattened
-from ...errors import CommandError, Issue
+from ...description.model import Model
+from ...description.unflatten import unflattened
+from ...errors import CommandError, InputError, Issue
+from ...formats.sdf.writer.entities import write_entity
+from ...geometry import Pose
 from ...resources.database.fuel_uri import is_web_address
 from ...resources.resolver import Resolver
+from ...robot_templates import TEMPLATES, template_named
+from ...simulator.safe_file import write_atomically
+from ...simulator.simulator import Simulator
 from ..editing.inserts import Entity, entity_of_text, entity_of_uri
 from ..scene.scene_json import Documents
 from ..transport.browser_client import Client
+from ..transport.error_messages import EditRefusedError
 from ..transport.hub import Hub
 from ..transport.web_socket import Route
-from .model_import import import_model
+from .model_import import (
+    check_loading,
+    checked_folder_name,
+    config_text,
+    default_folder,
+    import_model,
+    relocated,
+)
 from .model_library import Library
-from .model_saving import save_model
-from .template_requests import listed_templates, model_of_template
 
 _LOOK_S = 2.0
 
@@ -131,3 +147,72 @@ def preview_document(entity: Entity, documents: Documents) -> Dict[str, Any]:
     if isinstance(entity, Model):
         return {"model": documents.model(flattened(entity), entity.pose), "light": None}
     return {"model": None, "light": documents.light(entity)}
+
+
+def listed_templates() -> List[Dict[str, Any]]:
+    """All templates, as the protocol's `Template`s."""
+    return [{"name": template.name, "title": template.title, "description": template.description,
+             "parameters": [
+                 {"name": one.name, "title": one.title, "kind": one.kind, "default": one.default,
+                  "unit": one.unit, "minimum": one.minimum, "maximum": one.maximum}
+                 for one in template.parameters]} for template in TEMPLATES]
+
+
+def model_of_template(name: str, values: Mapping[str, Any],
+                      resolver: Resolver) -> Tuple[str, Entity]:
+    """SDF text and model of a template with values for its parameters.
+
+    Raises CommandError for an unknown template and for values that are not allowed.
+    """
+    sdf = template_named(name).sdf(values)
+    model, issues = entity_of_text(sdf, resolver, f"{name}.sdf")
+    if issues:
+        raise InputError(issues)
+    return sdf, model
+
+
+def save_model(message: Dict[str, Any], world: Simulator,
+               resolver: Resolver) -> Tuple[Dict[str, Any], List[Issue]]:
+    """Store a model of the world as a model folder; the reply, and what is odd about the model.
+
+    The model is stored under the folder's name, as it is described, at the height at which it
+    stands now. Other files of the folder stay. Nothing is stored of a model that could not be
+    loaded again.
+
+    Raises:
+        InputError: the written file could not be read.
+        EditRefusedError: `exists`, where there is a folder of that name that must not be replaced.
+        CommandError: no such model, no usable name, or the folder cannot be written.
+    """
+    name = checked_folder_name(message["name"])
+    model = world.models.get(message["model"])
+    height = world.states.model_state(model.name)[0].position[2]
+    target = os.path.join(default_folder(), name)
+    if os.path.lexists(target) and not message.get("overwrite"):
+        raise EditRefusedError("exists", f"{target} already exists",
+                               "overwrite it, or choose another name")
+    files = {
+        "model.sdf": _text(model, name, height).replace(
+            f"{target}/".encode(), f"model://{name}/".encode()),
+        "model.config": config_text(name, "model.sdf", message.get("about") or {}),
+    }
+    issues = _readable(files, name, target, resolver)
+    for file, data in files.items():
+        write_atomically(os.path.join(target, file), data, overwrite=True)
+    return {"uri": f"model://{name}", "path": target}, issues
+
+
+def _text(model: Model, name: str, height: float) -> bytes:
+    whole = replace(unflattened(model), name=name, pose=Pose((0.0, 0.0, height)), uri="")
+    return write_entity(whole)
+
+
+def _readable(files: Dict[str, bytes], name: str, target: str, resolver: Resolver) -> List[Issue]:
+    """What the simulator says of the folder. Raises InputError."""
+    with tempfile.TemporaryDirectory(prefix="my_simulations-") as scratch:
+        folder = os.path.join(scratch, name)
+        os.makedirs(folder)
+        for file, data in files.items():
+            with open(os.path.join(folder, file), "wb") as stream:
+                stream.write(data)
+        return [relocated(issue, folder, target) for issue in check_loading(folder, resolver)]

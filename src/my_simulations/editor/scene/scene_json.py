@@ -2,8 +2,10 @@
 from __future__ import annotations
 
 import os
-from typing import Any, Dict, Sequence
+from typing import Any, Dict, List, Optional, Sequence, Union
 
+from ...appearance import materials
+from ...appearance.looks import Look
 from ...appearance.mesh_formats import MOVEMENTS, PAGE_FORMATS
 from ...description.actor import Actor
 from ...description.light import Light
@@ -15,12 +17,14 @@ from ...description.shapes import (
     Box,
     Capsule,
     Collision,
+    Color,
     Cone,
     Cylinder,
     Ellipsoid,
     Geometry,
     Heightmap,
     ImageMap,
+    Material,
     Mesh,
     Plane,
     Polyline,
@@ -29,13 +33,12 @@ from ...description.shapes import (
 )
 from ...description.world import World
 from ...engine.ring import Snapshot
+from ...formats.sdf.sensor_parameters import sensor_parameters
 from ...geometry import Pose, Vec3
 from ...resources.resolver import Resolver, ResourceNotFoundError
 from ...simulator.entity import Entity
 from .generated_meshes import Solids
-from .materials import Materials
 from .plain_json import plain, plain_fields
-from .sensor_json import sensor_documents
 from .served_files import MESHES, ServedFiles
 
 NAMES = {Box: "box", Sphere: "sphere", Cylinder: "cylinder", Capsule: "capsule", Cone: "cone",
@@ -173,3 +176,52 @@ def is_scalable(model: Model) -> bool:
     link = model.links[0]
     shapes = [one.geometry for one in link.collisions] + [one.geometry for one in link.visuals]
     return bool(shapes) and all(isinstance(shape, _SCALABLE) for shape in shapes)
+
+
+def sensor_documents(holder: Union[Link, Joint]) -> List[Dict[str, Any]]:
+    """The protocol's `Sensor`s of a link or joint."""
+    texts = [xml for xml in holder.extra if xml.startswith("<sensor")]
+    return [{"name": sensor.name, "type": sensor.type,
+             "parameters": [{"path": one.path, "kind": one.kind, "value": plain(one.value)}
+                            for one in sensor_parameters(xml, sensor)]}
+            for sensor, xml in zip(holder.sensors, texts)]
+
+
+class Materials:
+    """Documents of materials, with URLs for pictures. Safe from any thread."""
+
+    def __init__(self, resolver: Resolver, served: ServedFiles) -> None:
+        self._looks = materials.Materials(resolver, served)
+        self._served = served
+
+    def document(self, material: Optional[Material]) -> Optional[Dict[str, Any]]:
+        """A material as the protocol's `Material`; None for none."""
+        look = self._looks.resolve(material)
+        if look is None:
+            return None
+        return {"ambient": _plain(look.ambient), "diffuse": _plain(look.diffuse),
+                "specular": _plain(look.specular), "emissive": _plain(look.emissive),
+                "name": look.name, "texture": self._texture(look),
+                "transparency": look.transparency, "lighting": look.lit,
+                "alpha_test": look.alpha_test, "blended": look.blended}
+
+    def layers(self, visual: Visual) -> List[Dict[str, Any]]:
+        """The protocol's `TerrainLayer`s of a visual; none for what is no terrain."""
+        look = self._looks.of_visual(visual)
+        return [{"url": self._url(one.texture), "pattern": one.pattern or None,
+                 "normal_url": self._url(one.normal), "size": one.size,
+                 "min_height": one.min_height, "fade_dist": one.fade_dist}
+                for one in (look.layers if look else ())]
+
+    def _url(self, path: str) -> Optional[str]:
+        return self._served.url(path) if path else None
+
+    def _texture(self, look: Look) -> Optional[Dict[str, Any]]:
+        url = self._url(look.texture)
+        if url is None and not look.pattern:
+            return None
+        return {"url": url, "pattern": look.pattern or None, "scale": list(look.scale)}
+
+
+def _plain(color: Optional[Color]) -> Any:
+    return None if color is None else list(color)

@@ -1,19 +1,20 @@
 """HTTP: the page itself, with its modules and libraries."""
 from __future__ import annotations
 
+import asyncio
 import base64
+import gzip
 import hashlib
 import os
 import re
-from typing import Iterator, List, Optional, Tuple
+from typing import Dict, Iterator, List, Optional, Tuple
 
 from aiohttp import hdrs, web
 
 from ...resources.package_files import own_directory
 from ..scene.content_types import PAGE, page_type, resource_type
-from .compressed_files import CompressedFiles
 from .page_bundle import PageBundle
-from .page_key import page_key
+from .private_file import page_key
 
 _SCRIPT = re.compile(r"<script\b(?![^>]*\bsrc=)[^>]*>(.*?)</script>", re.DOTALL | re.IGNORECASE)
 _HOST = re.compile(r"[\w.-]+(:\d+)?\Z|\[[0-9a-fA-F:.]+\](:\d+)?\Z")
@@ -189,3 +190,62 @@ def file_response(path: Optional[str], kind: str = "") -> web.StreamResponse:
         raise web.HTTPNotFound
     return web.FileResponse(path, headers={hdrs.CACHE_CONTROL: _CHECKED,
                                            hdrs.CONTENT_TYPE: kind or resource_type(path)})
+
+
+_ENDINGS = frozenset((".js", ".css", ".json", ".svg"))
+_SMALLEST_BYTES = 1024
+_CONDITIONS = (hdrs.IF_MODIFIED_SINCE, hdrs.IF_NONE_MATCH, hdrs.IF_RANGE, hdrs.RANGE)
+
+
+class CompressedFiles:
+    """Compresses each file once, until it changes. Used in one event loop."""
+
+    def __init__(self) -> None:
+        self._kept: Dict[str, Tuple[Tuple[int, int], bytes]] = {}
+
+    async def response(self, request: web.Request, path: str, kind: str,
+                       cache_control: str) -> Optional[web.Response]:
+        """The file in gzip form.
+
+        Returns None, for the file as it is, if the browser accepts no gzip, asks for a part or
+        for a change, or if the file is small, binary or missing.
+
+        Args:
+            request: what the browser asks for.
+            path: the file.
+            kind: its type, for `Content-Type`.
+            cache_control: for `Cache-Control`.
+        """
+        if not _accepts_gzip(request) or any(name in request.headers for name in _CONDITIONS) or (
+                os.path.splitext(path)[1].lower() not in _ENDINGS):
+            return None
+        try:
+            found = os.stat(path)
+            state = (found.st_size, found.st_mtime_ns)
+            if found.st_size < _SMALLEST_BYTES:
+                return None
+            kept = self._kept.get(path)
+            if kept is None or kept[0] != state:
+                loop = asyncio.get_running_loop()
+                kept = self._kept[path] = (state, await loop.run_in_executor(None, _packed, path))
+        except OSError:
+            return None  # the answer for the file as it is reports that
+        response = web.Response(body=kept[1], headers={
+            hdrs.CONTENT_TYPE: kind, hdrs.CONTENT_ENCODING: "gzip", hdrs.VARY: "Accept-Encoding",
+            hdrs.CACHE_CONTROL: cache_control})
+        response.last_modified = found.st_mtime
+        return response
+
+
+def _accepts_gzip(request: web.Request) -> bool:
+    """Whether `Accept-Encoding` has gzip with a weight above 0 (RFC 9110, 12.5.3)."""
+    for entry in request.headers.get(hdrs.ACCEPT_ENCODING, "").split(","):
+        name, _, weight = entry.replace(" ", "").lower().partition(";")
+        if name == "gzip":
+            return weight not in ("q=0", "q=0.0", "q=0.00", "q=0.000")
+    return False
+
+
+def _packed(path: str) -> bytes:
+    with open(path, "rb") as stream:
+        return gzip.compress(stream.read(), 6)
