@@ -8,7 +8,7 @@ import time
 from typing import Any, Iterator, Sequence, Tuple
 
 from ..geometry import Vec3, rpy_from_quat
-from ..objects.object_document import decoded, root_tag
+from ..objects.object_documents import decoded, root_tag
 from ..objects.selection import closest
 from ..ros.lifecycle import master_api
 from . import object_client as client

@@ -11,9 +11,8 @@ import xmlrpc.client
 from typing import Any, Dict, List, Mapping, NamedTuple, Optional, Tuple
 
 from ..errors import InputError, Issue, error, errors_of, warning
-from ..objects.list_files import groups_file, list_file
 from ..objects.object_documents import package_finder, package_names
-from ..objects.object_list import ObjectList, parse_objects
+from ..objects.object_list import ObjectList, groups_file, list_file, parse_objects
 from ..objects.selection import closest, parse_groups
 from ..objects.yaml_source import Source, read_yaml
 from ..resources.package_files import PACKAGE

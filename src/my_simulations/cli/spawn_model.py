@@ -163,7 +163,7 @@ def _document(options: argparse.Namespace) -> str:
 
         return ('<sdf version="1.4"><world name="default"><include>'
                 f"<uri>model://{escape(options.database)}</uri></include></world></sdf>")
-    from ..objects.object_document import decoded
+    from ..objects.object_documents import decoded
 
     if options.stdin:
         raw, where = sys.stdin.buffer.read(), "standard input"
@@ -236,7 +236,7 @@ def _call_spawn(options: argparse.Namespace, text: str, launch: Launch) -> None:
     from gazebo_msgs.srv import SpawnModel, SpawnModelRequest
 
     from ..geometry import quat_from_rpy
-    from ..objects.object_document import root_tag
+    from ..objects.object_documents import root_tag
     from ..ros import service_client
     from ..ros.own_server import spawns_objects
 

@@ -6,8 +6,8 @@ import os
 import time
 from typing import Optional, Sequence
 
-from ..objects.list_files import list_file, world_name
 from ..objects.object_documents import package_finder
+from ..objects.object_list import list_file, world_name
 from ..program_end import exit_cleanly
 from ..resources.package_files import PACKAGE
 from ..resources.ros_packages import package_of

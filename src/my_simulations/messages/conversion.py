@@ -12,7 +12,7 @@ from typing import Any, Callable, Dict, Iterable, List, Mapping, Tuple, Type
 import numpy as np
 
 from ..errors import CommandError
-from .definition_parsing import FLOATS, INTEGERS, Field
+from .definitions import FLOATS, INTEGERS, Field
 from .message_types import DTYPES, Message
 from .time_values import Duration, Time
 

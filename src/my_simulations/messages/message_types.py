@@ -9,7 +9,7 @@ from typing import Any, Callable, ClassVar, Dict, List, Mapping, Optional, Tuple
 import numpy as np
 
 from ..errors import SimulationError
-from .definition_parsing import (
+from .definitions import (
     FLOATS,
     INTEGERS,
     SIMPLE,
@@ -18,9 +18,9 @@ from .definition_parsing import (
     DefinitionError,
     Field,
     parse_definition,
+    standard_definitions,
     statements_of,
 )
-from .definitions import standard_definitions
 from .time_values import Duration, Time
 
 FindPackage = Callable[[str], Optional[str]]

@@ -11,9 +11,8 @@ from ..errors import InputError, Issue, error
 from ..formats.mesh.loading import collision_meshes
 from ..formats.reading import read_entity
 from ..geometry import Pose, compose, quat_from_rpy
-from ..objects.list_files import groups_file, list_file, world_name
 from ..objects.object_documents import Documents, package_finder
-from ..objects.object_list import PlacedObject, parse_objects
+from ..objects.object_list import PlacedObject, groups_file, list_file, parse_objects, world_name
 from ..objects.selection import Selection, parse_groups, select
 from ..objects.yaml_source import read_yaml
 from ..resources.package_files import PACKAGE, package_directories

@@ -16,12 +16,12 @@ from my_simulations.messages import (
     sensor_msgs,
 )
 from my_simulations.messages.conversion import Converter
-from my_simulations.messages.definition_parsing import (
+from my_simulations.messages.definitions import (
     DefinitionError,
     parse_definition,
+    standard_definitions,
     statements_of,
 )
-from my_simulations.messages.definitions import standard_definitions
 from my_simulations.messages.message_types import standard_type
 
 

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from my_simulations.errors import InputError
-from my_simulations.objects.object_document import read_document, root_tag
+from my_simulations.objects.object_documents import read_document, root_tag
 
 TUTORIAL = Path(__file__).resolve().parents[2] / "data" / "tutorial"
 

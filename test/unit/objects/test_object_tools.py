@@ -12,10 +12,9 @@ from my_simulations.cli.object_client import full_name, split_command_line
 from my_simulations.cli.progress import Progress, bar
 from my_simulations.cli.remove_object import chosen_models
 from my_simulations.errors import InputError
-from my_simulations.objects.list_files import world_name
 from my_simulations.objects.motion_path import Circle, Polygon
 from my_simulations.objects.object_documents import Documents, locate, run_xacro
-from my_simulations.objects.object_list import parse_objects
+from my_simulations.objects.object_list import parse_objects, world_name
 from my_simulations.objects.yaml_source import Source
 
 SOURCE = Source("/objects")
