@@ -16,8 +16,7 @@ from my_simulations.engine.bullet.backend import BulletBackend
 from my_simulations.engine.ring import HEARTBEAT
 from my_simulations.geometry import Pose
 from my_simulations.plugins.base import Plugin
-from my_simulations.plugins.control.gazebo_ros_control import GazeboRosControl
-from my_simulations.plugins.control.initial_hold import PATIENCE_S
+from my_simulations.plugins.control.gazebo_ros_control import PATIENCE_S, GazeboRosControl
 from my_simulations.plugins.host import PluginHost
 from my_simulations.plugins.registry import PluginRegistry
 from my_simulations.plugins.testing import Message

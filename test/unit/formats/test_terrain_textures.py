@@ -15,7 +15,7 @@ from my_simulations.description.shapes import (
     mesh_key,
 )
 from my_simulations.formats.reading import read_entity
-from my_simulations.formats.sdf.state_scale import scaled
+from my_simulations.formats.sdf.state_applied import scaled
 from my_simulations.formats.sdf.writer.entities import write_entity
 from my_simulations.resources.resolver import Resolver
 

@@ -6,7 +6,7 @@ import pytest
 from reading import URDF_INERTIAL, codes, errors, robot_joint, robot_link, robot_of
 
 from my_simulations.description.model import Inertial
-from my_simulations.formats.combined_inertia import combined_inertia
+from my_simulations.formats.inertia import combined_inertia
 from my_simulations.geometry import Pose, add, quat_from_rpy, rotate, scale
 
 BOX = '<geometry><box size="1 1 1"/></geometry>'

@@ -17,13 +17,13 @@ from my_simulations.description.world import World
 from my_simulations.errors import Severity, errors_of
 from my_simulations.formats.reading import parse_world, read_entity, read_file, read_world
 from my_simulations.formats.sdf import model_tables
-from my_simulations.formats.sdf.writer import (
-    material_element,
-    state_element,
-    surroundings_elements,
+from my_simulations.formats.sdf.writer import entities, state_element, surroundings_elements
+from my_simulations.formats.sdf.writer.entities import (
+    _Writer,
+    tables_by_shape,
+    write_entity,
+    write_world,
 )
-from my_simulations.formats.sdf.writer.entities import _Writer, write_entity, write_world
-from my_simulations.formats.sdf.writer.geometry_element import tables_by_shape
 from my_simulations.formats.xml.tables import Kept, Part, Table
 from my_simulations.formats.xml.values import BOOL, FLOAT, FRICTION, INT, LIMIT, POSE, TEXT, VECTOR3
 from my_simulations.geometry import Pose, quat_from_rpy, rpy_from_quat
@@ -313,7 +313,7 @@ def test_a_relative_mesh_becomes_a_path_and_a_model_uri_stays(tmp_path):
 def test_every_part_of_a_table_has_a_writer():
     """What the reader has a reader for, the writer writes."""
     known = {name for name in dir(_Writer) if not name.startswith("_")} | {
-        name.rpartition("write_")[2] for module in (surroundings_elements, material_element,
+        name.rpartition("write_")[2] for module in (surroundings_elements, entities,
                                                     state_element)
         for name in dir(module)}
     aside = {"include", "geometry", "xyz", "axis2", "plugin",

@@ -9,7 +9,7 @@ import numpy as np
 
 from my_simulations.description.model import Inertial
 from my_simulations.description.shapes import Box, Collision, Cylinder, Geometry, Sphere
-from my_simulations.formats.default_inertia import solid_inertial
+from my_simulations.formats.inertia import solid_inertial
 from my_simulations.geometry import Pose, pose_from_xyzrpy, rpy_from_quat
 
 from .collada import Color, collada

@@ -1,20 +1,25 @@
-"""SDF joints: their links, their axes, and the frames of both."""
+"""SDF joints: their links, their axes, and the frames of both.
+
+Gazebo searches the whole world for the links of a joint between models. SDF 1.10 has joints in
+`<world>`.
+"""
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Any, Callable, List, Optional, Tuple
+from typing import Any, Callable, List, Optional, Set, Tuple
 
-from ...description.model import INFINITE, Joint, JointAxis, Mimic
-from ...description.validate import JOINT_TYPES, closest_name_hint
-from ...geometry import Pose, Quat, Vec3, conjugate, norm, rotate, scale
+from ...description.model import INFINITE, WORLD, Joint, JointAxis, Mimic
+from ...description.validate import JOINT_TYPES, closest
+from ...geometry import IDENTITY, Pose, Quat, Vec3, compose, conjugate, inverse, norm, rotate, scale
 from ..xml.binding import REFUSED, Found, fill, read_text
 from ..xml.source import FaultLevel, Source
 from ..xml.tables import Table, Value
 from ..xml.values import FLOAT, TEXT, VECTOR3
-from .frame_graph import FrameError
+from .frame_graph import FrameError, FrameTree
+from .link import relative_to
 from .model_tables import AXIS, AXIS2, JOINT
-from .sensor import read_sensor
+from .sensor_parameters import read_sensor
 from .upgrade import WORLD_AXES
 
 
@@ -245,3 +250,65 @@ def reverse_axes(joint: Joint) -> None:
     for axis in (joint.axis, joint.axis2):
         if axis is not None:
             axis.xyz = scale(axis.xyz, -1.0)
+
+
+class InterModelJointReader:
+    """Finds parent and child of joints, and transforms the joints to the child frame.
+
+    Args:
+        links: scoped names of all links of the world.
+        frames: all frames of the world, including those inside its models.
+        source: receives faults.
+    """
+
+    def __init__(self, links: Set[str], frames: FrameTree, source: Source) -> None:
+        self._links = links
+        self._frames = frames
+        self._source = source
+
+    def connect(self, one: UnresolvedJoint) -> bool:
+        """Complete the joint; False, with an issue, if it cannot be used."""
+        joint = one.joint
+        parent, child = self._link(joint.parent, one), self._link(joint.child, one)
+        if parent is None or child is None:
+            self._source.tolerate("joint-link-unknown", f"joint {joint.name!r} connects"
+                                  f" {joint.parent!r} with {joint.child!r}, which are not both in"
+                                  " the world; it is skipped", one.element)
+            return False
+        joint.parent, joint.child = parent, child
+        try:
+            self._place(one)
+        except FrameError as fault:
+            self._source.tolerate("frame-unknown", f"joint {joint.name!r}: {fault}; it is skipped",
+                                  one.element)
+            return False
+        return True
+
+    def _place(self, one: UnresolvedJoint) -> None:
+        """Transform joint pose and axes to the frame of the child, which is never the world."""
+        joint = one.joint
+        frame = relative_to(one.found)
+        base = self._pose(frame, one) if frame else self._frames.pose(joint.child)
+        at = compose(base, joint.pose)
+        turned = joint.child == WORLD
+        if turned:
+            joint.parent, joint.child = WORLD, joint.parent
+        if turned or frame:
+            joint.pose = compose(inverse(self._frames.pose(joint.child)), at)
+        # All frames are given in the world frame here, so such axes need no transform.
+        place_axes(joint, one.found, self._source, lambda name: self._pose(name, one), None)
+        if turned:
+            reverse_axes(joint)
+
+    def _pose(self, name: str, one: UnresolvedJoint) -> Pose:
+        scoped = one.scoped(name)
+        # SDF before 1.2 had joints in the world, too, with axes in the model frame by default.
+        if name == WORLD or scoped == "__model__":
+            return IDENTITY
+        return self._frames.pose(scoped if scoped in self._frames else name)
+
+    def _link(self, name: str, one: UnresolvedJoint) -> Optional[str]:
+        for candidate in (one.scoped(name), name):
+            if candidate in self._links or candidate == WORLD:
+                return candidate
+        return None

@@ -5,13 +5,13 @@ from typing import Any, Container, Dict, Iterable, List, Sequence, Set, Tuple
 
 from ...description.model import WORLD, Inertial, Link
 from ...description.shapes import Heightmap, ImageMap
-from ..default_inertia import usable_inertia
+from ..inertia import usable_inertia
 from ..xml.binding import Found, fill
 from ..xml.source import FaultLevel, Source
 from .collision_visual import read_collision, read_visual
 from .frame_graph import FrameTree
 from .model_tables import INERTIAL, LINK
-from .sensor import read_sensor
+from .sensor_parameters import read_sensor
 
 
 def relative_to(found: Found) -> str:

@@ -8,17 +8,17 @@ from ...description.actor import Actor
 from ...description.cost_budget import Cost, cost_of, world_excess
 from ...description.light import Light
 from ...description.model import Link, Model
+from ...description.saved_state import LightState, LinkState, ModelState, SavedState
 from ...description.validate import link_names
 from ...description.world import Physics, World
 from ...geometry import is_finite
 from ...xml_characters import hidden_character, without_hidden
 from ..xml.binding import Found, fill, to_xml
 from ..xml.source import FaultLevel, Source
-from ..xml.values import BOOL
+from ..xml.values import BOOL, numbers
 from .frame_graph import FrameError, FrameTree
 from .include import read_include
-from .inter_model_joint import InterModelJointReader
-from .joint import UnresolvedJoint, is_complete, read_joint
+from .joint import InterModelJointReader, UnresolvedJoint, is_complete, read_joint
 from .light import LightPlacement, read_light
 from .link import relative_to
 from .model import read_model
@@ -26,9 +26,9 @@ from .model_tables import FRAME, PHYSICS, WORLD
 from .parsed_model import ParsedModel, add_frames_inside
 from .plugin import read_plugin
 from .population import read_population
-from .saved_state import read_state
 from .state_applied import state_issues
 from .world_scene import read_surroundings
+from .world_tables import LIGHT_STATE, LINK_STATE, MODEL_STATE, STATE
 
 MOST_UNUSABLE = 2000
 """Most models of a world that are skipped because of faults; each takes 0.2 ms to read."""
@@ -244,3 +244,62 @@ def _check_physics(physics: Physics, element: Any, source: Source) -> None:
         instead.append(f"ode/solver/iters is out of range; {usual.ode.iters} is used")
     for message in instead:
         source.tolerate("physics-range", message, element)
+
+
+def read_state(element: Any, source: Source) -> SavedState:
+    """The state as written; `state_applied.apply_state` applies it to the world."""
+    state = SavedState()
+    found = fill(state, element, STATE, source, [])
+    for child in found.get("model", ()):
+        state.models.append(_model(child, source))
+    for child in found.get("light", ()):
+        light = LightState(child.get("name", ""))
+        fill(light, child, LIGHT_STATE, source, [])
+        state.lights.append(light)
+    for child in found.get("insertions", ()):
+        _insertions(child, state, source)
+    return state
+
+
+def _model(element: Any, source: Source) -> ModelState:
+    state = ModelState(element.get("name", ""))
+    _into(state, element, "", source)
+    return state
+
+
+def _into(state: ModelState, element: Any, scope: str, source: Source) -> None:
+    """Add links and joints of a model and of its nested models, by scoped names."""
+    own = state if not scope else ModelState("")
+    found = fill(own, element, MODEL_STATE, source, [])
+    for child in found.get("link", ()):
+        link = LinkState(scope + child.get("name", ""))
+        fill(link, child, LINK_STATE, source, [])
+        if child.find("pose") is not None:
+            state.links.append(link)
+    for child in found.get("joint", ()):
+        state.joints[scope + child.get("name", "")] = _angles(child, source)
+    for child in found.get("model", ()):
+        _into(state, child, f"{scope}{child.get('name', '')}::", source)
+
+
+def _angles(element: Any, source: Source) -> List[float]:
+    angles: List[float] = []
+    for angle in element.iterfind("angle"):
+        try:
+            angles.append(numbers(angle.text or "", 1)[0])
+        except ValueError as fault:
+            source.report(FaultLevel.WARNING, "bad-value", f"<angle>: {fault}", angle)
+    return angles
+
+
+def _insertions(element: Any, state: SavedState, source: Source) -> None:
+    for child in element:
+        before = source.log.fatal
+        if child.tag == "model":
+            placement = read_model(child, source)
+            if source.log.fatal == before:
+                state.inserted_models.append(placement.model)
+        elif child.tag == "light":
+            light = read_light(child, source).light
+            if source.log.fatal == before:
+                state.inserted_lights.append(light)

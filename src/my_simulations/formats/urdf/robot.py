@@ -8,19 +8,17 @@ from ...description.model import WORLD, Joint, JointAxis, Link, Model
 from ...description.validate import closest_name_hint, faults
 from ...errors import Issue, Severity
 from ...geometry import IDENTITY, Pose, compose
-from ..default_inertia import usable_inertia
 from ..include_overrides import IncludeOverrides
-from ..sdf.sensor import kept_sensors
+from ..inertia import usable_inertia
+from ..sdf.sensor_parameters import kept_sensors
 from ..xml.binding import fill
 from ..xml.source import FaultLevel, Source
-from .fixed_joint_lumping import lump, lumped_into
+from .fixed_joint_lumping import Renamed, lump, lumped_into, rename
 from .gazebo_extensions import Extensions, moved
-from .gazebo_joint import read_sdf_joint
-from .gazebo_link import add_sdf_links
+from .gazebo_sdf import add_sdf_links, read_sdf_joint
 from .joint import read_connection, turned_to
 from .kinematic_tree import LUMP, Body, Connection, parents_first
 from .link import read_body, read_origin, read_palette
-from .lumped_references import Renamed, rename
 from .transmission import read_transmission
 from .urdf_tables import ROBOT
 

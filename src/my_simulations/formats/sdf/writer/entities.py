@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import contextlib
 from dataclasses import replace
-from typing import Any, Callable, Iterable, Iterator, List, Optional, Tuple, Union
+from typing import Any, Callable, Dict, Iterable, Iterator, List, Optional, Tuple, Union
 
 from lxml import etree
 
@@ -16,15 +16,17 @@ from ....description.compare import differences
 from ....description.light import Light
 from ....description.model import Joint, JointAxis, Link, Mimic, Model, PluginSpec
 from ....description.saved_state import SavedState
-from ....description.shapes import Collision, Visual
+from ....description.shapes import Collision, Geometry, Polyline, Visual
 from ....description.world import World
 from ....errors import CommandError
 from ....geometry import Vec3
 from ...xml.binding import has_prefix
-from ...xml.values import FLOAT, VECTOR3
+from ...xml.tables import Table
+from ...xml.values import FLOAT, TEXT, VECTOR2, VECTOR3
 from ..model_tables import (
     AXIS,
     COLLISION,
+    GEOMETRIES,
     INCLUDE,
     INERTIAL,
     JOINT,
@@ -36,15 +38,9 @@ from ..model_tables import (
     WORLD,
 )
 from .fields import fill_element, write_each
-from .geometry_element import write_geometry
 from .material_element import write_material
 from .state_element import write_state
-from .surroundings_elements import (
-    write_actor,
-    write_gui,
-    write_plugins,
-    write_road,
-)
+from .surroundings_elements import write_actor, write_gui, write_plugins, write_road
 from .xml_text import document, write_value
 
 VERSION = "1.7"
@@ -250,3 +246,46 @@ def _added(model: Model, bare: Model) -> Optional[Tuple[List[PluginSpec], List[s
     if differences(as_bare, bare):
         return None
     return model.plugins[len(bare.plugins):], extra
+
+
+def write_geometry(parent: Any, geometry: Geometry) -> None:
+    """`<geometry>` with one shape, sizes included even if they are the defaults.
+
+    A relative URI, which is valid in its own file only, is replaced by the absolute path it
+    resolved to; `model://`, `package://` and `file://` URIs are kept (Gazebo behaviour).
+    """
+    holder = etree.SubElement(parent, "geometry")
+    if isinstance(geometry, Polyline):
+        _write_polyline(holder, geometry)
+        return
+    table = tables_by_shape()[type(geometry)]
+    element = etree.SubElement(holder, table.name)
+    needed = tuple(path for path, value, _ in table.values() if path in _ALWAYS)
+    fill_element(element, geometry, table, {}, getattr(geometry, "extra", []), required=needed,
+                 leave_out=("uri", "filename"))
+    if hasattr(geometry, "uri"):
+        write_value(element, "uri", TEXT, uri_of(geometry))
+        element.insert(0, element[-1])
+
+
+_ALWAYS = ("size", "radius", "length", "normal", "radii")
+
+
+def tables_by_shape() -> Dict[Any, Table]:
+    return {table.of: table for table in GEOMETRIES.values()}
+
+
+def uri_of(geometry: Any) -> str:
+    """A URI that does not depend on the location of the file."""
+    uri: str = geometry.uri
+    if "://" in uri or not geometry.path:
+        return uri
+    return str(geometry.path)
+
+
+def _write_polyline(holder: Any, polyline: Polyline) -> None:
+    for loop in polyline.loops:
+        element = etree.SubElement(holder, "polyline")
+        for point in loop:
+            write_value(element, "point", VECTOR2, point)
+        write_value(element, "height", FLOAT, polyline.height)
