@@ -6,9 +6,9 @@ import os
 import socket
 import subprocess
 import threading
-from collections import OrderedDict
+from collections import OrderedDict, deque
 from concurrent.futures import Future
-from typing import Callable, Dict, List, Optional, Tuple
+from typing import Callable, Deque, Dict, List, Optional, Tuple
 
 from ..child_process import (
     await_end,
@@ -19,10 +19,9 @@ from ..child_process import (
     wait_or_kill,
 )
 from . import ring as ring_module
-from .api import EngineDiedError, EngineNotRunningError, Event, Reply
+from .api import MOST_POSTED, EngineDiedError, EngineNotRunningError, Event, Reply
 from .commands import Command, Post, SetJoints, SetLinkState, SetModelState
 from .message_pipe import Wire
-from .posted_commands import PostedCommands
 from .ring import RingReader
 from .scratch_folder import remove_stale_folders
 from .wake_pipe import WakePipe
@@ -273,3 +272,39 @@ def _reason(code: int) -> str:
 
 def _ignore_event(_: Event) -> None:
     return None
+
+
+class PostedCommands:
+    """The posted commands of one engine. The caller holds a lock.
+
+    Attributes:
+        last: number of the last posted command; 0 before the first.
+    """
+
+    def __init__(self, ring: RingReader) -> None:
+        self._ring = ring
+        self._unshown: Deque[Tuple[int, Post]] = deque()
+        self.last = 0
+
+    def add(self, number: int, command: Post) -> None:
+        """Store a command that is about to be sent with a number."""
+        self._unshown.append((number, command))
+        self.last = number
+
+    def full(self) -> bool:
+        """Whether so many commands wait that another one must wait for its reply."""
+        if self._unshown:
+            self._drop_applied()
+        return len(self._unshown) >= MOST_POSTED
+
+    def take_unapplied(self) -> List[Tuple[int, Post]]:
+        """Remove and return the commands, with their numbers, that the last snapshot lacks."""
+        self._drop_applied()
+        found = list(self._unshown)
+        self._unshown.clear()
+        return found
+
+    def _drop_applied(self) -> None:
+        applied, unshown = self._ring.applied, self._unshown
+        while unshown and unshown[0][0] <= applied:
+            unshown.popleft()

@@ -10,7 +10,7 @@ from kinematic_backend import KinematicBackend
 
 from my_simulations.engine.api import Backend, EngineDiedError, EngineNotRunningError, Event, Reply
 from my_simulations.engine.commands import Command, Ping, Post, SetModelState
-from my_simulations.engine.posted_commands import PostedCommands
+from my_simulations.engine.process_engine import PostedCommands
 from my_simulations.engine.ring import Memory, RingReader, RingWriter
 from my_simulations.engine.runner import Runner
 
