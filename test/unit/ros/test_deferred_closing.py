@@ -6,9 +6,8 @@ from types import SimpleNamespace
 
 import pytest
 
-from my_simulations.ros.plugins import deferred_closing, ros_graph
-from my_simulations.ros.plugins.deferred_closing import DeferredClosing
-from my_simulations.ros.plugins.ros_graph import RosGraph
+from my_simulations.ros.plugins import ros_graph
+from my_simulations.ros.plugins.ros_graph import DeferredClosing, RosGraph
 
 SECONDS = 60.0
 
@@ -95,7 +94,7 @@ def test_a_call_that_is_under_way_is_waited_for():
 
 def test_a_removal_that_fails_is_logged_and_the_others_go_on(monkeypatch):
     logged, done = [], threading.Event()
-    monkeypatch.setattr(deferred_closing.rospy, "logerr", lambda *words: logged.append(words))
+    monkeypatch.setattr(ros_graph.rospy, "logerr", lambda *words: logged.append(words))
     closing = DeferredClosing()
 
     def fail():

@@ -19,7 +19,7 @@ from tf2_msgs.msg import TFMessage
 
 from my_simulations.geometry import Pose
 from my_simulations.ros.direct_connection import DirectConnection, direct_publish
-from my_simulations.ros.plugins.packed_transforms import PackedTransforms
+from my_simulations.ros.plugins.ros_graph import PackedTransforms
 
 MESSAGE = 100_000
 

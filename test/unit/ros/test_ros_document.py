@@ -4,7 +4,7 @@ from my_simulations.description.model import Link, Model, PluginSpec
 from my_simulations.errors import CommandError
 from my_simulations.formats.reading import parse_document
 from my_simulations.resources.resolver import Resolver
-from my_simulations.ros.services.spawn_request import (
+from my_simulations.ros.services.model_services import (
     SpawnOptions,
     checked_name,
     options_of_attributes,
