@@ -18,8 +18,8 @@ from waiting import wait_for
 
 from my_simulations.grading import box, cell
 from my_simulations.grading.box_support import isolation
+from my_simulations.grading.grader import reserved_slots
 from my_simulations.grading.program import submission_account
-from my_simulations.grading.slots import reserved_slots
 
 REPOSITORY = Path(__file__).resolve().parents[2]
 GRADE = [sys.executable, str(REPOSITORY / "scripts" / "grade")]

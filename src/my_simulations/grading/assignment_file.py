@@ -17,8 +17,7 @@ from .assignment import (
     Timed,
     ValidFile,
 )
-from .assignment_values import AssignmentValues
-from .check_reader import CheckReader
+from .check_reader import AssignmentValues, CheckReader
 
 _KEYS = ("lab", "submission", "world", "models", "services", "record", "sample", "limits",
          "checks")

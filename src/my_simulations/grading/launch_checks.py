@@ -3,31 +3,26 @@ from __future__ import annotations
 
 import contextlib
 import os
+import re
 import shutil
 import time
 from dataclasses import replace
-from typing import List, Optional, Sequence, Tuple, Union
+from typing import List, NamedTuple, Optional, Sequence, Tuple, Union
+
+from lxml import etree
 
 from ..child_process import wait_or_kill
-from ..errors import InputError
+from ..errors import InputError, error
 from ..resources.resolver import Resolver
 from ..ros.lifecycle import master_api
 from ..studies.junit import results_below
 from ..studies.scenario_files import declared_arguments
 from .assignment import Assignment, Launch, Rostest
 from .file_checks import read_world_file
-from .launch_output import LaunchFault, last_line, launch_fault
-from .launched_world import (
-    PROPERTIES,
-    SIMULATOR,
-    different_world,
-    model_names,
-    simulator_command,
-)
+from .launched_world import PROPERTIES, SIMULATOR, different_world, model_names, simulator_command
 from .mark import CheckResult, GradingError, result
 from .program import TESTS, Program, submission_account, tester_account
 from .program_graph import free_port, graph_environment, start_master
-from .rostest_parts import STARTED, split_rostest
 from .submission import listed, matching, reason_for_no_match
 
 _POLL_S = 0.1
@@ -269,3 +264,95 @@ def _fault(program: Program, folder: str) -> Optional[LaunchFault]:
     if found is not None or program.running:
         return found
     return LaunchFault(f"{program.why_ended()}: {last_line(program.output())}")
+
+
+STARTED = "/my_simulations_grade/started"
+"""Parameter that exists once the parameters of the first part are set."""
+
+_SCOPES = ("group",)
+_KEPT = ("arg", "env", "remap", "test")   # besides groups, of the second part
+
+
+def split_rostest(path: str) -> Tuple[bytes, bytes]:
+    """Return the two roslaunch files of a rostest.
+
+    The first one has no tests, and sets the parameter `STARTED`. The second one has the tests of
+    the file, with its arguments, groups, remappings and variables, and nothing else: tests in files
+    that it includes do not count, because these may belong to the submission. Raises InputError:
+    the file is no roslaunch file, or has no test.
+    """
+    try:
+        started, tests = (etree.parse(path, etree.XMLParser(
+            resolve_entities=False, remove_comments=True)).getroot() for _ in range(2))
+    except (OSError, etree.XMLSyntaxError) as fault:
+        raise InputError([error("xml-malformed", str(fault), file=path)]) from None
+    for test in list(started.iter("test")):
+        test.getparent().remove(test)
+    etree.SubElement(started, "param", name=STARTED, type="int", value="1")
+    _keep_tests(tests)
+    if next(tests.iter("test"), None) is None:
+        raise InputError([error("grade-value", "the rostest has no <test>", file=path)])
+    return etree.tostring(started), etree.tostring(tests)
+
+
+def _keep_tests(scope: "etree._Element") -> None:
+    for child in list(scope):
+        if child.tag in _SCOPES:
+            _keep_tests(child)
+        elif child.tag not in _KEPT:
+            scope.remove(child)
+
+
+_LONGEST = 500
+_COLOUR = re.compile(r"\x1b\[[0-9;]*m|\x1b\][^\x07]*\x07")
+_INVALID = re.compile(r"RLException: ((?:while processing .+:\n)*)(.*)")
+_PROCESSED = re.compile(r"while processing (.+):\n")
+_DIED = re.compile(r"^.*(?:has died|cannot launch|Resource not found|Invalid <|error loading).*$",
+                   re.MULTILINE | re.IGNORECASE)
+_LINE = re.compile(r"\bline (\d+)")
+_UNWANTED = ("The traceback for the exception was written",)
+
+
+class LaunchFault(NamedTuple):
+    """A fault of a launch file.
+
+    Attributes:
+        message: the fault.
+        file: path in the submission; "" for the launch file that was started.
+        line: in that file, from 1; 0 if it is unknown.
+    """
+
+    message: str
+    file: str = ""
+    line: int = 0
+
+
+def launch_fault(output: bytes, folder: str) -> Optional[LaunchFault]:
+    """Return the first fault that an output of roslaunch names; None for none.
+
+    Args:
+        output: what roslaunch has printed.
+        folder: of the submission.
+    """
+    text = _plain(output)
+    found = _INVALID.search(text)
+    if found is None:
+        died = _DIED.search(text)
+        return LaunchFault(died[0].strip()[:_LONGEST]) if died else None
+    files = _PROCESSED.findall(found[1])
+    file = os.path.relpath(files[-1], folder) if files else ""
+    if "maximum recursion depth" in found[2] and files:
+        return LaunchFault(f"{file} includes itself, directly or by another file", file)
+    line = _LINE.search(found[2]) if "XML syntax" in found[2] else None
+    return LaunchFault(found[2].strip()[:_LONGEST], file, int(line[1]) if line else 0)
+
+
+def last_line(output: bytes) -> str:
+    """The last line of an output that says something."""
+    lines = [line.strip() for line in _plain(output).splitlines()]
+    wanted = [line for line in lines if line and not line.startswith(_UNWANTED)]
+    return wanted[-1][:_LONGEST] if wanted else "no output"
+
+
+def _plain(output: bytes) -> str:
+    return _COLOUR.sub("", output.decode("utf-8", "replace"))

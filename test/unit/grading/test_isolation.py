@@ -19,9 +19,8 @@ from my_simulations.grading.assignment_file import read_assignment
 from my_simulations.grading.box_process import _specification
 from my_simulations.grading.box_support import isolation
 from my_simulations.grading.confined_resolver import ConfinedResolver
-from my_simulations.grading.grader import Grader
+from my_simulations.grading.grader import Grader, reserved_slots
 from my_simulations.grading.program import Program, submission_account
-from my_simulations.grading.slots import reserved_slots
 from my_simulations.grading.submission import Submission, submissions_of
 from my_simulations.grading.submission_files import content_of
 from my_simulations.resources.resolver import ResourceNotFoundError

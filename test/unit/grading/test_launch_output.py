@@ -3,7 +3,7 @@ from __future__ import annotations
 
 import pytest
 
-from my_simulations.grading.launch_output import LaunchFault, last_line, launch_fault
+from my_simulations.grading.launch_checks import LaunchFault, last_line, launch_fault
 
 FILE = "while processing /s/a/go.launch:\n"
 OTHER = "while processing /s/b.launch:\n"

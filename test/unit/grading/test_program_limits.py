@@ -9,8 +9,8 @@ from waiting import wait_for
 
 from my_simulations.grading import box
 from my_simulations.grading.assignment import GradeLimits
+from my_simulations.grading.grader import reserved_slots
 from my_simulations.grading.program import Program, submission_account
-from my_simulations.grading.slots import reserved_slots
 
 SECONDS = 60.0
 FORKS = """import os

@@ -5,7 +5,7 @@ import pytest
 from lxml import etree
 
 from my_simulations.errors import InputError
-from my_simulations.grading.rostest_parts import STARTED, split_rostest
+from my_simulations.grading.launch_checks import STARTED, split_rostest
 
 ROSTEST = """<launch>
   <!-- a comment -->

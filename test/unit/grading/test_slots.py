@@ -6,7 +6,7 @@ import os
 import pytest
 
 from my_simulations.errors import CommandError
-from my_simulations.grading.slots import MOST_SLOTS, reserved_slots
+from my_simulations.grading.grader import MOST_SLOTS, reserved_slots
 
 
 def test_runs_at_the_same_time_have_different_slots(tmp_path, monkeypatch):
