@@ -3,11 +3,14 @@ from __future__ import annotations
 
 from typing import Iterator, List, Sequence
 
+from ..description.cost_budget import cost_of
 from ..description.flatten import flattened
 from ..description.model import Model
-from ..description.shapes import SOLIDS
+from ..description.shapes import SOLIDS, MeshTable
 from ..engine.body_plan import BodyPlanError, plan_bodies
+from ..engine.commands import ContinuePreparation, PrepareModel
 from ..geometry import pose_is_finite
+from .session import Session
 
 _MOST_MODELS, _MOST_LINKS, _MOST_SHAPES = 100, 300, 2000
 """Of one group: the engine takes less than a second for it."""
@@ -51,3 +54,22 @@ def _is_simple(model: Model) -> bool:
     except BodyPlanError:
         return False
     return True
+
+
+PLAIN_TRIANGLES = 50_000
+"""Models of at most this size are loaded at once: the engine takes about 0.1 s for them."""
+
+
+def prepare_shapes(session: Session, model: Model, meshes: MeshTable) -> None:
+    """Prepare the shapes of a flattened model, if it is large and time runs.
+
+    Simulated time goes on meanwhile. Call it without locks. Raises CommandError if no engine runs.
+    """
+    if (not model.static or not session.ring.running
+            or cost_of(model, meshes).triangles <= PLAIN_TRIANGLES):
+        return
+    with session.structure_lock:
+        number = session.new_id()
+    more = session.call(PrepareModel(number, model, meshes)).value
+    while more:
+        more = session.call(ContinuePreparation(number)).value

@@ -27,14 +27,13 @@ from .connected_models import ConnectedModels
 from .convex_meshes import ConvexParts
 from .drives import Drives
 from .entity import Entity
-from .initial_state import initial_commands
 from .inter_model_joints import DeletedModel, InterModelJoints
-from .load_groups import small_groups
+from .load_groups import prepare_shapes, small_groups
 from .model_links import ModelConnections
-from .model_preparation import prepare_shapes
 from .order_slot import OrderSlot
 from .registry import NameTakenError
 from .session import Session, check_name
+from .world_state import initial_commands
 from .wrenches import Wrenches
 
 

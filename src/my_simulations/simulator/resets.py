@@ -18,9 +18,9 @@ from ..geometry import STILL
 from .clock import SimClock
 from .drives import Drives
 from .entity import Entity
-from .initial_state import initial_commands
 from .models import Models
 from .session import Session
+from .world_state import initial_commands
 from .wrenches import Wrenches
 
 

@@ -19,7 +19,7 @@ from ..geometry import Pose
 from ..xml_characters import check_characters, hidden_character
 from .entity import Entity
 from .registry import NameTakenError, Registry
-from .row_allocator import RowAllocator
+from .row_layout import RowAllocator
 from .supervisor import Supervisor
 
 _POST_S = 0.002

@@ -2,11 +2,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Dict, List, Sequence, Tuple
+from typing import Dict, List, Optional, Sequence, Tuple
 
+from ..description.model import WORLD, Model
+from ..description.saved_state import InitialState
 from ..engine.commands import Command, ModelState, SetJoints, SetLinkState, SetModelState
 from ..engine.ring import Clock, Snapshot
-from ..geometry import Pose, Twist
+from ..geometry import Pose, Twist, compose
 from .entity import Entity
 
 
@@ -66,3 +68,33 @@ def _commands(entity: Entity, was: RememberedState) -> List[Command]:
     # Joints first: where the frame's link hangs on others, the others are placed by it. Rates of
     # joints are lost when the model is moved.
     return [*joints, SetModelState(entity.model_id, was.pose, was.twist), *joints]
+
+
+def initial_commands(entity: Entity, start: Optional[InitialState]) -> List[Command]:
+    """Commands that apply a saved initial state to a model that was just loaded.
+
+    A model without joints gets the twist of each link. An articulated model moves as one rigid
+    body with the twist of its canonical link, unless it hangs on the world; its joint rates are
+    zero.
+    """
+    if start is None or entity.model.static:
+        return []
+    commands: List[Command] = []
+    positions = tuple((entity.first_joint_row + n, start.joints[name], 0.0)
+                      for n, name in enumerate(entity.joint_names) if name in start.joints)
+    if positions:
+        commands.append(SetJoints(positions))
+    for n, link in enumerate(entity.model.links):
+        twist = start.twists.get(link.name)
+        if twist is None:
+            continue
+        pose = compose(entity.initial_pose, link.pose)
+        if not entity.model.joints:
+            commands.append(SetLinkState(entity.first_link_row + n, pose, twist))
+        elif n == entity.canonical and not _hangs_on_world(entity.model):
+            commands.append(SetModelState(entity.model_id, entity.initial_pose, twist))
+    return commands
+
+
+def _hangs_on_world(model: Model) -> bool:
+    return any(joint.parent == WORLD for joint in model.joints)

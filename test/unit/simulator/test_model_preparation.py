@@ -10,7 +10,7 @@ from my_simulations.description.model import Link, Model
 from my_simulations.description.shapes import Collision, Mesh, MeshData, mesh_key
 from my_simulations.description.world import World
 from my_simulations.engine.commands import Batch, ContinuePreparation, LoadModel, PrepareModel
-from my_simulations.simulator.model_preparation import PLAIN_TRIANGLES
+from my_simulations.simulator.load_groups import PLAIN_TRIANGLES
 from my_simulations.simulator.simulator import Simulator
 
 MESH = Mesh("m", "/m")

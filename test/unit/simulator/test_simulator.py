@@ -21,7 +21,7 @@ from my_simulations.errors import CommandError, EngineLostError
 from my_simulations.geometry import IDENTITY, STILL, Pose, Twist, quat_from_rpy
 from my_simulations.simulator.feeds import ROW_WIDTH
 from my_simulations.simulator.registry import UnknownEntityError, UnknownFrameError
-from my_simulations.simulator.row_allocator import RowAllocator
+from my_simulations.simulator.row_layout import RowAllocator
 from my_simulations.simulator.simulator import Simulator
 
 
