@@ -11,8 +11,7 @@ from ..description.shapes import Color, Material, Visual
 from ..resources.resolver import Resolver, ResourceNotFoundError
 from .gazebo_materials import BUILT_IN, Paint, Rgb
 from .looks import Look
-from .material_script import ScriptMaterial
-from .script_files import materials_of, scripts_of, shared_material
+from .material_script import ScriptMaterial, materials_of, scripts_of, shared_material
 from .terrain_layers import terrain_layers
 
 _COLORS = ("ambient", "diffuse", "specular", "emissive")

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from my_simulations.description.surroundings import Road
-from my_simulations.sensing.roads import strip
+from my_simulations.sensing.scenery import strip
 
 CASES = json.loads((Path(__file__).parents[2] / "data/road_strips.json").read_text())["cases"]
 

@@ -1,5 +1,5 @@
 /**
- * Roads as triangles. Cameras see the same strip: src/my_simulations/sensing/roads.py; a test
+ * Roads as triangles. Cameras see the same strip: src/my_simulations/sensing/scenery.py; a test
  * compares both with test/data/road_strips.json. Pure.
  */
 import type {Road} from '../protocol.js';

@@ -6,8 +6,7 @@ import re
 from typing import Any, Dict, List, Tuple
 
 from ...appearance.gazebo_materials import BUILT_IN
-from ...appearance.material_script import ScriptMaterial
-from ...appearance.script_files import materials_of, scripts_of, shared_material
+from ...appearance.material_script import ScriptMaterial, materials_of, scripts_of, shared_material
 from ...appearance.textures import TextureFiles
 from ...description.compare import BUILT_IN as BUILT_IN_SCRIPT
 from ...description.shapes import Material

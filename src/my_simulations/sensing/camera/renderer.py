@@ -17,7 +17,7 @@ from ..scenery import Scenery
 from ..surfaces import pieces_of
 from . import distortion, shaders
 from .batches import Batch
-from .context import draws_with_a_card, finisher, new_context
+from .context import Targets, draws_with_a_card, finisher, new_context
 from .frustum import check, is_in_view, projection
 from .kept_pictures import Drawn, PictureCache
 from .lamps import (
@@ -29,7 +29,6 @@ from .lamps import (
 )
 from .lit_surfaces import Lighting, LitSurfaces
 from .sky import sky_uniforms
-from .targets import Targets
 from .uploaded_textures import Textures
 from .wide_lens import LensMap
 
