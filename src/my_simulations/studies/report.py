@@ -6,7 +6,7 @@ import os
 from html import escape
 from typing import Any, Dict, List, Sequence, Tuple
 
-from .replacing import replaced
+from .replacing import replacement_file
 from .replays import replay_of
 from .row import OK, STATUSES, Row
 from .study import Study

@@ -4,7 +4,7 @@ from __future__ import annotations
 import os
 from typing import Any, List, Optional, Sequence, Tuple, Union
 
-from ...appearance.terrain_layers import stand_in
+from ...appearance.terrain_layers import substitute_pattern
 from ...description.shapes import (
     Collision,
     Empty,
@@ -229,7 +229,7 @@ def _found(uri: str, what: str, element: Any, source: Source) -> str:
     try:
         path = source.resolve(uri, element)
     except ResourceNotFoundError as missing:
-        if stand_in(uri) is None:
+        if substitute_pattern(uri) is None:
             without = "grey is shown instead" if what == "texture" else "it is left out"
             text, hint = source.resolver.explain(
                 missing, "check the path, GAZEBO_MODEL_PATH and GAZEBO_RESOURCE_PATH")

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from typing import Any, Callable, List, Optional, Set, Tuple
 
 from ...description.model import INFINITE, WORLD, Joint, JointAxis, Mimic
-from ...description.validate import JOINT_TYPES, closest
+from ...description.validate import JOINT_TYPES, closest_name_hint
 from ...geometry import IDENTITY, Pose, Quat, Vec3, compose, conjugate, inverse, norm, rotate, scale
 from ..xml.binding import REFUSED, Found, fill, read_text
 from ..xml.source import FaultLevel, Source

@@ -4,7 +4,7 @@ from __future__ import annotations
 from typing import Any, Dict, Optional, Sequence
 
 from ...description.model import WORLD, Joint, Model
-from ...description.validate import closest
+from ...description.validate import closest_name_hint
 from ...geometry import IDENTITY, Pose, compose, inverse
 from ..sdf.frame_graph import FrameError, FrameTree
 from ..sdf.joint import UnresolvedJoint, is_complete, place_axes, read_joint, reverse_axes

@@ -15,7 +15,7 @@ from ...description.flatten import flattened
 from ...description.light import Light
 from ...description.model import Model
 from ...description.plugin_namespace import with_namespace
-from ...errors import CommandError, InputError, Issue, Severity, errors_of, grouped, warning
+from ...errors import CommandError, InputError, Issue, Severity, errors_of, group_repeated, warning
 from ...formats.mesh.loading import collision_meshes
 from ...formats.reading import ParsedDocument, parse_document
 from ...geometry import IDENTITY, Pose, compose
