@@ -181,7 +181,7 @@ class LandingContacts(StepHelper):
             return
         for uid in [uid for uid, _ in links if self._agenda.at(uid) <= step]:
             if self._agenda.at(uid) <= step and uid in self._flights:
-                self._is_on_ground(self._flights[uid], step, pybullet.getBaseVelocity(uid)[0])
+                self._is_on_ground(self._flights[uid], step)
 
     def before(self, step: int, dt: float, gravity: Vec3) -> None:
         """Find flights periodically, and the contact points of those that end in this step."""
@@ -213,12 +213,12 @@ class LandingContacts(StepHelper):
         flight = self._flights[uid] = _Flight(self._bodies[uid], on_ground=_BOUNCES)
         return flight
 
-    def _is_on_ground(self, flight: _Flight, step: int, linear: Vec3) -> bool:
+    def _is_on_ground(self, flight: _Flight, step: int) -> bool:
         """Whether a body touches something; then its next check is some steps later."""
         uid = flight.body.uid
         if not any(contact[LOAD] > 0.0 for contact in pybullet.getContactPoints(bodyA=uid)):
             return False
-        if flight.on_ground >= _BOUNCES or norm(linear) <= _RESTS:
+        if flight.on_ground >= _BOUNCES or norm(pybullet.getBaseVelocity(uid)[0]) <= _RESTS:
             del self._flights[uid]
             self._agenda.plan(uid, next_multiple(step + _MOVES_EVERY, _EVERY))
         else:
@@ -238,12 +238,13 @@ class LandingContacts(StepHelper):
     def _check_flight(self, flight: _Flight, step: int, dt: float, gravity: Vec3) -> List[Touch]:
         """Return the deepest contact of a body in this step, if any, and plan its next check."""
         body, uid = flight.body, flight.body.uid
+        flew = flight.seen is not None and flies(
+            body, flight.seen[1], self._motions.of(uid).linear,
+            scale(gravity, dt * (step - flight.seen[0])))
+        if not flew and self._is_on_ground(flight, step):
+            return []
         here = self._motions.of(uid)
         linear = here.linear
-        flew = flight.seen is not None and flies(
-            body, flight.seen[1], linear, scale(gravity, dt * (step - flight.seen[0])))
-        if not flew and self._is_on_ground(flight, step, linear):
-            return []
         flight.on_ground = 0
         flight.seen = (step, linear) if body.rigid else None
         flight.beside.clear()

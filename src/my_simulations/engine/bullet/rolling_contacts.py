@@ -24,6 +24,7 @@ import pybullet
 from ...description.model import Link
 from ...description.shapes import Capsule, Cylinder, Empty, Heightmap, Mesh
 from ...geometry import (
+    IDENTITY,
     Pose,
     Vec3,
     conjugate,
@@ -250,18 +251,16 @@ class RollingContacts(StepHelper):
                     self._standing.pop(uid, None)
                     roller.wait = _PATIENCE
                 return False
-            at = Pose(*pybullet.getBasePositionAndOrientation(uid))
-            turn = at.orientation
         elif self._is_held(roller, norm(gravity)):
             roller.wait = _HINGED
             return False
         elif index != BASE and abs(pybullet.getJointState(uid, index)[1]) < _TURNS:
             return False
-        else:
-            turn = place(uid, index)[1]
         contacts = pybullet.getContactPoints(bodyA=uid, linkIndexA=index)
         depth, least, most, on_moving, seamed = 0.0, 1.0, 0.0, False, False
-        x, y, z = rotate(turn, roller.axis)
+        # Without contacts the pose is not needed.
+        at = Pose(*place(uid, index)) if contacts else IDENTITY
+        x, y, z = rotate(at.orientation, roller.axis)
         for contact in contacts:
             a, b, c = contact[NORMAL]
             along = abs(a * x + b * y + c * z)
@@ -285,7 +284,7 @@ class RollingContacts(StepHelper):
                 *_mean(seen, at, EVERY * dt))
             if ((rocks or _slow(linear, angular)) and not loaded and not roller.body.ties
                     and not on_moving and _is_level(contacts, gravity)):
-                self._keep_at_rest(uid, before)
+                self._keep_at_rest(uid, at, before)
                 return False
         else:
             roller.wait = _HINGED
@@ -314,9 +313,8 @@ class RollingContacts(StepHelper):
             pybullet.changeDynamics(*key, contactStiffness=_HARD,
                                     contactDamping=dt * _HARD * (1.0 / share - 1.0))
 
-    def _keep_at_rest(self, uid: int, before: Optional[Pose]) -> None:
+    def _keep_at_rest(self, uid: int, at: Pose, before: Optional[Pose]) -> None:
         """Keep a body at rest; set it back to its pose at the last check if it only drifted."""
-        at = Pose(*pybullet.getBasePositionAndOrientation(uid))
         if before is not None and dist(at.position, before.position) < _SHIFT:
             x, y, _ = before.position
             at = Pose((x, y, at.position[2]), before.orientation)
