@@ -11,11 +11,11 @@ def test_a_body_with_many_commands_is_woken_once(monkeypatch):
     looked, touched = [], []
     near = {0: {0, 1, 3}, 1: {0, 1, 2, 3}, 2: {1, 2}}
 
-    def overlapping(body):
+    def moving_near(self, body, seen):
         looked.append(body.uid)
-        return near[body.uid]
+        return [bodies[uid] for uid in near[body.uid] - seen if bodies[uid].moves]
 
-    monkeypatch.setattr(WakeUp, "_overlapping", staticmethod(overlapping))
+    monkeypatch.setattr(WakeUp, "_moving_near", moving_near)
     WakeUp(bodies, lambda body: touched.append(body.uid)).around([bodies[0]] * 8 + [bodies[1]])
     assert sorted(looked) == [0, 1, 2]
     assert sorted(touched) == [0, 1, 2]
