@@ -105,7 +105,9 @@ class Spawner:
             for name in reversed(self.loaded):
                 self._unload(name)
         except rospy.ServiceException as fault:
-            rospy.loginfo("spawner could not unload its controllers: %s", fault)
+            # At the end of a launch file the simulator often ends first.
+            rospy.loginfo("the controller manager ended before its controllers were unloaded")
+            rospy.logdebug("the call failed: %s", fault)
 
 
 def _before_clock() -> bool:
