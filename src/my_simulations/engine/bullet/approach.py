@@ -2,7 +2,7 @@
 from __future__ import annotations
 
 from math import dist
-from typing import AbstractSet, Dict, Tuple
+from typing import AbstractSet, Dict, Sequence, Tuple
 
 import pybullet
 
@@ -43,7 +43,11 @@ class Motions:
 
 def extent(body: Body) -> Tuple[Vec3, Vec3]:
     """Return the lowest and highest corner of the axis-aligned bounding box of a body."""
-    boxes = [pybullet.getAABB(body.uid, part.index) for part in body.colliders]
+    return hull([pybullet.getAABB(body.uid, part.index) for part in body.colliders])
+
+
+def hull(boxes: Sequence[Tuple[Vec3, Vec3]]) -> Tuple[Vec3, Vec3]:
+    """Return the lowest and highest corner of the box around axis-aligned boxes."""
     if len(boxes) == 1:
         low, high = boxes[0]
         return low, high

@@ -15,6 +15,7 @@ from ...description.model import Link
 from ...description.shapes import Surface
 from ...geometry import (
     IDENTITY,
+    ZERO3,
     Pose,
     Quat,
     Twist,
@@ -263,6 +264,13 @@ def put_axis(body: Body, axis: Axis, position: float, rate: float = 0.0) -> None
     if axis.follower is not None:
         index, ratio = axis.follower
         pybullet.resetJointState(body.uid, index, ratio * position, ratio * rate)
+
+
+def stop_balls(body: Body) -> None:
+    """Set the rates of the ball joints of a body to 0; they keep their orientations."""
+    for ball in body.balls:
+        turn = pybullet.getJointStateMultiDof(body.uid, ball.index)[0]
+        pybullet.resetJointStateMultiDof(body.uid, ball.index, turn, ZERO3)
 
 
 def piece_pose(at: Pose, recipe: Recipe) -> Pose:

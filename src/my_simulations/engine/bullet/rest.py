@@ -5,10 +5,10 @@ from typing import Any, Callable, Dict, Iterable, Optional, Sequence, Set, Tuple
 
 import pybullet
 
-from ...geometry import STILL, ZERO3, Pose, Vec3, norm, subtract
+from ...geometry import STILL, Pose, Vec3, norm, subtract
 from ..body_plan import BASE
 from ..run_state import RestPose
-from .bodies import Body, put_axis
+from .bodies import Body, put_axis, stop_balls
 from .body_events import COMMANDED, BodyEvent
 from .step_helper import FAR, StepHelper
 
@@ -31,9 +31,7 @@ def put_at_rest(body: Body, place: RestPose) -> None:
         pybullet.resetBaseVelocity(body.uid, *STILL)
     for axis, position in zip(body.axes, place.positions):
         put_axis(body, axis, position)
-    for ball in body.balls:
-        turn = pybullet.getJointStateMultiDof(body.uid, ball.index)[0]
-        pybullet.resetJointStateMultiDof(body.uid, ball.index, turn, ZERO3)
+    stop_balls(body)
 
 
 class RestoredSleep(StepHelper):

@@ -179,9 +179,8 @@ class StateSetter:
         for axis in body.axes:
             put_axis(body, axis, pybullet.getJointState(body.uid, axis.index)[0],
                      rates.get(axis.index, 0.0))
-        for ball in body.balls if twist is not None else ():
-            turn = pybullet.getJointStateMultiDof(body.uid, ball.index)[0]
-            pybullet.resetJointStateMultiDof(body.uid, ball.index, turn, (0.0, 0.0, 0.0))
+        if twist is not None:
+            bodies.stop_balls(body)
         if body.moves and body.base is not None:
             bodies.launch(body, target, _carried(lead, target, wanted.position, twist))
         self._notify(BodyEvent.STATE_SET, body)

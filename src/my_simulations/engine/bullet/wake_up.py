@@ -6,17 +6,19 @@ command and its contact island are woken first.
 """
 from __future__ import annotations
 
-from typing import Callable, Dict, Iterable, List, Sequence, Set, Tuple
+from typing import Callable, Dict, Iterable, List, Set, Tuple
 
 import pybullet
 
+from ...geometry import Vec3
 from ..body_plan import BASE
+from .approach import hull
 from .bodies import Body
 
 _REACH = 0.02  # m: Bullet makes contacts slightly before surfaces touch
 _WORLD_SIZE = 1e9
 
-_AxisAlignedBox = Tuple[List[float], List[float]]
+_AxisAlignedBox = Tuple[Vec3, Vec3]
 """The least and the largest corner, m, world frame."""
 
 
@@ -57,7 +59,7 @@ class WakeUp:
         """Return the moving bodies, except those in `seen`, that overlap a link of a body."""
         boxes = _link_boxes(body)
         # One query for all links is enough if only static bodies are near.
-        if len(boxes) > 1 and not self._moving_in(_hull(boxes), seen):
+        if len(boxes) > 1 and not self._moving_in(hull(boxes), seen):
             return []
         return list({near.uid: near for box in boxes for near in self._moving_in(box, seen)}
                     .values())
@@ -78,10 +80,6 @@ def _link_boxes(body: Body) -> List[_AxisAlignedBox]:
             if high[0] < low[0]:
                 continue
             reach = 0.0 if high[0] - low[0] > _WORLD_SIZE else _REACH
-            found.append(([c - reach for c in low], [c + reach for c in high]))
+            (x, y, z), (u, v, w) = low, high
+            found.append(((x - reach, y - reach, z - reach), (u + reach, v + reach, w + reach)))
     return found
-
-
-def _hull(boxes: Sequence[_AxisAlignedBox]) -> _AxisAlignedBox:
-    lows, highs = zip(*boxes)
-    return [min(edge) for edge in zip(*lows)], [max(edge) for edge in zip(*highs)]
