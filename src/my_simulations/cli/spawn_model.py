@@ -12,7 +12,7 @@ from typing import Any, Dict, List, Optional
 
 from ..errors import InputError, SimulationError
 from ..program_end import exit_cleanly
-from ..ros.arguments import Parser, number, seconds
+from ..ros.arguments import Parser, is_remapping, number, seconds
 from ..ros.call_deadline import CallTimeoutError, within
 from ..ros.lifecycle.launch_info import Launch
 
@@ -90,7 +90,7 @@ def main(argv: Optional[List[str]] = None) -> int:
     """
     words = sys.argv if argv is None else argv
     reader = parser()
-    options = reader.parse_args([word for word in words[1:] if not _is_remapping(word)])
+    options = reader.parse_args([word for word in words[1:] if not is_remapping(word)])
     try:
         joint_positions(options)
     except ValueError as fault:
@@ -107,10 +107,6 @@ def main(argv: Optional[List[str]] = None) -> int:
         print("spawn_model: interrupted", file=sys.stderr)
         return FAILED
     return OK
-
-
-def _is_remapping(word: str) -> bool:
-    return ":=" in word and not word.startswith("-")
 
 
 def _spawn(options: argparse.Namespace, words: List[str]) -> None:

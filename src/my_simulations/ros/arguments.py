@@ -48,6 +48,11 @@ class Parser(ArgumentParser):
         return f"; did you mean {' and '.join(found)}?" if found else ""
 
 
+def is_remapping(word: str) -> bool:
+    """Whether a word is a ROS remapping `name:=value`, which rospy handles."""
+    return ":=" in word and not word.startswith("-")
+
+
 def number(text: str) -> float:
     """A number, for argparse; it may be infinite or NaN."""
     try:

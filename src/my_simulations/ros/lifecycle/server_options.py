@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from math import isfinite
 from typing import List, Optional, Sequence, Tuple
 
-from ..arguments import Parser, number
+from ..arguments import Parser, is_remapping, number
 
 DEFAULT_WORLD = "worlds/empty.world"
 """Default world file, as in gzserver."""
@@ -72,11 +72,6 @@ class ServerOptions:
     iterations: int = 0
     profile: str = ""
     recording: Recording = Recording()
-
-
-def is_remapping(word: str) -> bool:
-    """Whether a word is a ROS remapping `name:=value`, which rospy handles."""
-    return ":=" in word and not word.startswith("-")
 
 
 def parser(program: str = "gzserver") -> argparse.ArgumentParser:
