@@ -1,9 +1,9 @@
-"""Substitute inertia for links whose file has an impossible inertia.
+"""Inertia of rigidly joined bodies, and substitutes for impossible inertia of links.
 
-Gazebo loads such links: ODE cannot invert the tensor and uses 1 kg m^2 about each axis
-(`dBodySetMass`); so does this module. Zeros are treated as omitted values and replaced by better
-ones: those of the collision shapes, or the least that a body can have. Examples: the furniture of
-Care-O-bot has all-zero tensors, and some files give the moment about one axis only.
+Gazebo loads links with impossible inertia: ODE cannot invert the tensor and uses 1 kg m^2 about
+each axis (`dBodySetMass`); so does this module. Zeros are treated as omitted values and replaced by
+better ones: those of the collision shapes, or the least that a body can have. Examples: the
+furniture of Care-O-bot has all-zero tensors, and some files give the moment about one axis only.
 """
 from __future__ import annotations
 

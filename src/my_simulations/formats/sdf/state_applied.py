@@ -13,7 +13,7 @@ from ...description.flatten import flattened
 from ...description.joint_positions import joint_position, moved_child_pose
 from ...description.light import Light
 from ...description.model import WORLD, Joint, Link, Model
-from ...description.saved_state import InitialState, ModelState, SavedState
+from ...description.saved_state import InitialState, ModelState
 from ...description.shapes import (
     Box,
     Capsule,
@@ -34,6 +34,7 @@ from ...geometry import Pose, Twist, Vec3, compose, inverse
 
 _NEAR = 1e-4
 """m, and components of a quaternion: saved poses have few digits."""
+_ONE: Vec3 = (1.0, 1.0, 1.0)
 
 
 def apply_state(world: World) -> World:
@@ -192,12 +193,6 @@ def _positions(joints: List[Joint], links: List[Link], poses: Dict[str, Pose],
         if position:
             found[joint.name] = position
     return found
-
-
-__all__ = ["apply_state", "state_issues", "SavedState"]
-
-
-_ONE: Vec3 = (1.0, 1.0, 1.0)
 
 
 def scaled(model: Model, factor: Vec3) -> Model:

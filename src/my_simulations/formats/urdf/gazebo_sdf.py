@@ -13,6 +13,8 @@ from ..xml.source import Source
 from .fixed_joint_lumping import lumped_into
 from .kinematic_tree import Body
 
+_ROOT = "__model__"
+
 
 def read_sdf_joint(element: Any, source: Source, bodies: Dict[str, Body],
                    poses: Dict[str, Pose], robot: str) -> Optional[Joint]:
@@ -48,7 +50,7 @@ def read_sdf_joint(element: Any, source: Source, bodies: Dict[str, Body],
     joint.pose = compose(inverse(poses.get(joint.child, IDENTITY)), at)
 
     def pose_of(name: str) -> Pose:
-        if name == "__model__":
+        if name == _ROOT:
             return IDENTITY
         if name not in poses:
             raise FrameError(f"there is no frame {name!r}")
@@ -58,9 +60,6 @@ def read_sdf_joint(element: Any, source: Source, bodies: Dict[str, Body],
     if turned:
         reverse_axes(joint)
     return joint
-
-
-_ROOT = "__model__"
 
 
 def add_sdf_links(elements: Sequence[Any], source: Source, model: Model, bodies: Dict[str, Body],
