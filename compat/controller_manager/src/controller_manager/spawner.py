@@ -106,7 +106,7 @@ class Spawner:
                 self._unload(name)
         except rospy.ServiceException as fault:
             # At the end of a launch file the simulator often ends first.
-            rospy.loginfo("the controller manager ended before its controllers were unloaded")
+            rospy.loginfo("controllers were not unloaded: the manager has ended or refused")
             rospy.logdebug("the call failed: %s", fault)
 
 
