@@ -175,7 +175,8 @@ class Runner:
             except Exception as fault:  # of the engine's own; how much it has done is unknown
                 traceback.print_exc()
                 self._await_replacement(number, f"the physics engine failed: {fault!r}")
-        self._answer(answers)
+        if answers or self._ended:   # an advance is answered at its end
+            self._answer(answers)
         return True
 
     def _show_before(self, answers: List[_Answer]) -> None:

@@ -24,7 +24,7 @@ the effort of its motor can act for half a step only, until the axis has its rat
 from __future__ import annotations
 
 import math
-from typing import Callable, Dict, List, Optional, Tuple
+from typing import Any, Callable, Dict, List, NamedTuple, Optional, Sequence, Tuple
 
 import numpy as np
 import pybullet
@@ -47,6 +47,33 @@ _CHECKED = 8       # steps between two checks whether motors still cancel all da
 
 Motor = Optional[Tuple[float, float]]
 """The rate of a motor, rad/s or m/s, and its largest effort, N m or N; None without a motor."""
+
+
+class _Cancelling(NamedTuple):
+    """Bounds within which a motor cancels the damper of its axis, in SI units.
+
+    Attributes:
+        slight: at a rate up to this one the damper does not matter.
+        target: rate of the motor.
+        tolerance: of the target.
+        load: effort of the damper at the target.
+        most: largest effort of the motor.
+    """
+
+    slight: float = -1.0
+    target: float = 0.0
+    tolerance: float = -1.0
+    load: float = 0.0
+    most: float = 0.0
+
+
+def _still_cancelled(tests: Sequence[_Cancelling], states: Sequence[Any]) -> bool:
+    """Whether motors still cancel all dampers, from joint states of PyBullet."""
+    for (slight, target, tolerance, load, most), (_, rate, _, spent) in zip(tests, states):
+        if abs(rate) > slight and (
+                abs(rate - target) > tolerance or abs(spent + load) > most):
+            return False
+    return True
 
 
 class ImplicitAxes:
@@ -83,6 +110,7 @@ class ImplicitAxes:
         self._efforts = [0.0] * len(self._rows)
         self._spent: Optional[List[float]] = None   # by motors, read before a save
         self.is_cancelled = False
+        self._tests: List[_Cancelling] = []         # of the last full check; [] for none
 
     @property
     def first_row(self) -> int:
@@ -102,7 +130,7 @@ class ImplicitAxes:
         self._other, self._given = list(memory.other), list(memory.given)
         self._rates = None if memory.rates is None else list(memory.rates)
         self._efforts, self._spent = list(memory.efforts), list(memory.spent)
-        self.is_cancelled = memory.cancelled
+        self.is_cancelled, self._tests = memory.cancelled, []
 
     def due(self, step: int) -> int:
         """Return the first step, `step` or later, in which `add_to` must be called."""
@@ -114,6 +142,8 @@ class ImplicitAxes:
         `motor_of` returns the motor of the axis of a row.
         """
         states = pybullet.getJointStates(self._body.uid, self._indices)
+        if self.is_cancelled and self._tests and _still_cancelled(self._tests, states):
+            return
         positions, rates = [state[0] for state in states], [state[1] for state in states]
         spent, self._spent = self._spent or [state[3] for state in states], None
         motors = [motor_of(row) for row in self._rows]
@@ -123,6 +153,7 @@ class ImplicitAxes:
                                 for n, motor in enumerate(motors))
         if self.is_cancelled:
             self._rates, self._efforts = None, [0.0] * len(rates)   # the estimate begins again
+            self._tests = [self._test_of(n, motor) for n, motor in enumerate(motors)]
             return
         if self._rates is not None:
             # Acceleration by all other forces: (w - w_before) / dt - given, smoothed.
@@ -165,6 +196,14 @@ class ImplicitAxes:
         load = spent + self._efforts[n]
         return (abs(rate - target) <= _AT_RATE * abs(target)
                 and abs(load + float(self._damping[n]) * target) <= most)
+
+    def _test_of(self, n: int, motor: Motor) -> _Cancelling:
+        damping = float(self._damping[n])
+        if motor is None or self._stiffness[n]:
+            return _Cancelling()
+        target, most = motor
+        return _Cancelling(_SLIGHT * most / abs(damping) if damping else math.inf,
+                           target, _AT_RATE * abs(target), damping * target, most)
 
     def _prepare_again(self, positions: List[float]) -> None:
         """Recompute the mobility if it may have changed; turning wheels do not change it."""
