@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from typing import Callable, List, Protocol, Tuple
 
 from ..errors import SimulationError
-from .commands import Command, PhysicsSettings, SetModelState
+from .commands import Command, PhysicsSettings
 from .ring import RingReader
 
 MOST_POSTED = 64
@@ -64,8 +64,8 @@ class Engine(Protocol):
     def submit(self, command: Command) -> "Future[Reply]":
         """Queue a command. The future fails with `EngineDiedError` if the engine dies before."""
 
-    def post(self, command: SetModelState) -> bool:
-        """Queue a command without a reply, in order with those of `submit`.
+    def post(self, command: Command) -> bool:
+        """Queue `SetModelState` or `SetMotors` without a reply, in order with those of `submit`.
 
         False if it was not queued: the engine died, or `MOST_POSTED` posted commands wait already.
         """

@@ -377,7 +377,7 @@ class Synchronize(Command):
 class Post(Command):
     """Apply a command without a reply; a rejection is reported by the event `refused`."""
 
-    command: SetModelState
+    command: Command
 
 
 @dataclass(frozen=True)

@@ -139,7 +139,7 @@ class ProcessEngine:
                 raise
         return future
 
-    def post(self, command: SetModelState) -> bool:
+    def post(self, command: Command) -> bool:
         with self._send_lock:
             with self._lock:
                 wire = self._wire
@@ -149,7 +149,8 @@ class ProcessEngine:
                 number, post = self._numbers, Post(command)
                 self._posts.add(number, post)
             try:
-                wire.send((number, command.plain()))
+                wire.send((number, command.plain() if isinstance(command, SetModelState)
+                           else post))
             except OSError as fault:
                 # The reader thread sees the same end, and reports the command as lost.
                 _log.debug("the engine does not listen: %s", fault)

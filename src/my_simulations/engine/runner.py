@@ -34,6 +34,7 @@ from .commands import (
     SetClock,
     SetPhysics,
 )
+from .drive_commands import SetMotors
 from .host_sync import HostSync
 from .readout_schedule import NOTHING, POSES, STATES, CommandRows, ReadoutSchedule
 from .ring import (
@@ -176,7 +177,11 @@ class Runner:
                 traceback.print_exc()
                 self._await_replacement(number, f"the physics engine failed: {fault!r}")
         if answers or self._ended:   # an advance is answered at its end
-            self._answer(answers)
+            # The tables do not show motors; `applied` can wait for the next snapshot.
+            self._answer(answers, not all(
+                isinstance(command, Advance)
+                or isinstance(command, SetMotors) and number in self._posted
+                for number, command in commands))
         return True
 
     def _show_before(self, answers: List[_Answer]) -> None:
@@ -190,15 +195,15 @@ class Runner:
         elif self._shown != (self._clock_sets, self._step):
             self._write(force=True)
 
-    def _answer(self, answers: List[_Answer]) -> None:
-        """Write a snapshot that shows the effect of commands, then reply to them."""
+    def _answer(self, answers: List[_Answer], show: bool = True) -> None:
+        """Write, with `show`, a snapshot that shows the effect of commands; then reply to them."""
         # Only what precedes the first refusal counts as applied: one number says it all.
         for answer in answers:
             if answer.error:
                 break
             self._applied = answer.number
         self._limit = self._sync.step_limit()   # some commands change it
-        sequence = self._write(force=True)
+        sequence = self._write(force=True) if show else self._words[LATEST]
         answers[:0] = [_Answer(number, self._step) for number in self._ended]
         self._ended.clear()
         for number, value, error, is_outdated in answers:

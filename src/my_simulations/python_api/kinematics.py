@@ -10,10 +10,13 @@ from ..description.model import INFINITE, Joint, Model
 from ..errors import CommandError
 from ..geometry import (
     IDENTITY,
+    ZERO3,
     Pose,
     Vec3,
+    add,
     compose,
     conjugate,
+    cross,
     inverse,
     multiply,
     rotate,
@@ -29,26 +32,37 @@ _DAMPING, _LONGEST_STEP = 0.02, 0.3
 _RANGE = math.pi   # rad or m about the start, for axes without limits
 
 
-class _Link(NamedTuple):
-    """A joint of a chain, with the poses that its description gives.
+class _MovingJoint(NamedTuple):
+    """A joint of a chain that moves.
 
     Attributes:
-        parent_from_joint: the joint frame at position 0, in the parent link.
-        joint_from_child: the child link in the joint frame.
-        axis: a unit vector in the joint frame.
+        slides: along its axis; else it turns about it.
+        frame: at position 0, in the frame of the moving joint before it, or in the root.
+        axis: a unit vector in its frame.
     """
 
-    joint: Joint
-    parent_from_joint: Pose
-    joint_from_child: Pose
+    name: str
+    slides: bool
+    frame: Pose
     axis: Vec3
+
+
+class ChainPoses(NamedTuple):
+    """Poses in the root link; for `world`, in the frame of the model when its joints are at 0.
+
+    Attributes:
+        last: of the last link.
+        joints: of the frames of the moving joints.
+    """
+
+    last: Pose
+    joints: List[Pose]
 
 
 class Chain:
     """The joints between the root of a model and one of its links.
 
     Attributes:
-        root: the name of the root link, or `world`.
         joints: the joints of the chain that move, from the root on.
 
     Args:
@@ -64,64 +78,56 @@ class Chain:
             raise CommandError(f"model '{model.name}' has no link '{link}'; it has"
                                f" {', '.join(poses)}")
         above = {one.child: one for one in reversed(model.joints)}
-        self._links: List[_Link] = []
+        path: List[Joint] = []
         at = link
-        while at in above and len(self._links) < len(model.joints):
-            joint = above[at]
-            parent = poses.get(joint.parent, IDENTITY)
-            frame = compose(poses[at], joint.pose)
-            self._links.insert(0, _Link(joint, compose(inverse(parent), frame),
-                                        inverse(joint.pose), _axis(joint)))
-            at = joint.parent
-        self.root = at
-        self.joints = tuple(one.joint.name for one in self._links if one.joint.type != "fixed")
+        while at in above and len(path) < len(model.joints):
+            path.insert(0, above[at])
+            at = above[at].parent
+        self._moving: List[_MovingJoint] = []
+        before = poses.get(at, IDENTITY)   # of the last joint frame, all joints at 0
+        for joint in path:
+            axis = _axis(joint)
+            if joint.type != "fixed":
+                frame = compose(poses[joint.child], joint.pose)
+                self._moving.append(_MovingJoint(joint.name, joint.type in _SLIDING,
+                                                 compose(inverse(before), frame), axis))
+                before = frame
+        self._end = compose(inverse(before), poses[link])
+        self.joints = tuple(one.name for one in self._moving)
 
-    def pose(self, root: Pose, positions: Mapping[str, float]) -> Pose:
-        """The pose of the last link.
+    def poses(self, positions: Mapping[str, float]) -> ChainPoses:
+        """Poses at positions of joints in rad or m; 0 for those not named."""
+        at, frames = IDENTITY, []
+        for name, slides, frame, axis in self._moving:
+            position, turn = compose(at, frame)
+            value = positions.get(name, 0.0)
+            if slides:
+                at = Pose(add(position, rotate(turn, scale(axis, value))), turn)
+            else:
+                at = Pose(position, multiply(turn, _turn(axis, value)))
+            frames.append(at)
+        return ChainPoses(compose(at, self._end), frames)
 
-        Args:
-            root: pose of the root link; for `world`, of the model when its joints are at 0.
-            positions: rad or m by joint.
-        """
-        return self._frames(root, positions)[0]
-
-    def jacobian(self, root: Pose, positions: Mapping[str, float], point: Vec3) -> np.ndarray:
+    def jacobian(self, poses: ChainPoses, link: Pose, point: Vec3) -> np.ndarray:
         """Return the derivative of the twist of the last link by the rates of `joints`.
 
         Args:
-            root: see `pose`.
-            positions: rad or m by joint.
+            poses: of the present positions.
+            link: present pose of the last link.
             point: of the last link, m in its frame.
 
         Returns:
-            Shape (6, joints): m/s of the point and rad/s, along the axes of the frame of `root`.
+            Shape (6, joints): m/s of the point and rad/s, along the axes of the frame of `link`.
         """
-        last, frames = self._frames(root, positions)
-        at = np.array(transform(last, point))
-        columns = np.zeros((6, len(self.joints)))
-        moving = [one for one in zip(self._links, frames) if one[0].joint.type != "fixed"]
-        for n, (one, frame) in enumerate(moving):
-            axis = np.array(rotate(frame.orientation, one.axis))
-            if one.joint.type in _SLIDING:
-                columns[:3, n] = axis
-            else:
-                columns[:3, n] = np.cross(axis, at - np.array(frame.position))
-                columns[3:, n] = axis
-        return columns
-
-    def _frames(self, root: Pose, positions: Mapping[str, float]) -> Tuple[Pose, List[Pose]]:
-        """The pose of the last link, and the frames of all joints."""
-        at, frames = root, []
-        for one in self._links:
-            frame = compose(at, one.parent_from_joint)
-            position = positions.get(one.joint.name, 0.0)
-            if one.joint.type in _TURNING:
-                frame = compose(frame, Pose((0.0, 0.0, 0.0), _turn(one.axis, position)))
-            elif one.joint.type in _SLIDING:
-                frame = compose(frame, Pose(scale(one.axis, position)))
-            frames.append(frame)
-            at = compose(frame, one.joint_from_child)
-        return at, frames
+        root = multiply(link.orientation, conjugate(poses.last.orientation))
+        end = transform(poses.last, point)
+        rows = []
+        for one, frame in zip(self._moving, poses.joints):
+            axis = rotate(frame.orientation, one.axis)
+            lever = ZERO3 if one.slides else rotate(root, subtract(end, frame.position))
+            axis = rotate(root, axis)
+            rows.append((*axis, *ZERO3) if one.slides else (*cross(axis, lever), *axis))
+        return np.array(rows, float).reshape(-1, 6).T
 
 
 def _axis(joint: Joint) -> Vec3:
@@ -205,8 +211,9 @@ class InverseKinematics:
         positions = {**start, **dict(zip(self._free, map(float, values)))}
         for name, one in self._followers.items():
             positions[name] = one.multiplier * positions[one.joint] + one.offset
-        pose = self._chain.pose(root, positions)
-        columns = self._chain.jacobian(root, positions, target.point)
+        poses = self._chain.poses(positions)
+        pose = compose(root, poses.last)
+        columns = self._chain.jacobian(poses, pose, target.point)
         jacobian = np.zeros((6, len(self._free)))
         for n, name in enumerate(self._chain.joints):
             follower = self._followers.get(name)

@@ -113,6 +113,7 @@ class OpenWorld(WorldChanges):
         self.issues: List[Issue] = []
         self._listener = log
         self._lost: Optional[str] = None  # how the engine was lost
+        self._joints_of = {}
         self._furnished = 0  # the revision of the models when the world was opened
         self._choice = choice
         self._files = files or FileCache(resolver or Resolver.from_environment())

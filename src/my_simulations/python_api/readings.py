@@ -2,12 +2,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Dict, Iterator, Mapping, Sequence, Tuple
 
 import numpy as np
 
 from ..engine.commands import Contact
-from ..engine.ring import LINK_WIDTH, Snapshot
+from ..engine.ring import JOINT_WIDTH, LINK_WIDTH, Snapshot
 from ..geometry import IDENTITY, Pose, Twist
 from ..simulator.entity import Entity
 from ..simulator.exact_states import ExactState
@@ -26,7 +27,10 @@ class NamedRows(Mapping[str, np.ndarray]):
     def __init__(self, names: Sequence[str], array: np.ndarray) -> None:
         self.names: Tuple[str, ...] = tuple(names)
         self.array = array
-        self._rows: Dict[str, int] = {name: row for row, name in enumerate(self.names)}
+
+    @cached_property
+    def _rows(self) -> Dict[str, int]:
+        return {name: row for row, name in enumerate(self.names)}
 
     def __getitem__(self, name: str) -> np.ndarray:
         row = self._rows.get(name)
@@ -151,19 +155,17 @@ def model_readings(entities: Sequence[Entity], snapshot: Snapshot) -> Readings:
 
 def link_readings(entities: Sequence[Entity], snapshot: Snapshot) -> Readings:
     """Poses and twists of all links of a snapshot."""
-    names = [f"{entity.model.name}::{link}" for entity in entities for link in entity.link_names]
-    rows = [entity.first_link_row + n for entity in entities
-            for n in range(len(entity.link_names))]
-    table = _link_table(snapshot)[rows]
+    names = [link for entity in entities for link in entity.scoped_links]
+    table = _link_table(snapshot)[[row for entity in entities for row in entity.link_ids]]
     return Readings(snapshot.sim_ns * 1e-9, NamedRows(names, table[:, :POSE_WIDTH]),
                     NamedRows(names, table[:, POSE_WIDTH:]))
 
 
 def joint_readings(entities: Sequence[Entity], snapshot: Snapshot) -> JointReadings:
     """Positions and rates of all joint axes of a snapshot."""
-    names = [f"{entity.model.name}::{joint}" for entity in entities for joint in entity.joint_names]
-    values = np.array([snapshot.joint(entity.first_joint_row + n) for entity in entities
-                       for n in range(len(entity.joint_names))]).reshape(-1, 2)
+    names = [joint for entity in entities for joint in entity.scoped_joints]
+    table = np.array(snapshot.joints, dtype=float).reshape(-1, JOINT_WIDTH)
+    values = table[[row for entity in entities for row in entity.joint_rows]]
     return JointReadings(snapshot.sim_ns * 1e-9, NamedRows(names, values[:, 0]),
                          NamedRows(names, values[:, 1]))
 

@@ -5,13 +5,14 @@ from typing import Callable, Dict, Iterable, Mapping, Optional, Sequence, Tuple
 
 import numpy as np
 
+from ..description.model import Model
 from ..errors import CommandError
-from ..geometry import IDENTITY, ZERO3, Pose, compose, inverse
+from ..geometry import ZERO3, Pose, compose, inverse
 from ..simulator.simulator import Simulator
 from .joint_limits import JointLimits, drive_within_limits, limits_of, move_within_limits
 from .kinematics import Chain, InverseKinematics, Target
 from .plain_values import limit_of, name_of, nanoseconds_of, numbers_by_name, pose_of, vector_of
-from .readings import JointReadings, NamedRows, joint_readings, link_readings
+from .readings import JointReadings, NamedRows, joint_readings
 
 
 class Robot:
@@ -27,6 +28,7 @@ class Robot:
 
     def __init__(self, whole: Callable[[], Simulator], name: str) -> None:
         self._running_simulator, self.name = whole, name_of(name, "the name of a robot")
+        self._chains: Dict[str, Tuple[Model, Chain]] = {}
         whole().models.get(name)
 
     @property
@@ -139,11 +141,11 @@ class Robot:
             Shape (6, joints), in the order of `joints`: m/s of the point and rad/s, along the axes
             of the world.
         """
-        chain = Chain(self._running_simulator().models.get(self.name), link)
-        positions, names = self._positions(), self.joints
-        found = np.zeros((6, len(names)))
-        found[:, [names.index(name) for name in chain.joints]] = chain.jacobian(
-            self._root(chain, link, positions), positions, vector_of(point, "point"))
+        chain, now = self._chain(link), self.positions
+        found = np.zeros((6, len(now)))
+        found[:, [now.names.index(name) for name in chain.joints]] = chain.jacobian(
+            chain.poses(dict(zip(now.names, now.array.tolist()))), self._pose(link),
+            vector_of(point, "point"))
         return found
 
     def inverse_kinematics(self, link: str, pose: Sequence[float], *,
@@ -164,23 +166,28 @@ class Robot:
             CommandError: no positions are found; the message has the smallest error.
         """
         model = self._running_simulator().models.get(self.name)
-        chain, positions = Chain(model, link), self._positions()
+        chain, now = self._chain(link), self.positions
+        positions = dict(zip(now.names, now.array.tolist()))
+        root = compose(self._pose(link), inverse(chain.poses(positions).last))
         wanted = pose_of(pose)
         target = Target(wanted.position, wanted.orientation if len(pose) > 3 else None,
                         vector_of(point, "point"), float(tolerance))
         return InverseKinematics(chain, model, tuple(joints) or self.joints).solve(
-            self._root(chain, link, positions), positions, target)
+            root, positions, target)
 
     # -- inside ------------------------------------------------------------------------------------
 
-    def _root(self, chain: Chain, link: str, positions: Mapping[str, float]) -> Pose:
-        """The pose of the root of a chain, from that of its last link now."""
-        links = link_readings(*self._running_simulator().states.latest())
-        now = pose_of(links.pose[self._scoped(link)].tolist())
-        return compose(now, inverse(chain.pose(IDENTITY, positions)))
+    def _chain(self, link: str) -> Chain:
+        """The chain to a link; chains are kept while the model is the same."""
+        model = self._running_simulator().models.get(self.name)
+        found = self._chains.get(link)
+        if found is None or found[0] is not model:
+            found = self._chains[link] = model, Chain(model, link)
+        return found[1]
 
-    def _positions(self) -> Dict[str, float]:
-        return {name: float(value) for name, value in self.positions.items()}
+    def _pose(self, link: str) -> Pose:
+        """The pose of a link now, in the world."""
+        return self._running_simulator().states.link_state(self._scoped(link))[0]
 
     def _read(self) -> JointReadings:
         return joint_readings(*self._running_simulator().states.latest())

@@ -2,7 +2,7 @@
 from __future__ import annotations
 
 import os
-from typing import Optional, Sequence, Union
+from typing import Dict, Optional, Sequence, Union
 
 from ..errors import CommandError
 from ..formats.reading import Text
@@ -31,6 +31,7 @@ class WorldChanges:
     simulator: Simulator
     _furnisher: Furnisher
     _robots: Robots
+    _joints_of: Dict[str, Robot]
 
     def _running_simulator(self) -> Simulator:
         """The simulator, whose engine was not lost. Raises EngineLostError."""
@@ -140,7 +141,7 @@ class WorldChanges:
 
     def robot(self, name: str) -> Robot:
         """The joints of a model: positions, efforts, motors, Jacobians, inverse kinematics."""
-        return Robot(self._running_simulator, name)
+        return self._joints_of.setdefault(name, Robot(self._running_simulator, name))
 
     def attach(self, name: str, parent: str, child: str) -> None:
         """Fix a link to another one, or to the `world`, as they are now.

@@ -70,7 +70,7 @@ class Drives:
 
     def set(self, motors: Sequence[JointMotor] = (),
             planar: Sequence[PlanarVelocity] = (), revision: Optional[int] = None,
-            servos: Sequence[JointServo] = ()) -> bool:
+            servos: Sequence[JointServo] = (), wait: bool = True) -> bool:
         """Set motors and servos by joint row, planar velocities by model id; others stay.
 
         Args:
@@ -78,6 +78,8 @@ class Drives:
             planar: planar velocities by model id, m/s and rad/s.
             revision: `Models.revision` when the rows were looked up.
             servos: joint servos by row; one with an empty `drive` ends the servo.
+            wait: whether motors must be set in the engine when this returns; else they are before
+                all that is called afterwards. Use it only where `Clock.advance` makes the steps.
 
         Returns:
             False if the models have changed since then; nothing is set.
@@ -100,7 +102,12 @@ class Drives:
                 commands.append(SetServos(tuple(steered)))
             if not commands:
                 return True
-            self._session.call(Batch(tuple(commands)) if len(commands) > 1 else commands[0])
+            first, *others = commands
+            if others:
+                self._session.call(Batch(tuple(commands)))
+            elif wait or not isinstance(first, SetMotors) or not self._session.supervisor.post(
+                    first):
+                self._session.call(first)
             self._motors.update({motor.row: motor for motor in new})
             self._planar.update(moved)
             self._store_servos(steered)
@@ -136,7 +143,7 @@ class Drives:
             ended = [JointServo(motor.row, "") for motor in motors if motor.row in self._servos]
             if ended:
                 self.set(servos=ended)
-            self.set(motors)
+            self.set(motors, wait=False)
 
     def hold_axes(self, positions: Mapping[str, Tuple[float, float, float]]) -> None:
         """Move axes, given by name, to positions in one command and hold them there.

@@ -3,17 +3,18 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Iterator, List, Optional, Tuple
+from typing import Dict, Iterator, List, Optional, Tuple
 
 from ..description.advice import reach_of
 from ..description.cost_budget import Cost
-from ..description.model import Model
+from ..description.model import Joint, Model
 from ..description.model_plugins import has_plugins
 from ..description.saved_state import InitialState
+from ..description.scoped_names import scoped
 from ..description.shapes import MeshTable
 from ..engine.commands import LinkState, ModelState
 from ..engine.ring import Snapshot
-from ..engine.ring_rows import axis_rows, row_name
+from ..engine.ring_rows import AXES, axis_rows, row_name
 from ..geometry import IDENTITY, STILL, Pose, Twist, compose, inverse
 
 
@@ -65,6 +66,23 @@ class Entity:
     def reaches(self) -> List[float]:
         """Of each link the radius about its origin that contains its shapes (`reach_of`), m."""
         return list(map(reach_of, self.model.links))
+
+    @cached_property
+    def joints_by_name(self) -> Dict[str, Tuple[Joint, int]]:
+        """All joints, fixed ones too: joint and axis number; `joint::1` for the second axis."""
+        return {row_name(joint.name, number): (joint, number)
+                for joint in reversed(self.model.joints)
+                for number in range(max(1, AXES.get(joint.type, 0)))}
+
+    @cached_property
+    def scoped_links(self) -> Tuple[str, ...]:
+        """`model::link` of each link, in the order of `link_names`."""
+        return tuple(scoped(self.model.name, link) for link in self.link_names)
+
+    @cached_property
+    def scoped_joints(self) -> Tuple[str, ...]:
+        """`model::joint` of each joint axis, in the order of `joint_names`."""
+        return tuple(scoped(self.model.name, joint) for joint in self.joint_names)
 
     @property
     def canonical_row(self) -> int:

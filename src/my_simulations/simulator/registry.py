@@ -3,6 +3,7 @@ from __future__ import annotations
 
 import difflib
 from dataclasses import dataclass
+from itertools import chain, repeat
 from typing import (
     Callable,
     Dict,
@@ -20,7 +21,6 @@ from ..description.light import Light
 from ..description.model import Joint
 from ..description.scoped_names import split_scoped
 from ..engine.ring import RingReader, Snapshot
-from ..engine.ring_rows import AXES, row_name
 from ..errors import CommandError
 from ..geometry import IDENTITY, STILL, Pose, Twist, compose
 from .entity import Entity
@@ -225,11 +225,10 @@ class Registry:
         """The joint of a scoped name first, then those of that plain name, in order of models."""
         model, rest = split_scoped(name, self._entities.__contains__)
         owner = [(self._entities[model], rest)] if model else []
-        for entity, plain in [*owner, *((entity, name) for entity in self._entities.values())]:
-            for joint in entity.model.joints:
-                for number in range(max(1, AXES.get(joint.type, 0))):
-                    if row_name(joint.name, number) == plain:
-                        yield entity, joint, number
+        for entity, plain in chain(owner, zip(self._entities.values(), repeat(name))):
+            found = entity.joints_by_name.get(plain)
+            if found is not None:
+                yield (entity, *found)
 
     def frame(self, name: str) -> Optional[ReferenceFrame]:
         """Resolve the name of a reference frame; None for the world frame.

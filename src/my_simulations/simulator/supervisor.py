@@ -16,7 +16,7 @@ from concurrent.futures import TimeoutError as FutureTimeout
 from typing import Callable, Deque, List, NamedTuple, Optional
 
 from ..engine.api import Engine, EngineDiedError, EngineNotRunningError, Reply
-from ..engine.commands import Advance, Batch, Command, LoadModel, Ping, Post, SetModelState
+from ..engine.commands import Advance, Batch, Command, LoadModel, Ping, Post
 from ..engine.ring import HEARTBEAT, PROGRESS
 from ..errors import (
     CommandError,
@@ -143,7 +143,7 @@ class Supervisor:
                 raise CommandError(reply.error)
             return reply
 
-    def post(self, command: SetModelState) -> bool:
+    def post(self, command: Command) -> bool:
         """Send a command without waiting for the reply, if possible; see `Engine.post`.
 
         `await_posted` waits until snapshots show its effect.

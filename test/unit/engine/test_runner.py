@@ -28,6 +28,7 @@ from my_simulations.engine.commands import (
     SetModelState,
     SetPhysics,
 )
+from my_simulations.engine.drive_commands import JointMotor, SetMotors
 from my_simulations.engine.ring import DEMAND_NS, HEARTBEAT, LATEST_POSES, POSE_DEMAND_NS
 from my_simulations.geometry import Pose, Twist
 from my_simulations.simulator.watchdog import _STALL_S
@@ -309,6 +310,14 @@ def test_poses_can_be_had_more_often_than_states(slow):
     ask(slow, Run())
     until(lambda: words[LATEST_POSES] > 50)
     assert slow.ring.latest - first < 25
+
+
+def test_motors_and_the_advance_that_follows_write_one_snapshot(engine):
+    load(engine)
+    first = engine.ring.latest
+    assert engine.post(SetMotors((JointMotor(0, 1.0, 5.0),)))
+    assert ask(engine, Advance(0)).sequence == first + 1 == engine.ring.latest
+    assert engine.ring.applied == engine.posted
 
 
 def test_an_advance_is_made_in_few_bursts(monkeypatch):

@@ -198,12 +198,28 @@ def test_a_drive_with_a_rate_of_nan_is_refused(case):
 def test_several_axes_are_driven_or_held_by_one_command(case):
     made = case(arm("a"), arm("b"))
     sent = []
-    call = made.sim._session.call
+    call, post = made.sim._session.call, made.sim._session.supervisor.post
     made.sim._session.call = lambda command: sent.append(command) or call(command)
+    made.sim._session.supervisor.post = lambda command: sent.append(command) or post(command)
     made.sim.drives.drive_axes({"a::hinge": (1.0, 5.0), "b::hinge": (2.0, 5.0)})
     assert [type(command) for command in sent] == [SetMotors]
     made.sim.drives.hold_axes({"a::hinge": (1.0, 5.0, 2.0), "b::hinge": (2.0, 5.0, 2.0)})
     assert sum(isinstance(command, (SetServos, Batch)) for command in sent) == 1
+
+
+def test_a_drive_does_not_wait_for_the_engine_and_outlives_its_crash(case):
+    made = case(arm("a"))
+    call, waited = made.sim._session.call, []
+    made.sim._session.call = lambda command: waited.append(command) or call(command)
+    made.sim.drives.drive_axes({"a::hinge": (1.0, 5.0)})
+    assert waited == []
+    made.sim.clock.advance(1)
+    assert made.sim.joints.states("a::hinge")[0][1] == 1.0
+    made.sim.drives.drive_axes({"a::hinge": (2.0, 5.0)})
+    made.sim._session.supervisor.engine.kill()
+    made.sim.clock.advance(1)
+    assert len(made.backends) == 2
+    assert made.sim.joints.states("a::hinge")[0][1] == 2.0
 
 
 def test_no_axis_is_driven_or_held_if_one_cannot_be(case):

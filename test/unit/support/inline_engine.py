@@ -9,7 +9,7 @@ from typing import Callable, Dict, List, Tuple
 from kinematic_backend import KinematicBackend
 
 from my_simulations.engine.api import Backend, EngineDiedError, EngineNotRunningError, Event, Reply
-from my_simulations.engine.commands import Command, Ping, Post, SetModelState
+from my_simulations.engine.commands import Command, Ping, Post
 from my_simulations.engine.process_engine import PostedCommands
 from my_simulations.engine.ring import Memory, RingReader, RingWriter
 from my_simulations.engine.runner import Runner
@@ -98,7 +98,7 @@ class InlineEngine:
             self._channel.commands.put((self._numbers, command))
         return future
 
-    def post(self, command: SetModelState) -> bool:
+    def post(self, command: Command) -> bool:
         with self._lock:
             if not self._alive or self._posts.full():
                 return False

@@ -272,8 +272,7 @@ class RollingContacts(StepHelper):
             self._part(roller, 0.0 if on_moving or seamed and not roller.body.rigid else depth,
                        dt, norm(gravity))
         if not contacts:
-            if not roller.body.rigid:
-                roller.wait = _HINGED
+            roller.wait = 0 if roller.body.rigid else _HINGED
             return (uid, index) in self._rolling
         roller.seamed = seamed
         if most > _LYING:
