@@ -57,7 +57,7 @@ _CREEP = 5e-3     # m/s: a slower cylinder counts as at rest
 _TURN = 0.2       # rad/s: the same for its angular velocity
 _LEVEL = 1e-3     # of gravity along the floor: a floor below it is level
 _ASLEEP = 3       # checks without velocity: then it sleeps, and Bullet does not move it
-_HINGED = 3       # checks until a wheel that rolls or touches nothing is checked again
+_HINGED = 3       # checks until a rolling wheel, or a free link of an arm, is checked again
 _PATIENCE = 8     # checks until a sleeping or upright cylinder is checked again
 _SHIFT = 1e-5     # m between two checks: a shorter motion is drift
 _LAG = 0.1        # of a wheel's radius: five times the largest lag of Bullet's contact points
@@ -272,7 +272,7 @@ class RollingContacts(StepHelper):
             self._part(roller, 0.0 if on_moving or seamed and not roller.body.rigid else depth,
                        dt, norm(gravity))
         if not contacts:
-            roller.wait = 0 if roller.body.rigid else _HINGED
+            roller.wait = _HINGED if roller.body.base is None else 0   # an arm
             return (uid, index) in self._rolling
         roller.seamed = seamed
         if most > _LYING:
