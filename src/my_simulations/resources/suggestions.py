@@ -21,7 +21,8 @@ NO_PACKAGE = "ROS package "
 def suggestion(uri: str, tried: Sequence[str], packages: Callable[[], List[str]]) -> str:
     """The URI with its misspelt parts corrected; "" if no existing name is similar.
 
-    A correction that exists comes first; else it is that of the first part alone.
+    An existing correction that differs in upper and lower case only comes first, then other
+    existing ones; else it is that of the first part alone.
 
     Args:
         uri: the URI.
@@ -33,7 +34,7 @@ def suggestion(uri: str, tried: Sequence[str], packages: Callable[[], List[str]]
         right = f"{scheme.group(1).lower()}://{uri[scheme.end():]}"
         if scheme.group(1) != scheme.group(1).lower() or scheme.group().count("/") < 2:
             return right
-    first = ""
+    found, first = "", ""
     for place in tried:
         if place.startswith(NO_PACKAGE):
             wrong = place[len(NO_PACKAGE):]
@@ -41,10 +42,11 @@ def suggestion(uri: str, tried: Sequence[str], packages: Callable[[], List[str]]
             exists = bool(meant)
         else:
             meant, exists = _corrected(uri, place)
-        if exists:
+        if exists and meant.lower() == uri.lower():
             return meant
+        found = found or (meant if exists else "")
         first = first or meant
-    return first
+    return found or first
 
 
 def _corrected(uri: str, path: str) -> "tuple[str, bool]":
@@ -65,7 +67,8 @@ def _corrected(uri: str, path: str) -> "tuple[str, bool]":
 
 def _with(uri: str, wrong: str, names: Sequence[str]) -> str:
     """A URI with the name nearest to the last `wrong` in its place; "" for none."""
-    near = difflib.get_close_matches(wrong, names, 1, _LIKE)
+    near = ([name for name in names if name.lower() == wrong.lower()]
+            or difflib.get_close_matches(wrong, names, 1, _LIKE))
     if not (near and wrong and wrong in uri):
         return ""
     at = uri.rindex(wrong)

@@ -5,7 +5,7 @@ import pytest
 from reading import sdf
 
 from my_simulations.cli import check_model_command, spawn_model
-from my_simulations.errors import InputError
+from my_simulations.errors import InputError, group_repeated
 from my_simulations.formats.reading import read_entity
 from my_simulations.resources.resolver import Resolver
 from my_simulations.resources.suggestions import suggestion
@@ -50,6 +50,19 @@ def test_a_correction_that_exists_comes_before_one_of_a_part(tmp_path):
     assert suggestion("model://tablet/skn.png", places, nothing) == "model://tablet/skin.png"
 
 
+def test_a_name_that_differs_in_case_only_comes_before_others(tmp_path):
+    for path in ("house/lamp/aws_Lamp_01.dae", "shop/spot/aws_spotlight_01_visual.dae",
+                 "shop/spot/aws_Spotlight_02_visual.dae"):
+        (tmp_path / path).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / path).write_text("")
+    (tmp_path / "house" / "spots").mkdir()
+    (tmp_path / "house" / "spots" / "aws_Spotlight_01.dae").write_text("")
+    wrong = "spot/aws_Spotlight_01_visual.dae"
+    places = [str(tmp_path / folder / wrong) for folder in ("house", "shop")]
+    assert suggestion(f"file://{wrong}", places, nothing) == (
+        "file://spot/aws_spotlight_01_visual.dae")
+
+
 def test_scripts_and_textures_are_compared_with_those_beside_them(tmp_path):
     for folder, name in (("scripts", "room.material"), ("textures", "wood_floor.png")):
         (tmp_path / "materials" / folder).mkdir(parents=True)
@@ -74,6 +87,15 @@ def test_an_unknown_package_is_compared_with_the_known_ones():
     found = suggestion("package://my_simulatons/a.dae", ["ROS package my_simulatons"],
                        lambda: ["/ws/src/other", "/ws/src/my_simulations"])
     assert found == "package://my_simulations/a.dae"
+
+
+def test_the_log_has_one_line_for_all_visuals_of_an_unknown_package():
+    links = "".join(f'<link name="{name}"><visual><geometry><mesh filename="package://gone/{name}'
+                    '.stl"/></geometry></visual></link>\n' for name in "abc")
+    _, issues = read_entity(f'<robot name="r">{links}</robot>', Resolver())
+    (issue,) = group_repeated(one for one in issues if one.code == "mesh-not-found")
+    assert issue.message == ("the mesh of this visual is in the ROS package 'gone', which was not"
+                             " found; also in lines 2, 3")
 
 
 def test_an_unknown_part_of_a_robot_is_told_how_macros_are_called():
