@@ -160,7 +160,9 @@ class Resolver:
     def explain(self, missing: ResourceNotFoundError, otherwise: str) -> Tuple[str, str]:
         """Text and hint of an issue about a missing URI.
 
-        An existing, similar URI comes first in the hint; the text then names no places.
+        An existing, similar URI comes first in the hint; the text then names no places. The text
+        about an unknown package has no URI: it is the same for all files of the package, so that
+        the log has one line for them.
 
         Args:
             missing: the fault.
@@ -169,6 +171,9 @@ class Resolver:
         found = (suggestion(missing.uri, missing.tried, self._packages)
                  or same_file_elsewhere(missing.uri, self.model_folders(), self._own,
                                         self._packages))
+        unknown = _unknown_package(missing.uri, missing.tried)
+        if not found and unknown:
+            return f"is in the ROS package {unknown!r}, which was not found", otherwise
         if not found:
             return str(missing), otherwise
         return f"{missing.uri!r} was not found", f"did you mean {found}? Otherwise {otherwise}"
@@ -370,15 +375,22 @@ def _searched(uri: str, tried: Sequence[str]) -> str:
     path = uri[len("file://"):] if uri.startswith("file://") else uri
     if os.path.isabs(path):
         return ""
-    unknown = [place[len(NO_PACKAGE):] for place in tried if place.startswith(NO_PACKAGE)]
-    if unknown and uri.startswith("package://"):
-        return f"there is no ROS package {unknown[0]!r}"
+    unknown = _unknown_package(uri, tried)
+    if unknown:
+        return f"there is no ROS package {unknown!r}"
     places = [place for place in tried if os.path.isabs(place)]
     downloads = [place for place in tried if not os.path.isabs(place)
                  and not place.startswith(NO_PACKAGE)]
     more = len(places) - _MOST_PLACES
     counted = [f"{more} more places"] if more > 0 else []
     return "searched " + ", ".join([*places[:_MOST_PLACES], *counted, *downloads])
+
+
+def _unknown_package(uri: str, tried: Sequence[str]) -> str:
+    """The unknown package that a `package://` URI names; "" for other URIs."""
+    if not uri.startswith("package://"):
+        return ""
+    return next((place[len(NO_PACKAGE):] for place in tried if place.startswith(NO_PACKAGE)), "")
 
 
 def _listed(variable: str) -> List[str]:
