@@ -12,7 +12,8 @@ _REASONS: Mapping[str, str] = {
         "CessnaGUIPlugin HeightmapLODPlugin KeyboardGUIPlugin LightVisualPlugin LinkPlot3DPlugin "
         "LookAtDemoPlugin TimerGUIPlugin unitreeDrawForcePlugin",
     "the lights stay as the file sets them": "FlashLightPlugin RosFlashLightPlugin LedPlugin",
-    "pictures have no lens flare": "LensFlareSensorPlugin",
+    "pictures have no lens flare": "LensFlareSensorPlugin LensFlareVisualPlugin",
+    "pictures have no bloom": "BloomVisualPlugin",
     "it publishes on topics of Gazebo's own transport, or only prints":
         "CameraPlugin ContactPlugin ContainPlugin DepthCameraPlugin FiducialCameraPlugin "
         "ForceTorquePlugin ImuSensorPlugin LinearBatteryPlugin LinearBatteryConsumerPlugin "
