@@ -4,7 +4,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Iterator, List, Optional, Sequence
 
-from ..description.model import Model
+from ..description.model import WORLD, Model
 from ..description.plugin import PluginSpec
 from ..description.sensor import Sensor
 from ..description.world import World
@@ -39,6 +39,11 @@ def plugins_of(model: Model, scope: str = "") -> Iterator[FoundPlugin]:
 def world_plugins(world: World) -> List[PluginSpec]:
     """The plugins of a world and of its actors, which no model has."""
     return [*world.plugins, *(spec for actor in world.actors for spec in actor.plugins)]
+
+
+def owner_text(model: str) -> str:
+    """The owner of a plugin in a message; `model` is `WORLD` for plugins of the world."""
+    return "the world" if model == WORLD else f"model '{model}'"
 
 
 def _of_sensors(sensors: Sequence[Sensor], owner: str, link: str,

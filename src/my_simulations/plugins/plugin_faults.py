@@ -9,6 +9,7 @@ from typing import Any, Callable, Optional, Sequence
 from ..errors import CommandError, Issue, Severity, warning
 from .call_watch import CallLimits, CallOverdue, CallWatch, ThreadAbandoned
 from .context import PluginError
+from .found_plugins import owner_text
 from .nested_turns import PluginRemovedError
 from .registry import library_name
 from .running import RunningPlugin
@@ -134,7 +135,7 @@ class PluginGuard:
         spec, context = running.found.spec, running.context
         running.fault = Issue(
             Severity.ERROR, "plugin-failed", f"plugin '{spec.name}' ({library_name(spec.filename)})"
-            f" of model '{context.model}' is switched off: {why}", spec.file, spec.line)
+            f" of {owner_text(context.model)} is switched off: {why}", spec.file, spec.line)
         self._log(running.fault)
         running.plugin = None
         running.end()

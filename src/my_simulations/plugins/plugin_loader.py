@@ -7,7 +7,7 @@ from ..errors import Issue, warning
 from ..simulator.entity import Entity
 from .base import Plugin
 from .call_watch import CallLimits
-from .found_plugins import FoundPlugin
+from .found_plugins import FoundPlugin, owner_text
 from .isolated.isolated_plugin import IsolatedPlugin
 from .isolated.plugin_process import PluginProcesses
 from .missing_plugins import missing_plugin
@@ -88,7 +88,7 @@ class PluginLoader:
 
 
 def _unknown(found: FoundPlugin, entity: Entity, text: str) -> Issue:
-    return warning("plugin-unknown", f"{text}; '{found.spec.name}' of model"
-                   f" '{entity.model.name}' does nothing", file=found.spec.file,
+    return warning("plugin-unknown", f"{text}; '{found.spec.name}' of"
+                   f" {owner_text(entity.model.name)} does nothing", file=found.spec.file,
                    line=found.spec.line,
                    hint=missing_plugin(library_name(found.spec.filename))[1])

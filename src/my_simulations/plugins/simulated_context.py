@@ -23,7 +23,7 @@ from ..simulator.scene_sensing import SceneSensing
 from ..simulator.simulator import Simulator
 from .checked_arguments import finite, vector
 from .context import PluginError, Publication, View
-from .found_plugins import FoundPlugin
+from .found_plugins import FoundPlugin, owner_text
 from .graph import Graph, TopicUse
 from .model_rows import ModelRows, transmissions_of
 from .observations import Observation, Observations, Reads, StepView, queries_of
@@ -409,5 +409,5 @@ class SimulatedContext(GraphUser):
         self._report_issue(Severity.WARNING, text)
 
     def _report_issue(self, severity: Severity, text: str) -> None:
-        self._report(Issue(severity, "plugin", f"plugin '{self.spec.name}' of model"
-                           f" '{self.model}': {text}", self.spec.file, self.spec.line))
+        self._report(Issue(severity, "plugin", f"plugin '{self.spec.name}' of"
+                           f" {owner_text(self.model)}: {text}", self.spec.file, self.spec.line))

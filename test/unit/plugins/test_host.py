@@ -154,6 +154,15 @@ def test_an_unknown_library_is_one_warning_that_names_it(case):
     assert "libmystery.so" in issue.message and issue.line == 12
 
 
+@pytest.mark.parametrize("library", ["libmystery.so", "libfailing.so"])
+def test_messages_about_a_plugin_of_the_world_say_so(case, library):
+    one = case(plugins=[PluginSpec("sky", library, "<plugin/>", "a.world", 3)],
+               extra={"libfailing.so": f"{__name__}:Failing"})
+    one.sim.clock.advance(20)
+    until(lambda: one.issues)
+    assert " of the world " in one.issues[0].message
+
+
 def test_a_well_known_library_without_a_substitute_has_a_reason_and_an_alternative(case):
     one = case(robot("a", "<plugin/>", "libgazebo_ros_controller_manager.so"))
     (issue,) = [issue for issue in one.issues if issue.code == "plugin-unknown"]
@@ -165,6 +174,8 @@ def test_a_well_known_library_without_a_substitute_has_a_reason_and_an_alternati
     ("libKeyboardGUIPlugin.so", "Gazebo's own window"),
     ("libFlashLightPlugin.so", "the lights stay as the file sets them"),
     ("libCameraPlugin.so", "topics of Gazebo's own transport"),
+    ("libBloomVisualPlugin.so", "no bloom"),
+    ("libLensFlareVisualPlugin.so", "no lens flare"),
 ])
 def test_a_library_without_an_effect_here_is_one_note_with_its_reason(case, library, reason):
     one = case(robot("a", "<plugin/>", library), robot("b", "<plugin/>", library))
