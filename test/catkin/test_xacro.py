@@ -98,9 +98,10 @@ def test_a_missing_package_and_argument_are_named(package):
 
 
 def test_names_without_the_prefix_are_plain_elements(expanded):
-    root, _ = expanded('<xacro:macro name="m"><link name="a"/></xacro:macro>'
-                       '<m/><property name="p" value="1"/><xacro:m/>')
+    root, notes = expanded('<xacro:macro name="m"><link name="a"/></xacro:macro>'
+                           '<m/><property name="p" value="1"/><xacro:m/>')
     assert [child.tag for child in root] == ["m", "property", "link"]
+    assert "robot.xacro: <property> without the prefix xacro: has no effect" in notes
 
 
 def test_macro_parameters_have_defaults_from_outside_and_blocks(expanded):

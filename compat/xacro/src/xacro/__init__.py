@@ -43,9 +43,19 @@ def _load() -> ModuleType:
                       "workspace (devel/setup.bash), or run tools/run --set-up-only", name="xacro")
 
 
+_LANGUAGE = ("arg", "if", "include", "insert_block", "macro", "property", "unless")
+
+
+def _without_prefix(document: Any) -> str:
+    """The elements of a robot that are named as those of xacro but lack its prefix; "" for none."""
+    root = getattr(document, "documentElement", None)
+    tags = {child.nodeName for child in root.childNodes} if root is not None else set()
+    return ", ".join(f"<{tag}>" for tag in _LANGUAGE if tag in tags)
+
+
 def _as_in_noetic(module: Any) -> None:
     """Give the module Noetic's substitution arguments and the options of its command line."""
-    cwd, process_args = module.eval_extension, module.process_args
+    cwd, process_args, parse = module.eval_extension, module.process_args, module.parse
 
     def eval_extension(text: str) -> Any:
         """What `$(find p)`, `$(arg a)`, `$(env v)`, `$(eval …)` … stand for, as in roslaunch."""
@@ -68,7 +78,17 @@ def _as_in_noetic(module: Any) -> None:
         kept = [word for word in argv if word != "--xacro-ns"]
         return process_args(kept, *args, **options)
 
+    def parse_with_warning(inp: Any, filename: Any = None) -> Any:
+        """Files of Indigo have elements without the prefix, which Noetic passes through."""
+        document = parse(inp, filename)
+        found = _without_prefix(document)
+        if found:
+            module.warning(f"{filename or 'the text'}: {found} without the prefix xacro: has no"
+                           " effect; write <xacro:property> and so on")
+        return document
+
     module.eval_extension = eval_extension
+    module.parse = parse_with_warning
     module.process_args = without_old_options
 
 
