@@ -9,7 +9,7 @@ from rospy.impl.tcpros_service import ServiceImpl
 from std_srvs.srv import Empty, EmptyRequest
 
 from my_simulations.plugins.context import PluginError
-from my_simulations.plugins.graph import ServiceTakenError
+from my_simulations.plugins.graph import MissingTypeError, ServiceTakenError
 from my_simulations.ros.plugins import ros_graph
 from my_simulations.ros.plugins.ros_graph import RosGraph
 
@@ -86,3 +86,18 @@ def test_a_service_that_the_node_offers_already_is_told_by_its_name(monkeypatch)
     monkeypatch.setattr(ros_graph.rospy, "Service", taken)
     with pytest.raises(ServiceTakenError, match="/it is offered already"):
         RosGraph().serve("it", "std_srvs/Empty", lambda request, response: None)
+
+
+@pytest.mark.parametrize("files, said", [
+    ((), "lost_msgs/Thing is not installed; install the package ros-lost_msgs"),
+    (("msg/Thing.msg",), "lost_msgs/Thing has not been built; build the package lost_msgs in")])
+def test_a_type_that_is_only_defined_is_to_be_built(tmp_path, monkeypatch, files, said):
+    package = tmp_path / "lost_msgs"
+    for file in ("package.xml", *files):
+        (package / file).parent.mkdir(parents=True, exist_ok=True)
+        (package / file).write_text(
+            "<package><name>lost_msgs</name><version>1.0.0</version><description>d</description>"
+            "<maintainer email='a@b.invalid'>a</maintainer><license>none</license></package>")
+    monkeypatch.setenv("ROS_PACKAGE_PATH", str(tmp_path))
+    with pytest.raises(MissingTypeError, match=said):
+        RosGraph().message("lost_msgs/Thing")

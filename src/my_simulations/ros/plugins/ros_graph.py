@@ -8,10 +8,11 @@ from __future__ import annotations
 
 import contextlib
 import importlib
+import os
 import struct
 import threading
 from functools import lru_cache
-from typing import Any, Callable, Dict, List, Sequence
+from typing import Any, Callable, Dict, List, Optional, Sequence
 
 import genpy
 import rospy
@@ -19,6 +20,7 @@ from tf2_msgs.msg import TFMessage
 
 from ...errors import SimulationError
 from ...plugins.graph import GraphHandle, MissingTypeError, ServiceTakenError, Topic, TransformOf
+from ...resources.ros_packages import PackageIndex
 from ..direct_connection import direct_publish
 from ..topics.subscriber_events import SubscriberEvents
 
@@ -163,9 +165,17 @@ class RosGraph:
             try:
                 self._types[kind] = getattr(importlib.import_module(f"{package}.{sort}"), name)
             except (ImportError, AttributeError) as fault:
-                raise MissingTypeError(f"{kind} is not installed; install the package ros-{package}"
-                                       f" ({fault})") from fault
+                folder = PackageIndex().find(package)
+                raise MissingTypeError(_missing_type(kind, sort, folder, fault)) from fault
         return self._types[kind]
+
+
+def _missing_type(kind: str, sort: str, folder: Optional[str], fault: Exception) -> str:
+    """The text about a type that cannot be imported; `folder`: of its package."""
+    package, _, name = kind.partition("/")
+    if folder and os.path.isfile(os.path.join(folder, sort, f"{name}.{sort}")):
+        return f"{kind} has not been built; build the package {package} in {folder} ({fault})"
+    return f"{kind} is not installed; install the package ros-{package} ({fault})"
 
 
 _COUNT = struct.Struct("<I")
