@@ -122,6 +122,8 @@ SetJointTrajectoryResponse: bool success; string status_message
 [gazebo_ros_link_attacher]
 AttachRequest: string model_name_1; string link_name_1; string model_name_2; string link_name_2
 AttachResponse: bool ok
+SetStaticRequest: string model_name; string link_name; bool set_static
+SetStaticResponse: bool ok
 [geometry_msgs]
 Accel: Vector3 linear; Vector3 angular
 AccelStamped: Header header; Accel accel

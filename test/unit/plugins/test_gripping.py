@@ -241,6 +241,17 @@ def test_the_link_attacher_attaches_and_detaches_by_the_same_names():
     assert not response.ok and "not attached" in context.log_messages[-1]
 
 
+def test_the_link_attacher_holds_a_link_in_the_world():
+    context = FakeContext()
+    LinkAttacher(context).load()
+    set_static = context.services["/link_attacher_node/setstatic"]
+    response = Message()
+    set_static(Message(model_name="a", link_name="b", set_static=True), response)
+    assert response.ok and list(context.attached.values()) == [("world", "a::b")]
+    set_static(Message(model_name="a", link_name="b", set_static=False), response)
+    assert response.ok and not context.attached
+
+
 def test_a_gripper_in_a_nested_model_holds(gripper):
     """Contacts have the names that links have in the world."""
     gripper.scoped = lambda link: f"robot::hand::{link}"
