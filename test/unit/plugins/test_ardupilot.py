@@ -56,6 +56,19 @@ def test_a_packet_moves_joints_and_is_answered(vehicle, autopilot):
     assert [abs(part) for part in attitude] == pytest.approx([0.0, 1.0, 0.0, 0.0], abs=1e-12)
 
 
+def test_the_imu_of_a_nested_model_is_named_below_the_model_of_the_plugin(autopilot):
+    context = FakeContext(f"<plugin>{autopilot.ports}<imuName>iris::imu_link::imu_sensor</imuName>"
+                          "</plugin>")
+    context.model_sensors = [(f"{scope}iris::imu_link", Sensor("imu_sensor", "imu",
+                                                                Pose((place, 0.0, 0.0))))
+                             for scope, place in (("other::", 1.0), ("drone::", 2.0))]
+    context.scoped = lambda link: f"robot::drone::{link}"
+    plugin = ArduPilot(context)
+    plugin.load()
+    assert plugin._mount.position == (2.0, 0.0, 0.0)
+    plugin.close()
+
+
 def test_a_state_is_in_the_axes_north_east_down(vehicle, autopilot):
     context = vehicle(ROTOR, "<modelXYZToAirplaneXForwardZDown>0 0 0 3.141592653589793 0 0"
                              "</modelXYZToAirplaneXForwardZDown>")

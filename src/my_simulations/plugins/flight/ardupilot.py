@@ -99,12 +99,23 @@ class ArduPilot(Plugin):
             p.number("rotorVelocitySlowdownSim", 1.0) or 1.0, servo)
 
     def _find_imu(self, name: str) -> None:
-        for link, sensor in self.context.sensors():
-            own = f"{link}::{sensor.name}"
-            if sensor.type == "imu" and (name in (sensor.name, own) or name.endswith(f"::{own}")):
-                self._imu, self._mount = self.context.link(link), sensor.pose
-                return
-        raise PluginError(f"the model has no sensor of type imu named '{name}'")
+        """Find the sensor by its name, below the model of the plugin or with the scopes above."""
+        imus = {f"{link}::{sensor.name}": (link, sensor) for link, sensor in self.context.sensors()
+                if sensor.type == "imu"}
+        found = imus.get(self._nested(name)) or next(
+            (imu for own, imu in imus.items()
+             if name in (imu[1].name, own) or name.endswith(f"::{own}")), None)
+        if found is None:
+            raise PluginError(f"the model has no sensor of type imu named '{name}'")
+        self._imu, self._mount = self.context.link(found[0]), found[1].pose
+
+    def _nested(self, name: str) -> str:
+        """The name of a sensor of the plugin's nested model in the outermost model; "" for none."""
+        link, _, sensor = name.rpartition("::")
+        try:
+            return f"{self.context.scoped(link).partition('::')[2]}::{sensor}" if link else ""
+        except PluginError:   # the name has the scopes above the plugin's model
+            return ""
 
     def _listen(self, address: str, port: int) -> None:
         opened = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
