@@ -169,6 +169,16 @@ Actuators: Header header; float64[] angles; float64[] angular_velocities; float6
 Odometry: Header header; string child_frame_id; geometry_msgs/PoseWithCovariance pose;
     geometry_msgs/TwistWithCovariance twist
 Path: Header header; geometry_msgs/PoseStamped[] poses
+[pedsim_msgs]
+AgentForce: geometry_msgs/Vector3 desired_force; geometry_msgs/Vector3 obstacle_force;
+    geometry_msgs/Vector3 social_force; geometry_msgs/Vector3 group_coherence_force;
+    geometry_msgs/Vector3 group_gaze_force; geometry_msgs/Vector3 group_repulsion_force;
+    geometry_msgs/Vector3 random_force
+AgentState: string TYPE_STANDING=standing; string TYPE_INDIVIDUAL_MOVING=individual_moving; string
+    TYPE_WAITING_IN_QUEUE=waiting_in_queue; string TYPE_GROUP_MOVING=group_moving; Header header;
+    uint64 id; uint16 type; string social_state; geometry_msgs/Pose pose; geometry_msgs/Twist twist;
+    AgentForce forces
+AgentStates: Header header; AgentState[] agent_states
 [prius_msgs]
 Control: Header header; float64 throttle; float64 brake; float64 steer; uint8 NO_COMMAND=0; uint8
     NEUTRAL=1; uint8 FORWARD=2; uint8 REVERSE=3; uint8 shift_gears

@@ -306,6 +306,9 @@ class Context(Protocol):
     def models(self) -> "Dict[str, Model]":
         """The flattened descriptions of all models by name, the plugin's own among them."""
 
+    def move_model(self, name: str, pose: Pose, twist: Twist = STILL) -> None:
+        """Set the pose and twist of any model, as `move`. Raises PluginError."""
+
     def lights(self) -> "Dict[str, Light]":
         """The lights of the world by name."""
 

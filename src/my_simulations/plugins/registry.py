@@ -57,6 +57,7 @@ BUILT_IN: Mapping[str, str] = {
     "libGimbalSmall2dPlugin.so": "state.gimbal:Gimbal",
     "libgazebo_ros_vacuum_gripper.so": "gripping.vacuum_gripper:VacuumGripper",
     "libgazebo_grasp_fix.so": "gripping.grasp_fix:GraspFix",
+    "libActorPosesPlugin.so": "world.actor_poses:ActorPoses",
     "libgazebo_ros_link_attacher.so": "gripping.link_attacher:LinkAttacher",
     "libHarnessPlugin.so": "gripping.harness:Harness",
     "libgazebo_ros_harness.so": "gripping.harness:Harness",

@@ -321,6 +321,12 @@ class SimulatedContext(GraphUser):
         return {entity.model.name: entity.model
                 for entity in self.simulator.models.inventory()[1]}
 
+    def move_model(self, name: str, pose: Pose, twist: Twist = STILL) -> None:
+        try:
+            self.simulator.states.set_model_state(name, pose, twist)
+        except CommandError as fault:
+            raise PluginError(str(fault)) from fault
+
     def lights(self) -> Dict[str, Light]:
         return {light.name: light for light in self.simulator.lights.all()}
 

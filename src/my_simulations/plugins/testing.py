@@ -69,7 +69,7 @@ class FakeContext(FakeGraph):
         held: whether the model is held.
         slips: (joint, radius, normal force, lateral, longitudinal) of wheels.
         followers: (leader, multiplier, offset) of joints that mimic others.
-        others: descriptions of the models in the world.
+        others: descriptions of the models in the world. `moved`: poses of `move_model`, by name.
         attached: (parent, child) by the name of the joint.
         world_lights: the lights of the world by name, which a test puts there.
         materials: the materials of `set_material`, by link and visual.
@@ -108,6 +108,7 @@ class FakeContext(FakeGraph):
         self.slips: Dict[str, Tuple[Any, ...]] = {}
         self.followers: Dict[str, Tuple[str, float, float]] = {}
         self.others: Dict[str, Model] = {}
+        self.moved: Dict[str, Pose] = {}
         self.attached: Dict[str, Tuple[str, str]] = {}
         self.description = Model(model)
         self.returns: Any = None
@@ -240,6 +241,11 @@ class FakeContext(FakeGraph):
 
     def models(self) -> Dict[str, Model]:
         return self.others
+
+    def move_model(self, name: str, pose: Pose, twist: Twist = STILL) -> None:
+        if name not in self.others:
+            raise PluginError(f"there is no model '{name}'")
+        self.moved[name] = pose
 
     def lights(self) -> Dict[str, Light]:
         """The lights that a test has put into `world_lights`."""

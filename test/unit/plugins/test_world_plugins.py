@@ -10,6 +10,7 @@ from my_simulations.description.plugin import PluginSpec
 from my_simulations.description.shapes import Box, Collision, Cylinder, Mesh, Sphere
 from my_simulations.geometry import Pose, Twist, cross, quat_from_rpy
 from my_simulations.plugins.testing import FakeContext
+from my_simulations.plugins.world.actor_poses import ActorPoses
 from my_simulations.plugins.world.buoyancy import Buoyancy
 from my_simulations.plugins.world.dipole_magnet import DipoleMagnet, field_of, force_between
 from my_simulations.plugins.world.lift_drag import LiftDrag
@@ -176,3 +177,13 @@ def test_forces_between_magnets_are_opposite():
         cross(one, field_of(two, arm)),
         cross(two, field_of(one, tuple(-part for part in arm))), cross(arm, there))]
     assert around == pytest.approx([0.0] * 3, abs=1e-12)
+
+
+def test_models_follow_the_agents_with_their_numbers():
+    context = FakeContext(model="world")
+    context.others = {"1": Model("1"), "car": Model("car")}
+    ActorPoses(context).load()
+    context.deliver("/pedsim_simulator/simulated_agents", agent_states=[
+        {"id": number, "pose": {"position": {"x": 2.0, "y": float(number), "z": 0.1},
+                                "orientation": {"z": 1.0}}} for number in (1, 2)])
+    assert context.moved == {"1": Pose((2.0, 1.0, pytest.approx(0.85)), (0.0, 0.0, 1.0, 0.0))}

@@ -13,7 +13,7 @@ from my_simulations.messages.definitions import standard_definitions
 from my_simulations.messages.message_types import standard_type
 
 ELSEWHERE = {"ackermann_msgs", "gazebo_conveyor", "gazebo_ros_link_attacher", "hector_uav_msgs",
-             "mav_msgs", "prius_msgs", "rotors_comm"}
+             "mav_msgs", "pedsim_msgs", "prius_msgs", "rotors_comm"}
 """Packages that Debian does not have."""
 
 

@@ -25,8 +25,8 @@ PROPERTIES = frozenset((
 """Properties of the context whose values are sent."""
 
 METHODS = frozenset((
-    "transmissions", "move", "hold", "scoped", "joint_spec", "set_wheel_slip", "mimic", "models",
-    "attach", "detach", "efforts", "set_joint_positions", "joint_wrench", "contacts", "scan",
+    "transmissions", "move", "move_model", "hold", "scoped", "joint_spec", "set_wheel_slip",
+    "mimic", "models", "attach", "detach", "efforts", "set_joint_positions", "joint_wrench", "contacts", "scan",
     "photograph", "sensors", "link_names", "lights", "set_light", "set_material",
     "use_namespace", "message", "stamp", "parameter", "search_parameter"))
 """Methods of the context whose results are sent."""
