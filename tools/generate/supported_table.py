@@ -9,9 +9,9 @@ PAGE = REPOSITORY / "doc" / "sdf_support.md"
 
 def with_table(page: str) -> str:
     """The page's text with the present table."""
-    from my_simulations.formats.support_table import markdown
+    from my_simulations.formats.support_table import support_tables
 
-    return replaced(page, "supported", f"{markdown().strip()}\n")
+    return replaced(page, "supported", f"{support_tables().strip()}\n")
 
 
 if __name__ == "__main__":

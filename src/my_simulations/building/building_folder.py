@@ -12,7 +12,7 @@ from typing import Any, Dict, List, Optional, Tuple
 
 from ..description.model import Model
 from ..errors import CommandError, InputError, Issue, Severity, error
-from ..formats.image.pixels import checked_format
+from ..formats.image.pixels import verify_format
 from ..formats.reading import read_file
 from ..formats.sdf.writer.entities import write_entity
 from ..resources.limited_file import at_most
@@ -193,7 +193,7 @@ def image_kind(content: bytes, name: str) -> str:
         why = f"it is larger than {LARGEST_IMAGE >> 20} MB"
     else:
         try:
-            kind = checked_format(content)
+            kind = verify_format(content)
             if kind in _ENDINGS:
                 return kind
             why = f"it is {kind}, not PNG or JPEG"

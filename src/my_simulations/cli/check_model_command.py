@@ -15,7 +15,7 @@ from ..description.model import Model
 from ..description.world import World
 from ..errors import InputError, Issue, Severity, error, errors_of, tolerated_as_errors
 from ..formats.reading import read_any
-from ..formats.xml.parsing import content
+from ..formats.xml.parsing import read_content
 from ..objects.object_documents import run_xacro
 from ..program_end import exit_cleanly
 from ..resources.database.download_notes import DownloadNotes
@@ -154,7 +154,7 @@ def _document(file: str, any_xacro: bool) -> Tuple[str, Union[str, bytes]]:
                 hint="read the file, then use --run-xacro")])
         return path, run_xacro(path, XACRO_SECONDS)
     try:
-        return path, content(path)
+        return path, read_content(path)
     except OSError as fault:
         raise InputError([error("file-unreadable", f"cannot be read: {fault.strerror or fault}",
                                 file=path)]) from None

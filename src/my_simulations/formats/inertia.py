@@ -24,7 +24,7 @@ _LEAST = 1e-3
 def usable_inertia(link: Link, source: Source, element: Any) -> Inertial:
     """The inertia of a dynamic link; one that cannot be simulated is replaced, with a warning."""
     inertial = link.inertial
-    better = completed(inertial, link.collisions)
+    better = complete_inertia(inertial, link.collisions)
     if better is not None:
         source.warn("inertia-zero", f"the inertia of link {link.name!r} {better[1]}", element)
         return better[0]
@@ -37,8 +37,9 @@ def usable_inertia(link: Link, source: Source, element: Any) -> Inertial:
     return replace(inertial, ixx=1.0, iyy=1.0, izz=1.0, ixy=0.0, ixz=0.0, iyz=0.0)
 
 
-def completed(inertial: Inertial, collisions: List[Collision]) -> Optional[Tuple[Inertial, str]]:
-    """The inertia with omitted values filled in, and a phrase for the warning.
+def complete_inertia(inertial: Inertial, collisions: List[Collision],
+                     ) -> Optional[Tuple[Inertial, str]]:
+    """Fill in omitted values of an inertia; return it and a phrase for the warning.
 
     Returns None if no value is omitted, or if the omitted values cannot be estimated.
     """
@@ -95,7 +96,7 @@ def solid_inertial(mass: float, collisions: List[Collision]) -> Optional[Inertia
     for collision, (own, (x, y, z)) in solids:
         share = mass * own / volume
         part = Inertial(share, ixx=share * x, iyy=share * y, izz=share * z)
-        total = combined_inertia(total, part, collision.pose)
+        total = combine_inertia(total, part, collision.pose)
     return total
 
 
@@ -117,9 +118,9 @@ def solid_moments(geometry: Geometry) -> Optional[Tuple[float, Tuple[float, floa
 Matrix = Tuple[Vec3, Vec3, Vec3]
 
 
-def combined_inertia(a: Optional[Inertial], b: Optional[Inertial],
-                     b_pose: Pose) -> Optional[Inertial]:
-    """The inertia of two rigidly joined bodies, in the link frame of `a`.
+def combine_inertia(a: Optional[Inertial], b: Optional[Inertial],
+                    b_pose: Pose) -> Optional[Inertial]:
+    """Add the inertia of two rigidly joined bodies, in the link frame of `a`.
 
     Args:
         a: inertial of the first body; None or mass 0 for no mass.

@@ -102,14 +102,14 @@ def _answer(request: Dict[str, Any]) -> Tuple[Dict[str, Any], List[Any]]:
     except Exception as fault:  # the libraries raise various ones
         issues = [error(_code(request), f"it cannot be read: {type(fault).__name__}: {fault}",
                         file=path)]
-    return {"issues": [_plain(issue) for issue in issues]}, []
+    return {"issues": [_issue_fields(issue) for issue in issues]}, []
 
 
 def _code(request: Dict[str, Any]) -> str:
     return "mesh-unreadable" if request["task"] == "mesh" else "image-unreadable"
 
 
-def _plain(issue: Issue) -> Dict[str, Any]:
+def _issue_fields(issue: Issue) -> Dict[str, Any]:
     return {**vars(issue), "severity": issue.severity.value}
 
 

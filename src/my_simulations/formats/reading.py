@@ -25,7 +25,7 @@ from .sdf.state_applied import apply_state
 from .sdf.upgrade import upgrade
 from .sdf.world import read_world_element
 from .sdf.world_scene import read_actor
-from .xml.parsing import content, parse
+from .xml.parsing import parse, read_content
 from .xml.source import FaultLevel, IssueCollector, Source
 
 Text = Union[str, bytes]
@@ -315,7 +315,7 @@ def _refuse_xacro(root: Any, source: Source) -> None:
 
 def _content(path: str) -> bytes:
     try:
-        return content(path)
+        return read_content(path)
     except OSError as fault:
         code = "file-not-found" if isinstance(fault, FileNotFoundError) else "file-unreadable"
         raise InputError(

@@ -51,8 +51,8 @@ _URDF: Tuple[Table, ...] = (
 )
 
 
-def supported(table: Table) -> Iterator[Supported]:
-    """The rows of one table; groups are replaced by their children and attributes."""
+def supported_rows(table: Table) -> Iterator[Supported]:
+    """Yield the rows of one table; groups are replaced by their children and attributes."""
     for name in table.attributes:
         yield Supported(f"@{name}", table.attributes[name].use or table.use,
                         table.attributes[name].since)
@@ -79,8 +79,8 @@ def _use(entry: Entry, usual: Use) -> Use:
     return entry.use or usual
 
 
-def markdown() -> str:
-    """Two Markdown tables, SDF and URDF, with a row for each element that has its own table."""
+def support_tables() -> str:
+    """Return two Markdown tables, SDF and URDF; each element with a table of its own has a row."""
     lines: List[str] = []
     for title, tables in (("SDF", _SDF), ("URDF", _URDF)):
         lines += [f"| {title} element | {' | '.join(use.value for use in Use)} |",
@@ -91,7 +91,7 @@ def markdown() -> str:
 
 
 def _row(table: Table) -> str:
-    rows = list(supported(table))
+    rows = list(supported_rows(table))
     cells = [", ".join(_shown(row) for row in rows if row.use is use) for use in Use]
     if not rows:
         cells[list(Use).index(table.use)] = "yes"
@@ -103,4 +103,4 @@ def _shown(row: Supported) -> str:
     return f"`{row.path}`" + (f" (SDF {since})" if since else "")
 
 
-__all__ = ["Supported", "markdown", "supported"]
+__all__ = ["Supported", "support_tables", "supported_rows"]

@@ -11,7 +11,7 @@ from ..description.model import Model
 from ..description.world import World
 from ..errors import InputError, Issue, Severity, error, errors_of, tolerated_as_errors
 from ..formats.reading import read_any
-from ..formats.xml.parsing import STRAY_END_TAG, content
+from ..formats.xml.parsing import STRAY_END_TAG, read_content
 from ..resources.resolver import Resolver
 from .assignment import (
     DYNAMIC,
@@ -53,7 +53,7 @@ def read_world_file(folder: str, name: str, resolver: Resolver) -> WorldFile:
     """
     path = os.path.join(folder, name)
     try:
-        loaded, issues = read_any(content(path), resolver, path)
+        loaded, issues = read_any(read_content(path), resolver, path)
     except InputError as fault:
         return WorldFile(name, None, fault.issues)
     except OSError as fault:

@@ -16,7 +16,7 @@ import numpy as np
 
 from ..description.shapes import MeshData
 from ..description.surroundings import Road
-from ..formats.mesh.painted import PaintedPart, smooth
+from ..formats.mesh.painted import PaintedPart, shade_smooth
 from ..geometry import Pose
 from .actors.figure_shape import FigureShape, Form
 from .api import PaintedRoad, SetScenery
@@ -129,5 +129,5 @@ def strip(road: Road) -> Optional[PaintedPart]:
     uv = np.column_stack([np.tile([0.0, 1.0], len(points)), np.repeat(np.cumsum(steps), 2)])
     first = 2 * np.arange(len(points) - 1)[:, None]
     triangles = (first + np.array([0, 1, 2, 2, 1, 3])).reshape(-1, 3).astype(np.int32)
-    made = smooth(MeshData(corners, triangles))
+    made = shade_smooth(MeshData(corners, triangles))
     return PaintedPart(corners, made.normals, uv, triangles)

@@ -72,11 +72,11 @@ def pieces_of(visual: Visual, look: Optional[Look]) -> List[Piece]:
     if isinstance(shape, SOLIDS):
         # A world without a mesh has its first picture earlier.
         from ..formats.mesh.loading import load_solid
-        from ..formats.mesh.painted import flat, painted_parts, smooth
+        from ..formats.mesh.painted import painted_parts, shade_flat, shade_smooth
 
         parts = (painted_parts(shape) if isinstance(shape, Mesh)
-                 else [smooth(load_solid(shape))] if isinstance(shape, Heightmap)
-                 else [flat(load_solid(shape))])
+                 else [shade_smooth(load_solid(shape))] if isinstance(shape, Heightmap)
+                 else [shade_flat(load_solid(shape))])
         if look is not None and look.layers and isinstance(shape, Heightmap):
             return [_terrain(parts[0], look.layers, shape.position[2], opacity)]
         return [piece_of(part.vertices, part.normals, part.uv, part.triangles,

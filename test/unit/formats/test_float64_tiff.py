@@ -9,7 +9,7 @@ from PIL import Image, UnidentifiedImageError
 from my_simulations.description.shapes import Heightmap
 from my_simulations.errors import InputError
 from my_simulations.formats.image import float64_tiff, pixels
-from my_simulations.formats.image.levels import elevations
+from my_simulations.formats.image.levels import read_elevations
 from my_simulations.formats.mesh.terrain import solid_mesh
 
 NO_DATA = "-99999.99"
@@ -78,7 +78,7 @@ def test_heights_of_64_bits_are_read(tmp_path, options):
     path = written(tmp_path, HEIGHTS, **options)
     with pytest.raises(UnidentifiedImageError):
         Image.open(path)
-    found = elevations(path, 0)
+    found = read_elevations(path, 0)
     assert found.heights.tolist() == SHOWN.tolist()
     assert (found.lowest, found.highest, found.extent) == (-3.0, 4000.125, (2.5, 1.5))
 
@@ -95,7 +95,7 @@ def test_they_make_a_terrain(tmp_path):
     ({"compression": 8, "predictor": 2}, "predictor 2")], ids=str)
 def test_what_cannot_be_read_is_named(tmp_path, options, said):
     with pytest.raises(InputError, match=said):
-        elevations(written(tmp_path, HEIGHTS, **options), 0)
+        read_elevations(written(tmp_path, HEIGHTS, **options), 0)
 
 
 @pytest.mark.filterwarnings("ignore:Corrupt EXIF data", "ignore:Truncated File")
@@ -108,7 +108,7 @@ def test_damaged_files_are_refused(tmp_path):
                     *(whole[:length] for length in range(0, len(whole) // 2, 5))):
         path.write_bytes(changed)
         with pytest.raises(InputError):
-            elevations(str(path), 0)
+            read_elevations(str(path), 0)
 
 
 def test_large_ones_are_read_in_another_process_and_too_large_ones_are_refused(
@@ -116,7 +116,7 @@ def test_large_ones_are_read_in_another_process_and_too_large_ones_are_refused(
     monkeypatch.setattr(pixels, "_PLAIN_PIXELS", 10)
     path = written(tmp_path, HEIGHTS)
     assert float64_tiff.pixels_in(tiff(HEIGHTS)) == 15 and pixels.is_costly(path)
-    assert elevations(path, 0).heights.tolist() == SHOWN.tolist()
+    assert read_elevations(path, 0).heights.tolist() == SHOWN.tolist()
     monkeypatch.setattr(pixels, "MOST_PIXELS", 14)
     with pytest.raises(ValueError, match="5 x 3 pixels"):
-        pixels.opened(path)
+        pixels.open_image(path)

@@ -8,9 +8,9 @@ import pytest
 
 from my_simulations.formats.mesh.polygons import (
     convex_pieces,
-    oriented,
+    orient_loops,
     signed_area,
-    triangulated,
+    triangulate,
 )
 
 SQUARE = [(-6.0, -6.0), (6.0, -6.0), (6.0, 6.0), (-6.0, 6.0)]
@@ -30,8 +30,8 @@ def star(draw, x, y, radius, corners):
 
 def areas(loops):
     """What the loops enclose, and what triangles and pieces of them cover."""
-    loops = oriented(loops)
-    points, triangles = triangulated(loops)
+    loops = orient_loops(loops)
+    points, triangles = triangulate(loops)
     shapes = (triangles, convex_pieces(points, triangles))
     return sum(map(signed_area, loops)), [
         sum(signed_area([points[i] for i in corners]) for corners in shape) for shape in shapes]

@@ -19,8 +19,8 @@ from my_simulations.building.building_folder import image_kind
 from my_simulations.description.shapes import Heightmap, Mesh
 from my_simulations.errors import InputError
 from my_simulations.formats import reader_process
-from my_simulations.formats.image.levels import elevations, grey_levels, levels_of
-from my_simulations.formats.image.pixels import checked_format, picture, pixels_of
+from my_simulations.formats.image.levels import grey_levels, levels_of, read_elevations
+from my_simulations.formats.image.pixels import pixels_of, read_picture, verify_format
 from my_simulations.formats.mesh import loading
 from my_simulations.formats.mesh.loading import load_mesh, load_solid
 
@@ -103,12 +103,12 @@ def test_another_process_reads_the_same(kept, tmp_path, monkeypatch):
         assert found.white == expected.white and np.array_equal(found.values, expected.values)
     path = str(tmp_path / "heights.tif")
     Image.fromarray(rows.astype(np.float32) / WIDE).save(path)
-    heights = elevations(path, 65)
+    heights = read_elevations(path, 65)
     assert heights is not None and heights.shape == (WIDE, WIDE) and heights.extent is None
     assert heights.highest == pytest.approx(WIDE, rel=1e-3)
     coloured = str(tmp_path / "coloured.png")
     Image.fromarray(np.stack([rows % 256] * 3, axis=2).astype(np.uint8)).save(coloured)
-    assert np.array_equal(picture(coloured, 1024), pixels_of(coloured, 1024))
+    assert np.array_equal(read_picture(coloured, 1024), pixels_of(coloured, 1024))
     assert kept.pid == pid  # one process for all
 
 
@@ -182,7 +182,7 @@ def test_no_other_program_is_started_for_a_picture(tmp_path, monkeypatch):
                     encoding="ascii")
     with pytest.raises(InputError, match="no known format"):
         load_solid(Heightmap(uri="m", path=str(path)))
-    assert picture(str(path), 64) is None and not ran.exists()
+    assert read_picture(str(path), 64) is None and not ran.exists()
 
 
 
@@ -198,15 +198,15 @@ def many_scans(side, scans):
 
 
 def test_a_picture_of_many_scans_or_pixels_is_checked_by_another_process(kept, tmp_path):
-    assert checked_format(many_scans(64, 10)) == "JPEG" and kept.pid == 0
-    assert checked_format(many_scans(64, 2000)) == "JPEG"
+    assert verify_format(many_scans(64, 10)) == "JPEG" and kept.pid == 0
+    assert verify_format(many_scans(64, 2000)) == "JPEG"
     pid = kept.pid
     assert pid > 0
     with open(blank_png(tmp_path / "wide.png", WIDE), "rb") as stream:
         content = stream.read()
-    assert checked_format(content) == "PNG" and kept.pid == pid
+    assert verify_format(content) == "PNG" and kept.pid == pid
     with pytest.raises(InputError, match="truncated") as refused:
-        checked_format(content[:-40])
+        verify_format(content[:-40])
     assert refused.value.first.code == "image-unreadable"
 
 
@@ -243,4 +243,4 @@ def test_a_floor_plan_that_takes_too_long_to_decode_is_refused(kept, monkeypatch
 def test_a_texture_of_many_scans_is_read_by_another_process(kept, tmp_path):
     path = tmp_path / "texture.jpg"
     path.write_bytes(many_scans(64, 2000))
-    assert picture(str(path), 64).shape == (64, 64, 4) and kept.pid > 0
+    assert read_picture(str(path), 64).shape == (64, 64, 4) and kept.pid > 0

@@ -7,7 +7,7 @@ from reading import DATA, codes, errors, refusal, sdf, warnings
 from my_simulations.errors import InputError, Severity
 from my_simulations.formats.reading import parse_world, read_entity, read_world
 from my_simulations.formats.xml.parsing import parse
-from my_simulations.formats.xml.repair import balanced
+from my_simulations.formats.xml.repair import balance_tags
 from my_simulations.formats.xml.source import IssueCollector
 from my_simulations.resources.resolver import Resolver
 
@@ -168,7 +168,7 @@ def test_models_that_include_each_other_are_an_error_not_a_loop(tmp_path):
 
 def test_balancing_leaves_a_sound_text_as_it_is():
     text = '<a b="x > y"><!-- <c> --><![CDATA[<d>]]><e/>text</a>\n'
-    result = balanced(text)
+    result = balance_tags(text)
     assert (result.text, result.elements, result.repairs) == (text.rstrip(), 2, [])
 
 

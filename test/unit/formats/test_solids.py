@@ -10,7 +10,7 @@ from PIL import Image, TiffImagePlugin
 
 from my_simulations.description.shapes import Heightmap, ImageMap, Polyline
 from my_simulations.errors import InputError
-from my_simulations.formats.image.levels import elevations, grey_levels
+from my_simulations.formats.image.levels import grey_levels, read_elevations
 from my_simulations.formats.mesh.terrain import solid_mesh
 
 SQUARE = [(0, 0), (4, 0), (4, 4), (0, 4)]
@@ -243,7 +243,7 @@ def test_an_elevation_model_keeps_its_extremes_when_it_is_thinned(tmp_path):
     heights[333, 7], heights[1, 1], heights[650, 3] = -5.0, 9.0, np.nan
     path = tmp_path / "a.tif"
     Image.fromarray(heights).save(path)
-    found = elevations(str(path), 101)
+    found = read_elevations(str(path), 101)
     assert (found.lowest, found.highest, found.shape) == (-5.0, 9.0, (700, 900))
     assert found.heights.shape == (78, 100) and np.isfinite(found.heights).all()
 
@@ -251,7 +251,7 @@ def test_an_elevation_model_keeps_its_extremes_when_it_is_thinned(tmp_path):
 MEMORY = """
 import sys
 from my_simulations.description.shapes import Heightmap, ImageMap
-from my_simulations.formats.image.levels import elevations, grey_levels
+from my_simulations.formats.image.levels import grey_levels, read_elevations
 from my_simulations.formats.mesh.terrain import solid_mesh
 for kind in (Heightmap, ImageMap):
     shape = kind()

@@ -3,13 +3,13 @@ import pytest
 
 from my_simulations.formats.sdf.model_tables import COLLISION, GEOMETRIES, LINK, MODEL, WORLD
 from my_simulations.formats.sdf.sensor_tables import SENSOR
-from my_simulations.formats.support_table import markdown, supported
+from my_simulations.formats.support_table import support_tables, supported_rows
 from my_simulations.formats.xml.tables import Use
 from my_simulations.plugins.registry import PluginRegistry
 
 
 def uses(table):
-    return {row.path: row.use for row in supported(table)}
+    return {row.path: row.use for row in supported_rows(table)}
 
 
 def test_every_element_has_a_use():
@@ -39,7 +39,7 @@ def test_elements_of_plugins_are_listed_as_used_if_the_registry_has_the_plugin(
 
 
 def test_the_text_is_a_table_with_a_row_for_each_element():
-    lines = markdown().splitlines()
+    lines = support_tables().splitlines()
     assert lines[0] == "| SDF element | simulated | used by plugins | shown | kept | ignored |"
     for name in (*GEOMETRIES, "world", "state", "robot"):
         assert sum(line.startswith(f"| `{name}` |") for line in lines) >= 1, name
@@ -47,4 +47,4 @@ def test_the_text_is_a_table_with_a_row_for_each_element():
 
 
 def test_what_newer_versions_brought_says_since_when():
-    assert "`screw_thread_pitch` (SDF 1.10)" in markdown()
+    assert "`screw_thread_pitch` (SDF 1.10)" in support_tables()

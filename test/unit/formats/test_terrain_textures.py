@@ -15,7 +15,7 @@ from my_simulations.description.shapes import (
     mesh_key,
 )
 from my_simulations.formats.reading import read_entity
-from my_simulations.formats.sdf.state_applied import scaled
+from my_simulations.formats.sdf.state_applied import scale_model
 from my_simulations.formats.sdf.writer.entities import write_entity
 from my_simulations.resources.resolver import Resolver
 
@@ -112,7 +112,7 @@ def test_a_size_that_is_not_positive_is_replaced(folder):
 
 def test_a_scaled_terrain_keeps_its_textures_where_they_were(folder):
     model, _ = terrain(folder, TWO)
-    shape = scaled(model, (1.0, 1.0, 2.0)).links[0].visuals[0].geometry
+    shape = scale_model(model, (1.0, 1.0, 2.0)).links[0].visuals[0].geometry
     assert shape.size == (8, 8, 12) and shape.blends == [TerrainBlend(6.0, 3.0)]
 
 

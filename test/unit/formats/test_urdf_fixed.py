@@ -6,7 +6,7 @@ import pytest
 from reading import URDF_INERTIAL, codes, errors, robot_joint, robot_link, robot_of
 
 from my_simulations.description.model import Inertial
-from my_simulations.formats.inertia import combined_inertia
+from my_simulations.formats.inertia import combine_inertia
 from my_simulations.geometry import Pose, add, quat_from_rpy, rotate, scale
 
 BOX = '<geometry><box size="1 1 1"/></geometry>'
@@ -183,7 +183,7 @@ def test_merging_two_bodies_equals_the_sum_over_their_mass_points(seed):
     for m, p in points:
         centre = add(centre, scale(p, m / mass))
     arms = [(m, tuple(p[k] - centre[k] for k in range(3))) for m, p in points]
-    total = combined_inertia(first, second, between)
+    total = combine_inertia(first, second, between)
     assert total.mass == pytest.approx(mass)
     assert total.pose.position == pytest.approx(centre)
     assert total.pose.orientation == (0, 0, 0, 1)

@@ -6,14 +6,14 @@ import tracemalloc
 import pytest
 
 from my_simulations.formats.image.pixels import is_costly
-from my_simulations.formats.xml.parsing import content
+from my_simulations.formats.xml.parsing import read_content
 from my_simulations.objects.yaml_source import read_yaml
 from my_simulations.resources.limited_file import at_most
 
 PIXEL = bytes.fromhex("89504e470d0a1a0a0000000d4948445200000001000000010806000000"
                       "1f15c4890000000b49444154789c6360000200000500017a5eab3f0000000049454e44ae426082")
 READERS = {"list": (lambda path: read_yaml(path, "/objects"), b"a: {model: box}"),
-           "document": (content, b"<sdf version='1.6'/>"), "image": (is_costly, PIXEL)}
+           "document": (read_content, b"<sdf version='1.6'/>"), "image": (is_costly, PIXEL)}
 
 
 @pytest.mark.parametrize("size", [0, 1, 99, 100])

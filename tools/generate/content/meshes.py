@@ -8,7 +8,7 @@ from typing import List, Sequence, Tuple
 
 import numpy as np
 
-from my_simulations.formats.mesh.polygons import triangulated
+from my_simulations.formats.mesh.polygons import triangulate
 
 Point = Tuple[float, float]
 Vec3 = Tuple[float, float, float]
@@ -89,7 +89,7 @@ def _cap(ring: np.ndarray) -> np.ndarray:
     side = points[1] - points[0]
     across = np.cross(normal, side)
     flat = [(float(p @ side), float(p @ across)) for p in points]
-    _, triangles = triangulated([flat])
+    _, triangles = triangulate([flat])
     return np.array(distinct)[np.array(triangles)]
 
 

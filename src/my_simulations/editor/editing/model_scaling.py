@@ -5,8 +5,8 @@ from dataclasses import replace
 
 from ...description.model import Inertial, Model
 from ...errors import CommandError
-from ...formats.inertia import combined_inertia
-from ...formats.sdf.state_applied import scaled
+from ...formats.inertia import combine_inertia
+from ...formats.sdf.state_applied import scale_model
 from ...geometry import IDENTITY, Pose, Vec3, is_finite
 from ..scene.scene_json import is_scalable
 
@@ -24,7 +24,7 @@ def resized(model: Model, factor: Vec3) -> Model:
     if not is_scalable(model):
         raise CommandError(f"{model.name!r} cannot be scaled: it has several links, or a shape"
                            " without a size of its own")
-    made = scaled(model, factor)
+    made = scale_model(model, factor)
     return replace(made, links=[
         replace(link, inertial=scaled_inertial(link.inertial, factor)) for link in made.links])
 
@@ -35,7 +35,7 @@ def scaled_inertial(inertial: Inertial, factor: Vec3) -> Inertial:
     The integrals of x x, x y, … over the mass scale with the product of two factors, and the
     tensor is made of them; exact for any body.
     """
-    i = combined_inertia(None, inertial, IDENTITY) or inertial   # along the link's axes
+    i = combine_inertia(None, inertial, IDENTITY) or inertial   # along the link's axes
     fx, fy, fz = factor
     xx = (i.iyy + i.izz - i.ixx) / 2 * fx * fx
     yy = (i.ixx + i.izz - i.iyy) / 2 * fy * fy

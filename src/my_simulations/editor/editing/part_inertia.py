@@ -17,7 +17,7 @@ from ...description.shapes import (
     Polyline,
 )
 from ...errors import CommandError
-from ...formats.inertia import combined_inertia, solid_moments
+from ...formats.inertia import combine_inertia, solid_moments
 from ...formats.mesh.loading import load_mesh, load_solid
 from ...geometry import Pose
 
@@ -46,7 +46,7 @@ def inertial_of(collisions: List[Collision], *, density: Optional[float] = None,
     total: Optional[Inertial] = None
     for solid, pose in solids:
         if solid is not None:
-            total = combined_inertia(total, with_density(solid, density), pose)
+            total = combine_inertia(total, with_density(solid, density), pose)
     assert total is not None
     return total
 

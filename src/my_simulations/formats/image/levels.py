@@ -8,7 +8,7 @@ from typing import Any, Iterator, Optional, Tuple
 
 from ...errors import InputError, error
 from ..reader_process import read_elsewhere
-from .pixels import is_costly, opened
+from .pixels import is_costly, open_image
 
 _BAND = 256
 _CODE = "image-unreadable"
@@ -84,8 +84,8 @@ def levels_of(path: str, widest: int, step: int) -> Levels:
     return Levels(np.concatenate(bands), 65535.0 if deep else 255.0)
 
 
-def elevations(path: str, widest: int) -> Optional[Elevations]:
-    """The heights in a GeoTIFF or another floating-point image; None for other images.
+def read_elevations(path: str, widest: int) -> Optional[Elevations]:
+    """Read the heights of a GeoTIFF or another floating-point image; None for other images.
 
     Pixels without data get the least height of the others. `widest` as in `grey_levels`. Raises
     InputError: with one issue, `image-unreadable`.
@@ -173,7 +173,7 @@ def _costly(path: str) -> bool:
 
 @contextmanager
 def _opened(path: str) -> Iterator[Any]:
-    with _as_input_error(path), opened(path) as image:
+    with _as_input_error(path), open_image(path) as image:
         yield image
 
 

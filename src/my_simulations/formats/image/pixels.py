@@ -56,8 +56,8 @@ def _head(source: Union[str, IO[bytes]]) -> bytes:
     return head
 
 
-def opened(source: Union[str, IO[bytes]]) -> Any:
-    """A PIL image whose header has been read.
+def open_image(source: Union[str, IO[bytes]]) -> Any:
+    """Open a PIL image and read its header.
 
     Raises OSError, ValueError, SyntaxError, EOFError: it is none of `FORMATS`, damaged, or has too
     many pixels.
@@ -90,7 +90,7 @@ def _of_float64(source: Union[str, IO[bytes]]) -> Optional[Any]:
 def is_costly(path: str) -> bool:
     """Whether a picture that can be opened may take so much that another process reads it.
 
-    Raises as `opened`.
+    Raises as `open_image`.
     """
     if os.path.getsize(path) > _PLAIN_BYTES:
         return True
@@ -101,17 +101,17 @@ def is_costly(path: str) -> bool:
 def _is_large(content: bytes) -> bool:
     if len(content) > _PLAIN_BYTES or float64_tiff.pixels_in(content) > _PLAIN_PIXELS:
         return True
-    with opened(io.BytesIO(content)) as image:
+    with open_image(io.BytesIO(content)) as image:
         if image.width * image.height > _PLAIN_PIXELS:
             return True
         return image.format == "JPEG" and content.count(_SCAN) > _PLAIN_SCANS
 
 
-def checked_format(content: bytes) -> str:
-    """The format of an image, one of `FORMATS`, of which every pixel has been decoded.
+def verify_format(content: bytes) -> str:
+    """Decode every pixel of an image and return its format, one of `FORMATS`.
 
     Raises:
-        OSError, ValueError, SyntaxError, EOFError: as `opened`.
+        OSError, ValueError, SyntaxError, EOFError: as `open_image`.
         InputError: the child process that decodes large images failed.
     """
     if not _is_large(content):
@@ -123,14 +123,17 @@ def checked_format(content: bytes) -> str:
 
 
 def format_of(source: Union[str, IO[bytes]]) -> str:
-    """As `checked_format`, in this process."""
-    with opened(source) as image:
+    """As `verify_format`, in this process."""
+    with open_image(source) as image:
         image.load()
         return str(image.format)
 
 
-def picture(path: str, largest: int) -> Optional[Any]:
-    """uint8 (h, w, 4), the lowest row first, at most `largest` along a side; None if unreadable."""
+def read_picture(path: str, largest: int) -> Optional[Any]:
+    """Read an image as uint8 (h, w, 4), lowest row first; None if it is unreadable.
+
+    It has at most `largest` pixels along a side.
+    """
     from ...errors import InputError
 
     try:
@@ -143,13 +146,13 @@ def picture(path: str, largest: int) -> Optional[Any]:
 
 
 def pixels_of(source: Any, largest: int) -> Optional[Any]:
-    """As `picture`, of a path or an open image, in this process."""
+    """As `read_picture`, of a path or an open image, in this process."""
     import numpy as np
     import PIL.Image
 
     pillow: Any = PIL.Image  # its types differ between versions
     try:
-        image = opened(source) if isinstance(source, str) else source
+        image = open_image(source) if isinstance(source, str) else source
         if max(image.size) > largest:
             image.draft("RGB", (largest, largest))
             image = image.convert("RGBA")

@@ -9,8 +9,8 @@ import io
 import math
 from typing import Any, Iterator, List, Tuple
 
-from .collada_cleanup import MOST_COLLADA_NODES, tidied
-from .part import MeshError, MeshPart, bounded
+from .collada_cleanup import MOST_COLLADA_NODES, parse_collada_geometry
+from .part import MeshError, MeshPart, check_triangle_count
 
 _DEEPEST = 100
 
@@ -20,13 +20,13 @@ def read_collada(data: bytes) -> List[MeshPart]:
     import numpy as np
     from lxml import etree
 
-    root = tidied(data)
+    root = parse_collada_geometry(data)
     try:
         document = _loaded(etree.tostring(root))
         unit = unit_of(root)
         with np.errstate(all="ignore"):  # non-finite numbers are reported later
-            made = (_part(names, geometry, unit) for names, geometry in instances(document))
-            return bounded(part for part in made if part is not None)
+            made = (_part(names, geometry, unit) for names, geometry in bound_geometries(document))
+            return check_triangle_count(part for part in made if part is not None)
     except RecursionError:
         raise MeshError("its nodes form a cycle or are nested too deeply") from None
     except (LookupError, TypeError, ValueError, OverflowError, AttributeError) as fault:
@@ -79,8 +79,8 @@ def unit_of(root: Any) -> float:
     return unit
 
 
-def instances(document: Any) -> Iterator[Tuple[Tuple[str, ...], Any]]:
-    """(names, bound geometry) of every instance in the scene."""
+def bound_geometries(document: Any) -> Iterator[Tuple[Tuple[str, ...], Any]]:
+    """Yield the names and the bound geometry of every instance in the scene."""
     import numpy as np
     from collada.scene import ControllerNode, GeometryNode
 

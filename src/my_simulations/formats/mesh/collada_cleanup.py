@@ -26,12 +26,12 @@ _MOST_TAGS = 1_000_000  # an element takes about 200 bytes
 _NAMESPACE = "http://www.collada.org/2005/11/COLLADASchema"
 
 
-def tidied(data: bytes) -> Any:
-    """The `<COLLADA>` element of a file, reduced to the geometry of its scene.
+def parse_collada_geometry(data: bytes) -> Any:
+    """Parse a file and reduce its `<COLLADA>` element to the geometry of its scene.
 
     Elements keep the line numbers of the file. Raises MeshError: not COLLADA, or invalid numbers.
     """
-    root = parsed(data)
+    root = parse_collada(data)
     document = _Document(root)
     document.replace_controllers()
     for child in list(root):
@@ -44,8 +44,8 @@ def tidied(data: bytes) -> Any:
     return root
 
 
-def parsed(data: bytes) -> Any:
-    """The `<COLLADA>` element of a file, its elements in COLLADA's namespace.
+def parse_collada(data: bytes) -> Any:
+    """Parse the `<COLLADA>` element of a file; put its elements into COLLADA's namespace.
 
     Raises MeshError: not COLLADA.
     """

@@ -17,11 +17,11 @@ import numpy as np
 
 from .bvh import read_bvh
 from .collada import unit_of
-from .collada_cleanup import parsed
+from .collada_cleanup import parse_collada
 from .keyframes import Clip, clip_of
 from .node_tree import Array, Bones, NodeTree, floats
 from .paint import effect_of
-from .painted import PaintedPart, corners_of, indexed
+from .painted import PaintedPart, corners_of, merge_corners
 from .part import MOST_TRIANGLES, MeshError
 
 _MOST_BONES = 4
@@ -142,7 +142,7 @@ def _moves(path: str, _changed_at: Tuple[int, int]) -> Optional[Movement]:
 
 
 def _root_of(path: str) -> Any:
-    return parsed(_bytes_of(path))
+    return parse_collada(_bytes_of(path))
 
 
 def _bytes_of(path: str) -> bytes:
@@ -210,8 +210,8 @@ class _Reader:
             self._triangles += len(index) // 3
             if self._triangles > MOST_TRIANGLES:
                 raise MeshError("it has too many triangles")
-            part, first = indexed(places, normals, uv, effect_of(material, self._folder),
-                                  None if binding is None else index)
+            part, first = merge_corners(places, normals, uv, effect_of(material, self._folder),
+                                        None if binding is None else index)
             skin = None if binding is None else binding.of(index[first])
             if binding is not None:
                 part = binding.bound(part)

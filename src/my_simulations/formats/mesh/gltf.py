@@ -31,12 +31,12 @@ def check_gltf(data: bytes, path: str) -> None:
     children = [child for node in nodes for child in node.get("children") or ()]
     if len(nodes) > _MOST_NODES or len(children) != len({str(child) for child in children}):
         raise MeshError(f"it has more than {_MOST_NODES} nodes, or one with two parents")
-    for _, uri in named_in_gltf(tree):
+    for _, uri in gltf_file_uris(tree):
         _check_file(os.path.join(os.path.dirname(path), unquote(uri)), uri)
 
 
-def named_in_gltf(tree: Any) -> List[Tuple[str, str]]:
-    """The URIs of the files that a glTF document refers to, each after `buffers` or `images`.
+def gltf_file_uris(tree: Any) -> List[Tuple[str, str]]:
+    """Return the file URIs of a glTF document as pairs (`buffers` or `images`, URI).
 
     Raises MeshError: the document is damaged.
     """

@@ -75,7 +75,7 @@ def _joined(group: "List[_NodeKeys]") -> Keys:
     matrices = np.array([one.matrices for one in group]).swapaxes(0, 1)
     if not (np.isfinite(matrices).all() and np.isfinite(group[0].times).all()):
         raise ValueError("keys that are not finite numbers")
-    places, turns, scales = decomposed(matrices)
+    places, turns, scales = decompose_matrices(matrices)
     return Keys(group[0].times, np.array([one.node for one in group]), places, turns, scales)
 
 
@@ -134,8 +134,8 @@ class _NodeKeys:
         self.matrices = np.array(made)
 
 
-def decomposed(matrices: Array) -> Tuple[Array, Array, Array]:
-    """Return positions (..., 3), quaternions (..., 4) and scales (..., 3) of (..., 4, 4) matrices.
+def decompose_matrices(matrices: Array) -> Tuple[Array, Array, Array]:
+    """Split (..., 4, 4) matrices into positions (..., 3), quaternions (..., 4), scales (..., 3).
 
     Shear is lost.
     """
@@ -146,8 +146,8 @@ def decomposed(matrices: Array) -> Tuple[Array, Array, Array]:
     return matrices[..., :3, 3].copy(), _quaternions(turns), scales
 
 
-def composed(places: Array, turns: Array, scales: Array) -> Array:
-    """(n, 4, 4) of what `decomposed` gives."""
+def compose_matrices(places: Array, turns: Array, scales: Array) -> Array:
+    """Return the (n, 4, 4) matrices of positions, quaternions and scales."""
     x, y, z, w = turns.T
     made = np.zeros((len(places), 4, 4))
     made[:, :3, :3] = np.array([

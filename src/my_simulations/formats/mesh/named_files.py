@@ -13,7 +13,7 @@ from urllib.parse import unquote
 
 from ...resources.lfs_pointer import LFS_POINTER, is_lfs_pointer
 from ...resources.limited_file import at_most
-from .gltf import gltf_tree, named_in_gltf
+from .gltf import gltf_file_uris, gltf_tree
 from .part import MeshError
 from .stl import binary_stl_end
 
@@ -117,7 +117,7 @@ def _line(data: bytes, at: int) -> int:
 
 def _of_gltf(data: bytes) -> List[NamedFile]:
     named = []
-    for kind, uri in named_in_gltf(gltf_tree(data)):
+    for kind, uri in gltf_file_uris(gltf_tree(data)):
         at = data.find(b'"' + uri.encode() + b'"')
         named.append(NamedFile(IMAGE if kind == "images" else BUFFER, unquote(uri),
                                _line(data, at) if at >= 0 and data[:4] != b"glTF" else 0))
@@ -125,9 +125,9 @@ def _of_gltf(data: bytes) -> List[NamedFile]:
 
 
 def _of_collada(data: bytes) -> List[NamedFile]:
-    from .collada_cleanup import parsed
+    from .collada_cleanup import parse_collada
 
-    return _ColladaImages(parsed(data)).shown()
+    return _ColladaImages(parse_collada(data)).shown()
 
 
 class _ColladaImages:

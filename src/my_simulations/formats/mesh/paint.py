@@ -116,12 +116,12 @@ def _dissolved(told: Dict[str, Any]) -> float:
 def _of_gltf(material: Any) -> Paint:
     """glTF tells factors in linear units, pictures in sRGB (glTF 2.0, 3.9.2)."""
     factor, picture = material.baseColorFactor, material.baseColorTexture
-    rgb = _WHITE if factor is None else _encoded(_rgb(factor))
+    rgb = _WHITE if factor is None else _srgb(_rgb(factor))
     emission = None
     if material.emissiveTexture is None or material.emissiveTexture is picture:
         glow = _glow(tuple(material.emissiveFactor) if material.emissiveFactor is not None
                      else None)
-        emission = None if glow is None else (*_encoded(glow[:3]), 1.0)
+        emission = None if glow is None else (*_srgb(glow[:3]), 1.0)
     blends = material.alphaMode == "BLEND"
     opacity = _seen(float(factor[3]) / 255.0) if blends and factor is not None else 1.0
     cutoff = 0.5 if material.alphaCutoff is None else float(material.alphaCutoff)
@@ -135,15 +135,15 @@ def _rgb(color: Any) -> Tuple[float, float, float]:
     return float(color[0]) / 255.0, float(color[1]) / 255.0, float(color[2]) / 255.0
 
 
-def encoded(linear: Array) -> Array:
-    """sRGB of linear units, 0 to 1."""
+def linear_to_srgb(linear: Array) -> Array:
+    """Convert linear colour components to sRGB, 0 to 1."""
     found: Array = np.where(linear <= 0.0031308, 12.92 * linear,
                             1.055 * np.clip(linear, 0.0, 1.0) ** (1.0 / 2.4) - 0.055)
     return found
 
 
-def _encoded(linear: Sequence[float]) -> Tuple[float, float, float]:
-    red, green, blue = map(float, encoded(np.array(linear)))
+def _srgb(linear: Sequence[float]) -> Tuple[float, float, float]:
+    red, green, blue = map(float, linear_to_srgb(np.array(linear)))
     return red, green, blue
 
 

@@ -10,9 +10,9 @@ from typing import Any, Iterator, List, Optional, Tuple
 import numpy as np
 
 from ...description.shapes import Mesh, MeshData
-from .collada import instances, unit_of
+from .collada import bound_geometries, unit_of
 from .loading import load_mesh
-from .paint import Array, Paint, effect_of, encoded, paint_of
+from .paint import Array, Paint, effect_of, linear_to_srgb, paint_of
 
 _PAINTED = (".obj", ".glb", ".gltf", ".ply")
 
@@ -48,18 +48,18 @@ def painted_parts(mesh: Mesh) -> List[PaintedPart]:
     except Exception:  # of any library that reads them
         parts = []  # materials are optional; the shape was read
     if sum(len(part.triangles) for part in parts) != len(plain.triangles):
-        return [flat(plain)]
+        return [shade_flat(plain)]
     return _placed(parts, mesh)
 
 
-def flat(data: MeshData) -> PaintedPart:
-    """Triangles with one normal each (flat shading), as for STL files."""
+def shade_flat(data: MeshData) -> PaintedPart:
+    """Return triangles with one normal each (flat shading), as for STL files."""
     corners = np.asarray(data.vertices)[np.asarray(data.triangles)].reshape(-1, 3)
-    return _indexed(corners, None, None, Paint())
+    return _part_of_corners(corners, None, None, Paint())
 
 
-def smooth(data: MeshData) -> PaintedPart:
-    """Triangles that share the normals of their common corners, for terrains."""
+def shade_smooth(data: MeshData) -> PaintedPart:
+    """Return triangles that share the normals of their common corners, for terrains."""
     vertices, triangles = np.asarray(data.vertices), np.asarray(data.triangles, dtype=np.int32)
     corners = vertices[triangles]
     across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
@@ -100,8 +100,8 @@ def _unit_rows(rows: Array) -> Array:
     return unit
 
 
-def indexed(corners: Array, normals: Optional[Array], uv: Optional[Array], paint: Paint,
-            sources: Optional[Array] = None) -> Tuple[PaintedPart, Array]:
+def merge_corners(corners: Array, normals: Optional[Array], uv: Optional[Array], paint: Paint,
+                  sources: Optional[Array] = None) -> Tuple[PaintedPart, Array]:
     """Merge equal corners of triangles into shared vertices.
 
     Args:
@@ -131,9 +131,9 @@ def indexed(corners: Array, normals: Optional[Array], uv: Optional[Array], paint
                        inverse.reshape(-1, 3).astype(np.int32), paint), first
 
 
-def _indexed(corners: Array, normals: Optional[Array], uv: Optional[Array],
-             paint: Paint) -> PaintedPart:
-    return indexed(corners, normals, uv, paint)[0]
+def _part_of_corners(corners: Array, normals: Optional[Array], uv: Optional[Array],
+                     paint: Paint) -> PaintedPart:
+    return merge_corners(corners, normals, uv, paint)[0]
 
 
 def _collada(mesh: Mesh) -> List[PaintedPart]:
@@ -145,7 +145,7 @@ def _collada(mesh: Mesh) -> List[PaintedPart]:
     document = collada.Collada(io.BytesIO(data), ignore=[collada.DaeError])
     unit = unit_of(etree.fromstring(data))
     parts = []
-    for names, geometry in instances(document):
+    for names, geometry in bound_geometries(document):
         if mesh.submesh and mesh.submesh not in names:
             continue
         mirrored = np.linalg.det(geometry.matrix[:3, :3]) < 0
@@ -162,7 +162,7 @@ def _of_primitive(primitive: Any, unit: float, mirrored: bool, folder: str,
     if found is None:
         return None
     _, corners, normals, uv, material = found
-    return _indexed(corners * unit, normals, uv, effect_of(material, folder))
+    return _part_of_corners(corners * unit, normals, uv, effect_of(material, folder))
 
 
 def corners_of(primitive: Any, mirrored: bool = False,
@@ -216,8 +216,9 @@ def _trimesh(mesh: Mesh, extension: str) -> List[PaintedPart]:
     for shape, faces, vertices, normals in _shapes(mesh, extension):
         uv = getattr(shape.visual, "uv", None)
         uv = None if uv is None else np.asarray(uv)[faces].reshape(-1, 2)
-        uv, paint = colored(shape, faces, uv, paint_of(getattr(shape.visual, "material", None)))
-        parts.append(_indexed(vertices[faces].reshape(-1, 3), normals, uv, paint))
+        paint = paint_of(getattr(shape.visual, "material", None))
+        uv, paint = paint_from_colors(shape, faces, uv, paint)
+        parts.append(_part_of_corners(vertices[faces].reshape(-1, 3), normals, uv, paint))
     return parts
 
 
@@ -261,11 +262,12 @@ _CORNERS = np.array([(0.5, 0.5), (1.5, 0.5), (0.5, 1.5)])
 _MIDDLE = np.array([(1.0, 1.0)] * 3)
 
 
-def colored(shape: Any, faces: Array, uv: Optional[Array], paint: Paint,
-            ) -> Tuple[Optional[Array], Paint]:
-    """Texture coordinates (3 m, 2) and paint of a mesh of trimesh with its corners' colours.
+def paint_from_colors(shape: Any, faces: Array, uv: Optional[Array], paint: Paint,
+                      ) -> Tuple[Optional[Array], Paint]:
+    """Paint a mesh of trimesh with its vertex or face colours; return its texture coordinates too.
 
-    `faces`: of it, in the order in which they are drawn. Colours are ignored if there is a picture.
+    Texture coordinates are (3 m, 2). `faces`: its triangles in the order in which they are drawn. A
+    mesh with a picture keeps its texture coordinates and paint.
     """
     colors = None if paint.picture is not None else colors_of(shape, faces)
     if colors is None:
@@ -290,7 +292,7 @@ def colors_of(shape: Any, faces: Array) -> Optional[Array]:
     if parts.dtype.kind != "f":
         parts = parts / np.iinfo(parts.dtype).max
     # Those of glTF are linear.
-    return np.rint(encoded(np.clip(parts, 0.0, 1.0)) * 255.0).astype(np.uint8)
+    return np.rint(linear_to_srgb(np.clip(parts, 0.0, 1.0)) * 255.0).astype(np.uint8)
 
 
 def _picture(colors: Array) -> Tuple[Array, Any]:

@@ -39,8 +39,8 @@ class MeshPart:
     triangles: Any
 
 
-def bounded(parts: Iterator[MeshPart]) -> List[MeshPart]:
-    """The parts, checked for their number of triangles: a small file may have many instances.
+def check_triangle_count(parts: Iterator[MeshPart]) -> List[MeshPart]:
+    """Return the parts if there are not too many triangles: a small file may have many instances.
 
     Raises MeshError: they have more than `MOST_TRIANGLES`.
     """

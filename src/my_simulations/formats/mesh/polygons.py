@@ -13,17 +13,17 @@ def signed_area(loop: Sequence[Point]) -> float:
     return sum(a[0] * b[1] - b[0] * a[1] for a, b in zip(loop, [*loop[1:], *loop[:1]])) / 2
 
 
-def oriented(loops: Sequence[Sequence[Point]]) -> List[List[Point]]:
-    """The loops with the first counter-clockwise and the others clockwise."""
+def orient_loops(loops: Sequence[Sequence[Point]]) -> List[List[Point]]:
+    """Make the first loop counter-clockwise and the others, its holes, clockwise."""
     return [list(loop) if (signed_area(loop) > 0) == (number == 0) else list(reversed(loop))
             for number, loop in enumerate(loops)]
 
 
-def triangulated(loops: Sequence[Sequence[Point]]) -> Tuple[List[Point], List[Triangle]]:
+def triangulate(loops: Sequence[Sequence[Point]]) -> Tuple[List[Point], List[Triangle]]:
     """Triangulate the first loop with the others as holes.
 
     Args:
-        loops: as returned by `oriented`. Time grows with the square of the number of points.
+        loops: as returned by `orient_loops`. Time grows with the square of the number of points.
 
     Returns:
         All points, loop after loop, and counter-clockwise triangles that index them. For a loop

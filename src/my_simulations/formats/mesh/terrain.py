@@ -8,8 +8,8 @@ from typing import Any, Dict, List, Sequence, Tuple, Union
 from ...description.shapes import Heightmap, ImageMap, MeshData, Polyline
 from ...errors import InputError, error
 from ...geometry import Vec3
-from ..image.levels import Elevations, elevations, grey_levels
-from .polygons import Point, convex_pieces, oriented, signed_area, triangulated
+from ..image.levels import Elevations, grey_levels, read_elevations
+from .polygons import Point, convex_pieces, orient_loops, signed_area, triangulate
 
 Solid = Union[Heightmap, ImageMap, Polyline]
 
@@ -63,7 +63,7 @@ def _terrain(path: str, changed: int, size: Tuple[float, float, float],
     """
     import numpy as np
 
-    model = elevations(path, _WIDEST)
+    model = read_elevations(path, _WIDEST)
     if model is not None:
         levels, size = _to_scale(model, size)
     else:
@@ -157,10 +157,10 @@ def _rectangles(dark: Any) -> List[Tuple[int, int, int, int]]:
 def _extruded(polyline: Polyline) -> MeshData:
     if sum(len(loop) for loop in polyline.loops) > _MOST_POINTS:
         raise _fault("solid-complex", f"a polyline may have {_MOST_POINTS} points in all")
-    loops = oriented([loop for loop in map(_distinct, polyline.loops) if len(loop) >= 3])
+    loops = orient_loops([loop for loop in map(_distinct, polyline.loops) if len(loop) >= 3])
     if not loops or abs(signed_area(loops[0])) < 1e-12:
         raise _fault("solid-empty", "the polyline encloses no area")
-    points, triangles = triangulated(loops)
+    points, triangles = triangulate(loops)
     if not triangles:
         raise _fault("solid-empty", "the polyline encloses no area")
     whole = _prism(points, triangles, loops, polyline.height)

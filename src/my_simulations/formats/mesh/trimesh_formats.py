@@ -6,7 +6,7 @@ import os
 from typing import Any, Iterator, List, Set
 
 from .gltf import check_gltf
-from .part import MeshError, MeshPart, bounded
+from .part import MeshError, MeshPart, check_triangle_count
 
 _METRES = {"millimeter": 0.001, "millimeters": 0.001, "centimeter": 0.01, "micron": 1e-6,
            "inch": 0.0254, "foot": 0.3048}
@@ -43,7 +43,7 @@ def _read(data: bytes, kind: str, **options: Any) -> List[MeshPart]:
         raise MeshError(f"reading .{kind} needs a library that is not installed: {fault}") from None
     except Exception as fault:  # the formats of trimesh raise various exceptions
         raise MeshError(str(fault) or type(fault).__name__) from None
-    return bounded(_scene_parts(scene))
+    return check_triangle_count(_scene_parts(scene))
 
 
 def _scene_parts(scene: Any) -> Iterator[MeshPart]:

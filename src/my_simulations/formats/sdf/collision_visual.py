@@ -108,7 +108,7 @@ def _geometry(
         return None
     if isinstance(geometry, Heightmap) and not collides:
         check_textures(geometry, shape, source)
-    return checked(geometry, shape, owner.tag, source)
+    return check_shape(geometry, shape, owner.tag, source)
 
 
 def _loops(polyline: Polyline, shapes: Sequence[Any], source: Source, level: FaultLevel) -> bool:
@@ -140,8 +140,8 @@ def unknown_shape(shape: Any, owner: str, level: FaultLevel, source: Source,
                   closest_name_hint(shape.tag, list(known)))
 
 
-def checked(geometry: Geometry, shape: Any, owner: str, source: Source) -> Optional[Geometry]:
-    """The shape, with its mesh found; None, with an issue, if it cannot be used."""
+def check_shape(geometry: Geometry, shape: Any, owner: str, source: Source) -> Optional[Geometry]:
+    """Find the mesh of a shape and check its sizes; report an unusable shape and return None."""
     collides = owner == "collision"
     if isinstance(geometry, (Mesh, Heightmap, ImageMap)) and not find_mesh(
             geometry, shape, source, collides):

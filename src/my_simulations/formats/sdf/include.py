@@ -14,7 +14,7 @@ from ...geometry import IDENTITY
 from ...resources.resolver import ResourceNotFoundError
 from ..include_overrides import IncludeOverrides
 from ..xml.binding import fill, has_prefix
-from ..xml.parsing import content, parse
+from ..xml.parsing import parse, read_content
 from ..xml.source import FaultLevel, Source
 from .light import LightPlacement, read_light
 from .link import relative_to
@@ -158,7 +158,7 @@ def _root(path: str, inner: Source, element: Any, source: Source) -> Optional[An
         return source.parsed[path]
     root: Optional[Any] = None
     try:
-        root = parse(content(path), path, source.log)
+        root = parse(read_content(path), path, source.log)
         if root.tag in ("sdf", "gazebo"):
             root = upgrade(root, inner)
         elif root.tag != "robot":

@@ -41,7 +41,7 @@ def read_population(element: Any, source: Source, seed: int) -> List[Model]:
         source.report(FaultLevel.ERROR, "population-unusable", f"population {population.name!r} is"
                       f" skipped: {problem}", element)
         return []
-    places = positions(population, random.Random(f"{seed}/{population.name}"))
+    places = draw_positions(population, random.Random(f"{seed}/{population.name}"))
     return [_clone(templates[0], number, place, population)
             for number, place in enumerate(places)]
 
@@ -83,8 +83,8 @@ def _problem(p: Population) -> str:
     return ""
 
 
-def positions(population: Population, draw: random.Random) -> List[Vec3]:
-    """Positions of the models (m) in the frame of the population."""
+def draw_positions(population: Population, draw: random.Random) -> List[Vec3]:
+    """Draw the positions of the models (m) in the frame of the population."""
     if min(population.model_count, population.rows, population.cols) < 0:
         return []
     return _RULES[population.distribution](population, draw)

@@ -93,7 +93,7 @@ def _new(inserted: List[Any], present: List[Any]) -> List[Any]:
 
 
 def _restored(model: Model, state: ModelState, initial: Dict[str, InitialState]) -> Model:
-    model = scaled(model, state.scale)
+    model = scale_model(model, state.scale)
     links = {link.name: link for link in state.links}
     twists: Dict[str, Twist] = {name: link.twist for name, link in links.items()
                                 if any(link.twist.linear) or any(link.twist.angular)}
@@ -195,8 +195,8 @@ def _positions(joints: List[Joint], links: List[Link], poses: Dict[str, Pose],
     return found
 
 
-def scaled(model: Model, factor: Vec3) -> Model:
-    """The model with its shapes scaled along the axes of their own frames.
+def scale_model(model: Model, factor: Vec3) -> Model:
+    """Scale the shapes of a model along the axes of their own frames.
 
     Positions of shapes within their link are scaled, too; poses of links are not, because the state
     holds them. Mass and inertia are unchanged (Gazebo behaviour).
@@ -205,20 +205,21 @@ def scaled(model: Model, factor: Vec3) -> Model:
         return model
 
     def resized(item: Any) -> Any:
-        return replace(item, geometry=scaled_geometry(item.geometry, factor),
+        return replace(item, geometry=scale_geometry(item.geometry, factor),
                        pose=Pose(_times(item.pose.position, factor), item.pose.orientation))
 
     links = [replace(link, collisions=[resized(item) for item in link.collisions],
                      visuals=[resized(item) for item in link.visuals]) for link in model.links]
-    return replace(model, links=links, models=[scaled(inner, factor) for inner in model.models])
+    return replace(model, links=links,
+                   models=[scale_model(inner, factor) for inner in model.models])
 
 
 def _times(a: Vec3, b: Vec3) -> Vec3:
     return (a[0] * b[0], a[1] * b[1], a[2] * b[2])
 
 
-def scaled_geometry(shape: Geometry, factor: Vec3) -> Geometry:
-    """The shape scaled; round ones by the larger factor across their axis (Gazebo behaviour)."""
+def scale_geometry(shape: Geometry, factor: Vec3) -> Geometry:
+    """Scale a shape; round ones by the larger factor across their axis (Gazebo behaviour)."""
     across = max(abs(factor[0]), abs(factor[1]))
     if isinstance(shape, Box):
         return Box(_times(shape.size, factor))

@@ -12,7 +12,7 @@ from typing import Any, Callable, List, Mapping, Tuple
 from ...geometry import normalised, rpy_from_quat
 from ...resources.model_config import NEWEST, version_of
 from ..xml.source import FaultLevel, Source
-from ..xml.values import numbers
+from ..xml.values import parse_numbers
 
 _STAYS = ("name", "version", "type")
 _NOT_TYPED = ("solver", "fog")
@@ -243,10 +243,10 @@ def _from_1_9(root: Any, source: Source) -> None:
             continue
         try:
             if quaternion:
-                x, y, z, *q = numbers(pose.text, 7)
+                x, y, z, *q = parse_numbers(pose.text, 7)
                 angles = rpy_from_quat(normalised((q[0], q[1], q[2], q[3])))
             else:
-                x, y, z, *rpy = numbers(pose.text, 6)
+                x, y, z, *rpy = parse_numbers(pose.text, 6)
                 angles = (math.radians(rpy[0]), math.radians(rpy[1]), math.radians(rpy[2]))
         except ValueError as fault:
             source.report(FaultLevel.FATAL, "bad-value", f"<pose>: {fault}", pose)

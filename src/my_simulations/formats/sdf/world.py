@@ -15,7 +15,7 @@ from ...geometry import is_finite
 from ...xml_characters import hidden_character, without_hidden
 from ..xml.binding import Found, fill, to_xml
 from ..xml.source import FaultLevel, Source
-from ..xml.values import BOOL, numbers
+from ..xml.values import BOOL, parse_numbers
 from .frame_graph import FrameError, FrameTree
 from .include import read_include
 from .joint import InterModelJointReader, UnresolvedJoint, is_complete, read_joint
@@ -286,7 +286,7 @@ def _angles(element: Any, source: Source) -> List[float]:
     angles: List[float] = []
     for angle in element.iterfind("angle"):
         try:
-            angles.append(numbers(angle.text or "", 1)[0])
+            angles.append(parse_numbers(angle.text or "", 1)[0])
         except ValueError as fault:
             source.report(FaultLevel.WARNING, "bad-value", f"<angle>: {fault}", angle)
     return angles

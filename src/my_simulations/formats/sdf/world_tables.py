@@ -31,7 +31,7 @@ from ..xml.values import (
     SECONDS,
     TEXT,
     VECTOR3,
-    numbers,
+    parse_numbers,
 )
 
 WARNING = FaultLevel.WARNING
@@ -169,7 +169,7 @@ class TwistKind:
     """Six numbers: linear m/s, angular rad/s."""
 
     def parse(self, text: str) -> Twist:
-        x, y, z, roll, pitch, yaw = numbers(text, 6)
+        x, y, z, roll, pitch, yaw = parse_numbers(text, 6)
         return Twist((x, y, z), (roll, pitch, yaw))
 
     def format(self, value: Twist) -> str:

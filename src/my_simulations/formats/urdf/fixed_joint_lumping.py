@@ -15,7 +15,7 @@ from typing import Any, Dict, List, Mapping
 
 from ...description.model import WORLD, Model
 from ...geometry import Pose, compose, quat_from_rpy, rpy_from_quat
-from ..inertia import combined_inertia
+from ..inertia import combine_inertia
 from ..xml.binding import to_xml
 from ..xml.values import POSE, VECTOR3
 from .kinematic_tree import LUMP, Body, Connection, parents_first
@@ -147,7 +147,7 @@ def _move(child: Body, into: Body) -> None:
     for stem, visual in child.visuals:
         visual.pose = compose(child.offset, visual.pose)
         into.visuals.append((LUMP + stem, visual))
-    into.inertial = combined_inertia(into.inertial, child.inertial, child.offset)
+    into.inertial = combine_inertia(into.inertial, child.inertial, child.offset)
 
 
 def _frames(connection: Connection) -> List[str]:

@@ -194,8 +194,8 @@ def _nested(path: str, text: str) -> str:
     return xml
 
 
-def moved(xml: str, offset: Pose) -> str:
-    """Kept XML of a link for the link that it was lumped into, with its poses transformed."""
+def move_to_lumped_link(xml: str, offset: Pose) -> str:
+    """Transform the pose in the kept XML of a link into the link that it was lumped into."""
     from lxml import etree
 
     if not xml.startswith(_PLACED):

@@ -8,7 +8,7 @@ from ...description.model import Inertial, Link
 from ...description.shapes import Collision, Empty, Geometry, Material, Visual
 from ...description.validate import closest_name_hint
 from ...geometry import IDENTITY, Pose
-from ..sdf.collision_visual import checked, unknown_shape
+from ..sdf.collision_visual import check_shape, unknown_shape
 from ..sdf.material_files import check_texture_uri
 from ..xml.binding import BAD, fill
 from ..xml.source import FaultLevel, Source
@@ -102,7 +102,7 @@ def _geometry(elements: Sequence[Any], owner: Any, source: Source,
     geometry: Geometry = table.of()
     if BAD in fill(geometry, shape, table, source, [], level):
         return None
-    return checked(geometry, shape, owner.tag, source)
+    return check_shape(geometry, shape, owner.tag, source)
 
 
 def read_palette(elements: Sequence[Any], source: Source) -> Palette:

@@ -14,7 +14,7 @@ from ..sdf.sensor_parameters import kept_sensors
 from ..xml.binding import fill
 from ..xml.source import FaultLevel, Source
 from .fixed_joint_lumping import Renamed, lump, lumped_into, rename
-from .gazebo_extensions import Extensions, moved
+from .gazebo_extensions import Extensions, move_to_lumped_link
 from .gazebo_sdf import add_sdf_links, read_sdf_joint
 from .joint import read_connection, turned_to
 from .kinematic_tree import LUMP, Body, Connection, parents_first
@@ -276,7 +276,7 @@ class _RobotReader:
         """
         link, whole = body.link, lumped_into(body)
         to = whole.link
-        to.extra += [moved(xml, body.offset) for xml in link.extra]
+        to.extra += [move_to_lumped_link(xml, body.offset) for xml in link.extra]
         if to.self_collide is None or "selfCollide" in body.set_tags:
             to.self_collide = link.self_collide if link.self_collide is not None \
                 else to.self_collide

@@ -34,8 +34,8 @@ _COMMENT = re.compile("<!--.*?-->", re.DOTALL)
 _LONG_TAG = re.compile(rb"<[^<]{8000,}")
 
 
-def content(path: str) -> bytes:
-    """The content of a document's file, of at most `LARGEST` bytes.
+def read_content(path: str) -> bytes:
+    """Read a document's file of at most `LARGEST` bytes.
 
     Raises:
         InputError: it is too large.
@@ -48,7 +48,7 @@ def content(path: str) -> bytes:
 
 
 def parse(text: Union[str, bytes], file: str, log: IssueCollector) -> Any:
-    """The root element of a document.
+    """Parse a document and return its root element.
 
     Args:
         text: the document; a `str` may carry any encoding declaration.
@@ -217,15 +217,15 @@ def _recover(text: str, fault: Any, file: str, log: IssueCollector) -> Any:
     from lxml import etree
 
     from ...errors import warning
-    from .repair import balanced
-    from .typography import retyped  # rarely needed, and start-up time counts
+    from .repair import balance_tags
+    from .typography import replace_typography  # rarely needed, and start-up time counts
 
     line, column = fault.position
     if "Excessive depth" in fault.msg:
         raise _fault("xml-too-deep", "elements are nested too deeply", file, line, column)
     text = _without_bad_characters(text, file, log)
-    text, retypings = retyped(text)
-    result = balanced(text)
+    text, retypings = replace_typography(text)
+    result = balance_tags(text)
     result.repairs[:0] = retypings
     if result.is_unrepairable:
         raise _fault("xml-malformed", f"not well formed: {result.is_unrepairable}", file, line,

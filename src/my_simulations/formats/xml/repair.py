@@ -58,8 +58,8 @@ class Balanced:
     cut_off_line: int = 0
 
 
-def balanced(text: str) -> Balanced:
-    """`text` with matching tags; takes linear time."""
+def balance_tags(text: str) -> Balanced:
+    """Add and remove tags of `text` until all match, in linear time."""
     return _Balancer(text).run()
 
 

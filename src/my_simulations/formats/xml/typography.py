@@ -21,8 +21,8 @@ def is_suspicious(text: str) -> bool:
     return "‹" in text and _OPENING.search(text) is not None
 
 
-def retyped(text: str) -> Tuple[str, List[Repair]]:
-    """The text with plain characters, on the same lines, and a description of the changes."""
+def replace_typography(text: str) -> Tuple[str, List[Repair]]:
+    """Replace typographic brackets, dashes and quotes; return the text and the repairs."""
     repairs: List[Repair] = []
     if is_suspicious(text):
         text = _changed(text, _BRACKET, lambda found: "<" if found.group() == "‹" else ">",

@@ -28,26 +28,26 @@ class Kind(Protocol):
         """The value that Gazebo reads from a text that `parse` rejects. Raises ValueError."""
 
 
-def numbers(text: str, count: int) -> Tuple[float, ...]:
-    """Exactly `count` finite numbers, separated by any white space."""
+def parse_numbers(text: str, count: int) -> Tuple[float, ...]:
+    """Parse exactly `count` finite numbers, separated by any white space."""
     parts = text.split()
     if len(parts) != count:
         plural = "number" if count == 1 else "numbers"
         commas = ", separated by spaces, not by commas" if "," in text else ""
         raise ValueError(f"expected {count} {plural}{commas}, found {_shown(text)}")
-    return tuple([number(part) for part in parts])
+    return tuple([parse_number(part) for part in parts])
 
 
-def number(text: str) -> float:
-    """A finite number."""
-    value = any_number(text)
+def parse_number(text: str) -> float:
+    """Parse a finite number."""
+    value = parse_any_number(text)
     if not math.isfinite(value):
         raise ValueError(f"expected a finite number, found {_shown(text)}")
     return value
 
 
-def any_number(text: str) -> float:
-    """A number, which may be infinite or NaN."""
+def parse_any_number(text: str) -> float:
+    """Parse a number, which may be infinite or NaN."""
     try:
         if "_" in text:  # digit separators of Python, which no format allows
             raise ValueError
@@ -109,7 +109,7 @@ class Float:
     """A finite number."""
 
     def parse(self, text: str) -> float:
-        return number(text)
+        return parse_number(text)
 
     def format(self, value: float) -> str:
         return _formatted(value)
@@ -141,7 +141,7 @@ class Limit:
     """A number that may be infinite, as joint limits may be; never NaN."""
 
     def parse(self, text: str) -> float:
-        value = any_number(text)
+        value = parse_any_number(text)
         if value != value:
             raise ValueError(f"expected a number, found {_shown(text)}")
         return value
@@ -157,6 +157,7 @@ class Int:
     """An integer; `10.0` and `0x10` are accepted as well."""
 
     def parse(self, text: str) -> int:
+        """Parse a decimal, a hexadecimal (`0x10`) or a whole floating-point number (`10.0`)."""
         try:
             return int(text)
         except ValueError:
@@ -167,7 +168,7 @@ class Int:
                 return int(stripped, 16)
         except ValueError:
             pass
-        value = number(text)
+        value = parse_number(text)
         if value != int(value):
             raise ValueError(f"expected a whole number, found {_shown(text)}")
         return int(value)
@@ -196,7 +197,7 @@ class Vector2:
     """Two numbers."""
 
     def parse(self, text: str) -> Tuple[float, float]:
-        x, y = numbers(text, 2)
+        x, y = parse_numbers(text, 2)
         return (x, y)
 
     def format(self, value: Tuple[float, float]) -> str:
@@ -220,7 +221,7 @@ class Vector3:
     """Three numbers."""
 
     def parse(self, text: str) -> Vec3:
-        x, y, z = numbers(text, 3)
+        x, y, z = parse_numbers(text, 3)
         return (x, y, z)
 
     def format(self, value: Vec3) -> str:
@@ -237,7 +238,7 @@ class UniformScale(Vector3):
 
     def parse(self, text: str) -> Vec3:
         if len(text.split()) == 1:
-            one = number(text)
+            one = parse_number(text)
             return (one, one, one)
         return super().parse(text)
 
@@ -252,7 +253,7 @@ class Color:
         parts = text.split()
         if len(parts) not in (3, 4):
             raise ValueError(f"expected 3 or 4 numbers, found {_shown(text)}")
-        r, g, b, a = (self._share(number(part)) for part in (*parts, "1")[:4])
+        r, g, b, a = (self._share(parse_number(part)) for part in (*parts, "1")[:4])
         return (r, g, b, a)
 
     def parse_leniently(self, text: str) -> Tuple[float, float, float, float]:
@@ -272,7 +273,7 @@ class Rpy:
     """Roll, pitch, yaw in radians, about fixed axes, as a quaternion."""
 
     def parse(self, text: str) -> Quat:
-        roll, pitch, yaw = numbers(text, 3)
+        roll, pitch, yaw = parse_numbers(text, 3)
         return quat_from_rpy(roll, pitch, yaw)
 
     def format(self, value: Quat) -> str:
@@ -287,7 +288,7 @@ class PoseKind:
     """`x y z roll pitch yaw`: metres, and radians about fixed axes."""
 
     def parse(self, text: str) -> Pose:
-        x, y, z, roll, pitch, yaw = numbers(text, 6)
+        x, y, z, roll, pitch, yaw = parse_numbers(text, 6)
         return pose_from_xyzrpy(x, y, z, roll, pitch, yaw)
 
     def format(self, value: Pose) -> str:
@@ -322,8 +323,8 @@ class Seconds:
     def parse(self, text: str) -> float:
         parts = text.split()
         if len(parts) == 2:
-            return number(parts[0]) + number(parts[1]) * 1e-9
-        return numbers(text, 1)[0]
+            return parse_number(parts[0]) + parse_number(parts[1]) * 1e-9
+        return parse_numbers(text, 1)[0]
 
     def parse_leniently(self, text: str) -> float:
         seconds, nanoseconds = stream_numbers(text, 2)

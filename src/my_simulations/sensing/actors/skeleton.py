@@ -7,7 +7,7 @@ from typing import Any, List, Optional, Tuple
 import numpy as np
 
 from ...formats.mesh.figures import FigureFile, FigurePart, Movement
-from ...formats.mesh.keyframes import Clip, composed, decomposed
+from ...formats.mesh.keyframes import Clip, compose_matrices, decompose_matrices
 
 Surface = Tuple[np.ndarray, np.ndarray]
 """Vertices (n, 3), m, and normals (n, 3)."""
@@ -40,7 +40,7 @@ class Skeleton:
     def __init__(self, figure: FigureFile, scale: float,
                  borrowed: "Optional[Borrowed]" = None) -> None:
         self._figure, self._factor = figure, scale * figure.unit
-        self._rest = decomposed(figure.tree.rest)
+        self._rest = decompose_matrices(figure.tree.rest)
         self._root = figure.tree.root_joint
         self._clip: Optional[Clip] = None
         self._columns: List[_Columns] = []
@@ -114,7 +114,7 @@ class Skeleton:
                     scales[nodes] = moved[2][columns]
             if on_path and self._root is not None:
                 places[self._root, 0] = 0.0
-        world = composed(places, turns, scales)
+        world = compose_matrices(places, turns, scales)
         for n, parent in enumerate(self._figure.tree.parents):
             if parent >= 0:
                 world[n] = world[parent] @ world[n]

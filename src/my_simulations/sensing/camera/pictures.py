@@ -8,8 +8,8 @@ import numpy as np
 
 from ...appearance.palette import PATTERNS
 from ...appearance.textures import existing_path, mesh_image_candidates
-from ...formats.image.pixels import picture as read
 from ...formats.image.pixels import pixels_of
+from ...formats.image.pixels import read_picture as read
 
 LARGEST = 1024
 """Pixels along a side; larger pictures are made smaller."""

@@ -41,7 +41,7 @@ from .fields import fill_element, write_each
 from .material_element import write_material
 from .state_element import write_state
 from .surroundings_elements import write_actor, write_gui, write_plugins, write_road
-from .xml_text import document, write_value
+from .xml_text import serialize_sdf, write_value
 
 VERSION = "1.7"
 _OLDER = "1.6"
@@ -70,7 +70,7 @@ def write_world(world: World, state: Optional[SavedState] = None,
     """
     writer = _Writer(included)
     with _naming("the world"):
-        return document(_version(world.models), lambda root: writer.world(root, world, state))
+        return serialize_sdf(_version(world.models), lambda root: writer.world(root, world, state))
 
 
 def write_entity(entity: Union[Model, Light]) -> bytes:
@@ -83,9 +83,9 @@ def write_entity(entity: Union[Model, Light]) -> bytes:
     writer = _Writer(None)
     if isinstance(entity, Light):
         light = entity
-        return document(VERSION, lambda root: writer.light(root, light))
+        return serialize_sdf(VERSION, lambda root: writer.light(root, light))
     model = entity
-    return document(_version([model]), lambda root: writer.model(root, model))
+    return serialize_sdf(_version([model]), lambda root: writer.model(root, model))
 
 
 def _version(models: Iterable[Model]) -> str:

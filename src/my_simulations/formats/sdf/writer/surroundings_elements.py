@@ -16,7 +16,7 @@ from ...xml.tables import Table
 from ..world_tables import ACTOR, GUI, GUI_CAMERA, ROAD
 from .fields import fill_element
 from .material_element import write_material
-from .xml_text import append_fragment, parsed_fragment
+from .xml_text import append_fragment, parse_fragment
 
 
 def write_gui(parent: Any, gui: Gui, camera: Optional[GuiCamera]) -> None:
@@ -37,7 +37,7 @@ def write_road(parent: Any, road: Road) -> None:
 def write_actor(parent: Any, actor: Actor) -> None:
     """`<actor>`, or the `<include>` that it was read from."""
     if actor.include:
-        parent.append(parsed_fragment(actor.include))
+        parent.append(parse_fragment(actor.include))
         return
     element = _element(parent, "actor", actor.name)
     fill_element(element, actor, ACTOR, {

@@ -38,7 +38,7 @@ def stable_pose_text(pose: Pose, of_path: bool = False) -> str:
     angles = _stable_rpy((x, y, z, w))
     if of_path:
         angles = whole_turn(angles, pose.orientation)
-    return " ".join(_plain(value) for value in (*pose.position, *angles))
+    return " ".join(_decimal(value) for value in (*pose.position, *angles))
 
 
 @functools.lru_cache(maxsize=1024)
@@ -80,7 +80,7 @@ def _rounded(angles: Vec3) -> Vec3:
     return (round(angles[0], digits), round(angles[1], 14), round(angles[2], digits))
 
 
-def _plain(value: float) -> str:
+def _decimal(value: float) -> str:
     return repr(int(value)) if value == int(value) and abs(value) < 1e15 else repr(value)
 
 
@@ -90,7 +90,7 @@ def append_fragment(element: Any, xml: str, table: Table) -> None:
     A fragment from deeper down is wrapped in the tags of its parents, which are found or created as
     long as the table reads them in parts.
     """
-    _merge(element, parsed_fragment(xml), table.children)
+    _merge(element, parse_fragment(xml), table.children)
 
 
 def _merge(parent: Any, fragment: Any, children: Mapping[str, Entry]) -> None:
@@ -123,8 +123,8 @@ def _is_kept(fragment: Any, children: Mapping[str, Entry]) -> bool:
     return entry is None or isinstance(entry, Kept)
 
 
-def parsed_fragment(xml: str) -> Any:
-    """A fragment as an element, without white space between tags, its prefixes declared."""
+def parse_fragment(xml: str) -> Any:
+    """Parse a fragment: declare its prefixes and drop white space between tags."""
     missing = sorted(set(_PREFIX.findall(xml)) - set(_DECLARED.findall(xml)) - {"xml", "xmlns"})
     declared = "".join(f' xmlns:{prefix}="urn:{prefix}"' for prefix in missing)
     parser = etree.XMLParser(
@@ -147,8 +147,8 @@ def _is_uri(text: str) -> bool:
     return True
 
 
-def document(version: str, write: Callable[[Any], None]) -> bytes:
-    """The bytes of an SDF document; `write` fills its root."""
+def serialize_sdf(version: str, write: Callable[[Any], None]) -> bytes:
+    """Return the bytes of an SDF document whose root `write` fills."""
     root = etree.Element("sdf", version=version)
     write(root)
     prefixes: Dict[str, str] = {}
