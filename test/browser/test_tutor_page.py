@@ -9,13 +9,13 @@ from pathlib import Path
 
 from support import SECONDS, wait_for
 
-from my_simulations.grading.box_support import isolation
+from my_simulations.grading.box_support import isolation_fault
 
 REPOSITORY = Path(__file__).resolve().parents[2]
 
 
 def test_a_tile_shows_a_world_and_leads_into_it(browser, tmp_path):
-    assert isolation() == ""
+    assert isolation_fault() == ""
     folder = tmp_path / "course"
     folder.mkdir()
     port = 20000 + os.getpid() % 20000

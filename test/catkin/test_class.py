@@ -25,7 +25,7 @@ from my_simulations.classroom.local_world import LocalWorld, log_file, make_home
 from my_simulations.classroom.world_states import ENDED
 from my_simulations.errors import CommandError
 from my_simulations.grading.box import descendants
-from my_simulations.grading.box_support import isolation
+from my_simulations.grading.box_support import isolation_fault
 
 REPOSITORY = Path(__file__).resolve().parents[2]
 CLASS = [sys.executable, str(REPOSITORY / "scripts" / "class")]
@@ -89,7 +89,7 @@ def code_of(url):
 
 
 def test_each_student_has_a_world_and_an_editor_of_its_own(tmp_path):
-    assert isolation() == ""
+    assert isolation_fault() == ""
     world = REPOSITORY / "world" / "exercises.world"
     file = written(tmp_path / "course", f"args: {{world: '{world}'}}\n")
     with running(file) as (process, links):
@@ -118,7 +118,7 @@ def test_each_student_has_a_world_and_an_editor_of_its_own(tmp_path):
 
 
 def test_a_running_class_receives_files_and_its_tutor_sees_the_error_of_each_student(tmp_path):
-    assert isolation() == ""
+    assert isolation_fault() == ""
     world = REPOSITORY / "test" / "data" / "invalid" / "include_unknown.world"
     file = written(tmp_path / "course", f"args: {{world: '{world}'}}\n")
     plan = read_class(str(file))[0]
@@ -224,7 +224,7 @@ def class_of_two(tmp_path):
 
 
 def test_a_student_reaches_no_files_processes_and_tokens_of_others(class_of_two):
-    assert isolation() == "", "attempts need isolation"
+    assert isolation_fault() == "", "attempts need isolation"
     plan, tokens, secret, outside = class_of_two
     anna, ben = plan.students
     other = subprocess.Popen([sys.executable, "-c", "import time; time.sleep(1000)"],
@@ -301,7 +301,7 @@ print('processors', len(os.sched_getaffinity(0)))
 
 @pytest.mark.parametrize("name", list(EXCESSES))
 def test_a_student_who_exceeds_a_limit_ends_alone(tmp_path, name):
-    assert isolation() == "", "excesses need isolation"
+    assert isolation_fault() == "", "excesses need isolation"
     program, reason, logged = EXCESSES[name]
     plan = read_class(str(written(tmp_path / "course", "limits: {memory_mb: 200, processes: 40,"
                                                        " file_mb: 5, home_mb: 90}\n")))[0]

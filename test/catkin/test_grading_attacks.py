@@ -13,7 +13,7 @@ from pathlib import Path
 import pytest
 from box_program import box_program
 
-from my_simulations.grading.box_support import isolation
+from my_simulations.grading.box_support import isolation_fault
 
 REPOSITORY = Path(__file__).resolve().parents[2]
 GRADE = [sys.executable, str(REPOSITORY / "scripts" / "grade")]
@@ -209,7 +209,7 @@ def neighbour_of(name):
 @pytest.fixture(scope="module")
 def attacked(tmp_path_factory):
     """Folder, rows by student, and the files of others before and after all attacks."""
-    assert isolation() == "", "an attack must not run without isolation"
+    assert isolation_fault() == "", "an attack must not run without isolation"
     folder = tmp_path_factory.mktemp("attacks")
     names = list(ATTACKS)
     neighbours = sorted({neighbour_of(name) for name in names})

@@ -17,8 +17,8 @@ from replay_content import replay_content
 from waiting import wait_for
 
 from my_simulations.grading import box, cell
-from my_simulations.grading.box_support import isolation
-from my_simulations.grading.grader import reserved_slots
+from my_simulations.grading.box_support import isolation_fault
+from my_simulations.grading.grader import reserve_slots
 from my_simulations.grading.program import submission_account
 
 REPOSITORY = Path(__file__).resolve().parents[2]
@@ -273,7 +273,7 @@ def test_a_program_reaches_what_it_needs_below_a_closed_folder_and_nothing_else(
             "environment": dict(os.environ), "cwd": "/", "user": 0,
             "private": [str(tmp_path / "judge")], "needed": [str(closed / "ws"), wanted[1]],
             "bytes": 1 << 20, "memory_bytes": 1 << 30, "processor_seconds": 20, "processes": 50}
-    with reserved_slots(1) as slots:
+    with reserve_slots(1) as slots:
         spec["user"] = submission_account(str(tmp_path), slots[0]).user
         done = subprocess.run([sys.executable, "-I", cell.__file__, json.dumps(spec)],
                               capture_output=True, text=True, timeout=SECONDS)
@@ -400,7 +400,7 @@ PACKAGE = """<package><name>{}</name><version>1.0.0</version><description>d</des
 
 
 def test_a_submission_cannot_forge_the_results_of_a_rostest(tmp_path):
-    assert isolation() == "", "forged results need isolation"
+    assert isolation_fault() == "", "forged results need isolation"
     (tmp_path / "lab.test").write_text(FORGED)
     cheat, fake = tmp_path / "forger" / "cheat", tmp_path / "forger" / "rostest"
     for folder, name, text in ((cheat, "forge.py", FORGER),

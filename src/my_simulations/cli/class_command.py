@@ -20,7 +20,7 @@ from ..classroom.containers import KUBECTL, Containers
 from ..classroom.manifests import compose, kubernetes
 from ..classroom.student_files import collect_submission, send_file
 from ..errors import CommandError, InputError
-from ..grading.box_support import isolation
+from ..grading.box_support import isolation_fault
 from ..program_end import exit_cleanly
 from ..ros.arguments import Parser
 
@@ -87,7 +87,7 @@ def _start(plan: ClassPlan, _options: argparse.Namespace) -> int:
     if plan.containers == KUBECTL:
         raise CommandError("a class in Kubernetes has no tutor's page: use status, broadcast and"
                            " collect; see doc/classroom.md")
-    problem = "" if plan.containers else isolation()
+    problem = "" if plan.containers else isolation_fault()
     if problem:
         raise CommandError(f"students cannot be isolated: {problem}; see doc/classroom.md")
     from ..classroom.class_manager import ClassManager

@@ -13,8 +13,8 @@ _SECONDS = 60.0
 _WANTED = {"processes", "network", "files", "loopback"}
 
 
-def isolation() -> str:
-    """Why submissions cannot be isolated by namespaces; "" if they can."""
+def isolation_fault() -> str:
+    """Return why namespaces cannot isolate submissions; "" if they can."""
     with tempfile.TemporaryDirectory(prefix="my_simulations_grade_") as scratch:
         spec = {"parent": os.getpid(), "seconds": _SECONDS, "environment": dict(os.environ),
                 "command": ["sh", "-c", "echo \"$BOX_ISOLATION\""], "scratch": scratch,

@@ -25,7 +25,7 @@ from .assignment import (
     EntityCount,
     ValidFile,
 )
-from .mark import CheckResult, result
+from .mark import CheckResult, score_check
 
 _MOST_FAULTS = 4   # shown
 NO_WORLD = "the file contains no <world>"
@@ -93,7 +93,7 @@ def check_files(assignment: Assignment, file: "WorldFile | None", missing: str
         missing: the reason if there is none.
     """
     if file is None:
-        return [result(check, 0.0, missing) for check in assignment.of(ValidFile, EntityCount)]
+        return [score_check(check, 0.0, missing) for check in assignment.of(ValidFile, EntityCount)]
     found = [_valid(check, file) for check in assignment.of(ValidFile)]
     return found + [_counted(check, file) for check in assignment.of(EntityCount)]
 
@@ -102,35 +102,35 @@ def _valid(check: ValidFile, file: WorldFile) -> CheckResult:
     faults = sorted(errors_of(tolerated_as_errors(file.issues) if check.strict else file.issues),
                     key=lambda one: one.line or math.inf)
     if not faults and file.world is None:
-        return result(check, 0.0, NO_WORLD, file.name)
+        return score_check(check, 0.0, NO_WORLD, file.name)
     if not faults:
-        return result(check, 1.0)
+        return score_check(check, 1.0)
     first = faults[0]
     hint = f"; {first.hint}" if first.hint else ""
     others = [f"; line {one.line}: {one.message}" for one in faults[1:_MOST_FAULTS]]
     more = f"; {len(faults) - _MOST_FAULTS} more" if len(faults) > _MOST_FAULTS else ""
-    return result(check, 0.0, f"{first.message}{hint}{''.join(others)}{more}", file.name,
-                  first.line)
+    return score_check(check, 0.0, f"{first.message}{hint}{''.join(others)}{more}", file.name,
+                       first.line)
 
 
 def _counted(check: EntityCount, file: WorldFile) -> CheckResult:
     if file.world is None:
         first = errors_of(file.issues)[:1]
         why = f": {first[0].message}" if first else ""
-        return result(check, 0.0, f"the world file cannot be read{why}", file.name,
-                      first[0].line if first else 0)
+        return score_check(check, 0.0, f"the world file cannot be read{why}", file.name,
+                           first[0].line if first else 0)
     names = _NAMES[check.kind](file.world) if not check.shape else _shaped(check, file.world)
     counted = [name for name in names if name not in check.excluded]
     number = len(counted)
     if number < check.least:
         share = number / check.least if check.partial else 0.0
         verb = "is" if check.least == 1 else "are"
-        return result(check, share, f"{_of(number, check)}, {check.least} {verb} needed",
-                      file.name)
+        return score_check(check, share, f"{_of(number, check)}, {check.least} {verb} needed",
+                           file.name)
     if check.most is not None and number > check.most:
-        return result(check, 0.0, f"{_of(number, check)}, at most {check.most} are allowed",
-                      file.name)
-    return result(check, 1.0, f"found {_listed(counted)}" if counted else "")
+        return score_check(check, 0.0, f"{_of(number, check)}, at most {check.most} are allowed",
+                           file.name)
+    return score_check(check, 1.0, f"found {_listed(counted)}" if counted else "")
 
 
 def _of(number: int, check: EntityCount) -> str:

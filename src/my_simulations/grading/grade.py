@@ -7,7 +7,7 @@ from typing import Callable, List, NamedTuple, Optional, Sequence, Union
 from ..errors import CommandError
 from .assignment import Assignment, Launch, Rostest
 from .assignment_file import read_assignment
-from .box_support import isolation
+from .box_support import isolation_fault
 from .grader import Grader, Told
 from .lists import write_lists
 from .mark import Mark
@@ -58,7 +58,7 @@ def grade(assignment: Union[str, Assignment], submissions: Sequence[str], out: s
 
 def _can_isolate(assignment: Assignment, warn: Callable[[str], None]) -> bool:
     """Whether submissions can be isolated. Raises CommandError if their programs would not be."""
-    fault = isolation()
+    fault = isolation_fault()
     if fault and (assignment.form.run or assignment.of(Launch, Rostest)):
         raise CommandError(f"{fault}: programs of submissions could change all that you can. Grade"
                            " as root, or permit user namespaces; --no-isolation runs them"

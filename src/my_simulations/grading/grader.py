@@ -22,7 +22,7 @@ from .mark import FAILED, GRADED, Mark, all_failed, mark_of
 from .program import workspace_paths
 from .submission import Submission, content_key, size_of
 from .submission_files import SubmissionError
-from .unpacking import unpacked
+from .unpacking import unpack_submission
 
 STUDENTS = "students"
 """Folder of the students' folders."""
@@ -72,7 +72,7 @@ class Grader:
         """
         hidden = [self._out, *(submission.path for submission in submissions),
                   *self._folders_of(submissions)]
-        with reserved_slots(self._jobs) as slots, ThreadPoolExecutor(self._jobs, "grader") as pool:
+        with reserve_slots(self._jobs) as slots, ThreadPoolExecutor(self._jobs, "grader") as pool:
             self._slots = queue.Queue()
             for slot in slots:
                 self._slots.put(slot)
@@ -132,7 +132,7 @@ class Grader:
             return self._refused(submission, GRADED, f"has {size / 1e6:.0f} MB, the limit is"
                                  f" {limit / 1e6:.0f} MB"), False
         try:
-            with unpacked(submission, folder, limit) as content:
+            with unpack_submission(submission, folder, limit) as content:
                 mark = grade_in_box(self._assignment, content, slot, hidden, folder,
                                     self._namespaces, self._stop)
         except ArchiveError as fault:
@@ -183,7 +183,7 @@ _FOLDER = "/run/my_simulations_grade"
 
 
 @contextlib.contextmanager
-def reserved_slots(count: int, folder: str = _FOLDER) -> Iterator[List[int]]:
+def reserve_slots(count: int, folder: str = _FOLDER) -> Iterator[List[int]]:
     """Reserve numbers of slots, from 0, that no other run of this machine has.
 
     A limit of processes counts all processes of a user, also those of another run. Locks of a run

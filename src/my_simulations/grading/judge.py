@@ -36,12 +36,18 @@ from .file_checks import (
 )
 from .final_picture import PICTURE, final_picture
 from .launch_checks import LaunchChecks, package_folders
-from .mark import CheckResult, GradingError, result
+from .mark import CheckResult, GradingError, score_check
 from .program import OUTPUT, Program, PythonError, end_of_output, submission_account
 from .program_choice import choose_program
 from .program_graph import RosGraph, graph_environment
 from .result_stream import ResultWriter
-from .submission import all_matching, ambiguity, listed, matching, reason_for_no_match
+from .submission import (
+    describe_ambiguity,
+    find_all_matching,
+    find_matching,
+    reason_for_no_match,
+    summarize_names,
+)
 from .world_run import WorldRun, world_choice_of
 
 _EVERY_S = 1.0 / 30.0   # between two states of the replay, s of sim time
@@ -116,13 +122,13 @@ class Judge:
     def _decide_checks(self) -> None:
         form = self._assignment.form
         file: Optional[WorldFile] = None
-        name = matching(self._folder, form.world) if form.world else ""
+        name = find_matching(self._folder, form.world) if form.world else ""
         if name:
             file = read_world_file(self._folder, name, self._resolver)
-            self._note(ambiguity(self._folder, form.world))
+            self._note(describe_ambiguity(self._folder, form.world))
         if self._unreadable:
             self._note(f"left out, because their permissions forbid reading:"
-                       f" {listed(self._unreadable)}")
+                       f" {summarize_names(self._unreadable)}")
         for found in check_files(self._assignment, file, self._why_missing(form.world)):
             self._writer.result(found)
         if self._assignment.of(Timed):
@@ -131,7 +137,7 @@ class Judge:
                                 self._until)
         for check in self._assignment.of(Launch, Rostest):
             if isinstance(check, Launch):
-                self._note(ambiguity(self._folder, check.file))
+                self._note(describe_ambiguity(self._folder, check.file))
             decided = launches.decide(check) if self._in_time else None
             self._in_time = self._in_time and time.monotonic() < self._until
             if decided is not None and self._in_time:
@@ -144,7 +150,7 @@ class Judge:
             self._refuse_timed(first[0].message if first else NO_WORLD, name,
                                first[0].line if first else 0)
             return
-        models = all_matching(self._folder, self._assignment.form.models)
+        models = find_all_matching(self._folder, self._assignment.form.models)
         fault = invalid_model_file(self._folder, models, self._resolver)
         if fault is not None:
             self._refuse_timed(fault.message, fault.file, fault.line)
@@ -261,8 +267,9 @@ class Judge:
             self._writer.note(text)
 
     def _refuse_timed(self, reason: str, file: str = "", line: int = 0) -> None:
-        found: List[CheckResult] = [result(check, 0.0, f"the world does not run: {reason}", file,
-                                           line) for check in self._assignment.of(Timed)]
+        found: List[CheckResult] = [
+            score_check(check, 0.0, f"the world does not run: {reason}", file, line)
+            for check in self._assignment.of(Timed)]
         for one in found:
             self._writer.result(one)
 

@@ -20,10 +20,10 @@ from ..studies.scenario_files import declared_arguments
 from .assignment import Assignment, Launch, Rostest
 from .file_checks import read_world_file
 from .launched_world import PROPERTIES, SIMULATOR, different_world, model_names, simulator_command
-from .mark import CheckResult, GradingError, result
+from .mark import CheckResult, GradingError, score_check
 from .program import TESTS, Program, submission_account, tester_account
 from .program_graph import free_port, graph_environment, start_master
-from .submission import listed, matching, reason_for_no_match
+from .submission import find_matching, reason_for_no_match, summarize_names
 
 _POLL_S = 0.1
 _START_S = 120.0      # until all nodes are there
@@ -62,10 +62,10 @@ class LaunchChecks:
 
     def _launch(self, check: Launch) -> CheckResult:
         """Start a launch file; it passes if its nodes run for the time of the check."""
-        name = matching(self._folder, check.file)
+        name = find_matching(self._folder, check.file)
         if not name:
-            return result(check, 0.0, reason_for_no_match(self._folder, check.file,
-                                                          self._unreadable))
+            return score_check(check, 0.0, reason_for_no_match(self._folder, check.file,
+                                                               self._unreadable))
         port = free_port()
         uri = f"http://127.0.0.1:{port}/"
         words = ["roslaunch", "-p", str(port), os.path.join(self._folder, name),
@@ -82,15 +82,15 @@ class LaunchChecks:
                 fault = _fault(program, self._folder)
             self._end(program)
         if fault:
-            return result(check, 0.0, fault.message, fault.file or name, fault.line)
+            return score_check(check, 0.0, fault.message, fault.file or name, fault.line)
         if missing:
-            return result(check, 0.0, f"no node {missing} within {_START_S:g} s", name)
-        return result(check, 1.0)
+            return score_check(check, 0.0, f"no node {missing} within {_START_S:g} s", name)
+        return score_check(check, 1.0)
 
     def _other_world(self, program: Program, uri: str) -> Optional[LaunchFault]:
         """Why the simulator does not run the world of the submission; None if it does."""
         patterns = self._assignment.form.world
-        name = matching(self._folder, patterns)
+        name = find_matching(self._folder, patterns)
         if not name:
             return LaunchFault(reason_for_no_match(self._folder, patterns, self._unreadable))
         fault = different_world(simulator_command(program, uri, self._scratch),
@@ -103,7 +103,7 @@ class LaunchChecks:
                 f"{SIMULATOR} did not load its world within {_START_S:g} s")
         world = read_world_file(self._folder, name, Resolver.from_environment()).world
         lost = [model.name for model in world.models if model.name not in loaded] if world else []
-        return LaunchFault(f"the simulator has not loaded {listed(lost)} of {name}"
+        return LaunchFault(f"the simulator has not loaded {summarize_names(lost)} of {name}"
                            ) if lost else None
 
     def _loaded_models(self, launched: Program, uri: str) -> Optional[List[str]]:
@@ -144,7 +144,7 @@ class LaunchChecks:
             with contextlib.closing(self._program(["roslaunch", started, *words], uri)) as program:
                 reason = self._wait_for_start(program, uri)
                 if reason:
-                    return result(check, 0.0, f"no test ran: {reason}")
+                    return score_check(check, 0.0, f"no test ran: {reason}")
                 return self._run_tests(check, [tests, *words], uri)
         finally:
             master.terminate()
@@ -173,12 +173,12 @@ class LaunchChecks:
         found = results_below(results)
         shutil.rmtree(results, ignore_errors=True)
         if timed_out:
-            return result(check, 0.0, f"the test took longer than {check.seconds:g} s")
+            return score_check(check, 0.0, f"the test took longer than {check.seconds:g} s")
         if not found.tests:
-            return result(check, 0.0, f"no test ran: {last}")
+            return score_check(check, 0.0, f"no test ran: {last}")
         passed = found.tests - found.failures
-        return result(check, passed / found.tests, found.first and
-                      f"{passed} of {found.tests} tests passed; {found.first}")
+        return score_check(check, passed / found.tests, found.first and
+                           f"{passed} of {found.tests} tests passed; {found.first}")
 
     def _copied(self, file: str) -> Tuple[str, str]:
         """Copies of a rostest: of its nodes for the submission, of its tests for the tester.
@@ -334,7 +334,7 @@ def launch_fault(output: bytes, folder: str) -> Optional[LaunchFault]:
         output: what roslaunch has printed.
         folder: of the submission.
     """
-    text = _plain(output)
+    text = _decode_output(output)
     found = _INVALID.search(text)
     if found is None:
         died = _DIED.search(text)
@@ -349,10 +349,10 @@ def launch_fault(output: bytes, folder: str) -> Optional[LaunchFault]:
 
 def last_line(output: bytes) -> str:
     """The last line of an output that says something."""
-    lines = [line.strip() for line in _plain(output).splitlines()]
+    lines = [line.strip() for line in _decode_output(output).splitlines()]
     wanted = [line for line in lines if line and not line.startswith(_UNWANTED)]
     return wanted[-1][:_LONGEST] if wanted else "no output"
 
 
-def _plain(output: bytes) -> str:
+def _decode_output(output: bytes) -> str:
     return _COLOUR.sub("", output.decode("utf-8", "replace"))

@@ -28,7 +28,7 @@ def write_lists(assignment: Assignment, marks: Sequence[Mark], out: str) -> List
              "junit.xml": _junit(assignment, marks)}
     for mark in marks:
         texts[os.path.join(STUDENTS, mark.student, "results.json")] = json.dumps(
-            gradescope(mark), indent=1).encode() + b"\n"
+            gradescope_results(mark), indent=1).encode() + b"\n"
     for name, text in texts.items():
         write_atomically(os.path.join(os.path.abspath(out), name), text, overwrite=True)
     return [os.path.join(os.path.abspath(out), name)
@@ -59,8 +59,8 @@ def _table(rows: Sequence[Sequence[Any]]) -> bytes:
     return stream.getvalue().encode("utf-8", "replace")
 
 
-def gradescope(mark: Mark) -> Dict[str, Any]:
-    """The content of Gradescope's `results.json`."""
+def gradescope_results(mark: Mark) -> Dict[str, Any]:
+    """Return the content of Gradescope's `results.json`."""
     tests = [{"name": one.name, "score": one.points, "max_score": one.most,
               "status": "passed" if one.passed else "failed", "output": reason_with_location(one)}
              for one in mark.results]

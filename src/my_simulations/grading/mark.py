@@ -49,9 +49,9 @@ def late_reason(assignment: Assignment) -> str:
     return f"not finished within {assignment.limits.seconds:g} s of wall time"
 
 
-def result(check: Check, share: float, reason: str = "", file: str = "", line: int = 0
-           ) -> CheckResult:
-    """The result of a check that gives a share of its points, 0..1; rounded to 0.01 points.
+def score_check(check: Check, share: float, reason: str = "", file: str = "", line: int = 0
+                ) -> CheckResult:
+    """Give a check a share (0..1) of its points, rounded to 0.01 points.
 
     A long reason is cut: it can contain any text of a submission.
     """
@@ -109,7 +109,7 @@ def without_result(checks: Sequence[Check], known: Sequence[CheckResult], reason
                    ) -> List[CheckResult]:
     """All checks in order; those that have no result yet get no points, and a reason."""
     found = {one.name: one for one in known}
-    return [found.get(check.name) or result(check, 0.0, reason) for check in checks]
+    return [found.get(check.name) or score_check(check, 0.0, reason) for check in checks]
 
 
 def all_failed(assignment: Assignment, student: str, status: str, reason: str) -> Mark:

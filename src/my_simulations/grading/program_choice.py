@@ -5,7 +5,7 @@ import os
 import re
 from typing import NamedTuple, Sequence, Tuple
 
-from .submission import files_by_pattern, listed
+from .submission import files_by_pattern, summarize_names
 
 _LARGEST = 1 << 20   # bytes of a file that are searched
 _STARTS_NODE = re.compile(r"^[^#\n]*\binit_node\s*\(", re.MULTILINE)
@@ -29,7 +29,7 @@ def choose_program(folder: str, patterns: Sequence[str]) -> Choice:
 
     The first pattern that fits decides. Of several Python files those come first that start a node
     of ROS and contain a main program, then those that do one of the two; else the order of paths
-    decides, as of `submission.matching`.
+    decides, as of `submission.find_matching`.
 
     Args:
         folder: the submission.
@@ -44,7 +44,7 @@ def choose_program(folder: str, patterns: Sequence[str]) -> Choice:
             is_best = all(kinds[first] != kinds[other] for other in others)
             return Choice(first, f"{first} was run, {_reason(kinds[first], is_best)}; the"
                                  f" submission contains more files that fit {pattern}:"
-                                 f" {listed(others)}")
+                                 f" {summarize_names(others)}")
     return Choice("", "")
 
 

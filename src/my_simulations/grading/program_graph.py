@@ -15,7 +15,7 @@ from ..ros.lifecycle import master_api
 from .assignment import Assignment, ServiceAnswer, Timed, TopicRate
 from .held_notices import HeldNotices
 from .lockstep import Lockstep
-from .mark import CheckResult, GradingError, result
+from .mark import CheckResult, GradingError, score_check
 from .program import Program
 
 _MASTER_S = 60.0
@@ -118,14 +118,14 @@ class RosGraph:
         count, kind = self._node.message_count(check.topic)
         rate = count / check.within if check.within > 0.0 else float(count)
         if not count:
-            return result(check, 0.0, self._with_end(f"{check.topic} has no messages"))
+            return score_check(check, 0.0, self._with_end(f"{check.topic} has no messages"))
         if check.type_name and kind != check.type_name:
-            return result(check, 0.0, f"{check.topic} has messages of the type {kind}, not"
+            return score_check(check, 0.0, f"{check.topic} has messages of the type {kind}, not"
                                       f" {check.type_name}")
         if rate < _RATE_SHARE * check.rate:
-            return result(check, 0.0, self._with_end(
+            return score_check(check, 0.0, self._with_end(
                 f"{check.topic} has {rate:.1f} messages a second, {check.rate:g} are needed"))
-        return result(check, 1.0)
+        return score_check(check, 1.0)
 
     def _answer(self, check: ServiceAnswer) -> CheckResult:
         answer = self._node.call_result(check.service)
@@ -133,10 +133,10 @@ class RosGraph:
             reason = (f"the service {check.service} did not answer within {check.within:g} s"
                       if self._offers(check.service)
                       else f"no node offers the service {check.service}")
-            return result(check, 0.0, self._with_end(reason))
+            return score_check(check, 0.0, self._with_end(reason))
         if answer:
-            return result(check, 0.0, f"the service {check.service} failed: {answer}")
-        return result(check, 1.0)
+            return score_check(check, 0.0, f"the service {check.service} failed: {answer}")
+        return score_check(check, 1.0)
 
     def _offers(self, service: str) -> bool:
         """Whether a node of the graph offers a service."""

@@ -84,27 +84,28 @@ def content_key(path: str, *more: str) -> str:
     return digest.hexdigest()
 
 
-def matching(folder: str, patterns: Sequence[str]) -> str:
-    """The first file of a submission that fits one of the patterns; "" for none.
+def find_matching(folder: str, patterns: Sequence[str]) -> str:
+    """Return the first file of a submission that fits one of the patterns; "" for none.
 
     A pattern is a path in the submission, or a name alone, which is looked for in all folders;
     earlier patterns, names in the same case, and shorter paths come first. Hidden files are left
     out.
     """
-    return next(iter(all_matching(folder, patterns)), "")
+    return next(iter(find_all_matching(folder, patterns)), "")
 
 
-def all_matching(folder: str, patterns: Sequence[str]) -> List[str]:
-    """All files of a submission that fit one of the patterns, in the order of `matching`."""
+def find_all_matching(folder: str, patterns: Sequence[str]) -> List[str]:
+    """Return all files of a submission that fit a pattern, in the order of `find_matching`."""
     return list(dict.fromkeys(chain.from_iterable(files_by_pattern(folder, patterns))))
 
 
-def ambiguity(folder: str, patterns: Sequence[str]) -> str:
-    """Which file `matching` has chosen, if others fit the same pattern; "" if none does."""
+def describe_ambiguity(folder: str, patterns: Sequence[str]) -> str:
+    """Name the file that `find_matching` chooses among several; "" if only one fits the pattern."""
     for pattern, found in zip(patterns, files_by_pattern(folder, patterns)):
         if len(found) > 1:
             return (f"{found[0]} was graded, which has the fewest folders and then the first name;"
-                    f" the submission contains more files that fit {pattern}: {listed(found[1:])}")
+                    f" the submission contains more files that fit {pattern}:"
+                    f" {summarize_names(found[1:])}")
         if found:
             return ""
     return ""
@@ -112,24 +113,24 @@ def ambiguity(folder: str, patterns: Sequence[str]) -> str:
 
 def reason_for_no_match(folder: str, patterns: Sequence[str], unreadable: Sequence[str] = ()
                         ) -> str:
-    """Why `matching` has found nothing; `unreadable` are files that were left out."""
+    """Explain why `find_matching` found no file; `unreadable` are files that were left out."""
     hidden = [name for name in unreadable for pattern in patterns
               if _fits(name.lower(), pattern.lower())]
     if hidden:
         return f"{hidden[0]} cannot be read: its permissions forbid it"
     names = [relative for relative, _ in content_of(folder).files]
-    content = f"it contains {listed(names)}" if names else "it is empty"
+    content = f"it contains {summarize_names(names)}" if names else "it is empty"
     return f"the submission contains no {' or '.join(patterns)}; {content}"
 
 
-def listed(names: Sequence[str]) -> str:
-    """The first names, and the number of the others."""
+def summarize_names(names: Sequence[str]) -> str:
+    """Join the first names with commas and add the number of the others."""
     more = len(names) - _SHOWN_FILES
     return ", ".join(names[:_SHOWN_FILES]) + (f" and {more} more" if more > 0 else "")
 
 
 def files_by_pattern(folder: str, patterns: Sequence[str]) -> List[List[str]]:
-    """The files that fit each pattern, in the order of `matching`."""
+    """The files that fit each pattern, in the order of `find_matching`."""
     names = sorted((relative for relative, _ in content_of(folder).files
                     if not os.path.basename(relative).startswith(".")),
                    key=lambda name: (name.count(os.sep), name))

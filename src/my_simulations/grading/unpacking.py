@@ -17,8 +17,8 @@ _MOST_ARCHIVES = 2   # in each other
 
 
 @contextlib.contextmanager
-def unpacked(submission: Submission, folder: str, most_bytes: int) -> Iterator[Submission]:
-    """Provide the content of a submission, which is unpacked if it is an archive.
+def unpack_submission(submission: Submission, folder: str, most_bytes: int) -> Iterator[Submission]:
+    """Unpack a submission if it is an archive; provide its content for a `with` block.
 
     An archive is a submission if it is handed in itself, or as the only file of a folder. If it
     contains one archive only, as learning platforms pack uploads, that one is unpacked, too.

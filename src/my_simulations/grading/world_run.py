@@ -20,7 +20,7 @@ from .assignment import (
     Timed,
     TopicRate,
 )
-from .mark import CheckResult, late_reason, result
+from .mark import CheckResult, late_reason, score_check
 
 _SHOWN = 3   # decimals of a length, m
 _MOST_MEASURED = 6
@@ -96,7 +96,7 @@ class WorldRun:
     def _end(self, checks: List[Timed], reason: str, done: Callable[[CheckResult], None]) -> None:
         """Give no points for the checks that are left, which are removed."""
         while checks:
-            done(result(checks.pop(0), 0.0, reason, self._name))
+            done(score_check(checks.pop(0), 0.0, reason, self._name))
 
     def _step(self, steps: int) -> None:
         if self._graph is None:
@@ -123,10 +123,10 @@ class WorldRun:
     def _decided(self, check: Timed) -> CheckResult:
         if isinstance(check, (TopicRate, ServiceAnswer)):
             if self._graph is None:
-                return result(check, 0.0, "the submission contains no program")
+                return score_check(check, 0.0, "the submission contains no program")
             return self._graph.result(check)
         if check.name in self._faults:
-            return result(check, 0.0, self._faults[check.name], self._name)
+            return score_check(check, 0.0, self._faults[check.name], self._name)
         samples = self._readers[check.name].samples()
         return _DECIDE[type(check)](check, samples, self._name)
 
@@ -152,21 +152,21 @@ def _placed(check: Place, samples: Samples, name: str) -> CheckResult:
     distance = math.sqrt(sum((value - wanted) ** 2 for value, wanted in zip(now, check.at)
                              if wanted is not None))
     if distance <= check.tolerance:
-        return result(check, 1.0)
+        return score_check(check, 1.0)
     share = 0.0
     if check.partial > check.tolerance:
         share = (check.partial - distance) / (check.partial - check.tolerance)
     place = ", ".join(f"{value:.{_SHOWN}f}" for value in now)
-    return result(check, share, f"{check.model} is at ({place}) m after {check.within:g} s,"
-                  f" {distance:.{_SHOWN}f} m from its place; {check.tolerance:g} m are allowed",
-                  name)
+    return score_check(
+        check, share, f"{check.model} is at ({place}) m after {check.within:g} s,"
+        f" {distance:.{_SHOWN}f} m from its place; {check.tolerance:g} m are allowed", name)
 
 
 def _required(check: Requirement, samples: Samples, name: str) -> CheckResult:
     if check.require is None:
-        return result(check, 0.0, "there is no condition")
+        return score_check(check, 0.0, "there is no condition")
     if check.require.value(samples):
-        return result(check, 1.0)
+        return score_check(check, 1.0)
     reason = "".join(part if isinstance(part, str) else f"{part.value(samples):.2f}"
                      for part in check.message)
     if not reason:
@@ -178,15 +178,15 @@ def _required(check: Requirement, samples: Samples, name: str) -> CheckResult:
         share = float(check.partial.value(samples))
         share = 0.0 if math.isnan(share) else min(max(share, 0.0), 1.0)
         reason += f"; {100.0 * share:.0f} % of the points"
-    return result(check, share, reason, name)
+    return score_check(check, share, reason, name)
 
 
 def _apart(check: NoContact, samples: Samples, name: str) -> CheckResult:
     touched = np.flatnonzero(samples[_signals(check)[0]])
     if not len(touched):
-        return result(check, 1.0)
+        return score_check(check, 1.0)
     time = float(samples[Signal("time")][touched[0]])
-    return result(check, 0.0, f"{check.first} touches {check.second} at {time:.2f} s", name)
+    return score_check(check, 0.0, f"{check.first} touches {check.second} at {time:.2f} s", name)
 
 
 _DECIDE: Dict[type, Callable[[Any, Samples, str], CheckResult]] = {

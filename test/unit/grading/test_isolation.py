@@ -17,9 +17,9 @@ from waiting import wait_for
 from my_simulations.grading import box
 from my_simulations.grading.assignment_file import read_assignment
 from my_simulations.grading.box_process import _specification
-from my_simulations.grading.box_support import isolation
+from my_simulations.grading.box_support import isolation_fault
 from my_simulations.grading.confined_resolver import ConfinedResolver
-from my_simulations.grading.grader import Grader, reserved_slots
+from my_simulations.grading.grader import Grader, reserve_slots
 from my_simulations.grading.program import Program, submission_account
 from my_simulations.grading.submission import Submission, submissions_of
 from my_simulations.grading.submission_files import content_of
@@ -52,7 +52,7 @@ CONNECT = ("import socket, sys; one = socket.socket(socket.AF_UNIX); one.settime
 
 
 def test_sockets_of_the_system_cannot_be_reached(tmp_path):
-    if isolation():
+    if isolation_fault():
         pytest.fail("this test needs namespaces")
     with tempfile.TemporaryDirectory(dir="/tmp") as short, \
             socket.socket(socket.AF_UNIX) as agent:
@@ -133,7 +133,7 @@ threading.Event().wait()
 @pytest.fixture
 def program(assignment, tmp_path):
     """A running program with 61 threads."""
-    with reserved_slots(1) as slots, contextlib.closing(Program(
+    with reserve_slots(1) as slots, contextlib.closing(Program(
             [sys.executable, "-c", THREADS], str(tmp_path), str(tmp_path), assignment.limits,
             submission_account(str(tmp_path), slots[0]), {})) as found:
         wait_for(lambda: b"started" in found.output(), "its threads", 60.0)

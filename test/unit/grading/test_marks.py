@@ -11,16 +11,16 @@ from lxml import etree
 from my_simulations.errors import CommandError
 from my_simulations.grading.assignment_file import read_assignment
 from my_simulations.grading.lists import write_lists
-from my_simulations.grading.mark import GRADED, TIMED_OUT, CheckResult, Mark, mark_of, result
+from my_simulations.grading.mark import GRADED, TIMED_OUT, CheckResult, Mark, mark_of, score_check
 from my_simulations.grading.pages import write_pages
 from my_simulations.grading.program import PythonError, loop_place, python_error
 from my_simulations.grading.program_choice import choose_program
 from my_simulations.grading.result_stream import ResultReader, ResultWriter
 from my_simulations.grading.submission import (
-    all_matching,
-    ambiguity,
     content_key,
-    matching,
+    describe_ambiguity,
+    find_all_matching,
+    find_matching,
     reason_for_no_match,
     submissions_of,
 )
@@ -37,17 +37,18 @@ def assignment(tmp_path):
 @pytest.fixture
 def marks(assignment):
     first, second = assignment.checks
-    return [Mark("anna", GRADED, [result(first, 1.0), result(second, 1.0)], files=["replay.html"]),
-            Mark("<ben>", TIMED_OUT, [result(first, 0.0, "a <b> \x01 is wrong", "a.world", 7),
-                                      result(second, 0.5, "too few")], ["a note"])]
+    return [Mark("anna", GRADED, [score_check(first, 1.0), score_check(second, 1.0)],
+                 files=["replay.html"]),
+            Mark("<ben>", TIMED_OUT, [score_check(first, 0.0, "a <b> \x01 is wrong", "a.world", 7),
+                                      score_check(second, 0.5, "too few")], ["a note"])]
 
 
 def test_points_are_shares_and_are_rounded(assignment):
     check = assignment.checks[1]
-    assert [result(check, share).points for share in (-1.0, 1.0 / 3.0, 0.5, 2.0)] == [
+    assert [score_check(check, share).points for share in (-1.0, 1.0 / 3.0, 0.5, 2.0)] == [
         0.0, 1.0, 1.5, 3.0]
-    assert len(result(check, 0.0, 100_000 * "\x01").reason) == 1001
-    mark = Mark("a", GRADED, [result(check, 0.5, "r", "f", 3)], key="k")
+    assert len(score_check(check, 0.0, 100_000 * "\x01").reason) == 1001
+    mark = Mark("a", GRADED, [score_check(check, 0.5, "r", "f", 3)], key="k")
     assert mark_of(mark.to_json()) == mark
 
 
@@ -85,7 +86,7 @@ def test_a_page_shows_a_cause_once_that_several_checks_share(assignment, tmp_pat
     checks = assignment.checks
     cause = "it ended with exit status 1"
     for name, reasons in (("equal", [cause, cause]), ("noted", [f"no answer; {cause}", "too few"])):
-        mark = Mark(name, GRADED, [result(check, 0.0, reason, "go.py", 3)
+        mark = Mark(name, GRADED, [score_check(check, 0.0, reason, "go.py", 3)
                                    for check, reason in zip(checks, reasons)],
                     [cause] if name == "noted" else [])
         write_pages(assignment, [mark], str(tmp_path))
@@ -98,7 +99,7 @@ def test_results_and_files_come_through_in_pieces(assignment, tmp_path):
     receiving, sending = os.pipe()
     writer = ResultWriter(sending)
     writer.isolation("files")
-    writer.result(result(assignment.checks[0], 0.5, "why", "f", 2))
+    writer.result(score_check(assignment.checks[0], 0.5, "why", "f", 2))
     writer.file("replay.html", b"line\nline\n\0")
     writer.note("a note")
     writer.end(True)
@@ -135,10 +136,11 @@ def test_submissions_are_named_and_their_content_decides(tmp_path):
     before = content_key(anna.path)
     (tmp_path / "anna" / "world" / "test.world").write_text("<sdf></sdf>")
     assert content_key(anna.path) != before
-    assert matching(anna.path, ("*.sdf", "test.world")) == "world/test.world"
-    assert matching(anna.path, ("other.world",)) == ""
+    assert find_matching(anna.path, ("*.sdf", "test.world")) == "world/test.world"
+    assert find_matching(anna.path, ("other.world",)) == ""
     (tmp_path / "anna" / "a.sdf").write_text("<sdf/>")
-    assert all_matching(anna.path, ("*.world", "*.sdf", "a.*")) == ["world/test.world", "a.sdf"]
+    patterns = ("*.world", "*.sdf", "a.*")
+    assert find_all_matching(anna.path, patterns) == ["world/test.world", "a.sdf"]
     with pytest.raises(CommandError, match="the name anna"):
         submissions_of([str(tmp_path / "anna"), str(tmp_path / "anna")])
     with pytest.raises(CommandError, match="no submission"):
@@ -150,11 +152,11 @@ def test_names_in_another_case_and_hidden_files(tmp_path):
         (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
         (tmp_path / name).write_text("")
     folder = str(tmp_path)
-    assert matching(folder, ("go.py",)) == "e/go.py"
-    assert matching(folder, ("GO.py", "*.py")) == "Go.PY"
-    assert all_matching(folder, ("*.py",)) == ["b.py", "e/go.py"]
-    assert ambiguity(folder, ("b.py", "*.py")) == ""
-    assert ambiguity(folder, ("x.py", "*.py")) == (
+    assert find_matching(folder, ("go.py",)) == "e/go.py"
+    assert find_matching(folder, ("GO.py", "*.py")) == "Go.PY"
+    assert find_all_matching(folder, ("*.py",)) == ["b.py", "e/go.py"]
+    assert describe_ambiguity(folder, ("b.py", "*.py")) == ""
+    assert describe_ambiguity(folder, ("x.py", "*.py")) == (
         "b.py was graded, which has the fewest folders and then the first name; the"
         " submission contains more files that fit *.py: e/go.py")
     assert reason_for_no_match(folder, ("x.py", "y.py")).endswith(

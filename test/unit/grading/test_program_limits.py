@@ -9,7 +9,7 @@ from waiting import wait_for
 
 from my_simulations.grading import box
 from my_simulations.grading.assignment import GradeLimits
-from my_simulations.grading.grader import reserved_slots
+from my_simulations.grading.grader import reserve_slots
 from my_simulations.grading.program import Program, submission_account
 
 SECONDS = 60.0
@@ -31,7 +31,7 @@ def test_the_processor_time_of_all_processes_of_a_program_counts(tmp_path):
     (scratch / "submission").mkdir(parents=True)
     (scratch / "submission" / "go.py").write_text(FORKS)
     limits = GradeLimits(processor_seconds=2.0)
-    with reserved_slots(1) as slots, closing(Program(
+    with reserve_slots(1) as slots, closing(Program(
             [sys.executable, "go.py"], str(scratch / "submission"), str(scratch), limits,
             submission_account(str(scratch), slots[0]), {})) as program:
         pids = wait_for(lambda: (found := box.descendants(program.pid))[5:] and found,

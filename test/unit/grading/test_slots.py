@@ -6,34 +6,34 @@ import os
 import pytest
 
 from my_simulations.errors import CommandError
-from my_simulations.grading.grader import MOST_SLOTS, reserved_slots
+from my_simulations.grading.grader import MOST_SLOTS, reserve_slots
 
 
 def test_runs_at_the_same_time_have_different_slots(tmp_path, monkeypatch):
     monkeypatch.setattr(os, "geteuid", lambda: 0)
     folder = str(tmp_path / "locks")
-    with reserved_slots(2, folder) as first:
-        with reserved_slots(3, folder) as second:
+    with reserve_slots(2, folder) as first:
+        with reserve_slots(3, folder) as second:
             assert (first, second) == ([0, 1], [2, 3, 4])
-        with reserved_slots(1, folder) as third:
+        with reserve_slots(1, folder) as third:
             assert third == [2]
-    with reserved_slots(2, folder) as again:
+    with reserve_slots(2, folder) as again:
         assert again == [0, 1]
 
 
 def test_too_many_slots_are_an_error(tmp_path, monkeypatch):
     monkeypatch.setattr(os, "geteuid", lambda: 0)
     with pytest.raises(CommandError, match=f"only {MOST_SLOTS} of"):
-        with reserved_slots(MOST_SLOTS + 1, str(tmp_path)):
+        with reserve_slots(MOST_SLOTS + 1, str(tmp_path)):
             pass
     (tmp_path / "file").write_text("")
     with pytest.raises(CommandError, match="cannot reserve user ids"):
-        with reserved_slots(1, str(tmp_path / "file")):
+        with reserve_slots(1, str(tmp_path / "file")):
             pass
 
 
 def test_only_root_needs_locks(tmp_path, monkeypatch):
     monkeypatch.setattr(os, "geteuid", lambda: 1000)
-    with reserved_slots(2, str(tmp_path / "locks")) as slots:
+    with reserve_slots(2, str(tmp_path / "locks")) as slots:
         assert slots == [0, 1]
     assert os.listdir(tmp_path) == []

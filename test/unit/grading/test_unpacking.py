@@ -12,7 +12,7 @@ import pytest
 from my_simulations.grading.submission import submissions_of
 from my_simulations.grading.submission_files import MOST_FILES
 from my_simulations.grading.submission_files import content_of as files_of
-from my_simulations.grading.unpacking import unpacked
+from my_simulations.grading.unpacking import unpack_submission
 from my_simulations.resources.database.archive import ArchiveError
 
 MOST_BYTES = 1 << 20
@@ -34,7 +34,7 @@ def content_of(path, folder):
     """Student, contents of the files by name, and the names of those that can be executed."""
     folder.mkdir()
     (submission,) = submissions_of([str(path)])
-    with unpacked(submission, str(folder), MOST_BYTES) as found:
+    with unpack_submission(submission, str(folder), MOST_BYTES) as found:
         assert found.student == submission.student
         files = dict(files_of(found.path).files)
         contents = {}
@@ -75,7 +75,7 @@ def test_an_archive_as_the_only_file_of_a_folder_is_the_submission(tmp_path):
     assert content_of(tmp_path / "carl", tmp_path / "out")[1] == {"go.py": "go"}
     (tmp_path / "carl" / "read me.txt").write_text("more")
     (submission,) = submissions_of([str(tmp_path / "carl")])
-    with unpacked(submission, str(tmp_path), MOST_BYTES) as found:
+    with unpack_submission(submission, str(tmp_path), MOST_BYTES) as found:
         assert found is submission
 
 
@@ -86,7 +86,7 @@ def test_an_archive_in_an_archive_is_unpacked_once(tmp_path):
         write_zip(outer, ("upload/lab.zip", one.read_bytes()))
     assert content_of(inner[1], tmp_path / "out")[1] == {"lab/go.py": "go"}
     (submission,) = submissions_of([str(inner[2])])
-    with unpacked(submission, str(tmp_path), MOST_BYTES) as found:
+    with unpack_submission(submission, str(tmp_path), MOST_BYTES) as found:
         assert [name for name, _ in files_of(found.path).files] == ["upload/lab.zip"]
 
 
