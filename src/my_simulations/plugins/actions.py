@@ -4,7 +4,7 @@ from __future__ import annotations
 from typing import Any, Callable, List, Optional, Tuple
 
 from .context import CallHandle, Context, Handle
-from .frames import stamped
+from .frames import stamp_message
 
 PENDING, ACTIVE, PREEMPTED, SUCCEEDED, ABORTED, REJECTED, PREEMPTING, RECALLING, RECALLED = range(9)
 _STATUS_HZ = 5.0
@@ -147,7 +147,7 @@ class ActionServer:
                        or abs(now - goal.ended_ns) <= _KEEP_NS]
         self._early = [(one, came_ns) for one, came_ns in self._early
                        if abs(now - came_ns) <= _KEEP_NS]
-        message = stamped(self._context, "actionlib_msgs/GoalStatusArray")
+        message = stamp_message(self._context, "actionlib_msgs/GoalStatusArray")
         message.status_list = [self._status_of(goal) for goal in self._goals]
         self._status.publish(message)
 

@@ -7,8 +7,8 @@ from typing import Any
 from ..geometry import Pose, Vec3
 
 
-def finite(value: Any, what: str) -> float:
-    """A finite number. Raises ValueError, which names `what`."""
+def check_finite(value: Any, what: str) -> float:
+    """Return a finite number. Raises ValueError, which names `what`."""
     try:
         number = float(value)
     except (TypeError, ValueError):
@@ -18,26 +18,26 @@ def finite(value: Any, what: str) -> float:
     return number
 
 
-def number(value: Any, what: str) -> float:
-    """A number, which may be infinite. Raises ValueError, which names `what`."""
+def check_number(value: Any, what: str) -> float:
+    """Return a number, which may be infinite. Raises ValueError, which names `what`."""
     infinite = isinstance(value, float) and math.isinf(value)
-    return value if infinite else finite(value, what)
+    return value if infinite else check_finite(value, what)
 
 
-def vector(value: Any, what: str) -> Vec3:
-    """Three finite numbers. Raises ValueError, which names `what`."""
+def check_vector(value: Any, what: str) -> Vec3:
+    """Return three finite numbers. Raises ValueError, which names `what`."""
     try:
         x, y, z = value
     except (TypeError, ValueError):
         raise ValueError(f"{what} must be three numbers, is {value!r:.100}") from None
-    return finite(x, what), finite(y, what), finite(z, what)
+    return check_finite(x, what), check_finite(y, what), check_finite(z, what)
 
 
-def pose_of(value: Any, what: str) -> Pose:
-    """A pose of finite numbers. Raises ValueError, which names `what`."""
+def check_pose(value: Any, what: str) -> Pose:
+    """Return a pose of finite numbers. Raises ValueError, which names `what`."""
     try:
         position, (x, y, z, w) = value
     except (TypeError, ValueError):
         raise ValueError(f"{what} must be a Pose, is {value!r:.100}") from None
-    return Pose(vector(position, what), (finite(x, what), finite(y, what), finite(z, what),
-                                         finite(w, what)))
+    return Pose(check_vector(position, what), (check_finite(x, what), check_finite(y, what),
+                                               check_finite(z, what), check_finite(w, what)))

@@ -40,7 +40,7 @@ def describe_fault(fault: BaseException) -> str:
     name = type(fault).__name__
     said = f"{name}: {text}" if text else name
     if isinstance(fault, SyntaxError) and fault.filename:
-        return f"{name}: {shortened(str(fault.msg))} (in {fault.filename}:{fault.lineno})"
+        return f"{name}: {shorten(str(fault.msg))} (in {fault.filename}:{fault.lineno})"
     frames = traceback.extract_tb(fault.__traceback__)
     if not frames:
         return said
@@ -65,15 +65,15 @@ def _call_of_plugin(frames: Sequence[traceback.FrameSummary]) -> str:
         f" (in {frame.name}, {frame.filename}:{frame.lineno})")
 
 
-def shortened(text: str) -> str:
-    """The first `LONGEST_TEXT` characters, and how many more there are."""
+def shorten(text: str) -> str:
+    """Return the first `LONGEST_TEXT` characters of a text and the number of the others."""
     more = len(text) - LONGEST_TEXT
     return text if more <= 0 else f"{text[:LONGEST_TEXT]}... ({more} more characters)"
 
 
 def _message_of(fault: BaseException) -> str:
     try:
-        return shortened(str(fault))
+        return shorten(str(fault))
     except BaseException as second:  # an exception of a plugin may have any __str__
         return f"its message cannot be read ({type(second).__name__})"
 

@@ -194,14 +194,14 @@ class PluginRegistry:
         if self._exported is None:
             self._exported = {}
             for folder in self._folders():
-                for attributes in exports(os.path.join(folder, "package.xml")):
+                for attributes in read_exports(os.path.join(folder, "package.xml")):
                     self._exported.setdefault(library_name(attributes.get("library", "")),
                                               attributes.get("plugin", ""))
         return self._exported
 
 
-def exports(manifest: str) -> List[Dict[str, str]]:
-    """The attributes of the `<my_simulations>` exports of a package.xml."""
+def read_exports(manifest: str) -> List[Dict[str, str]]:
+    """Read the attributes of the `<my_simulations>` exports of a package.xml."""
     try:
         with open(manifest, encoding="utf-8", errors="replace") as stream:
             text = stream.read()

@@ -21,7 +21,7 @@ from ..sensing.api import Mount, Pictures, RayFan, RayReturns
 from ..simulator.entity import Entity
 from ..simulator.scene_sensing import SceneSensing
 from ..simulator.simulator import Simulator
-from .checked_arguments import finite, vector
+from .checked_arguments import check_finite, check_vector
 from .context import PluginError, Publication, View
 from .found_plugins import FoundPlugin, owner_text
 from .graph import Graph, TopicUse
@@ -253,7 +253,8 @@ class SimulatedContext(GraphUser):
 
     def set_planar_velocity(self, x: float, y: float, yaw_rate: float) -> None:
         self.commands.planar = self._level = PlanarVelocity(
-            self.entity.model_id, finite(x, "x"), finite(y, "y"), finite(yaw_rate, "yaw_rate"))
+            self.entity.model_id, check_finite(x, "x"), check_finite(y, "y"),
+            check_finite(yaw_rate, "yaw_rate"))
 
     @property
     def description(self) -> Model:
@@ -264,8 +265,8 @@ class SimulatedContext(GraphUser):
                                 lambda: self.search_parameter(parameter, ""))
 
     def set_wrench(self, link: str, force: Vec3, torque: Vec3) -> None:
-        self.commands.wrenches[self._pushed(link)] = (vector(force, "force"),
-                                                  vector(torque, "torque"), None, "")
+        self.commands.wrenches[self._pushed(link)] = (check_vector(force, "force"),
+                                                  check_vector(torque, "torque"), None, "")
 
     def set_wrench_law(self, link: str, law: WrenchLaw, joint: str = "") -> None:
         followed = joint and f"{self.model}::{self._rows.joint(joint).name}"

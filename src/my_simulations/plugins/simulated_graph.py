@@ -6,7 +6,7 @@ from collections import deque
 from typing import Any, Callable, Deque, Dict, List, Optional, Tuple
 
 from ..geometry import Pose
-from .checked_arguments import pose_of
+from .checked_arguments import check_pose
 from .context import PluginError, RequestError
 from .graph import Graph, GraphHandle, MissingTypeError, ServiceTakenError, Topic, TransformOf
 from .message_maker import PendingMessage
@@ -221,4 +221,4 @@ class GraphUser:
 
     def transform(self, parent: str, child: str, pose: Pose) -> None:
         self.transforms.append(
-            (self.now_ns, (str(parent), str(child), pose_of(pose, "a transform"))))
+            (self.now_ns, (str(parent), str(child), check_pose(pose, "a transform"))))

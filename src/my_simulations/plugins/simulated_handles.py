@@ -9,7 +9,7 @@ from ..description.model import Joint as JointSpec
 from ..engine.drive_commands import JointMotor, JointServo, PlanarVelocity
 from ..engine.wrench_laws import WrenchLaw
 from ..geometry import Pose, Twist, Vec3
-from .checked_arguments import finite, number
+from .checked_arguments import check_finite, check_number
 from .observations import StepView
 
 
@@ -78,8 +78,8 @@ class SimulatedJoint:
         return self._view.set_count(self.row)
 
     def drive(self, rate: float, effort: float) -> None:
-        self.motor = JointMotor(self.row, finite(rate, "the rate of a motor"),
-                                number(effort, "the effort of a motor"))
+        self.motor = JointMotor(self.row, check_finite(rate, "the rate of a motor"),
+                                check_number(effort, "the effort of a motor"))
         self._commands.motors[self.row] = self.motor
 
     def set_servo(self, servo: JointServo) -> None:

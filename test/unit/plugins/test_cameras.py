@@ -19,7 +19,7 @@ from my_simulations.plugins.sensors.camera import (
     TriggeredMultiCamera,
 )
 from my_simulations.plugins.sensors.depth_camera import DepthCamera, OpenniKinect
-from my_simulations.plugins.sensors.image_messages import encoded
+from my_simulations.plugins.sensors.image_messages import encode_picture
 from my_simulations.plugins.sensors.realsense import RealSense
 from my_simulations.plugins.sensors.thermal_camera import ThermalCamera
 from my_simulations.plugins.testing import FakeContext
@@ -159,7 +159,7 @@ def test_a_compressed_picture_is_decoded_to_the_raw_one():
 def test_encodings_have_their_types_and_sizes(encoding, kind, size):
     rgb = np.zeros((4, 3, 3), np.uint8)
     rgb[:] = (255, 100, 0)
-    made = encoded(rgb, encoding)
+    made = encode_picture(rgb, encoding)
     assert made.dtype == kind and made[0].size == size
     assert {"bgr8": 0, "rgb16": 65535, "bayer_rggb8": 255}.get(encoding, made.flat[0]) \
         == made.flat[0]

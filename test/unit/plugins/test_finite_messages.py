@@ -13,7 +13,7 @@ from my_simulations.plugins.drive.kobuki import Kobuki
 from my_simulations.plugins.drive.skid_steer_drive import SkidSteerDrive
 from my_simulations.plugins.drive.tricycle_drive import TricycleDrive
 from my_simulations.plugins.finite_messages import is_all_finite
-from my_simulations.plugins.sensors.hector import pressure
+from my_simulations.plugins.sensors.hector import pressure_at
 from my_simulations.plugins.state.force import Force
 from my_simulations.plugins.state.hand_of_god import HandOfGod
 from my_simulations.plugins.state.p3d import P3d
@@ -89,5 +89,5 @@ def test_springs_of_negative_stiffness_and_endless_noise_end_no_plugin():
 
 
 def test_there_is_no_pressure_above_the_atmosphere():
-    assert pressure(44330.0 * 2, 1013.25) == 0.0
-    assert pressure(0.0, 1013.25) == pytest.approx(1013.25)
+    assert pressure_at(44330.0 * 2, 1013.25) == 0.0
+    assert pressure_at(0.0, 1013.25) == pytest.approx(1013.25)

@@ -23,7 +23,7 @@ from my_simulations.plugins.base import Plugin
 from my_simulations.plugins.call_watch import CALL_LIMITS, CallLimits
 from my_simulations.plugins.context import PluginError, RequestError
 from my_simulations.plugins.graph import TopicUse
-from my_simulations.plugins.registry import PluginRegistry, exports, library_name, plugin_class
+from my_simulations.plugins.registry import PluginRegistry, library_name, plugin_class, read_exports
 from my_simulations.plugins.testing import Message
 from my_simulations.sensing.api import RayReturns
 
@@ -241,7 +241,8 @@ def test_libraries_are_known_by_their_file_name(tmp_path):
     assert library_name("/opt/ros/lib/libfoo.so") == library_name("foo") == "libfoo.so"
     (tmp_path / "package.xml").write_text(
         '<package><export><my_simulations plugin="a.b:C" library="libfoo.so"/></export></package>')
-    assert exports(str(tmp_path / "package.xml")) == [{"plugin": "a.b:C", "library": "libfoo.so"}]
+    assert read_exports(str(tmp_path / "package.xml")) == [
+        {"plugin": "a.b:C", "library": "libfoo.so"}]
 
 
 def test_a_package_brings_a_plugin(case, tmp_path):

@@ -16,8 +16,12 @@ _CORNERS = ("front_left", "front_right", "back_left", "back_right")
 _MIDDLE = ("mid_left", "mid_right")
 
 
-def rolling(x: float, y: float, speed: float, yaw_rate: float) -> Tuple[float, float]:
-    """Return the steering angle, -pi/2..pi/2 rad, and the speed, m/s, of a wheel at (x, y)."""
+def compute_wheel_motion(x: float, y: float, speed: float, yaw_rate: float) -> Tuple[float, float]:
+    """Return the steering angle (-pi/2..pi/2 rad) and the speed (m/s) of a rolling wheel.
+
+    The wheel is at (x, y) of a base that moves forward at `speed` (m/s) and turns at `yaw_rate`
+    (rad/s).
+    """
     along, across = speed - yaw_rate * y, yaw_rate * x
     angle, size = math.atan2(across, along), math.hypot(along, across)
     if angle > math.pi / 2.0:
@@ -51,7 +55,7 @@ class AckermannDriveController(BaseController):
         """Steer and drive the wheels about the centre of the turn."""
         speed, _, yaw_rate = velocity
         for (wheel, steer), (x, y) in zip(self._corners, self._places):
-            angle, rim = rolling(x, y, speed, yaw_rate)
+            angle, rim = compute_wheel_motion(x, y, speed, yaw_rate)
             steer.command(angle)
             wheel.command(rim / self._radius)
         for wheel, side in zip(self._middle, (0.5, -0.5)):

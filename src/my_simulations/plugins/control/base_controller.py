@@ -16,11 +16,11 @@ from ...geometry import Vec3, transform
 from ...geometry_messages import fill_pose
 from ..context import CallHandle, PluginError, Publication
 from ..drive.odometry import diagonal_covariance, planar_pose
-from ..frames import stamped
+from ..frames import stamp_message
 from ..stepwise_change import StepwiseChange
 from ..time_out import TimeOut
 from .controller import Controller
-from .speed_limits import speed_limits
+from .speed_limits import read_speed_limits
 
 _UPDATE_HZ = 100.0
 _ORIGINAL_HZ = 1000.0
@@ -96,7 +96,8 @@ class BaseController(Controller):
         self.publish_hz = s.number("publish_rate", 50.0)
         self.open_loop = s.flag("open_loop", False)
         self._time_out = TimeOut(self.context, s.number("cmd_vel_timeout", 0.5))
-        self.limits = tuple(speed_limits(s, path) for path in ("linear/x", "linear/y", "angular/z"))
+        self.limits = tuple(read_speed_limits(s, path)
+                            for path in ("linear/x", "linear/y", "angular/z"))
         self.hertz = 1.0 / self.period if self.period else max(_UPDATE_HZ, self.publish_hz)
         self._change = StepwiseChange(self.context, self.hertz, self._update)
         self._end: Optional[CallHandle] = None   # of the last command
@@ -180,7 +181,7 @@ class BaseController(Controller):
 
     def _publish_command(self) -> None:
         assert self._limited is not None
-        message = stamped(self.context, "geometry_msgs/TwistStamped")
+        message = stamp_message(self.context, "geometry_msgs/TwistStamped")
         message.twist.linear.x, message.twist.linear.y, message.twist.angular.z = self.last
         self._limited.publish(message)
 
@@ -212,7 +213,7 @@ class BaseController(Controller):
             self._odom.publish(self._odometry())
 
     def _odometry(self) -> Any:
-        message = stamped(self.context, "nav_msgs/Odometry")
+        message = stamp_message(self.context, "nav_msgs/Odometry")
         message.header.frame_id, message.child_frame_id = self._frames
         fill_pose(message.pose.pose, planar_pose(*self._pose))
         message.pose.covariance, message.twist.covariance = map(list, self._covariances)

@@ -6,7 +6,7 @@ from typing import Dict, List, Optional, Sequence, Tuple
 
 from ...geometry import norm, subtract
 from ..context import Context, PluginError, Publication
-from ..frames import stamped
+from ..frames import stamp_message
 from ..reconfigure import Option, Reconfigure, Value
 from .base_controller import BaseController, Planar
 from .controller import RUNNING
@@ -138,7 +138,7 @@ class WheelStates:
 
     def publish(self, rates: Tuple[float, float]) -> None:
         """Publish the state; `rates` are commanded for the left and right wheels, rad/s."""
-        message = stamped(self._context, "control_msgs/JointTrajectoryControllerState")
+        message = stamp_message(self._context, "control_msgs/JointTrajectoryControllerState")
         message.joint_names = [wheel.name for wheel in self._wheels]
         now = self._context.now_ns
         dt, self._told_ns = (now - self._told_ns) * 1e-9, now

@@ -21,7 +21,7 @@ from .fetch_controllers import (
     PointHead,
 )
 from .hardware import POSITION, VELOCITY, Hardware, HardwareJoint
-from .joint_state import measured_joints
+from .joint_state import make_joint_state
 from .limits import limits_of
 from .settings import Settings
 
@@ -129,7 +129,7 @@ class FetchGazebo(Plugin):
                 one.switch_off()
 
     def _publish(self) -> None:
-        message = measured_joints(self.context, self._hardware, self._joints)
+        message = make_joint_state(self.context, self._hardware, self._joints)
         message.position = [
             math.remainder(position, 2.0 * math.pi) if wraps else position
             for wraps, position in zip(self._wraps, message.position)]

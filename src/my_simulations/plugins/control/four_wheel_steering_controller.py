@@ -14,7 +14,7 @@ from ...geometry import Vec3
 from ..context import PluginError, Publication
 from .base_controller import BaseController, Planar
 from .hardware import POSITION, VELOCITY, HardwareJoint
-from .speed_limits import clamped
+from .speed_limits import clamp
 
 _HALF_TURN = math.pi / 2.0
 _ALIKE = 0.01     # rad: angles of axles that go straight (ros_controllers)
@@ -131,8 +131,8 @@ class FourWheelSteeringController(BaseController):
         speed, _, yaw = super().limited((wanted[0], 0.0, wanted[2]), dt)
         if not self._by_angles:
             return speed, 0.0, yaw
-        return (speed, clamped(wanted[1], -_HALF_TURN, _HALF_TURN),
-                clamped(wanted[2], -_HALF_TURN, _HALF_TURN))
+        return (speed, clamp(wanted[1], -_HALF_TURN, _HALF_TURN),
+                clamp(wanted[2], -_HALF_TURN, _HALF_TURN))
 
     def drive(self, velocity: Planar) -> None:
         """Steer each wheel at right angles to the line to the centre of the turn, and drive it."""

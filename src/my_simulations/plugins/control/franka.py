@@ -8,7 +8,7 @@ from __future__ import annotations
 from ..context import Context
 from ..world.gravity_compensation import GravityCompensation
 from .controller import Controller
-from .joint_state import measured_joints
+from .joint_state import make_joint_state
 
 UPDATE_HZ = 30.0   # without a rate
 _JOINT_STATE = "sensor_msgs/JointState"
@@ -50,4 +50,4 @@ class FrankaStateController(Controller):
 
     def _publish(self) -> None:
         for topic in self._topics:
-            topic.publish(measured_joints(self.context, self.hardware, self._joints))
+            topic.publish(make_joint_state(self.context, self.hardware, self._joints))

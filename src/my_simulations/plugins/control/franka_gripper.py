@@ -16,7 +16,7 @@ from ..stepwise_change import StepwiseChange
 from .controller import RUNNING, Controller
 from .franka import UPDATE_HZ
 from .hardware import EFFORT, HardwareJoint
-from .joint_state import measured_joints
+from .joint_state import make_joint_state
 
 _CHECK_HZ = 100.0      # of whether the fingers rest
 _MOST_WIDTH = 0.08     # m between the fingers
@@ -239,7 +239,7 @@ class FrankaGripper(Controller):
         return True
 
     def _publish(self) -> None:
-        self._topic.publish(measured_joints(self.context, self.hardware, self._fingers))
+        self._topic.publish(make_joint_state(self.context, self.hardware, self._fingers))
 
 
 def _end_of(goal: Goal, result: _Result) -> Callable[[bool, str], None]:

@@ -6,7 +6,7 @@ from typing import Dict
 
 from ...engine.drive_commands import PidGains
 from ...engine.servo_law import wrapped_angle
-from ..frames import stamped
+from ..frames import stamp_message
 from .controller import Controller
 from .forward import ForwardGroupController
 from .hardware import EFFORT, VELOCITY, HardwareJoint
@@ -42,12 +42,12 @@ class JointLoop(Controller):
                      self._publish_state, [self._state], efforts=[self._joint.name])
 
     def _set_target(self, wanted: float) -> None:
-        self._wanted = wanted if self.of_rate else clamped_to_limits(self._joint, wanted)
+        self._wanted = wanted if self.of_rate else clamp_to_limits(self._joint, wanted)
         self._joint.follow(self._wanted, gains=self._gains, of_rate=self.of_rate)
 
     def _publish_state(self) -> None:
         joint, gains = self._joint, self._gains
-        message = stamped(self.context, "control_msgs/JointControllerState")
+        message = stamp_message(self.context, "control_msgs/JointControllerState")
         message.set_point = self._wanted
         message.process_value = joint.velocity if self.of_rate else joint.position
         message.process_value_dot = 0.0 if self.of_rate else joint.velocity
@@ -95,9 +95,9 @@ class EffortPositionGroup(ForwardGroupController):
             self.command(joint, joint.position)
 
     def command(self, joint: HardwareJoint, value: float) -> None:
-        joint.follow(clamped_to_limits(joint, value), gains=self._gains[joint.name])
+        joint.follow(clamp_to_limits(joint, value), gains=self._gains[joint.name])
 
 
-def clamped_to_limits(joint: HardwareJoint, position: float) -> float:
+def clamp_to_limits(joint: HardwareJoint, position: float) -> float:
     """Return the position within the limits of a joint that is nearest to `position`."""
     return max(joint.limits.lower, min(joint.limits.upper, position))

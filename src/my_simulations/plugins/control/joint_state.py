@@ -4,7 +4,7 @@ from __future__ import annotations
 from typing import Any, List, Sequence, Tuple, Union
 
 from ..context import Context, Joint, PluginError
-from ..frames import stamped
+from ..frames import stamp_message
 from .controller import Controller
 from .hardware import EFFORT, POSITION, VELOCITY, Hardware, HardwareJoint
 
@@ -12,10 +12,10 @@ _ORDER = (POSITION, VELOCITY, EFFORT)   # of the joints in a message
 _UPDATE_HZ = 100.0                      # without a rate
 
 
-def measured_joints(context: Context, hardware: Hardware,
-                    joints: Sequence[Union[Joint, HardwareJoint]]) -> Any:
-    """Return a sensor_msgs/JointState with the present positions, rates and efforts."""
-    message = stamped(context, "sensor_msgs/JointState")
+def make_joint_state(context: Context, hardware: Hardware,
+                     joints: Sequence[Union[Joint, HardwareJoint]]) -> Any:
+    """Make a sensor_msgs/JointState with the present positions, rates and efforts."""
+    message = stamp_message(context, "sensor_msgs/JointState")
     message.name = [joint.name for joint in joints]
     message.position = [joint.position for joint in joints]
     message.velocity = [joint.velocity for joint in joints]
@@ -59,7 +59,7 @@ class JointStateController(Controller):
         return found
 
     def _publish_states(self) -> None:
-        message = measured_joints(self.context, self.hardware, self._joints)
+        message = make_joint_state(self.context, self.hardware, self._joints)
         for name, position, velocity, effort in self._extra:
             message.name.append(name)
             message.position.append(position)
@@ -87,7 +87,7 @@ class JointReadCommandController(Controller):
     def _publish_states(self) -> None:
         context, joints = self.context, sorted(
             self.hardware.joints, key=lambda joint: (_ORDER.index(joint.interface), joint.name))
-        message = stamped(context, "sensor_msgs/JointState")
+        message = stamp_message(context, "sensor_msgs/JointState")
         message.name = [joint.name for joint in joints]
         commands = [joint.commanded(context.step, context.step_size) or 0.0 for joint in joints]
         message.position, message.velocity, message.effort = (

@@ -24,7 +24,7 @@ from .trajectory import (
     read_joints,
     read_points,
     spliced_spline,
-    updated,
+    update_tolerances,
 )
 
 _LOOK_HZ = 100.0
@@ -114,8 +114,10 @@ class JointTrajectory(Controller):
         late = float(wanted.goal_time_tolerance.to_sec())
         followed = named if wanted.trajectory.points else []
         self._goal = _Following(
-            goal, _of_joints(followed, updated(self._path, self._names, wanted.path_tolerance)),
-            _of_joints(followed, updated(self._end, self._names, wanted.goal_tolerance)),
+            goal,
+            _of_joints(followed,
+                       update_tolerances(self._path, self._names, wanted.path_tolerance)),
+            _of_joints(followed, update_tolerances(self._end, self._names, wanted.goal_tolerance)),
             self._late if late == 0.0 else max(0.0, late))
         goal.accept()
         self._check_goal()

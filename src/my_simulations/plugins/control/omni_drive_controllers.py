@@ -13,13 +13,13 @@ from typing import Any, List, Optional
 from ...geometry_messages import fill_pose
 from ..context import PluginError, Publication
 from ..drive.odometry import diagonal_covariance, planar_pose
-from ..frames import stamped
+from ..frames import stamp_message
 from ..stepwise_change import StepwiseChange
 from ..time_out import TimeOut
 from .base_controller import STANDING, Planar, along_arc
 from .controller import RUNNING, Controller
 from .hardware import VELOCITY
-from .omni_wheels import WheelState, WheelTarget, base_displacement, bounded, read_wheels
+from .omni_wheels import WheelState, WheelTarget, base_displacement, clamp, read_wheels
 
 _UPDATE_HZ = 100.0
 _STILL = 1e-4   # rad/s, of the steering
@@ -78,8 +78,8 @@ class WheelController(Controller):
         if not all(map(math.isfinite, wanted)):
             self.context.warn(f"controller '{self.name}' stops the base: a command is not finite")
             wanted = STANDING
-        self._command = (bounded(wanted[0], self._most_speed), bounded(wanted[1], self._most_speed),
-                         bounded(wanted[2], self._most_turn))
+        self._command = (clamp(wanted[0], self._most_speed), clamp(wanted[1], self._most_speed),
+                         clamp(wanted[2], self._most_turn))
         self._time_out.begin()
         self._change.begin()
 
@@ -109,15 +109,15 @@ class WheelController(Controller):
             assert wheel.steering is not None
             turned, rate = wheel.steering.advance(self._deltas[n], self._rates[n], dt, steps)
             rates.append(rate)
-            steered.append(bounded(turned / dt, wheel.most_steer))
-            driven.append(bounded(target.rate + steered[n] * wheel.induced, wheel.most_drive))
+            steered.append(clamp(turned / dt, wheel.most_steer))
+            driven.append(clamp(target.rate + steered[n] * wheel.induced, wheel.most_drive))
             self._steers[n].command(steered[n])
             self._drives[n].command(driven[n])
         self._rates, self._steered, self._driven = rates, steered, driven
 
     def _publish(self) -> None:
         assert self._commands is not None
-        message = stamped(self.context, _MESSAGES)
+        message = stamp_message(self.context, _MESSAGES)
         message.drive_target_velocity = list(self._driven)
         message.steer_target_velocity = list(self._steered)
         message.steer_target_position = [target.angle for target in self._targets]
@@ -183,7 +183,7 @@ class OdometryController(Controller):
             self.context.transform(*self._frames, pose)
         if not self._odometry.wanted:
             return
-        message = stamped(self.context, "nav_msgs/Odometry", self._frames[0])
+        message = stamp_message(self.context, "nav_msgs/Odometry", self._frames[0])
         message.child_frame_id = self._frames[1]
         fill_pose(message.pose.pose, pose)
         message.pose.covariance, message.twist.covariance = map(list, self._covariances)

@@ -51,7 +51,7 @@ class Steering:
         turned, part = 0.0, dt / steps
         for _ in range(steps):
             change = (self.spring * (delta - turned) - self.damp * rate) / self.mass
-            rate = bounded(rate + part * bounded(change, self.most_acceleration), self.most_rate)
+            rate = clamp(rate + part * clamp(change, self.most_acceleration), self.most_rate)
             turned += rate * part
         return turned, rate
 
@@ -135,7 +135,7 @@ def base_displacement(wheels: Sequence[OmniWheel], before: Sequence[WheelState],
     return fitted_motion([wheel.corner for wheel in wheels], rolled)
 
 
-def bounded(value: float, most: float) -> float:
+def clamp(value: float, most: float) -> float:
     """Clamp a value to -most..most; a limit of 0 means none."""
     return max(-most, min(most, value)) if most else value
 

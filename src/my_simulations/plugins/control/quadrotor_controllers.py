@@ -14,7 +14,7 @@ from ...engine.servo_law import Pid
 from ...geometry import Quat, Vec3, rpy_from_quat, subtract
 from ..context import PluginError
 from ..finite_messages import finite_only
-from ..frames import prefixed, resolve
+from ..frames import add_tf_prefix, resolve_frame
 from .controller import RUNNING, Controller
 from .quadrotor_hardware import (
     AttitudeCommand,
@@ -43,7 +43,7 @@ class _OfQuadrotor(Controller):
         self._stabilized = self._framed("base_stabilized_frame", "base_stabilized")
 
     def _framed(self, parameter: str, default: str) -> str:
-        return prefixed(self.context, str(self.context.parameter(parameter, default)))
+        return add_tf_prefix(self.context, str(self.context.parameter(parameter, default)))
 
     def pid(self, path: str) -> Pid:
         made = Pid(self.settings.gains(path) or PidGains(0.0))
@@ -63,7 +63,7 @@ class _OfQuadrotor(Controller):
     def frame_of(self, message: Any) -> str:
         """The frame of a message, under the prefix of tf."""
         prefix = str(self.context.search_parameter("tf_prefix", "") or "")
-        return resolve(prefix, message.header.frame_id)
+        return resolve_frame(prefix, message.header.frame_id)
 
     def start(self) -> None:
         """Add this controller to the chain of commands."""
@@ -135,10 +135,10 @@ class PositionController(_OfQuadrotor):
         turn = math.remainder(self._wanted_yaw - self.hardware.yaw, 2.0 * math.pi)
         command = TwistCommand((x, y, z), self._yaw_pid.command(turn, dt), self.context.now_ns)
         self.hardware.twist = (command if self._most is None
-                               else limited_velocity(command, self._most))
+                               else limit_velocity(command, self._most))
 
 
-def limited_velocity(command: TwistCommand, most: TwistCommand) -> TwistCommand:
+def limit_velocity(command: TwistCommand, most: TwistCommand) -> TwistCommand:
     """Limit the horizontal velocity, that along z and the yaw rate; a limit of 0 means none."""
     (x, y, z), yaw_rate = command.linear, command.yaw_rate
     across, most_across = math.hypot(x, y), max(most.linear[:2])

@@ -16,7 +16,7 @@ from ...engine.wrench_laws import Wrench
 from ...geometry import Vec3, conjugate, norm, rotate, rpy_from_quat, scale
 from ..context import CallHandle, Context, PluginError
 from ..flight.body_wrench import NO_WRENCH, fill_wrench, hold_wrench
-from ..frames import prefixed, stamped
+from ..frames import add_tf_prefix, stamp_message
 from .hardware import Hardware
 from .settings import Settings
 
@@ -101,7 +101,7 @@ class QuadrotorHardware(Hardware):
         self._period = 0.0
         limits = Settings(context, "wrench_limits")
         self._limits = (VectorLimits(limits, "force"), VectorLimits(limits, "torque"))
-        self._frame = prefixed(context, str(context.parameter("base_link_frame", "base_link")))
+        self._frame = add_tf_prefix(context, str(context.parameter("base_link_frame", "base_link")))
         self._wrenches = context.publish("command/wrench", "geometry_msgs/WrenchStamped")
         for name in ("state_topic", "imu_topic"):
             if context.parameter(name, ""):
@@ -193,7 +193,7 @@ class QuadrotorHardware(Hardware):
         for place in sorted(self._updates):
             self._updates[place](elapsed * 1e-9)
         if self._wrenches.wanted:
-            message = stamped(self._context, "geometry_msgs/WrenchStamped", self._frame)
+            message = stamp_message(self._context, "geometry_msgs/WrenchStamped", self._frame)
             fill_wrench(message.wrench, self._wrench)
             self._wrenches.publish(message)
         hold_wrench(self._context, self.link, self._wrench)

@@ -14,7 +14,7 @@ from ...sensing.models import force_torque
 from ...sensing.models.imu import measure
 from ...sensing.models.motion import acceleration_between, velocity_at
 from ..context import Link, PluginError, Publication
-from ..frames import stamped
+from ..frames import stamp_message
 from .controller import Controller
 
 _HANDLES = 4  # messages in a topic's queue, as the original
@@ -66,7 +66,7 @@ class ImuSensorController(_SensorController):
                 continue
             sample = measure(link.pose, link.twist, acceleration_between(
                 then, now, (now_ns - then_ns) * 1e-9), self.context.gravity, sensor.pose)
-            message = stamped(self.context, "sensor_msgs/Imu", link.name)
+            message = stamp_message(self.context, "sensor_msgs/Imu", link.name)
             turn = message.orientation
             turn.x, turn.y, turn.z, turn.w = sample.orientation
             rate, push = message.angular_velocity, message.linear_acceleration
@@ -104,7 +104,7 @@ class ForceTorqueSensorController(_SensorController):
             if wrench is None:
                 return
             sample = force_torque.measure(wrench, frame, direction, joint.pose, sensor.pose)
-            message = stamped(self.context, "geometry_msgs/WrenchStamped", named)
+            message = stamp_message(self.context, "geometry_msgs/WrenchStamped", named)
             force, torque = message.wrench.force, message.wrench.torque
             force.x, force.y, force.z = sample.force
             torque.x, torque.y, torque.z = sample.torque

@@ -32,17 +32,17 @@ class SpeedLimits:
         """
         if self.jerk is not None:
             change = 2.0 * dt * dt
-            wanted = last + (last - before) + clamped(
+            wanted = last + (last - before) + clamp(
                 wanted - last - (last - before), self.jerk[0] * change, self.jerk[1] * change)
         if self.acceleration is not None:
-            wanted = last + clamped(wanted - last, self.acceleration[0] * dt,
-                                    self.acceleration[1] * dt)
+            wanted = last + clamp(wanted - last, self.acceleration[0] * dt,
+                                  self.acceleration[1] * dt)
         if self.velocity is not None:
-            wanted = clamped(wanted, *self.velocity)
+            wanted = clamp(wanted, *self.velocity)
         return wanted
 
 
-def speed_limits(settings: Settings, path: str) -> SpeedLimits:
+def read_speed_limits(settings: Settings, path: str) -> SpeedLimits:
     """Read the limits below a path such as `linear/x` or `angular/z`."""
     found: List[Optional[Tuple[float, float]]] = []
     for kind in ("velocity", "acceleration", "jerk"):
@@ -52,5 +52,5 @@ def speed_limits(settings: Settings, path: str) -> SpeedLimits:
     return SpeedLimits(*found)
 
 
-def clamped(value: float, least: float, most: float) -> float:
+def clamp(value: float, least: float, most: float) -> float:
     return max(least, min(most, value))

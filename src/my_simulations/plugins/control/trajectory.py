@@ -124,8 +124,8 @@ class Tolerance(NamedTuple):
             self, (message.position, message.velocity, message.acceleration))))
 
 
-def updated(tolerances: Sequence[Tolerance], joints: Sequence[str],
-            messages: Sequence[Any]) -> List[Tolerance]:
+def update_tolerances(tolerances: Sequence[Tolerance], joints: Sequence[str],
+                      messages: Sequence[Any]) -> List[Tolerance]:
     """Apply control_msgs/JointTolerance messages to the tolerances of joints."""
     said: Dict[str, Any] = {message.name: message for message in messages}
     return [tolerance.updated(said[name]) if name in said else tolerance

@@ -12,7 +12,7 @@ from typing import Any
 from ...engine.drive_commands import PidGains
 from .controller import Controller
 from .hardware import EFFORT
-from .speed_limits import clamped
+from .speed_limits import clamp
 
 _STATE_HZ = 200.0
 _SERVO, _BRAKE = 0x0A, 0x00      # unitree_legged_sdk's motor modes
@@ -48,9 +48,9 @@ class UnitreeJointController(Controller):
             position, rate = float(message.q), float(message.dq)
             stiffness = 0.0 if abs(position - _NO_POSITION) < _NO_POSITION * 1e-6 else message.Kp
             damping = 0.0 if abs(rate - _NO_RATE) < _SAME else message.Kd
-            self._set_target(clamped(position, limits.lower, limits.upper), float(stiffness),
-                             clamped(rate, -limits.rate, limits.rate), float(damping),
-                             clamped(float(message.tau), -limits.effort, limits.effort))
+            self._set_target(clamp(position, limits.lower, limits.upper), float(stiffness),
+                             clamp(rate, -limits.rate, limits.rate), float(damping),
+                             clamp(float(message.tau), -limits.effort, limits.effort))
 
     def _brake(self) -> None:
         self._mode = _BRAKE

@@ -15,7 +15,7 @@ from ...geometry_messages import fill_pose
 from ..base import Plugin
 from ..context import Joint
 from ..finite_messages import finite_only
-from ..frames import stamped
+from ..frames import stamp_message
 from ..time_out import TimeOut
 from .wheels import apply_torque
 
@@ -132,11 +132,11 @@ class Audibot(Plugin):
 
     def _publish(self) -> None:
         context, pose, twist = self.context, self._footprint.pose, self._footprint.twist
-        message = stamped(context, "geometry_msgs/TwistStamped", self._frame)
+        message = stamp_message(context, "geometry_msgs/TwistStamped", self._frame)
         message.twist.linear.x = self._speed()
         message.twist.angular.z = rotate(conjugate(pose.orientation), twist.angular)[2]
         self._twist.publish(message)
-        odom = stamped(context, "nav_msgs/Odometry", self._frame)
+        odom = stamp_message(context, "nav_msgs/Odometry", self._frame)
         odom.twist.twist = message.twist
         fill_pose(odom.pose.pose, pose)
         self._odom.publish(odom)

@@ -14,7 +14,7 @@ from typing import Dict, List, Optional
 from ...geometry import inverse, transform
 from ..base import Plugin
 from ..context import Context, Joint, PluginError
-from ..frames import stamped
+from ..frames import stamp_message
 from ..stepwise_change import StepwiseChange
 from .floor_rays import FloorRays, sensor_named
 from .odometry import Odometer, WheelCounter
@@ -99,7 +99,7 @@ class Create(Plugin):
         self._odometer.publish(self._counter.pose, velocity)
         if not self._states.wanted:
             return
-        message = stamped(self.context, "sensor_msgs/JointState")
+        message = stamp_message(self.context, "sensor_msgs/JointState")
         message.name = [joint.name for joint in self._joints]
         message.position = [joint.position for joint in self._joints]
         message.velocity = [joint.velocity for joint in self._joints]

@@ -14,7 +14,7 @@ from ...sensing.models.imu import measure
 from ...sensing.models.motion import acceleration_between, velocity_at
 from ..base import Plugin
 from ..context import PluginError, Publication
-from ..frames import prefixed, stamped
+from ..frames import add_tf_prefix, stamp_message
 from ..parameters import namespace_or
 from ..stepwise_change import StepwiseChange
 from .floor_rays import FloorRays, sensor_named
@@ -48,7 +48,7 @@ class Kobuki(Plugin):
         self._odometer = Odometer(context, "odom", "odom", "base_footprint", _COVARIANCE)
         self._broadcasts = p.flag("publish_tf", False)
         self._states = WheelStates(context, self._wheels, motion=True,
-                                   frame=prefixed(context, "base_link"))
+                                   frame=add_tf_prefix(context, "base_link"))
         prefix = str(context.parameter("base_prefix", "mobile_base")).strip("/")
         hertz = p.number("update_rate", 0.0)
         hertz = hertz if hertz > 0.0 else _HERTZ
@@ -130,7 +130,7 @@ class Kobuki(Plugin):
         context, link = self.context, self.context.link(self._imu_link)
         sample = measure(link.pose, link.twist, acceleration_between(before, self._before, dt),
                          context.gravity, self._imu.pose, self._reference)
-        message = stamped(context, "sensor_msgs/Imu", prefixed(context, "base_link"))
+        message = stamp_message(context, "sensor_msgs/Imu", add_tf_prefix(context, "base_link"))
         turn, rate, push = (message.orientation, message.angular_velocity,
                             message.linear_acceleration)
         turn.x, turn.y, turn.z, turn.w = sample.orientation
@@ -251,8 +251,8 @@ class KobukiEvents:
                 self._topics[topic].publish(message)
 
     def _state(self) -> Any:
-        message = stamped(self._context, "kobuki_msgs/SensorState",
-                          prefixed(self._context, "base_link"))
+        message = stamp_message(self._context, "kobuki_msgs/SensorState",
+                                add_tf_prefix(self._context, "base_link"))
         message.bumper = sum(_BITS[side] for side, on in self._pressed.items() if on)
         message.cliff = sum(_BITS[side] for side, on in self._over.items() if on)
         message.wheel_drop = (2 if self._dropped["left"] else 0) + self._dropped["right"]

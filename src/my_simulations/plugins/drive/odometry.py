@@ -8,7 +8,7 @@ from ...geometry import Pose, Twist, quat_from_rpy, rpy_from_quat
 from ...geometry_messages import fill_pose
 from ..base import Plugin
 from ..context import Context, Joint, Publication
-from ..frames import prefixed, stamped
+from ..frames import add_tf_prefix, stamp_message
 
 _UNKNOWN_VARIANCE = 1e12  # of what a wheeled robot does not measure
 
@@ -111,7 +111,7 @@ class Odometer:
                  covariance: Tuple[float, ...] = DRIVE_COVARIANCE,
                  twist_covariance: Tuple[float, ...] = (0.0,) * 6) -> None:
         self._context = context
-        self.frame, self.base = prefixed(context, frame), prefixed(context, base)
+        self.frame, self.base = add_tf_prefix(context, frame), add_tf_prefix(context, base)
         self._topic = context.publish(topic, "nav_msgs/Odometry") if topic else None
         self.topics: List[Publication] = [self._topic] if self._topic is not None else []
         self._covariance = diagonal_covariance(covariance)
@@ -130,7 +130,7 @@ class Odometer:
         """
         if self._topic is None or not self._topic.wanted:
             return
-        message = stamped(self._context, "nav_msgs/Odometry")
+        message = stamp_message(self._context, "nav_msgs/Odometry")
         message.header.frame_id, message.child_frame_id = self.frame, self.base
         fill_pose(message.pose.pose, pose)
         message.pose.covariance = list(self._covariance)

@@ -7,7 +7,7 @@ from typing import Any, List, Optional, Sequence
 from ...geometry import compose, inverse
 from ..context import CallHandle, Context, Joint, Publication
 from ..finite_messages import finite_only
-from ..frames import prefixed, stamped
+from ..frames import add_tf_prefix, stamp_message
 from ..stepwise_change import StepwiseChange
 from ..time_out import TimeOut
 
@@ -69,7 +69,7 @@ class WheelFrames:
 
     def __init__(self, context: Context, joints: Sequence[Joint]) -> None:
         self._context = context
-        self._pairs = [(prefixed(context, joint.parent), prefixed(context, joint.child),
+        self._pairs = [(add_tf_prefix(context, joint.parent), add_tf_prefix(context, joint.child),
                         context.link(joint.parent), context.link(joint.child))
                        for joint in joints]
 
@@ -92,7 +92,7 @@ class WheelStates:
     def send(self) -> None:
         if not self._topic.wanted:
             return
-        message = stamped(self._context, "sensor_msgs/JointState", self._frame)
+        message = stamp_message(self._context, "sensor_msgs/JointState", self._frame)
         message.name = [joint.name for joint in self._joints]
         message.position = [joint.position for joint in self._joints]
         if self._motion:

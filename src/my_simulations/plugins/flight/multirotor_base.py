@@ -11,7 +11,7 @@ from typing import Any, Dict
 
 from ..base import Plugin
 from ..context import Joint, PluginError
-from ..frames import stamped
+from ..frames import stamp_message
 from ..parameters import namespace_or
 from .motor_model import ACTUATORS
 
@@ -42,13 +42,13 @@ class MultirotorBase(Plugin):
         context.observe(0.0, self._publish_speeds, [self._speeds])
 
     def _publish_states(self) -> None:
-        message = stamped(self.context, "sensor_msgs/JointState", self._base)
+        message = stamp_message(self.context, "sensor_msgs/JointState", self._base)
         message.name = [joint.name for joint in self._joints]
         message.position = [joint.position for joint in self._joints]
         self._states.publish(message)
 
     def _publish_speeds(self) -> None:
-        message = stamped(self.context, ACTUATORS, self._base)
+        message = stamp_message(self.context, ACTUATORS, self._base)
         message.angular_velocities = [joint.velocity * self._slowdown for joint in self._joints]
         self._speeds.publish(message)
 
@@ -65,6 +65,6 @@ class ControllerInterface(Plugin):
                           self._pass_on)
 
     def _pass_on(self, command: Any) -> None:
-        message = stamped(self.context, ACTUATORS)
+        message = stamp_message(self.context, ACTUATORS)
         message.angular_velocities = list(command.angular_velocities)
         self._rotors.publish(message)

@@ -17,7 +17,7 @@ from ...geometry import Vec3
 from ..base import Plugin
 from ..context import Context, PluginError
 from ..finite_messages import finite_only
-from ..frames import stamped
+from ..frames import stamp_message
 from ..parameters import namespace_or
 from .body_wrench import fill_wrench
 
@@ -65,7 +65,7 @@ class QuadrotorAerodynamics(Plugin):
             self.context.set_wrench_law(self._link.name, self._drag)
 
     def _publish(self) -> None:
-        message = stamped(self.context, "geometry_msgs/WrenchStamped", self._frame)
+        message = stamp_message(self.context, "geometry_msgs/WrenchStamped", self._frame)
         fill_wrench(message.wrench, self._drag.in_body_axes(self._link.pose, self._link.twist))
         self._wrenches.publish(message)
 

@@ -17,7 +17,7 @@ from ...geometry import Vec3
 from ..base import Plugin
 from ..context import CallHandle
 from ..finite_messages import finite_only
-from ..frames import stamped
+from ..frames import stamp_message
 from ..parameters import namespace_or
 from .body_wrench import body_twist, fill_wrench, push_at_origin
 from .quadrotor_aerodynamics import MOST_VELOCITY, model_parameters
@@ -194,7 +194,7 @@ class QuadrotorPropulsion(Plugin):
         wrench = wrench_of(self._rotors, arm)
         push_at_origin(self.context, self._link, wrench)
         if self._wrenches.wanted:
-            message = stamped(self.context, "geometry_msgs/WrenchStamped", self._frame)
+            message = stamp_message(self.context, "geometry_msgs/WrenchStamped", self._frame)
             fill_wrench(message.wrench, wrench)
             self._wrenches.publish(message)
         if self._status.wanted and self.context.now_ns >= self._next_status_ns:
@@ -202,7 +202,7 @@ class QuadrotorPropulsion(Plugin):
             self._publish_status()
 
     def _publish_status(self) -> None:
-        message = stamped(self.context, "hector_uav_msgs/MotorStatus")
+        message = stamp_message(self.context, "hector_uav_msgs/MotorStatus")
         message.on = self._on
         message.running = all(rotor.speed > _TURNS for rotor in self._rotors)
         message.voltage = list(self._voltages)
@@ -216,7 +216,7 @@ class QuadrotorPropulsion(Plugin):
         self._trigger.publish(message)
 
     def _publish_supply(self) -> None:
-        message = stamped(self.context, "hector_uav_msgs/Supply")
+        message = stamp_message(self.context, "hector_uav_msgs/Supply")
         message.voltage = [self._voltage]
         message.current = []
         self._supply.publish(message)

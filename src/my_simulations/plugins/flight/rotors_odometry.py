@@ -32,7 +32,7 @@ from ...sensing.noise import SampleGenerator
 from ..base import Plugin
 from ..context import Link, Publication
 from ..drive.odometry import diagonal_covariance
-from ..frames import stamped
+from ..frames import stamp_message
 from ..parameters import namespace_or
 
 _WORLD = "world"
@@ -130,22 +130,22 @@ class RotorsOdometry(Plugin):
             fill_pose(message, pose)
             self._pose.publish(message)
         if self._posed.wanted:
-            message = stamped(context, "geometry_msgs/PoseWithCovarianceStamped", parent, ns)
+            message = stamp_message(context, "geometry_msgs/PoseWithCovarianceStamped", parent, ns)
             self._fill(message.pose, pose)
             self._posed.publish(message)
         if self._position.wanted:
-            message = stamped(context, "geometry_msgs/PointStamped", parent, ns)
+            message = stamp_message(context, "geometry_msgs/PointStamped", parent, ns)
             message.point.x, message.point.y, message.point.z = pose.position
             self._position.publish(message)
         if self._transform.wanted:
-            message = stamped(context, "geometry_msgs/TransformStamped", parent, ns)
+            message = stamp_message(context, "geometry_msgs/TransformStamped", parent, ns)
             message.child_frame_id = child
             at, turn = message.transform.translation, message.transform.rotation
             at.x, at.y, at.z = pose.position
             turn.x, turn.y, turn.z, turn.w = pose.orientation
             self._transform.publish(message)
         if self._odometry.wanted:
-            message = stamped(context, "nav_msgs/Odometry", parent, ns)
+            message = stamp_message(context, "nav_msgs/Odometry", parent, ns)
             message.child_frame_id = child
             self._fill(message.pose, pose)
             linear, angular = message.twist.twist.linear, message.twist.twist.angular

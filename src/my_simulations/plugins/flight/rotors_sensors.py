@@ -19,7 +19,7 @@ from ...sensing.models.motion import velocity_at
 from ...sensing.noise import GAUSSIAN, generator
 from ..base import Plugin
 from ..context import PluginError
-from ..frames import stamped
+from ..frames import stamp_message
 from ..noise import WhiteNoise
 from ..parameters import namespace_or
 from ..sensors.imu import Imu
@@ -77,7 +77,7 @@ class RotorsImu(Imu):
         context, sample = self.context, self.measured()
         values = [errors.apply(value, context.now_ns) for errors, value in zip(
             self._errors, (*sample.angular_velocity, *sample.linear_acceleration))]
-        message = stamped(context, "sensor_msgs/Imu", self._link.name)
+        message = stamp_message(context, "sensor_msgs/Imu", self._link.name)
         turn, rate, push = (message.orientation, message.angular_velocity,
                             message.linear_acceleration)
         turn.x, turn.y, turn.z, turn.w = sample.orientation
@@ -112,7 +112,7 @@ class RotorsMagnetometer(Plugin):
         context = self.context
         x, y, z = (size * draw for size, draw in zip(
             self._stddev, self._noise.draw(3, context.now_ns)))
-        message = stamped(context, "sensor_msgs/MagneticField", self._link.name)
+        message = stamp_message(context, "sensor_msgs/MagneticField", self._link.name)
         felt = rotate(conjugate(self._link.pose.orientation), add(self._field, (x, y, z)))
         field = message.magnetic_field
         field.x, field.y, field.z = felt
@@ -137,7 +137,7 @@ class RotorsPressure(Plugin):
 
     def update(self) -> None:
         context = self.context
-        message = stamped(context, "sensor_msgs/FluidPressure", self._frame)
+        message = stamp_message(context, "sensor_msgs/FluidPressure", self._frame)
         (noise,) = self._noise.draw(1, context.now_ns)
         message.fluid_pressure = air_pressure(
             self._reference + context.pose.position[2]) + noise
@@ -189,7 +189,7 @@ class RotorsGps(Plugin):
                 self._place, transform(link.pose, self._mount.position)))
             found = gps.measure((x, y, z), velocity,
                                 context.spherical_coordinates or SphericalCoordinates())
-            message = stamped(context, "sensor_msgs/NavSatFix", self._frame)
+            message = stamp_message(context, "sensor_msgs/NavSatFix", self._frame)
             message.status.status, message.status.service = 0, 1
             message.latitude, message.longitude = found.latitude_deg, found.longitude_deg
             message.altitude = found.altitude
@@ -197,7 +197,7 @@ class RotorsGps(Plugin):
             message.position_covariance_type = _KNOWN_DIAGONAL
             self._fix.publish(message)
         if self._speed.wanted:
-            message = stamped(context, "geometry_msgs/TwistStamped", self._frame)
+            message = stamp_message(context, "geometry_msgs/TwistStamped", self._frame)
             linear = message.twist.linear
             linear.x, linear.y, linear.z = (value + size * draw for value, size, draw in zip(
                 velocity, self._speeds, self._noise.draw(3, ns)))

@@ -11,7 +11,7 @@ from ...engine.wrench_laws import ForceAtPoint
 from ...geometry import Vec3, add, scale, unit
 from ..base import Plugin
 from ..context import CallHandle, PluginError, Publication
-from ..frames import stamped
+from ..frames import stamp_message
 from ..parameters import namespace_or
 from .body_wrench import fill_wrench
 
@@ -72,12 +72,12 @@ class RotorsWind(Plugin):
         self.context.set_wrench_law(self._link.name, ForceAtPoint(self.force(), self._offset))
 
     def _publish_force(self) -> None:
-        message = stamped(self.context, "geometry_msgs/WrenchStamped", self._frame)
+        message = stamp_message(self.context, "geometry_msgs/WrenchStamped", self._frame)
         fill_wrench(message.wrench, (self.force(), (0.0, 0.0, 0.0)))
         self._force.publish(message)
 
     def _publish_speed(self) -> None:
         assert self._speed is not None
-        message = stamped(self.context, "rotors_comm/WindSpeed", self._frame)
+        message = stamp_message(self.context, "rotors_comm/WindSpeed", self._frame)
         message.velocity.x, message.velocity.y, message.velocity.z = self._velocity
         self._speed.publish(message)

@@ -20,7 +20,7 @@ from ...child_process import child_command, child_environment, signal_name
 from ...engine.message_pipe import Wire
 from ..call_watch import CallLimits
 from ..context import PluginError
-from ..plugin_faults import innermost_of_plugin, shortened
+from ..plugin_faults import innermost_of_plugin, shorten
 from .messages import TRACE_SIGNAL
 
 _LOOK_S = 0.25      # between two looks at a process that does not answer
@@ -203,7 +203,7 @@ class PluginProcess:
         self._kill()
         if not ended:
             return ProcessEndedError("its process closed the connection to the simulator"
-                                     + (f" ({shortened(damage)})" if damage else ""))
+                                     + (f" ({shorten(damage)})" if damage else ""))
         status = self._child.wait()
         if status < 0:
             hint = "; the memory of the machine may be exhausted" * (status == -signal.SIGKILL)

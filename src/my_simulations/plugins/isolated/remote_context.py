@@ -7,7 +7,7 @@ from typing import Any, Callable, Dict, Sequence
 
 from ...engine.wrench_laws import WrenchLaw
 from ...geometry import Pose, Twist, Vec3
-from ..checked_arguments import finite, number, pose_of, vector
+from ..checked_arguments import check_finite, check_number, check_pose, check_vector
 from ..parameters import Parameters
 from .connection import Connection
 from .messages import CONTEXT, METHODS, PROPERTIES, HandleMade, Start
@@ -67,8 +67,8 @@ class RemoteJoint(RemoteHandle):
         return float(self._connection.state(self.number)[2])
 
     def drive(self, rate: float, effort: float) -> None:
-        self._call_handle("drive", finite(rate, "the rate of a motor"),
-                    number(effort, "the effort of a motor"))
+        self._call_handle("drive", check_finite(rate, "the rate of a motor"),
+                    check_number(effort, "the effort of a motor"))
 
     def set_servo(self, servo: Any) -> None:
         """Drive the axis by a servo of the engine."""
@@ -181,11 +181,12 @@ class RemoteContext:
         return found
 
     def set_planar_velocity(self, x: float, y: float, yaw_rate: float) -> None:
-        self._call_handle("set_planar_velocity", finite(x, "x"), finite(y, "y"),
-                          finite(yaw_rate, "yaw_rate"))
+        self._call_handle("set_planar_velocity", check_finite(x, "x"), check_finite(y, "y"),
+                          check_finite(yaw_rate, "yaw_rate"))
 
     def set_wrench(self, link: str, force: Vec3, torque: Vec3) -> None:
-        self._call_handle("set_wrench", link, vector(force, "force"), vector(torque, "torque"))
+        self._call_handle("set_wrench", link, check_vector(force, "force"),
+                          check_vector(torque, "torque"))
 
     def set_wrench_law(self, link: str, law: WrenchLaw, joint: str = "") -> None:
         self._call_handle("set_wrench_law", link, law, joint)
@@ -216,7 +217,7 @@ class RemoteContext:
         return self._scheduled("serve", name, kind, answer)
 
     def transform(self, parent: str, child: str, pose: Pose) -> None:
-        self._call_handle("transform", str(parent), str(child), pose_of(pose, "a transform"))
+        self._call_handle("transform", str(parent), str(child), check_pose(pose, "a transform"))
 
     def declare_parameters(self) -> None:
         """Report to the node which parameters the plugin has read."""

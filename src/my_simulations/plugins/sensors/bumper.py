@@ -17,7 +17,7 @@ from ...description.model import Model
 from ...geometry import Vec3, add, conjugate, cross, rotate, scale, subtract
 from ..base import Plugin
 from ..context import PluginError
-from ..frames import prefixed, stamped
+from ..frames import add_tf_prefix, stamp_message
 from ..parameters import namespace_or
 
 
@@ -29,7 +29,7 @@ class Bumper(Plugin):
         if context.sensor is None:
             raise PluginError("it must be in a <sensor> of type contact")
         context.use_namespace(namespace_or(p, ""))
-        self._frame = prefixed(context, p.text("frameName", "world"))
+        self._frame = add_tf_prefix(context, p.text("frameName", "world"))
         self._link = context.link(context.sensor_link)
         block = context.sensor.contact
         self._collision = block.collisions[0] if block is not None and block.collisions else ""
@@ -46,7 +46,7 @@ class Bumper(Plugin):
             if mine in (one, other):
                 touching.setdefault(other if one == mine else one, []).append(
                     (contact, 1.0 if one == mine else -1.0))
-        message = stamped(context, "gazebo_msgs/ContactsState", self._frame)
+        message = stamp_message(context, "gazebo_msgs/ContactsState", self._frame)
         models = context.models() if touching else {}
         message.states = [self._state(mine, other, points, models)
                           for other, points in touching.items()]
@@ -118,7 +118,7 @@ class FootContact(Plugin):
                 force: Vec3 = add(scale(contact.normal, contact.force), contact.friction)
                 total = add(total, scale(force, 1.0 if one == mine else -1.0))
                 count += 1
-        message = stamped(context, "geometry_msgs/WrenchStamped", self._link.name)
+        message = stamp_message(context, "geometry_msgs/WrenchStamped", self._link.name)
         force = rotate(conjugate(self._link.pose.orientation), scale(total, 1.0 / max(1, count)))
         at = message.wrench.force
         at.x, at.y, at.z = force

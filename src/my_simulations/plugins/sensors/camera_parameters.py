@@ -15,7 +15,7 @@ from ...description.sensor import Camera
 from ...description.sensor import Camera as CameraBlock
 from ...sensing.api import CameraSpec, Distortion, WideLens
 from ..context import Context, PluginError, Publication
-from ..frames import prefixed
+from ..frames import add_tf_prefix
 from ..parameters import lowest_rate, namespace_or
 from ..reconfigure import Option, Reconfigure, Value
 
@@ -54,7 +54,7 @@ def topics_of(context: Context, suffix: str = "") -> CameraTopics:
     return CameraTopics(p.text("cameraName").strip("/") + suffix,
                         p.text("imageTopicName") or "image_raw",
                         p.text("cameraInfoTopicName") or "camera_info",
-                        prefixed(context, p.text("frameName")))
+                        add_tf_prefix(context, p.text("frameName")))
 
 
 def rate_of(context: Context) -> float:

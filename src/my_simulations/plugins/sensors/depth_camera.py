@@ -13,7 +13,7 @@ from ...sensing.api import DEPTH, RGB
 from ..base import Plugin
 from ..context import Context, Publication
 from .camera_parameters import CameraTopics, ImagerRate, enter_namespace, topics_of
-from .image_messages import DepthGeometry, LazyValue, cloud_message, header, image
+from .image_messages import DepthGeometry, LazyValue, cloud_message, header, make_image
 from .picture_stream import PictureStream, blocks_of
 
 _FAR = float("inf")
@@ -75,11 +75,11 @@ class DepthStream:
 
     def _picture(self, head: Any, depth: Any) -> Any:
         if self._wide:
-            return image(self._context, head, depth, "32FC1")
+            return make_image(self._context, head, depth, "32FC1")
         import numpy as np
 
         millimetres = np.rint(np.where(depth <= _MOST, depth, 0.0) * _MILLIMETRES)
-        return image(self._context, head, millimetres.astype(np.uint16), "16UC1")
+        return make_image(self._context, head, millimetres.astype(np.uint16), "16UC1")
 
     def _cloud(self, head: Any, depth: Any, rgb: Optional[Any]) -> Any:
         if self._geometry is None:

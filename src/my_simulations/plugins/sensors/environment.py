@@ -16,9 +16,9 @@ from ...sensing.models import altimeter, gps, magnetometer
 from ...sensing.models.motion import velocity_at
 from ..base import Plugin
 from ..context import PluginError, Publication
-from ..frames import prefixed
+from ..frames import add_tf_prefix
 from ..parameters import namespace_or
-from .hector import vector
+from .hector import make_vector
 from .image_messages import header
 from .rays import SampledNoise
 
@@ -36,7 +36,7 @@ class _SensorPlugin(Plugin):
             raise PluginError(f"it must be in a <sensor> of type {kind}")
         context.use_namespace(namespace_or(p, context.model))
         self._link, self._mount = context.link(context.sensor_link), context.sensor.pose
-        self._frame = prefixed(context, p.text("frameName") or context.sensor_link)
+        self._frame = add_tf_prefix(context, p.text("frameName") or context.sensor_link)
         self.block = getattr(context.sensor, kind)
         self._noises: List[SampledNoise] = []
 
@@ -101,7 +101,7 @@ class GpsSensor(_SensorPlugin):
             message.position_covariance_type = _DIAGONAL_KNOWN
             self._fix.publish(message)
         if self._velocity.wanted:
-            self._velocity.publish(vector(context, self._header(), (east, north, up)))
+            self._velocity.publish(make_vector(context, self._header(), (east, north, up)))
 
 
 class MagnetometerSensor(_SensorPlugin):
@@ -152,4 +152,4 @@ class AltimeterSensor(_SensorPlugin):
             message.header, message.point.z = self._header(), height
             self._height.publish(message)
         if self._velocity.wanted:
-            self._velocity.publish(vector(context, self._header(), (0.0, 0.0, speed)))
+            self._velocity.publish(make_vector(context, self._header(), (0.0, 0.0, speed)))

@@ -71,7 +71,7 @@ class Gps(_LinkSensor):
         self._latitude = p.number("referenceLatitude", place.latitude_deg if place else 49.9)
         self._longitude = p.number("referenceLongitude", place.longitude_deg if place else 8.9)
         self._altitude = p.number("referenceAltitude", place.elevation if place else 0.0)
-        self._north, self._east = radii(math.radians(self._latitude))
+        self._north, self._east = metres_per_radian(math.radians(self._latitude))
         self._turned = self._heading()
         self._status, self._service = p.integer("status", 0), p.integer("service", 0)
         self._place_errors = self._with_errors()
@@ -119,18 +119,21 @@ class Gps(_LinkSensor):
             message.position_covariance_type = _DIAGONAL_KNOWN
             self._fix.publish(message)
         if self._velocity.wanted:
-            self._velocity.publish(vector(self.context, head, (*self._north_west(vx, vy), vz)))
+            self._velocity.publish(make_vector(self.context, head, (*self._north_west(vx, vy), vz)))
 
 
-def radii(latitude: float) -> Tuple[float, float]:
-    """Metres a radian towards north and east at a latitude (rad) of the WGS 84 ellipsoid."""
+def metres_per_radian(latitude: float) -> Tuple[float, float]:
+    """Return metres per radian of latitude and of longitude on the WGS 84 ellipsoid.
+
+    `latitude` is in rad.
+    """
     square = 2.0 * _FLATTENING - _FLATTENING ** 2
     part = 1.0 / (1.0 - square * math.sin(latitude) ** 2)
     vertical = _EQUATOR * math.sqrt(part)
     return vertical * (1.0 - square) * part, vertical * math.cos(latitude)
 
 
-def vector(context: Any, head: Any, values: Vec3) -> Any:
+def make_vector(context: Any, head: Any, values: Vec3) -> Any:
     """A geometry_msgs/Vector3Stamped."""
     message = context.message("geometry_msgs/Vector3Stamped")
     message.header = head
@@ -161,7 +164,7 @@ class Magnetic(_LinkSensor):
         x, y, z = self._errors.apply(felt, context.now_ns)
         head = header(context, context.now_ns, self._frame)
         if self._plain:
-            self._topic.publish(vector(context, head, (x, y, z)))
+            self._topic.publish(make_vector(context, head, (x, y, z)))
             return
         message = context.message("sensor_msgs/MagneticField")
         message.header, field = head, message.magnetic_field
@@ -200,11 +203,11 @@ class Baro(_LinkSensor):
             message = context.message("hector_uav_msgs/Altimeter")
             message.header, message.qnh = head, self._qnh
             message.altitude = height + self._elevation
-            message.pressure = pressure(message.altitude, self._qnh)
+            message.pressure = pressure_at(message.altitude, self._qnh)
             self._altimeter.publish(message)
 
 
-def pressure(altitude: float, qnh: float) -> float:
+def pressure_at(altitude: float, qnh: float) -> float:
     """hPa at a height (m) of the standard atmosphere, with `qnh` at sea level; 0 above it."""
     return float(max(0.0, 1.0 - altitude / _SCALE_HEIGHT) ** _EXPONENT * qnh)
 

@@ -32,7 +32,7 @@ class SensorErrors:
     def __init__(self, context: Context, prefix: str = "", width: int = 3) -> None:
         def read(name: str, default: float) -> List[float]:
             key = f"{prefix}{name}" if prefix else name[0].lower() + name[1:]
-            return numbers(context.parameters, key, width, default)
+            return repeat_numbers(context.parameters, key, width, default)
 
         self.offset, self.drift = read("Offset", 0.0), read("Drift", 0.0)
         self._frequency = read("DriftFrequency", 1.0 / _HOUR_S)
@@ -102,8 +102,8 @@ class SensorErrors:
             values, self._scale, self.bias, self.noise, white)]
 
 
-def numbers(parameters: Parameters, name: str, width: int, default: float) -> List[float]:
-    """As many numbers as wanted; one that is given stands for all."""
+def repeat_numbers(parameters: Parameters, name: str, width: int, default: float) -> List[float]:
+    """Read `width` numbers of a parameter; repeat a single number, or use the default."""
     text = parameters.text(name)
     if not text:
         return [default] * width

@@ -34,8 +34,11 @@ class LazyValue:
         return self._value
 
 
-def encoded(rgb: Any, encoding: str) -> Any:
-    """A picture (h, w, 3) uint8 in an encoding: an array whose bytes are the message's data."""
+def encode_picture(rgb: Any, encoding: str) -> Any:
+    """Convert a picture (h, w, 3) uint8 to an array whose bytes are the data of sensor_msgs/Image.
+
+    `encoding`: that of the message, such as `rgb8`, `mono16` or `bayer_rggb8`.
+    """
     import numpy as np
 
     if encoding == "rgb8":
@@ -61,8 +64,8 @@ def _mosaic(rgb: Any, order: str) -> Any:
     return made
 
 
-def image(context: Context, header: Any, pixels: Any, encoding: str) -> Any:
-    """A sensor_msgs/Image of an array that `encoded` or a depth camera has made."""
+def make_image(context: Context, header: Any, pixels: Any, encoding: str) -> Any:
+    """Make a sensor_msgs/Image of an array from `encode_picture` or a depth camera."""
     message = context.message("sensor_msgs/Image")
     message.header = header
     message.height, message.width = pixels.shape[:2]
@@ -72,9 +75,9 @@ def image(context: Context, header: Any, pixels: Any, encoding: str) -> Any:
     return message
 
 
-def compressed(context: Context, header: Any, rgb: Any, encoding: str, form: str, quality: int,
-               ) -> Any:
-    """Return a sensor_msgs/CompressedImage in the form that image_transport reads.
+def make_compressed_image(context: Context, header: Any, rgb: Any, encoding: str, form: str,
+                          quality: int) -> Any:
+    """Make a sensor_msgs/CompressedImage in the form that image_transport reads.
 
     `rgb` is uint8 (h, w, 3); `encoding` is that of the raw topic, which the decoded image gets;
     `form` jpeg or png; `quality` of jpeg, 1 to 100.
@@ -82,7 +85,7 @@ def compressed(context: Context, header: Any, rgb: Any, encoding: str, form: str
     from PIL import Image
 
     grey = encoding.startswith("mono")
-    picture = Image.fromarray(encoded(rgb, "mono8") if grey else rgb)
+    picture = Image.fromarray(encode_picture(rgb, "mono8") if grey else rgb)
     stream = io.BytesIO()
     if form == "png":
         picture.save(stream, "PNG", compress_level=1)

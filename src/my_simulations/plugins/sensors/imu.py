@@ -14,7 +14,7 @@ from ...sensing.models.imu import ImuSample, measure
 from ...sensing.models.motion import acceleration_between, velocity_at
 from ..base import Plugin
 from ..context import Link, PluginError
-from ..frames import stamped
+from ..frames import stamp_message
 from ..noise import WhiteNoise
 from ..parameters import lowest_rate, namespace_or
 from .rays import SampledNoise
@@ -71,7 +71,7 @@ class Imu(Plugin):
     def update(self) -> None:
         sample = self._noisy(self.measured())
         context, noise = self.context, self._white.draw(6, self.context.now_ns)
-        message = stamped(context, "sensor_msgs/Imu", self._frame)
+        message = stamp_message(context, "sensor_msgs/Imu", self._frame)
         turn = message.orientation
         turn.x, turn.y, turn.z, turn.w = multiply(self._offset, sample.orientation)
         rate, push = message.angular_velocity, message.linear_acceleration

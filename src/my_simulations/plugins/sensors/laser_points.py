@@ -14,7 +14,7 @@ from typing import Any, Optional
 
 from ...description.sensor import Noise as NoiseSpec
 from ...sensing.noise import GAUSSIAN, Noise
-from ..frames import prefixed, resolve, stamped
+from ..frames import add_tf_prefix, resolve_frame, stamp_message
 from ..parameters import namespace_or
 from .image_messages import FLOAT32, UINT16, header, point_field
 from .rays import RayPlugin, SampledNoise
@@ -43,7 +43,7 @@ class Points(RayPlugin):
         self.follow(context.sensor.update_rate)
 
     def _named(self, frame: str) -> str:
-        return prefixed(self.context, frame)
+        return add_tf_prefix(self.context, frame)
 
     def reset(self) -> None:
         self._range_noise.reset(self.context.now_ns)
@@ -125,7 +125,7 @@ class Velodyne(Points):
     def _named(self, frame: str) -> str:
         """A namespace other than `/` comes before `tf_prefix` (velodyne_gazebo_plugins)."""
         namespace = self.context.parameters.text("robotNamespace").strip("/")
-        return resolve(namespace, frame) if namespace else super()._named(frame)
+        return resolve_frame(namespace, frame) if namespace else super()._named(frame)
 
     def _message(self, head: Any, ranges: Any, retro: Any, ns: int) -> Any:
         import numpy as np
@@ -170,7 +170,7 @@ class Laser(RayPlugin):
         self.read_ray_element()
         context.use_namespace(namespace_or(
             p, context.model if "robotNamespace" in p else ""))
-        self._frame = prefixed(context, p.text("frameName", "/world"))
+        self._frame = add_tf_prefix(context, p.text("frameName", "/world"))
         self._noise = SampledNoise(context, self._ray.noise, "range")
         self._topic = context.publish(p.text("topicName", "/world"), "sensor_msgs/LaserScan")
         assert context.sensor is not None
@@ -188,7 +188,7 @@ class Laser(RayPlugin):
         true = np.asarray(returns.ranges)
         noisy = np.clip(self._noise.apply(true, ns), fan.near, fan.far)
         ranges = np.where(true >= fan.far, np.inf, np.where(true <= fan.near, -np.inf, noisy))
-        message = stamped(context, "sensor_msgs/LaserScan", self._frame, ns)
+        message = stamp_message(context, "sensor_msgs/LaserScan", self._frame, ns)
         message.angle_min, message.angle_max = ray.horizontal.min_angle, ray.horizontal.max_angle
         message.angle_increment = ((message.angle_max - message.angle_min)
                                    / max(1, fan.samples - 1))

@@ -10,7 +10,14 @@ from ...sensing.api import RGB
 from ...sensing.noise import noisy_picture
 from ..context import Context, PluginError, Publication, View
 from .camera_parameters import Calibration, CameraTopics, spec_of
-from .image_messages import ENCODINGS, LazyValue, compressed, encoded, header, image
+from .image_messages import (
+    ENCODINGS,
+    LazyValue,
+    encode_picture,
+    header,
+    make_compressed_image,
+    make_image,
+)
 
 _QUALITY = 80  # of jpeg, as compressed_image_transport
 
@@ -97,9 +104,9 @@ class PictureStream:
         noisy = LazyValue(lambda: self._picture(rgb, ns))
         if self._image.wanted:
             self._image.publish_later(
-                lambda: image(context, head, encoded(noisy.get(), encoding), encoding))
+                lambda: make_image(context, head, encode_picture(noisy.get(), encoding), encoding))
         if self._compressed.wanted:
-            self._compressed.publish_later(lambda: compressed(
+            self._compressed.publish_later(lambda: make_compressed_image(
                 context, head, noisy.get(), encoding, self._form, self._quality))
 
     def _picture(self, rgb: Any, ns: int) -> Any:

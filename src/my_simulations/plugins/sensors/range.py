@@ -6,7 +6,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from ..frames import prefixed, stamped
+from ..frames import add_tf_prefix, stamp_message
 from ..noise import WhiteNoise
 from ..parameters import lowest_rate, namespace_or
 from .rays import RayPlugin
@@ -21,7 +21,7 @@ class Range(RayPlugin):
         context, p = self.context, self.context.parameters
         self.read_ray_element()
         context.use_namespace(namespace_or(p, ""))
-        self._frame = prefixed(context, p.text("frameName", "/world"))
+        self._frame = add_tf_prefix(context, p.text("frameName", "/world"))
         self._kind = _ULTRASOUND if p.text("radiation", "ultrasound") == "ultrasound" \
             else _INFRARED
         self._view = p.number("fov", 0.05)
@@ -37,7 +37,7 @@ class Range(RayPlugin):
         nearest = min(float(min(returns.ranges)), most)
         if nearest < most:
             nearest = min(most, nearest + self._noise.draw(1, ns)[0])
-        message = stamped(self.context, "sensor_msgs/Range", self._frame, ns)
+        message = stamp_message(self.context, "sensor_msgs/Range", self._frame, ns)
         message.radiation_type, message.field_of_view = self._kind, self._view
         message.min_range, message.max_range, message.range = self._ray.min_range, most, nearest
         self._topic.publish(message)

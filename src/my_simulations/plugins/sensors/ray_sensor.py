@@ -10,7 +10,7 @@ from typing import Any, Dict, Type
 
 from ..base import Plugin
 from ..context import PluginError
-from ..frames import stamped
+from ..frames import stamp_message
 from ..parameters import namespace_or
 from .image_messages import FLOAT32, point_field
 from .laser_points import BlockLaser, Laser, Points
@@ -62,7 +62,7 @@ class RangeOutput(RayPlugin):
         self.follow(context.sensor.update_rate)
 
     def _publish(self, returns: Any, ns: int) -> None:
-        message = stamped(self.context, "sensor_msgs/Range", self._frame, ns)
+        message = stamp_message(self.context, "sensor_msgs/Range", self._frame, ns)
         flat, high = self._ray.horizontal, self._ray.vertical
         message.radiation_type = self._kind
         message.field_of_view = max(flat.max_angle - flat.min_angle,

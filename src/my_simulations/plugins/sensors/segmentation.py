@@ -13,7 +13,7 @@ from ...sensing.api import LABELS, NO_ROW
 from ..base import Plugin
 from ..context import View
 from .camera_parameters import Calibration, enter_namespace, rate_of, spec_of, topics_of
-from .image_messages import header, image
+from .image_messages import header, make_image
 from .picture_stream import blocks_of, place_of
 
 
@@ -62,4 +62,4 @@ class SegmentationCamera(Plugin):
             self._names.publish(text)
         if self._info.wanted:
             self._info.publish(self._calibration.message(head))
-        self._image.publish_later(lambda: image(context, head, table[rows], "mono16"))
+        self._image.publish_later(lambda: make_image(context, head, table[rows], "mono16"))

@@ -20,7 +20,7 @@ class HeatStream(PictureStream):
     encoding = "mono8"
 
     def _picture(self, rgb: Any, ns: int) -> Any:
-        return heat(super()._picture(rgb, ns))
+        return convert_to_heat(super()._picture(rgb, ns))
 
 
 class ThermalCamera(Camera):
@@ -29,8 +29,8 @@ class ThermalCamera(Camera):
     stream_type = HeatStream
 
 
-def heat(rgb: Any) -> Any:
-    """Return the heat of a picture (h, w, 3) uint8, as a picture whose colours are equal."""
+def convert_to_heat(rgb: Any) -> Any:
+    """Convert a picture (h, w, 3) uint8 to a grey one of that shape; pure red is the hottest."""
     import numpy as np
 
     total = rgb.astype(np.uint16).sum(axis=2)

@@ -13,7 +13,7 @@ from ...geometry import Quat, Vec3, conjugate, multiply, rotate, scale, subtract
 from ...sensing.models.motion import velocity_at
 from ..base import Plugin
 from ..context import PluginError
-from ..frames import prefixed, stamped
+from ..frames import add_tf_prefix, stamp_message
 from ..parameters import namespace_or
 
 
@@ -27,7 +27,7 @@ class F3d(Plugin):
             if not p.text(name):
                 raise PluginError(f"it has no <{name}>")
         self._link = context.link(p.text("bodyName"))
-        self._frame = prefixed(context, p.text("frameName", "world"))
+        self._frame = add_tf_prefix(context, p.text("frameName", "world"))
         self._topic = context.publish(p.text("topicName"), "geometry_msgs/WrenchStamped")
         self.reset()
         context.observe(0.0, self.update, [self._topic], resume=self._resume)
@@ -50,7 +50,7 @@ class F3d(Plugin):
         if before is None or before[0] == now:
             return
         per_second = 1e9 / (now - before[0])
-        message = stamped(self.context, "geometry_msgs/WrenchStamped", self._frame)
+        message = stamp_message(self.context, "geometry_msgs/WrenchStamped", self._frame)
         force, torque = message.wrench.force, message.wrench.torque
         force.x, force.y, force.z = scale(subtract(linear, before[1]), per_second)
         torque.x, torque.y, torque.z = scale(subtract(angular, before[2]), per_second)

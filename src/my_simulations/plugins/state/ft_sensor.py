@@ -13,7 +13,7 @@ from ...description.sensor import ForceTorque
 from ...sensing.models.force_torque import measure
 from ..base import Plugin
 from ..context import PluginError
-from ..frames import prefixed, stamped
+from ..frames import add_tf_prefix, stamp_message
 from ..noise import WhiteNoise
 from ..parameters import namespace_or
 from ..sensors.rays import SampledNoise
@@ -38,7 +38,7 @@ class FtSensor(Plugin):
                                     f"{kind}/{axis}")
                        for kind in ("force", "torque") for axis in "xyz"
                        ] if self._block is not None else []
-        self._frame = prefixed(context, self._frame_name())
+        self._frame = add_tf_prefix(context, self._frame_name())
         self._topic = context.publish(p.text("topicName"), "geometry_msgs/WrenchStamped")
         context.joint_wrench(self._name)
         context.observe(p.number("updateRate", 0.0) or (
@@ -82,7 +82,7 @@ class FtSensor(Plugin):
         self._topic.publish(self._message(values))
 
     def _message(self, values: "list[float]") -> Any:
-        message = stamped(self.context, "geometry_msgs/WrenchStamped", self._frame)
+        message = stamp_message(self.context, "geometry_msgs/WrenchStamped", self._frame)
         force, torque = message.wrench.force, message.wrench.torque
         force.x, force.y, force.z, torque.x, torque.y, torque.z = values
         return message

@@ -14,7 +14,7 @@ from ...geometry import IDENTITY_QUAT, Quat, Vec3, conjugate, multiply, normalis
 from ..base import Plugin
 from ..context import PluginError
 from ..finite_messages import finite_only
-from ..frames import stamped
+from ..frames import stamp_message
 from ..parameters import namespace_or
 from ..transforms import Transforms
 
@@ -108,7 +108,7 @@ class HectorServo(Plugin):
         return (b,) if self._is_single else (a, b, c)[:len(self._joints)]
 
     def _publish(self) -> None:
-        message = stamped(self.context, "sensor_msgs/JointState", self.context.link("").name)
+        message = stamp_message(self.context, "sensor_msgs/JointState", self.context.link("").name)
         message.name = [joint.name for joint in self._joints]
         message.position = [joint.position for joint in self._joints]
         message.velocity = [joint.velocity for joint in self._joints]

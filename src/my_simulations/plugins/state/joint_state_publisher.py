@@ -5,7 +5,7 @@ from typing import List
 
 from ..base import Plugin
 from ..context import Joint, PluginError
-from ..frames import stamped
+from ..frames import stamp_message
 from ..parameters import namespace_or
 
 
@@ -29,7 +29,7 @@ class JointStatePublisher(Plugin):
         context.observe(p.number("updateRate", 100.0), self.update, [self._topic])
 
     def update(self) -> None:
-        message = stamped(self.context, "sensor_msgs/JointState")
+        message = stamp_message(self.context, "sensor_msgs/JointState")
         message.name = [joint.name for joint in self._joints]
         message.position = [joint.position for joint in self._joints]
         message.velocity = [joint.velocity for joint in self._joints]

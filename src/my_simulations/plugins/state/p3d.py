@@ -10,7 +10,7 @@ from typing import Any, Optional
 from ...geometry import Pose, Twist, add, compose, conjugate, inverse, multiply, rotate, subtract
 from ..base import Plugin
 from ..context import Link, PluginError
-from ..frames import prefixed, stamped
+from ..frames import add_tf_prefix, stamp_message
 from ..noise import WhiteNoise
 from ..parameters import namespace_or
 
@@ -34,7 +34,7 @@ class P3d(Plugin):
         self._stddev = p.number("gaussianNoise", 0.0)
         self._noise = WhiteNoise(context.seed, f"{context.model}::{name}::p3d", self._stddev)
         # The original puts the prefix before the first alone.
-        self._frame_id, self._child_id = prefixed(context, frame), name
+        self._frame_id, self._child_id = add_tf_prefix(context, frame), name
         self._topic = context.publish(p.text("topicName"), "nav_msgs/Odometry")
         context.observe(p.number("updateRate", 0.0), self.update, [self._topic])
 
@@ -50,7 +50,7 @@ class P3d(Plugin):
 
     def _message(self, pose: Pose, twist: Twist) -> Any:
         context, noise = self.context, self._noise.draw(6, self.context.now_ns)
-        message = stamped(context, "nav_msgs/Odometry")
+        message = stamp_message(context, "nav_msgs/Odometry")
         message.header.frame_id, message.child_frame_id = self._frame_id, self._child_id
         at, turn = message.pose.pose.position, message.pose.pose.orientation
         at.x, at.y, at.z = add(pose.position, self._offset.position)

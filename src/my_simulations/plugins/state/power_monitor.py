@@ -12,7 +12,7 @@ from typing import Any, Tuple
 
 from ..base import Plugin
 from ..context import PluginError
-from ..frames import stamped
+from ..frames import stamp_message
 from ..parameters import namespace_or
 
 _AC_PRESENT = 4                                 # chargers
@@ -54,7 +54,7 @@ class PowerMonitor(Plugin):
     def _publish(self) -> None:
         current = self._power / self._voltage if self._voltage > 0.0 else 0.0
         self._charge = max(0.0, min(self._capacity, self._charge + self._period / 3600.0 * current))
-        message = stamped(self.context, "pr2_msgs/PowerState")
+        message = stamp_message(self.context, "pr2_msgs/PowerState")
         message.power_consumption = self._power
         message.time_remaining.secs, message.time_remaining.nsecs = self._remaining(current)
         message.prediction_method = "fuel gauge"

@@ -34,7 +34,7 @@ from ...geometry_messages import fill_pose, fill_twist
 from ..base import Plugin
 from ..context import Link, PluginError
 from ..drive.odometry import diagonal_covariance
-from ..frames import prefixed, stamped
+from ..frames import add_tf_prefix, stamp_message
 from ..noise import WhiteNoise
 from ..parameters import namespace_or
 
@@ -86,7 +86,7 @@ class RobotnikGroundTruthOdometry(Plugin):
         world = p.text("worldBodyName", "world")
         self._parent: Optional[Link] = None if world in _WORLD else context.link(world)
         self._child_id = p.text("frameName", self._link.name)
-        self._frame_id = prefixed(context, p.text("worldFrameName", world))
+        self._frame_id = add_tf_prefix(context, p.text("worldFrameName", world))
         self._offset = Pose(p.vector("xyzOffset"), p.turn("rpyOffset"))
         self._noise = WhiteNoise(context.seed, f"{context.model}::{self._link.name}::truth",
                                  p.number("gaussianNoise", 0.0))
@@ -120,7 +120,7 @@ class RobotnikGroundTruthOdometry(Plugin):
 def odometry_message(context: Any, frame: str, child: str, pose: Pose, twist: Twist,
                      variance: float) -> Any:
     """A nav_msgs/Odometry whose covariances have one number on their diagonals."""
-    message = stamped(context, "nav_msgs/Odometry", frame)
+    message = stamp_message(context, "nav_msgs/Odometry", frame)
     message.child_frame_id = child
     fill_pose(message.pose.pose, pose)
     fill_twist(message.twist.twist, twist)

@@ -29,7 +29,7 @@ from ...geometry import (
 from ..base import Plugin
 from ..context import PluginError
 from ..flight.body_wrench import fill_wrench
-from ..frames import stamped
+from ..frames import stamp_message
 from ..parameters import Parameters, namespace_or
 
 LIBRARY = "libgazebo_dipole_magnet.so"
@@ -136,11 +136,11 @@ class DipoleMagnet(Plugin):
 
     def _publish(self, force: Vec3, torque: Vec3, field: Vec3) -> None:
         if self._wrenches.wanted:
-            message = stamped(self.context, "geometry_msgs/WrenchStamped", "world")
+            message = stamp_message(self.context, "geometry_msgs/WrenchStamped", "world")
             fill_wrench(message.wrench, (force, torque))
             self._wrenches.publish(message)
         if self._fields.wanted:
-            message = stamped(self.context, "sensor_msgs/MagneticField", self._link.name)
+            message = stamp_message(self.context, "sensor_msgs/MagneticField", self._link.name)
             values = message.magnetic_field
             values.x, values.y, values.z = field
             self._fields.publish(message)
