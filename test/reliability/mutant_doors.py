@@ -20,7 +20,7 @@ from my_simulations.editor.topics.message_views import ACCUMULATED, VIEWS, Viewe
 from my_simulations.editor.transport.browser_client import Client, encoded
 from my_simulations.editor.transport.http_pages import Pages
 from my_simulations.errors import SimulationError
-from my_simulations.ros.endpoints import answering
+from my_simulations.ros.endpoints import make_service_callback
 from my_simulations.ros.services.state_services import StateServices
 
 NAMES = ("a", "b", "a::link", "b::tip", "b::hinge", "hinge", "base", "new", "world", "map", "")
@@ -123,7 +123,7 @@ class Services:
         """Another world."""
         self._simulator.close()
         self._simulator, endpoints = service_requests.start(box("a"), arm("b"))
-        self._answers = {endpoint.name: answering(endpoint) for endpoint in endpoints}
+        self._answers = {endpoint.name: make_service_callback(endpoint) for endpoint in endpoints}
         self._left = 300
 
     def close(self) -> None:

@@ -40,7 +40,7 @@ from my_simulations.formats.urdf import urdf_tables
 from my_simulations.objects.object_list import parse_objects
 from my_simulations.objects.yaml_source import read_yaml
 from my_simulations.resources.resolver import Resolver
-from my_simulations.ros.endpoints import answering
+from my_simulations.ros.endpoints import make_service_callback
 
 INPUTS = int(os.environ.get("MY_SIMULATIONS_FUZZ_INPUTS") or scaled(60, 20000))
 AT_ONCE = 1000
@@ -327,7 +327,7 @@ def test_service_requests(record):
     def call(made: Any) -> None:
         endpoint, request = made
         try:
-            answer = answering(endpoint)(request)
+            answer = make_service_callback(endpoint)(request)
             assert "internal error" not in getattr(answer, "status_message", "")
             answered["accepted" if getattr(answer, "success", True) else "refused"] += 1
         except rospy.ServiceException as fault:

@@ -29,7 +29,7 @@ class ApiSurface(unittest.TestCase):
             rospy.wait_for_service("/gazebo/open_editor", timeout=support.SECONDS)
 
     def rows(self, direction):
-        return [row for row in interface.rows(extensions=self.extensions)
+        return [row for row in interface.offered_rows(extensions=self.extensions)
                 if row.direction is direction]
 
     def of_gazebo(self, direction):

@@ -49,7 +49,7 @@ class Gazebo:
     def __init__(self, node="/gazebo", persistent=True):
         self.node = node
         self._persistent = persistent
-        for row in interface.rows(extensions=False):
+        for row in interface.offered_rows(extensions=False):
             if row.direction is interface.SERVES:
                 rospy.wait_for_service(row.under(node), timeout=SECONDS)
 

@@ -9,9 +9,9 @@ PAGE = REPOSITORY / "doc" / "ros_api.md"
 
 def with_interface(page: str) -> str:
     """The page's text with the present tables."""
-    from my_simulations.ros.interface import markdown
+    from my_simulations.ros.interface import interface_tables
 
-    return replaced(page, "interface", markdown())
+    return replaced(page, "interface", interface_tables())
 
 
 if __name__ == "__main__":

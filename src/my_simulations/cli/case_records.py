@@ -5,7 +5,7 @@ from typing import Any, Dict
 
 from ..errors import CommandError
 from ..python_api import OpenWorld
-from ..ros.topics.state_buffers import StatesBuffer, packed_time
+from ..ros.topics.state_buffers import StatesBuffer, pack_time
 
 
 class BagRecord:
@@ -44,7 +44,7 @@ class BagRecord:
         stamp = self._time(*divmod(max(now, 1), 1000000000))
         revision = layout.revision
         for topic, data in (
-                ("/clock", packed_time(now)), ("/gazebo/model_states", self._models.pack(
+                ("/clock", pack_time(now)), ("/gazebo/model_states", self._models.pack(
                     revision, sequence, layout.model_names, layout.model_places, rows)),
                 ("/gazebo/link_states", self._links.pack(
                     revision, sequence, layout.link_names, layout.link_places, rows))):

@@ -18,7 +18,7 @@ def main(argv: Optional[List[str]] = None) -> int:
     exit_on_signals()
     from ..ros.lifecycle import master_api
 
-    if master_api.fault_of(master_api.uri(words), "/gazebo"):
+    if master_api.fault_of(master_api.master_uri(words), "/gazebo"):
         from . import standalone
 
         status = standalone.main(words, "gazebo")
@@ -35,7 +35,7 @@ def _show(words: List[str]) -> None:
     from ..editor.web_browser import show
     from ..ros.lifecycle import master_api
 
-    name, uri = master_api.node_name(words, "gazebo"), master_api.uri(words)
+    name, uri = master_api.node_name(words, "gazebo"), master_api.master_uri(words)
     until = time.monotonic() + 60.0
     while time.monotonic() < until:
         try:

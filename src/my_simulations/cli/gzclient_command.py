@@ -50,7 +50,7 @@ class _Client:
 
     def __init__(self, words: List[str]) -> None:
         self.ended = threading.Event()
-        self._master = master_api.uri(words)
+        self._master = master_api.master_uri(words)
         self._name = master_api.node_name(words, "gazebo_gui")
         namespace = self._name.rpartition("/")[0]
         self._server = f"{namespace}/gazebo"

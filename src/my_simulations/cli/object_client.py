@@ -15,8 +15,8 @@ from typing import Any, Callable, Dict, Iterator, List, Optional, Sequence, Tupl
 
 from ..errors import InputError, Issue, Severity, SimulationError
 from ..geometry import Pose, Vec3, quat_from_rpy
-from ..ros.arguments import seconds
-from ..ros.call_deadline import CallTimeoutError, within
+from ..ros.arguments import parse_seconds
+from ..ros.call_deadline import CallTimeoutError, call_with_deadline
 from ..ros.lifecycle import master_api
 from ..ros.own_server import spawns_objects
 from ..ros.service_connection import ServiceCallError, ServiceConnection, service_class
@@ -41,7 +41,7 @@ class ToolError(SimulationError):
 
 def add_common_options(parser: argparse.ArgumentParser) -> None:
     """Add the options common to all object tools."""
-    parser.add_argument("--timeout", type=seconds, default=TIMEOUT, metavar="SECONDS",
+    parser.add_argument("--timeout", type=parse_seconds, default=TIMEOUT, metavar="SECONDS",
                         help="wall-clock timeout of each call (default %(default)g)")
     parser.add_argument("--gazebo-namespace", default="gazebo", metavar="NS",
                         help="name of the simulator node (default %(default)s)")
@@ -90,7 +90,7 @@ class Parameters:
 
     def __init__(self, remappings: Sequence[str] = ()) -> None:
         """Connect to the master. Raises ToolError: no master responds."""
-        self.uri = master_api.uri(remappings)
+        self.uri = master_api.master_uri(remappings)
         fault = master_api.fault_of(self.uri, CALLER)
         if fault:
             raise ToolError(f"no ROS master at {self.uri} ({fault}); start one with roscore or "
@@ -271,7 +271,7 @@ class SimulatorClient:
             return self._connections[full](**fields)
 
         try:
-            return within(timeout or self._timeout, f"service {full}", call)
+            return call_with_deadline(timeout or self._timeout, f"service {full}", call)
         except CallTimeoutError as fault:
             raise ToolError(str(fault)) from fault
         except (ServiceCallError, OSError) as fault:

@@ -12,8 +12,8 @@ from typing import Any, Dict, List, Optional
 
 from ..errors import InputError, SimulationError
 from ..program_end import exit_cleanly
-from ..ros.arguments import Parser, is_remapping, number, seconds
-from ..ros.call_deadline import CallTimeoutError, within
+from ..ros.arguments import Parser, is_remapping, parse_number, parse_seconds
+from ..ros.call_deadline import CallTimeoutError, call_with_deadline
 from ..ros.lifecycle.launch_info import Launch
 
 OK, FAILED, USAGE = 0, 1, 2
@@ -50,10 +50,10 @@ def parser() -> argparse.ArgumentParser:
     made.add_argument("-namespace", dest="robot_namespace", help=argparse.SUPPRESS)
     made.add_argument("-unpause", action="store_true", help="unpause physics after spawning")
     made.add_argument("-wait", metavar="MODEL", help="wait until this model exists before spawning")
-    made.add_argument("-timeout", type=seconds, default=WAIT_SECONDS, metavar="SECONDS",
+    made.add_argument("-timeout", type=parse_seconds, default=WAIT_SECONDS, metavar="SECONDS",
                       help="wall-clock timeout of each call (default %(default)g)")
     for axis, unit in zip(("x", "y", "z", "R", "P", "Y"), ("m",) * 3 + ("rad",) * 3):
-        made.add_argument(f"-{axis}", type=number, default=0.0, metavar=unit.upper(),
+        made.add_argument(f"-{axis}", type=parse_number, default=0.0, metavar=unit.upper(),
                           help=f"initial pose ({unit})")
     made.add_argument("-J", dest="joints", nargs=2, action="append", default=[],
                       metavar=("JOINT", "POSITION"),
@@ -146,7 +146,7 @@ def _reach_master(words: List[str]) -> None:
     def say(line: str) -> None:
         print(f"spawn_model: {line}", file=sys.stderr, flush=True)
 
-    uri = master_api.uri(words)
+    uri = master_api.master_uri(words)
     deadline = time.monotonic() + MASTER_SECONDS
     if not master_api.wait(uri, "/spawn_model", threading.Event(), say, deadline):
         raise SpawnError(f"no ROS master responded at {uri} within {MASTER_SECONDS:g} s")
@@ -209,7 +209,7 @@ def _wait_for_model(options: argparse.Namespace) -> None:
     from ..ros import service_client
 
     name = service_client.api_name(options.gazebo_namespace, "get_world_properties")
-    world = service_client.service(name, GetWorldProperties, options.timeout)
+    world = service_client.service_proxy(name, GetWorldProperties, options.timeout)
 
     def is_there() -> bool:
         try:
@@ -237,7 +237,7 @@ def _call_spawn(options: argparse.Namespace, text: str, launch: Launch) -> None:
     from ..ros.own_server import spawns_objects
 
     name = "spawn_urdf_model" if options.urdf else "spawn_sdf_model"
-    service_client.service(
+    service_client.service_proxy(
         service_client.api_name(options.gazebo_namespace, name), SpawnModel, options.timeout
     )
     if options.package_to_model:
@@ -303,8 +303,8 @@ def _answer(options: argparse.Namespace, name: str, kind: Any, request: Any) -> 
     from ..ros import service_client
 
     full = service_client.api_name(options.gazebo_namespace, name)
-    proxy = service_client.service(full, kind, options.timeout)
-    answer = within(options.timeout, f"service {full}", lambda: proxy(request))
+    proxy = service_client.service_proxy(full, kind, options.timeout)
+    answer = call_with_deadline(options.timeout, f"service {full}", lambda: proxy(request))
     if not getattr(answer, "success", True):
         raise SpawnError(answer.status_message)
     return answer

@@ -53,7 +53,7 @@ def is_remapping(word: str) -> bool:
     return ":=" in word and not word.startswith("-")
 
 
-def number(text: str) -> float:
+def parse_number(text: str) -> float:
     """A number, for argparse; it may be infinite or NaN."""
     try:
         return float(text)
@@ -62,9 +62,9 @@ def number(text: str) -> float:
         raise argparse.ArgumentTypeError(f"{text!r} is not a number{comma}") from None
 
 
-def seconds(text: str) -> float:
+def parse_seconds(text: str) -> float:
     """A positive finite number of seconds, for argparse."""
-    value = number(text)
+    value = parse_number(text)
     if not 0.0 < value < float("inf"):
         raise argparse.ArgumentTypeError(f"must be a positive number of seconds, is {text}")
     return value

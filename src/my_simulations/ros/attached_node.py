@@ -13,7 +13,7 @@ from ..simulator.simulator import Simulator
 from .interface import SUBSCRIBES, Row
 from .node import Node
 from .prompt_end import end_promptly
-from .registration import publisher
+from .registration import advertise_topic
 
 _NAME = "gazebo"
 _CLOCK_QUEUE = 1000
@@ -37,7 +37,7 @@ class AttachedNode:
         end_promptly()
         rospy.set_param("/use_sim_time", True)
         rospy.set_param("~manual_stepping", True)
-        clock = publisher("/clock", queue_size=_CLOCK_QUEUE, tcp_nodelay=True)
+        clock = advertise_topic("/clock", queue_size=_CLOCK_QUEUE, tcp_nodelay=True)
         self._refused = RefusedRequests(may_change_world)
         self._node = Node(simulator, resolver, clock, None, master, replace=self._refused.replace)
         self._node.advertise()

@@ -11,8 +11,8 @@ class CallTimeoutError(SimulationError):
     """A call did not return in time; the text names it and the timeout."""
 
 
-def within(limit: float, what: str, call: Callable[[], Any]) -> Any:
-    """Run a call in a thread; returns or raises what it does.
+def call_with_deadline(limit: float, what: str, call: Callable[[], Any]) -> Any:
+    """Run a call in a thread; return its value, or raise its exception.
 
     Args:
         limit: wall seconds.

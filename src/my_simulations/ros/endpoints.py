@@ -38,8 +38,8 @@ class Endpoint:
     response: Any = None
 
 
-def answering(endpoint: Endpoint) -> Callable[[Any], Any]:
-    """The callback for rospy; it responds whatever the handler raises.
+def make_service_callback(endpoint: Endpoint) -> Callable[[Any], Any]:
+    """Make the rospy callback of a service; it responds to every request, also after an exception.
 
     A response without `success` (std_srvs/Empty) cannot report an error; the call fails at
     transport level instead, so the client gets an exception with the text.

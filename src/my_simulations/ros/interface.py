@@ -174,7 +174,7 @@ TABLE: Tuple[Row, ...] = (
 )
 
 
-def rows(*, network: bool = True, extensions: bool = True) -> Iterator[Row]:
+def offered_rows(*, network: bool = True, extensions: bool = True) -> Iterator[Row]:
     """The rows that a node with these settings offers.
 
     Args:
@@ -194,7 +194,7 @@ def row_of(name: str, direction: Direction) -> Row:
     raise KeyError(name)
 
 
-def markdown() -> str:
+def interface_tables() -> str:
     """The tables for the documentation."""
     lines: List[str] = []
     for direction, head in ((PUBLISHES, "Published topics"),

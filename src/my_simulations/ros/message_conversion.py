@@ -33,7 +33,7 @@ def pose_from_message(message: Any, field: str = "pose") -> Pose:
     """
     p, q = message.position, message.orientation
     position, orientation = (p.x, p.y, p.z), (q.x, q.y, q.z, q.w)
-    checked_vector(position, LENGTH, "m", f"{field}.position")
+    check_vector(position, LENGTH, "m", f"{field}.position")
     if not is_finite(*orientation):
         raise CommandError(f"{field}.orientation contains NaN or infinity: {orientation}")
     largest = max(map(abs, orientation))
@@ -47,17 +47,17 @@ def twist_from_message(message: Any, field: str = "twist") -> Twist:
 
     Raises CommandError: a number is NaN, infinite or beyond the limits above.
     """
-    linear = checked_vector(vector(message.linear), SPEED, "m/s", f"{field}.linear")
-    angular = checked_vector(vector(message.angular), SPIN, "rad/s", f"{field}.angular")
+    linear = check_vector(vector_of(message.linear), SPEED, "m/s", f"{field}.linear")
+    angular = check_vector(vector_of(message.angular), SPIN, "rad/s", f"{field}.angular")
     return Twist(linear, angular)
 
 
-def vector(message: Any) -> Vec3:
+def vector_of(message: Any) -> Vec3:
     """A geometry_msgs/Vector3 or Point as a tuple."""
     return (message.x, message.y, message.z)
 
 
-def checked_vector(values: Vec3, limit: float, unit: str, field: str) -> Vec3:
+def check_vector(values: Vec3, limit: float, unit: str, field: str) -> Vec3:
     """Return the vector if it is within the limit.
 
     Raises CommandError: a number is NaN, infinite or beyond the limit.
@@ -70,19 +70,19 @@ def checked_vector(values: Vec3, limit: float, unit: str, field: str) -> Vec3:
     raise CommandError(f"{field} contains a value beyond {limit:g} {unit}: {values}")
 
 
-def checked_number(value: float, low: float, high: float, field: str, unit: str = "") -> float:
+def check_number(value: float, low: float, high: float, field: str, unit: str = "") -> float:
     """Return the value if it is in the range.
 
     Raises CommandError: it is NaN, infinite or not between `low` and `high`.
     """
-    checked_finite(value, field)
+    check_finite(value, field)
     if not low <= value <= high:
         unit = f" {unit}" if unit else ""
         raise CommandError(f"{field} must be between {low:g} and {high:g}{unit}, is {value:g}")
     return value
 
 
-def checked_finite(value: float, field: str) -> float:
+def check_finite(value: float, field: str) -> float:
     """The value. Raises CommandError: it is NaN or infinite."""
     if not is_finite(value):
         raise CommandError(f"{field} must be finite, is {value}")

@@ -11,7 +11,7 @@ from ..errors import CommandError, InputError
 from ..geometry import Pose, is_finite
 from ..resources.resolver import Resolver
 from ..simulator.simulator import Simulator
-from .interface import Row, rows
+from .interface import Row, offered_rows
 from .issue_logging import log_issue
 from .lifecycle import abandoned
 from .lifecycle.launch_info import Launch
@@ -89,7 +89,7 @@ class Node:
     def advertise(self) -> None:
         """Advertise topics and services, and set parameters."""
         from .lifecycle.tcpros_handshake import parallelise_handshakes
-        from .registration import register
+        from .registration import register_endpoints
         from .topics.state_publishers import Publishers
 
         if self._manual_stepping():
@@ -102,8 +102,8 @@ class Node:
         # Set before any service: tools read it to tell this node from Gazebo.
         rospy.set_param("~my_simulations/version", __version__)
         if self._network:
-            self._registered = register(self._rows(late=False), self._handlers(),
-                                        self._replace)
+            self._registered = register_endpoints(self._rows(late=False), self._handlers(),
+                                                  self._replace)
         self._set_world_parameters()
 
     def _manual_stepping(self) -> bool:
@@ -138,7 +138,7 @@ class Node:
         """Advertise services and topics that the start does not wait for; call it last."""
         if not self._network:
             return
-        from .registration import register
+        from .registration import register_endpoints
 
         if self._extensions:
             from .topics.performance_metrics import Metrics
@@ -147,10 +147,10 @@ class Node:
             self._metrics.start()
         handlers = self._late_handlers()
         self._reconfigure = handlers["reconfigure"]
-        self._registered += register(self._rows(late=True), handlers, self._replace)
+        self._registered += register_endpoints(self._rows(late=True), handlers, self._replace)
 
     def _rows(self, late: bool) -> List[Row]:
-        return [row for row in rows(extensions=self._extensions) if row.late == late]
+        return [row for row in offered_rows(extensions=self._extensions) if row.late == late]
 
     def _handlers(self) -> Dict[str, Any]:
         """Handler objects by the first half of `Row.handler`."""

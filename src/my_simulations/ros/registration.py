@@ -6,7 +6,7 @@ from typing import Any, Callable, Dict, Iterable, List, Optional
 
 import rospy
 
-from .endpoints import Endpoint, LastingService, answering
+from .endpoints import Endpoint, LastingService, make_service_callback
 from .interface import BY_ROSPY, SERVES, SUBSCRIBES, Direction, Row, row_of
 
 SUBSCRIBER_QUEUE = 10
@@ -25,7 +25,7 @@ def class_of(row: Row) -> Any:
         raise ImportError(f"{module.__name__} has no {name}") from error
 
 
-def publisher(name: str, **options: Any) -> rospy.Publisher:
+def advertise_topic(name: str, **options: Any) -> rospy.Publisher:
     """Advertise a topic of the table; `options` as rospy's."""
     row = row_of(name, Direction.PUBLISHES)
     return rospy.Publisher(row.graph_name, class_of(row), **options)
@@ -35,8 +35,8 @@ Replace = Callable[[Row], Optional[Callable[..., Any]]]
 """Returns a handler that is called instead of that of a row; None for the row's own."""
 
 
-def register(rows: Iterable[Row], handlers: Dict[str, Any],
-             replace: Replace = lambda _: None) -> List[Any]:
+def register_endpoints(rows: Iterable[Row], handlers: Dict[str, Any],
+                       replace: Replace = lambda _: None) -> List[Any]:
     """Advertise the services and subscribe to the topics among `rows`.
 
     Published topics are advertised by their publishers. A service whose class is not installed is
@@ -74,4 +74,4 @@ def _service(row: Row, kind: Any, handler: Callable[[Any, Any], str],
              responses: Dict[str, Any]) -> rospy.Service:
     method = row.handler.split(".")[1]
     endpoint = Endpoint(row.name, row.title, kind, handler, responses.get(method))
-    return LastingService(row.graph_name, kind, answering(endpoint))
+    return LastingService(row.graph_name, kind, make_service_callback(endpoint))

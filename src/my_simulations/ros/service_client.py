@@ -32,8 +32,8 @@ def wait_until(condition: Callable[[], bool], what: str, seconds: float) -> None
         time.sleep(POLL_SECONDS)
 
 
-def service(name: str, service_class: Any, seconds: float = SERVICE_SECONDS) -> Any:
-    """A proxy for a service; waits until it is available.
+def service_proxy(name: str, service_class: Any, seconds: float = SERVICE_SECONDS) -> Any:
+    """Wait until a service is available and return a proxy for it.
 
     Raises ServiceUnavailableError: it did not appear in time.
     """

@@ -6,8 +6,8 @@ from my_simulations.geometry import Pose, compose, pose_from_xyzrpy
 from my_simulations.ros.topics.state_buffers import (
     ROW_BYTES,
     StatesBuffer,
-    packed_strings,
-    packed_time,
+    pack_strings,
+    pack_time,
 )
 
 
@@ -22,8 +22,8 @@ SECOND = tuple(-number for number in FIRST)
 
 def arrays(packed, names):
     """The pose and twist arrays of a message, after its names."""
-    assert packed.startswith(packed_strings(names))
-    rest, count = packed[len(packed_strings(names)):], len(names)
+    assert packed.startswith(pack_strings(names))
+    rest, count = packed[len(pack_strings(names)):], len(names)
     poses = struct.unpack_from(f"<I{count * 7}d", rest)
     twists = struct.unpack_from(f"<I{count * 6}d", rest, 4 + count * 56)
     assert poses[0] == twists[0] == count
@@ -33,12 +33,12 @@ def arrays(packed, names):
 
 
 def test_names_are_counted_utf8_strings():
-    assert packed_strings(["a", "é"]) == (
+    assert pack_strings(["a", "é"]) == (
         b"\x02\0\0\0" + b"\x01\0\0\0a" + b"\x02\0\0\0" + "é".encode())
 
 
 def test_time_is_seconds_and_nanoseconds():
-    assert packed_time(3000000007) == struct.pack("<II", 3, 7)
+    assert pack_time(3000000007) == struct.pack("<II", 3, 7)
 
 
 def test_rows_go_out_in_the_order_of_the_names():
@@ -71,7 +71,7 @@ def test_an_empty_world_is_three_empty_arrays():
 def test_changed_names_are_packed_again():
     buffer = StatesBuffer()
     buffer.pack(1, 1, ["a"], [(0, None)], rows(FIRST))
-    assert buffer.pack(2, 1, ["b"], [(0, None)], rows(FIRST)).startswith(packed_strings(["b"]))
+    assert buffer.pack(2, 1, ["b"], [(0, None)], rows(FIRST)).startswith(pack_strings(["b"]))
 
 
 def test_an_unchanged_world_is_not_packed_again():

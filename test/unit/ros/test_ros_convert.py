@@ -4,7 +4,7 @@ import pytest
 
 from my_simulations.errors import CommandError
 from my_simulations.ros.message_conversion import (
-    checked_finite,
+    check_finite,
     pose_from_message,
     twist_from_message,
 )
@@ -34,4 +34,4 @@ def test_numbers_that_are_not_finite_are_refused_by_name(bad):
     with pytest.raises(CommandError, match="twist.angular"):
         twist_from_message(twist)
     with pytest.raises(CommandError, match="time_step"):
-        checked_finite(bad, "time_step")
+        check_finite(bad, "time_step")

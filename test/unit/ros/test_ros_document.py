@@ -6,7 +6,7 @@ from my_simulations.formats.reading import parse_document
 from my_simulations.resources.resolver import Resolver
 from my_simulations.ros.services.model_services import (
     SpawnOptions,
-    checked_name,
+    check_name,
     options_of_attributes,
     with_name,
 )
@@ -51,7 +51,7 @@ def test_a_document_that_gets_another_name_has_it_in_every_issue():
 @pytest.mark.parametrize("name", ["", "  ", "a::b"])
 def test_names_no_model_can_have_are_refused(name):
     with pytest.raises(CommandError, match="model_name"):
-        checked_name(name)
+        check_name(name)
 
 
 def plugin_model():

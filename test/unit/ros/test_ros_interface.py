@@ -28,7 +28,7 @@ GAZEBOS = """
 
 
 def names(direction, **settings):
-    return [row.name for row in interface.rows(**settings) if row.direction is direction]
+    return [row.name for row in interface.offered_rows(**settings) if row.direction is direction]
 
 
 def test_without_extensions_the_services_are_gazebos():
@@ -36,7 +36,7 @@ def test_without_extensions_the_services_are_gazebos():
 
 
 def test_what_newer_versions_of_gazebo_have_is_not_called_an_extension():
-    (line,) = (line for line in interface.markdown().splitlines()
+    (line,) = (line for line in interface.interface_tables().splitlines()
                if "`performance_metrics`" in line)
     assert "since Gazebo 11.2" in line and "extension" not in line
     assert "performance_metrics" not in names(PUBLISHES, extensions=False)
@@ -50,7 +50,7 @@ def test_without_extensions_the_topics_are_gazebos():
 
 
 def test_without_a_network_there_is_a_clock_and_what_every_node_has():
-    assert [row.name for row in interface.rows(network=False)] == [
+    assert [row.name for row in interface.offered_rows(network=False)] == [
         "/clock", "/rosout", "get_loggers", "set_logger_level"]
 
 

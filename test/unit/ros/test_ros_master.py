@@ -95,7 +95,7 @@ def test_subscribers_are_those_that_the_master_knows_but_the_caller():
     server.register_function(lambda caller: [1, "", state], "getSystemState")
     thread = threading.Thread(target=server.serve_forever, args=(0.01,), daemon=True)
     thread.start()
-    assert master_api.subscribers(uri, "/me", "/rosout") == {"/rosout"}
+    assert master_api.other_subscribers(uri, "/me", "/rosout") == {"/rosout"}
     server.shutdown()
     server.server_close()
-    assert master_api.subscribers(silent_uri(), "/me", "/rosout") == set()
+    assert master_api.other_subscribers(silent_uri(), "/me", "/rosout") == set()

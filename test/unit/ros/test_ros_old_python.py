@@ -32,7 +32,7 @@ def test_threads_answer_to_the_name_that_an_old_rospy_uses(monkeypatch):
     monkeypatch.setattr(old_python, "imports_race", lambda: True)
     monkeypatch.setattr(old_python, "import_in_turn", lambda: None)
     try:
-        old_python.prepare()
+        old_python.prepare_threads()
         assert threading.current_thread().isAlive()
     finally:
         del threading.Thread.isAlive

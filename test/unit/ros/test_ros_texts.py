@@ -12,7 +12,7 @@ from gazebo_msgs.srv import (
 )
 
 from my_simulations.errors import CommandError
-from my_simulations.ros.endpoints import Endpoint, TextCheck, answering
+from my_simulations.ros.endpoints import Endpoint, TextCheck, make_service_callback
 
 
 @pytest.mark.parametrize("field", ["model_name", "robot_namespace", "reference_frame"])
@@ -21,7 +21,7 @@ def test_a_request_is_refused_with_field_and_character(field):
     endpoint = Endpoint("spawn_sdf_model", "SpawnModel", SpawnModel,
                         lambda request, response: called.append(request) or "done")
     request = SpawnModelRequest(**{field: "a\x01b"})
-    response = answering(endpoint)(request)
+    response = make_service_callback(endpoint)(request)
     assert not response.success and not called
     assert response.status_message == (
         f"SpawnModel: {field} contains the character U+0001 at position 2, which an XML file "
@@ -41,7 +41,8 @@ def test_a_status_does_not_repeat_a_name_of_a_megabyte():
     def refuse(request, response):
         raise CommandError(f"no model {request.model_state.model_name}, did you mean x?")
 
-    answer = answering(Endpoint("set_model_state", "SetModelState", SetModelState, refuse))(
+    endpoint = Endpoint("set_model_state", "SetModelState", SetModelState, refuse)
+    answer = make_service_callback(endpoint)(
         SetModelStateRequest(ModelState(model_name="x" * 1_000_000)))
     assert answer.status_message.startswith("SetModelState: no model xxx")
     assert "x... (990026 more characters) ...x" in answer.status_message
@@ -53,5 +54,5 @@ def test_every_fitting_text_passes():
     endpoint = Endpoint("set_model_state", "SetModelState", SetModelState,
                         lambda request, response: request.model_state.model_name)
     name = "caf\u00e9 \U0001f916\t"
-    answer = answering(endpoint)(SetModelStateRequest(ModelState(model_name=name)))
+    answer = make_service_callback(endpoint)(SetModelStateRequest(ModelState(model_name=name)))
     assert answer.success and answer.status_message == f"SetModelState: {name}"

@@ -3,7 +3,7 @@ from __future__ import annotations
 
 from my_simulations.geometry import IDENTITY, Pose, rotate
 from my_simulations.plugins.graph import TopicUse
-from my_simulations.ros.plugins.topic_graph import listed
+from my_simulations.ros.plugins.topic_graph import list_topics
 
 SCAN, CLOUD, TWIST = "sensor_msgs/LaserScan", "sensor_msgs/PointCloud2", "geometry_msgs/Twist"
 
@@ -15,7 +15,7 @@ def resolve(name):
 def of(name, kind, *uses, publishers=("/gazebo",), subscribers=()):
     state = ([[name, list(publishers)]] if publishers else [],
              [[name, list(subscribers)]] if subscribers else [], [])
-    found, = listed(state, {name: kind}, uses, resolve)
+    found, = list_topics(state, {name: kind}, uses, resolve)
     return found
 
 

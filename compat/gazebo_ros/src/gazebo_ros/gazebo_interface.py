@@ -15,8 +15,8 @@ from gazebo_msgs.srv import (
     SpawnModelRequest,
 )
 
-from my_simulations.ros.call_deadline import CallTimeoutError, within
-from my_simulations.ros.service_client import ServiceUnavailableError, api_name, service
+from my_simulations.ros.call_deadline import CallTimeoutError, call_with_deadline
+from my_simulations.ros.service_client import ServiceUnavailableError, api_name, service_proxy
 
 CALL_SECONDS = 300.0
 """How long an answer may take; dividing a big mesh into convex parts takes minutes."""
@@ -75,8 +75,8 @@ def _spawn(kind: str, model_name: str, model_xml: str, robot_namespace: str, ini
 
 def _call(name: str, service_class: Any, request: Any) -> Optional[bool]:
     try:
-        proxy = service(name, service_class)
-        answer = within(CALL_SECONDS, name, lambda: proxy(request))
+        proxy = service_proxy(name, service_class)
+        answer = call_with_deadline(CALL_SECONDS, name, lambda: proxy(request))
     except (ServiceUnavailableError, CallTimeoutError, rospy.ServiceException) as fault:
         rospy.logerr("%s: %s", name, fault)
         return None

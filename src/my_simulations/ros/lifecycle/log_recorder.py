@@ -28,9 +28,9 @@ StartRecording = Callable[[Simulator, Resolver, Recording, Callable[[Issue], Non
 """
 
 
-def begin(start: StartRecording, simulator: Simulator, resolver: Resolver,
-          wanted: Recording, topics: Any) -> Optional[RunningRecorder]:
-    """Start the log; None, with a logged error, if it cannot be written."""
+def start_log(start: StartRecording, simulator: Simulator, resolver: Resolver,
+              wanted: Recording, topics: Any) -> Optional[RunningRecorder]:
+    """Start the state log; log an error and return None if it cannot be written."""
     try:
         recorder = start(simulator, resolver, wanted, log_issue, topics)
     except CommandError as fault:
@@ -40,8 +40,8 @@ def begin(start: StartRecording, simulator: Simulator, resolver: Resolver,
     return recorder
 
 
-def finish(recorder: RunningRecorder) -> None:
-    """Close the log; an error is logged."""
+def close_log(recorder: RunningRecorder) -> None:
+    """Close the state log; log an error if it is incomplete."""
     try:
         recorder.stop()
     except CommandError as fault:

@@ -52,7 +52,7 @@ def call(uri: str, method: str, *arguments: Any, seconds: float = CALL_SECONDS) 
     return value if code == 1 else None
 
 
-def uri(argv: Sequence[str] = ()) -> str:
+def master_uri(argv: Sequence[str] = ()) -> str:
     """URI of the master: `__master:=`, else ROS_MASTER_URI, else the default."""
     for word in argv:
         if word.startswith("__master:="):
@@ -108,7 +108,7 @@ def wait(master: str, caller: str, stop: threading.Event, say: Callable[[str], N
         stop.wait(POLL_SECONDS)
 
 
-def subscribers(master: str, caller: str, topic: str) -> Set[str]:
+def other_subscribers(master: str, caller: str, topic: str) -> Set[str]:
     """Nodes that the master knows as subscribers of a topic, but the caller; none without it."""
     try:
         state = call(master, "getSystemState", caller)

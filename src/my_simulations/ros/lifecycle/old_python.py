@@ -31,8 +31,8 @@ def give_threads_is_alive() -> None:
         thread.isAlive = thread.is_alive
 
 
-def prepare() -> None:
-    """Prepare an interpreter that needs it, while there is one thread."""
+def prepare_threads() -> None:
+    """Work around the faults of Debian 11's Python; call this before starting threads."""
     if imports_race():
         give_threads_is_alive()
         import_in_turn()

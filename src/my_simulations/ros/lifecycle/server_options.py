@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from math import isfinite
 from typing import List, Optional, Sequence, Tuple
 
-from ..arguments import Parser, is_remapping, number
+from ..arguments import Parser, is_remapping, parse_number
 
 DEFAULT_WORLD = "worlds/empty.world"
 """Default world file, as in gzserver."""
@@ -137,7 +137,7 @@ def _count(text: str) -> int:
 
 
 def _period(text: str) -> float:
-    value = number(text)
+    value = parse_number(text)
     if not isfinite(value):
         raise argparse.ArgumentTypeError(f"{text!r} is not a number of seconds")
     return value
@@ -145,7 +145,7 @@ def _period(text: str) -> float:
 
 def _seed(text: str) -> int:
     # Gazebo reads it as a floating-point number.
-    value = number(text)
+    value = parse_number(text)
     if not value.is_integer():
         raise argparse.ArgumentTypeError(f"{text!r} is not a whole number")
     return int(value)

@@ -166,7 +166,7 @@ class Server:
         self._clock: Any = None
         self._log = IssueLog()
         self._name = master_api.node_name(argv, NODE)
-        self._master = master_api.uri(argv)
+        self._master = master_api.master_uri(argv)
 
     def run(self) -> int:
         """Exit status: 0 after a signal, 1 when the node could not start."""
@@ -174,7 +174,7 @@ class Server:
             signal.signal(number, self._on_signal)
         gc.disable()  # what imports make stays: to look for garbage takes 5 % of a start
         import_genpy()
-        old_python.prepare()
+        old_python.prepare_threads()
         self._profile.mark("messages imported")
         loader = WorldLoader(self._options, self._engines, self._log, self._profile,
                              self._settled.set, self._launch.folder)
@@ -244,7 +244,7 @@ class Server:
         import rospy
 
         from ..prompt_end import end_promptly
-        from ..registration import publisher
+        from ..registration import advertise_topic
 
         self._profile.mark("rospy imported")
         threading.Thread(target=self._break_off, daemon=True).start()
@@ -259,7 +259,7 @@ class Server:
         end_promptly()
         rospy.on_shutdown(self._ended.set)
         # Advertised early: subscribers need time to connect.
-        self._clock = publisher("/clock", queue_size=CLOCK_QUEUE, tcp_nodelay=True)
+        self._clock = advertise_topic("/clock", queue_size=CLOCK_QUEUE, tcp_nodelay=True)
         self._profile.mark("node registered")
         imports.join()
         gc.enable()
@@ -327,10 +327,10 @@ class Server:
         wanted = self._options.recording
         if self._start_recording is None or not wanted.on:
             return
-        from .log_recorder import begin
+        from .log_recorder import start_log
 
-        self._recorder = begin(self._start_recording, loader.simulator, loader.resolver, wanted,
-                               node.topic_graph() if wanted.topics else None)
+        self._recorder = start_log(self._start_recording, loader.simulator, loader.resolver, wanted,
+                                   node.topic_graph() if wanted.topics else None)
         self._profile.mark("state log begun")
 
     def _make_editor_launcher(self) -> "Optional[EditorLauncher]":
@@ -346,7 +346,7 @@ class Server:
         from ..issue_logging import log_fatal
 
         log_fatal([str(issue) for issue in fault.issues] or [str(fault)],
-                  master_api.subscribers(self._master, self._name, "/rosout"))
+                  master_api.other_subscribers(self._master, self._name, "/rosout"))
         return FAILED
 
     def _end(self, node: Any, loader: WorldLoader) -> None:
@@ -360,9 +360,9 @@ class Server:
         if node is not None:
             node.stop()
         if self._recorder is not None:
-            from .log_recorder import finish
+            from .log_recorder import close_log
 
-            finish(self._recorder)
+            close_log(self._recorder)
         if loader.simulator is not None:
             loader.simulator.close()
         self._engines.close()

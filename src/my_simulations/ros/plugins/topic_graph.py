@@ -74,7 +74,7 @@ class TopicGraph(RosGraph):
         """All topics with a publisher or subscriber. Raises OSError."""
         state: Any = self._ask("getSystemState") or ([], [], [])
         kinds: Dict[str, str] = dict(self._ask("getTopicTypes") or ())
-        return listed(state, kinds, self._uses(), rospy.resolve_name)
+        return list_topics(state, kinds, self._uses(), rospy.resolve_name)
 
     def receive(self, name: str, kind: str, call: Callable[[Any], None]) -> TopicSubscription:
         """Subscribe. Raises MissingTypeError."""
@@ -100,9 +100,9 @@ def _decoded(message: rospy.AnyMsg, made: Any) -> Any:
         return None
 
 
-def listed(state: Tuple[Any, Any, Any], kinds: Dict[str, str], uses: Iterable[TopicUse],
-           resolve: Callable[[str], str]) -> List[ListedTopic]:
-    """The master's system state and types with what plugins know.
+def list_topics(state: Tuple[Any, Any, Any], kinds: Dict[str, str], uses: Iterable[TopicUse],
+                resolve: Callable[[str], str]) -> List[ListedTopic]:
+    """List all topics: those of the master, with the types and users that plugins add.
 
     Args:
         state: publishers, subscribers, services: lists of (name, nodes).

@@ -11,7 +11,7 @@ from ...description.model import INFINITE, Joint, JointAxis
 from ...engine.ring_rows import AXES
 from ...errors import CommandError
 from ...simulator.simulator import Simulator
-from ..message_conversion import FORCE, SPIN, checked_number
+from ..message_conversion import FORCE, SPIN, check_number
 from .entity_errors import gazebo_prefix
 
 TYPES = {
@@ -95,7 +95,7 @@ class JointServices:
         wanted: Dict[str, float] = {}
         left: List[str] = []
         for name, position in zip(names, positions):
-            checked_number(position, -SPIN, SPIN, f"position of {name}")
+            check_number(position, -SPIN, SPIN, f"position of {name}")
             plain = name[len(scope):] if name.startswith(scope) else name
             joint = joints.get(plain)
             if joint is None or joint.type not in CONFIGURABLE:
@@ -133,7 +133,7 @@ def _changed(axis: JointAxis, config: Any, number: int) -> JointAxis:
         values = getattr(config, name)
         if len(values) <= number:
             return default
-        return checked_number(values[number], low, high, f"{name}[{number}]")
+        return check_number(values[number], low, high, f"{name}[{number}]")
 
     lower = given("loStop", -INFINITE, INFINITE, axis.lower)
     upper = given("hiStop", -INFINITE, INFINITE, axis.upper)

@@ -9,7 +9,7 @@ from ...errors import CommandError
 from ...geometry import Pose, norm, scale
 from ...simulator.registry import UnknownEntityError
 from ...simulator.simulator import Simulator
-from ..message_conversion import checked_number, checked_vector, pose_from_message, vector
+from ..message_conversion import check_number, check_vector, pose_from_message, vector_of
 
 BRIGHTEST = 1e6
 """Largest accepted colour component or attenuation."""
@@ -45,12 +45,12 @@ class LightServices:
             colour = _colour(getattr(request, field), field)
             if colour != NO_COLOUR:
                 changes[field] = colour
-        attenuation = {name: checked_number(getattr(request, f"attenuation_{name}"), 0.0, BRIGHTEST,
+        attenuation = {name: check_number(getattr(request, f"attenuation_{name}"), 0.0, BRIGHTEST,
                                      f"attenuation_{name}")
                        for name in ("constant", "linear", "quadratic")}
         if any(attenuation.values()):
             changes.update(attenuation)
-        direction = checked_vector(vector(request.direction), BRIGHTEST, "", "direction")
+        direction = check_vector(vector_of(request.direction), BRIGHTEST, "", "direction")
         if norm(direction) > 0.0:
             changes["direction"] = scale(direction, 1.0 / norm(direction))
         changes["pose"] = _pose(request.pose, light)
@@ -72,7 +72,7 @@ class LightServices:
 
 
 def _colour(message: Any, field: str) -> Tuple[float, float, float, float]:
-    r, g, b, a = (checked_number(getattr(message, part), 0.0, BRIGHTEST, f"{field}.{part}")
+    r, g, b, a = (check_number(getattr(message, part), 0.0, BRIGHTEST, f"{field}.{part}")
                   for part in "rgba")
     return (r, g, b, a)
 

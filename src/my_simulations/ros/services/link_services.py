@@ -9,7 +9,7 @@ from ...description.validate import inertial_faults
 from ...errors import CommandError
 from ...geometry_messages import fill_pose
 from ...simulator.simulator import Simulator
-from ..message_conversion import checked_number, pose_from_message
+from ..message_conversion import check_number, pose_from_message
 from .entity_errors import gazebo_prefix
 
 MOMENTS = tuple(field.name for field in fields(Inertial) if field.name.startswith("i"))
@@ -39,9 +39,9 @@ class LinkServices:
         with gazebo_prefix("link not found"):
             link = self._simulator.models.link(request.link_name)
         inertial = replace(
-            link.inertial, mass=checked_number(request.mass, -HEAVIEST, HEAVIEST, "mass", "kg"),
+            link.inertial, mass=check_number(request.mass, -HEAVIEST, HEAVIEST, "mass", "kg"),
             pose=pose_from_message(request.com, "com"),
-            **{name: checked_number(getattr(request, name), -HEAVIEST, HEAVIEST, name, "kg m^2")
+            **{name: check_number(getattr(request, name), -HEAVIEST, HEAVIEST, name, "kg m^2")
                for name in MOMENTS})
         for fault in inertial_faults(inertial, link.name):
             raise CommandError(fault.message)

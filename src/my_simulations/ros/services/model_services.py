@@ -22,7 +22,7 @@ from ...geometry import IDENTITY, Pose, compose
 from ...resources.resolver import Resolver
 from ...simulator.simulator import Simulator
 from ...simulator.spawn_advice import arrival_advice
-from ..message_conversion import LENGTH, checked_vector, pose_from_message
+from ..message_conversion import LENGTH, check_vector, pose_from_message
 from .entity_errors import gazebo_prefix, name_taken_message
 
 SAME = 1e-9
@@ -73,7 +73,7 @@ class ModelServices:
                            SpawnOptions(request.replace, request.file, request.launch_pid))
 
     def _parsed(self, request: Any, file: str) -> ParsedDocument:
-        checked_name(request.model_name)
+        check_name(request.model_name)
         return parse_document(request.model_xml, self._resolver, _label(request, file))
 
     def _attribute_options(self, request: Any, document: ParsedDocument) -> SpawnOptions:
@@ -149,7 +149,7 @@ class ModelServices:
         if launched and not replace and self._is_the_worlds(model.name):
             return self._adopt(model)
         where = compose(initial, model.pose)
-        checked_vector(where.position, LENGTH, "m", "position of the model")
+        check_vector(where.position, LENGTH, "m", "position of the model")
         with gazebo_prefix("", NO_FRAME), name_taken_message(f"model {model.name!r}"):
             self._simulator.models.spawn(model, where, frame, meshes, replace, launched=launched)
         faults = self._changed(model.name)   # the plugin host has logged them
@@ -241,7 +241,7 @@ def options_of_attributes(attributes: Mapping[str, str]) -> SpawnOptions:
         attributes.get(FILE_ATTRIBUTE, ""), int(pid) if re.fullmatch("[0-9]{1,9}", pid) else 0)
 
 
-def checked_name(name: str) -> str:
+def check_name(name: str) -> str:
     """The name, checked. Raises CommandError: invalid as the name of a model."""
     if not name.strip():
         raise CommandError("model_name is empty")

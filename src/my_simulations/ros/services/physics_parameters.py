@@ -8,7 +8,7 @@ from ...errors import CommandError
 from ...geometry import Vec3, is_finite
 from ...plugins.reconfigure_options import Option, Value
 from ...simulator.simulator import Simulator
-from ..message_conversion import checked_number
+from ..message_conversion import check_number
 
 SHORTEST_STEP = 1e-6
 """s; smallest accepted step size."""
@@ -36,7 +36,7 @@ class Parameter(Option):
         """The value. Raises CommandError if it is out of range."""
         if isinstance(value, bool):
             return value
-        checked_number(value, self.low, self.high, self.name)
+        check_number(value, self.low, self.high, self.name)
         return value
 
 
@@ -88,9 +88,9 @@ def _change(simulator: Simulator, values: Mapping[str, Value]) -> None:
     step = wanted["time_step"]
     if not is_finite(step) or not SHORTEST_STEP <= step <= 10.0:
         raise CommandError(f"time_step must be between {SHORTEST_STEP:g} and 10 s, is {step:g}")
-    rate = checked_number(wanted["max_update_rate"], -FASTEST, FASTEST, "max_update_rate", "Hz")
+    rate = check_number(wanted["max_update_rate"], -FASTEST, FASTEST, "max_update_rate", "Hz")
     gravity: Vec3 = tuple(  # type: ignore[assignment]
-        checked_number(wanted[f"gravity_{axis}"], -STRONGEST_GRAVITY, STRONGEST_GRAVITY,
+        check_number(wanted[f"gravity_{axis}"], -STRONGEST_GRAVITY, STRONGEST_GRAVITY,
                 f"gravity.{axis}", "m/s^2") for axis in "xyz")
     # Unchanged values are not checked: a world file may have values out of range.
     ode: Dict[str, Any] = {parameter.ode: parameter.checked(values[parameter.name])

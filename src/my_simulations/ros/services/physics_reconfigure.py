@@ -14,7 +14,7 @@ import rospy
 from ...errors import CommandError
 from ...plugins.reconfigure_options import OptionError, OptionMessages, Value
 from ...simulator.simulator import Simulator
-from ..registration import publisher
+from ..registration import advertise_topic
 from .physics_parameters import PARAMETERS, change_parameters, current_parameters
 
 
@@ -27,8 +27,8 @@ class ReconfigureServer:
         self._lock = threading.Lock()
         self._told: Dict[str, Value] = {}
         self._stored: Optional[Dict[str, Value]] = None
-        self._descriptions = publisher("parameter_descriptions", queue_size=10, latch=True)
-        self._updates = publisher("parameter_updates", queue_size=10, latch=True)
+        self._descriptions = advertise_topic("parameter_descriptions", queue_size=10, latch=True)
+        self._updates = advertise_topic("parameter_updates", queue_size=10, latch=True)
         self._descriptions.publish(self._messages.description())
         self._publish_changes()
 

@@ -8,7 +8,7 @@ import rospy
 from ...errors import CommandError
 from ...simulator.registry import UnknownEntityError
 from ...simulator.simulator import Simulator
-from ..message_conversion import FORCE, LENGTH, checked_number, checked_vector, vector
+from ..message_conversion import FORCE, LENGTH, check_number, check_vector, vector_of
 from .entity_errors import gazebo_prefix
 
 NO_TIME = "; ignored: duration is 0"
@@ -22,9 +22,9 @@ class WrenchServices:
 
     def apply_wrench(self, request: Any, _response: Any) -> str:
         """Apply a wrench (N, N m) to a link."""
-        force = checked_vector(vector(request.wrench.force), FORCE, "N", "wrench.force")
-        torque = checked_vector(vector(request.wrench.torque), FORCE, "N m", "wrench.torque")
-        point = checked_vector(vector(request.reference_point), LENGTH, "m", "reference_point")
+        force = check_vector(vector_of(request.wrench.force), FORCE, "N", "wrench.force")
+        torque = check_vector(vector_of(request.wrench.torque), FORCE, "N m", "wrench.torque")
+        point = check_vector(vector_of(request.reference_point), LENGTH, "m", "reference_point")
         with gazebo_prefix("body does not exist", "reference_frame not found"):
             self._simulator.wrenches.apply_wrench(request.body_name, force, torque,
                                                   frame=request.reference_frame, point=point,
@@ -34,7 +34,7 @@ class WrenchServices:
 
     def apply_effort(self, request: Any, _response: Any) -> str:
         """Apply an effort (N m or N) to the first axis of a joint."""
-        effort = checked_number(request.effort, -FORCE, FORCE, "effort", "N m or N")
+        effort = check_number(request.effort, -FORCE, FORCE, "effort", "N m or N")
         with gazebo_prefix("joint not found"):
             self._simulator.wrenches.apply_effort(request.joint_name, effort,
                                   start_ns=request.start_time.to_nsec(),

@@ -9,7 +9,7 @@ import rospy
 from ...simulator.simulator import Simulator
 from ..interface import PUBLISHES, row_of
 from ..message_conversion import seconds_and_nanoseconds
-from ..registration import class_of, publisher
+from ..registration import advertise_topic, class_of
 from .subscriber_events import SubscriberEvents
 from .worker_thread import WorkerThread
 
@@ -25,8 +25,8 @@ class Metrics(WorkerThread):
         super().__init__("metrics")
         self._simulator = simulator
         self._message: Any = class_of(row_of(TOPIC, PUBLISHES))()
-        self._publisher = publisher(TOPIC, queue_size=10,
-                                    subscriber_listener=SubscriberEvents(self._wake.set))
+        self._publisher = advertise_topic(TOPIC, queue_size=10,
+                                          subscriber_listener=SubscriberEvents(self._wake.set))
 
     def _run(self) -> None:
         while not self._stop.is_set():

@@ -23,7 +23,7 @@ _POSE = struct.Struct("<7d")
 _STILL = bytes(TWIST_BYTES)
 
 
-def packed_strings(names: Sequence[str]) -> bytes:
+def pack_strings(names: Sequence[str]) -> bytes:
     parts: List[bytes] = [_COUNT.pack(len(names))]
     for name in names:
         data = name.encode("utf-8")
@@ -32,8 +32,8 @@ def packed_strings(names: Sequence[str]) -> bytes:
     return b"".join(parts)
 
 
-def packed_time(nanoseconds: int) -> bytes:
-    """A `time` field (and so a whole rosgraph_msgs/Clock)."""
+def pack_time(nanoseconds: int) -> bytes:
+    """Return the bytes of a `time` field, which are also those of a rosgraph_msgs/Clock."""
     return _TIME.pack(*divmod(nanoseconds, 1000000000))
 
 
@@ -58,7 +58,7 @@ class StatesBuffer:
             links: the link rows of a snapshot, as bytes.
         """
         if revision != self._revision:
-            self._names, self._count = packed_strings(names), _COUNT.pack(len(names))
+            self._names, self._count = pack_strings(names), _COUNT.pack(len(names))
             self._at = [max(row, 0) * ROW_BYTES for row, _ in places]
             self._special = [(index, place) for index, place in enumerate(places)
                              if place[1] is not None]

@@ -16,9 +16,9 @@ from rosgraph_msgs.msg import Clock
 from ...simulator.row_layout import FrameLocation, RowLayout
 from ...simulator.simulator import Simulator
 from ..direct_connection import direct_publish
-from ..registration import publisher
+from ..registration import advertise_topic
 from .publish_pacing import StateSchedule, StepSelector, TokenBucket
-from .state_buffers import StatesBuffer, packed_time
+from .state_buffers import StatesBuffer, pack_time
 from .subscriber_events import SubscriberEvents
 from .worker_thread import WorkerThread
 
@@ -79,8 +79,8 @@ class StateTopic:
         self._message = packed_class()
         self._owed = threading.Event()
         self._wake = wake
-        self.publisher = publisher(topic, queue_size=STATES_QUEUE, tcp_nodelay=True,
-                                   subscriber_listener=SubscriberEvents(self._on_subscriber))
+        self.publisher = advertise_topic(topic, queue_size=STATES_QUEUE, tcp_nodelay=True,
+                                         subscriber_listener=SubscriberEvents(self._on_subscriber))
         self._publish = direct_publish(self.publisher)
 
     def _on_subscriber(self) -> None:
@@ -185,7 +185,7 @@ class Publishers(WorkerThread):
     def _publish(self, selector: StepSelector, states_wanted: bool) -> None:
         step, clock = self._simulator.clock.now()
         for nanoseconds in selector.times(step, clock.sim_ns, time.monotonic()):
-            self._clock_message.packed = packed_time(nanoseconds)
+            self._clock_message.packed = pack_time(nanoseconds)
             self._publish_clock(self._clock_message)
         if states_wanted:
             sim_ns = clock.sim_ns(step)
