@@ -22,7 +22,7 @@ from my_simulations.formats.reading import read_entity
 from my_simulations.geometry import Pose, compose, quat_from_rpy, rotate
 from my_simulations.resources.resolver import Resolver
 from my_simulations.sensing.api import DEPTH, LABELS, RGB, CameraSpec, Distortion
-from my_simulations.sensing.camera.distortion import distorted
+from my_simulations.sensing.camera.distortion import distort
 from my_simulations.sensing.camera.renderer import Renderer
 from my_simulations.sensing.poses import matrix
 from my_simulations.sensing.scene import body as body_of
@@ -595,7 +595,7 @@ def test_distortion_moves_points_as_browns_model_says(view, k1):
         rim = np.concatenate([rim[:50], np.flip(rim[:50], 1) * (-1, 1), rim[50:],
                               np.flip(rim[50:], 1) * (-1, 1)])
         turned = rim @ np.array([[math.cos(0.3), math.sin(0.3)], [-math.sin(0.3), math.cos(0.3)]])
-        u, v = distorted(lens, -(y + turned[:, 0]) / 3.0, -(z + turned[:, 1]) / 3.0)
+        u, v = distort(lens, -(y + turned[:, 0]) / 3.0, -(z + turned[:, 1]) / 3.0)
         expected = centroid(319.5 + spec.focal_length * u, 239.5 + spec.focal_length * v)
         weight = found.rgb[..., 0] / found.rgb[..., 0].sum(dtype=float)
         column, row = np.meshgrid(np.arange(640), np.arange(480))

@@ -40,8 +40,8 @@ class SampleGenerator:
         return self._generator
 
 
-def generator(seed: int, sensor: str, quantity: str, sample: int) -> Any:
-    """A numpy.random.Generator for a single sample of one quantity of one sensor."""
+def sample_generator(seed: int, sensor: str, quantity: str, sample: int) -> Any:
+    """Return the numpy.random.Generator of one sample of one quantity of a sensor."""
     return SampleGenerator(seed, sensor, quantity).at(sample)
 
 
@@ -115,7 +115,8 @@ def noisy_picture(rgb: Any, spec: NoiseSpec, seed: int, sensor: str, sample: int
 
     if spec.type not in (GAUSSIAN, QUANTIZED):
         return rgb
-    grey = generator(seed, sensor, "image", sample).standard_normal(rgb.shape[:2], np.float32)
+    generator = sample_generator(seed, sensor, "image", sample)
+    grey = generator.standard_normal(rgb.shape[:2], np.float32)
     shift = np.rint((grey * np.float32(spec.stddev) + np.float32(spec.mean)) * np.float32(255.0))
     # In whole numbers it takes a quarter of the time.
     whole = np.clip(shift, -255, 255).astype(np.int16)

@@ -64,7 +64,7 @@ class Scenery:
                                ).reshape(-1, 7)
 
     def _add_road(self, road: PaintedRoad, row: int) -> Pose:
-        made = strip(road.road)
+        made = road_strip(road.road)
         at = Pose(road.road.points[0]) if made is not None else Pose()
         if made is not None:
             piece = piece_of(made.vertices - np.array(at.position), made.normals, made.uv,
@@ -78,7 +78,7 @@ class Scenery:
         return len(self._fixed) + len(self._figures)
 
     def extended(self, poses: np.ndarray, ns: int) -> np.ndarray:
-        """(n, 7) poses of links, and behind them the places of all this at a sim time, ns."""
+        """Append the poses of fixed visuals and actors at a sim time (ns) to (n, 7) link poses."""
         if not self.count:
             return poses
         places = [[*pose.position, *pose.orientation]
@@ -86,13 +86,13 @@ class Scenery:
         return np.concatenate([poses, np.array(places).reshape(-1, 7), self._fixed])
 
     def forms(self, ns: int) -> bytes:
-        """What shapes depend on: equal for two times at which all have the same."""
+        """Return a key of the actors' shapes; equal keys mean equal shapes."""
         if not self._figures:
             return b""
         return repr([shape.form_at(ns / 1e9) for shape, _ in self._figures]).encode()
 
     def reshaped(self, ns: int) -> List[Tuple[int, np.ndarray]]:
-        """The parts that have another shape than at the last call, with the rows of `Piece`."""
+        """Return the parts whose shape changed since the last call, with their rows of `Piece`."""
         found: List[Tuple[int, np.ndarray]] = []
         for n, (shape, first) in enumerate(self._figures):
             form = shape.form_at(ns / 1e9)
@@ -106,8 +106,8 @@ LIFT = 0.01
 """m by which a road lies above its points, so that a ground at their height does not hide it."""
 
 
-def strip(road: Road) -> Optional[PaintedPart]:
-    """A flat strip along the points, in the world frame; None for one without length or width.
+def road_strip(road: Road) -> Optional[PaintedPart]:
+    """Return the flat strip of a road in the world frame; None without length or width.
 
     Its sides run half the width to the left and to the right of the points, level, at right angles
     to the line from the point before to the next. Texture coordinates: u is 0 on the left and 1 on

@@ -39,8 +39,8 @@ class Triangles:
     uv: Optional[np.ndarray] = None
 
 
-def sides(radius: float, error: float = RAY_ERROR) -> int:
-    """How many sides a circle needs so that none of its points is more than `error` off.
+def side_count(radius: float, error: float = RAY_ERROR) -> int:
+    """Return how many sides a polygon needs to stay within `error` (m) of its circle.
 
     The corners lie as far outside as the middles of the sides inside.
     """
@@ -57,15 +57,17 @@ def triangles_of(shape: Geometry, round_sides: int = 0) -> Optional[Triangles]:
     if isinstance(shape, Box):
         return box(shape.size)
     if isinstance(shape, Sphere):
-        return ellipsoid((shape.radius,) * 3, round_sides or sides(shape.radius))
+        return ellipsoid((shape.radius,) * 3, round_sides or side_count(shape.radius))
     if isinstance(shape, Ellipsoid):
-        return ellipsoid(shape.radii, round_sides or sides(max(shape.radii)))
+        return ellipsoid(shape.radii, round_sides or side_count(max(shape.radii)))
     if isinstance(shape, Cylinder):
-        return tapered(shape.radius, shape.radius, shape.length, round_sides or sides(shape.radius))
+        return truncated_cone(shape.radius, shape.radius, shape.length,
+                              round_sides or side_count(shape.radius))
     if isinstance(shape, Cone):
-        return tapered(shape.radius, 0.0, shape.length, round_sides or sides(shape.radius))
+        return truncated_cone(shape.radius, 0.0, shape.length,
+                              round_sides or side_count(shape.radius))
     if isinstance(shape, Capsule):
-        return capsule(shape.radius, shape.length, round_sides or sides(shape.radius))
+        return capsule(shape.radius, shape.length, round_sides or side_count(shape.radius))
     if isinstance(shape, Plane):
         return plane(shape.normal, shape.size)
     if isinstance(shape, SOLIDS):
@@ -77,7 +79,7 @@ def triangles_of(shape: Geometry, round_sides: int = 0) -> Optional[Triangles]:
 
 
 def box(size: Vec3) -> Triangles:
-    """Four corners a face."""
+    """Return the surface of a box with four corners per face."""
     vertices, normals, uv = [], [], []
     for axis in range(3):
         for sign in (1.0, -1.0):
@@ -149,8 +151,11 @@ def _widened(count: int) -> float:
     return 2.0 / (1.0 + math.cos(math.pi / count))
 
 
-def tapered(bottom: float, top: float, length: float, count: int) -> Triangles:
-    """A cylinder or a cone about z, centred, with its lids."""
+def truncated_cone(bottom: float, top: float, length: float, count: int) -> Triangles:
+    """Return the surface of a cylinder, cone or truncated cone about z, with its end faces.
+
+    `bottom`, `top`: radii (m); the origin is half-way up.
+    """
     circle, wide = _ring(count), _widened(count)
     slope = np.array([length, bottom - top]) / (math.hypot(length, bottom - top) or 1.0)
     sides_at = np.linspace(0.0, 1.0, count + 1)
@@ -179,13 +184,13 @@ def tapered(bottom: float, top: float, length: float, count: int) -> Triangles:
 
 
 def ellipsoid(radii: Vec3, count: int) -> Triangles:
-    """Of `count` meridians."""
+    """Return the surface of an ellipsoid with `count` meridians."""
     return _revolved(np.linspace(-math.pi / 2, math.pi / 2, count // 2 + 1), np.array(radii), 0.0,
                      count)
 
 
 def capsule(radius: float, length: float, count: int) -> Triangles:
-    """A cylinder with half-spheres on both ends."""
+    """Return the surface of a cylinder along z with a hemisphere at each end."""
     half = np.linspace(0.0, math.pi / 2, count // 4 + 1)
     return _revolved(np.concatenate([-half[::-1], half]), np.full(3, radius), length, count)
 

@@ -41,11 +41,16 @@ from my_simulations.sensing.api import (
     SetLights,
     SetScenery,
 )
-from my_simulations.sensing.camera.distortion import blended, distorted, nearest, sources
+from my_simulations.sensing.camera.distortion import (
+    distort,
+    sample_bilinear,
+    sample_nearest,
+    source_pixels,
+)
 from my_simulations.sensing.camera.pictures import draw_pattern, read_picture
 from my_simulations.sensing.poses import matrices, matrix, transforms
 from my_simulations.sensing.process import SensingProcess
-from my_simulations.sensing.tessellation import sides, triangles_of
+from my_simulations.sensing.tessellation import side_count, triangles_of
 
 
 def test_the_interface_imports_nothing_heavy():
@@ -103,7 +108,7 @@ def test_matrices_do_what_poses_do():
 
 @pytest.mark.parametrize("radius", [0.01, 0.3, 2.0, 5.0])
 def test_circles_have_as_many_sides_as_rays_need(radius):
-    assert radius * (1 - math.cos(math.pi / sides(radius))) / 2 <= 5.1e-5
+    assert radius * (1 - math.cos(math.pi / side_count(radius))) / 2 <= 5.1e-5
 
 
 def volume(surface) -> float:
@@ -128,14 +133,14 @@ def test_surfaces_are_closed_and_look_outwards(shape, expected):
 
 def test_the_lens_is_undone_where_it_can_be():
     spec = CameraSpec(320, 240, 1.0, distortion=Distortion(-0.2, 0.03, 0.0, 0.001, -0.001))
-    column, row = sources(spec)
+    column, row = source_pixels(spec)
     f = spec.focal_length
-    x, y = distorted(spec.distortion, (column - 159.5) / f, (row - 119.5) / f)
+    x, y = distort(spec.distortion, (column - 159.5) / f, (row - 119.5) / f)
     pixels_x, pixels_y = np.meshgrid(np.arange(320), np.arange(240))
     assert np.abs(x * f + 159.5 - pixels_x).max() < 1e-6
     assert np.abs(y * f + 119.5 - pixels_y).max() < 1e-6
     ideal = CameraSpec(320, 240, 1.0, distortion=Distortion())
-    assert sources(ideal)[0] == pytest.approx(pixels_x)
+    assert source_pixels(ideal)[0] == pytest.approx(pixels_x)
 
 
 @pytest.mark.parametrize("lens", [
@@ -143,11 +148,11 @@ def test_the_lens_is_undone_where_it_can_be():
     Distortion(0.4, p1=0.02, p2=-0.01), Distortion(0.4, center=(0.45, 0.6))])
 @pytest.mark.parametrize("hfov", [1.57, 2.2])
 def test_a_pincushion_lens_leaves_no_pixel_black(lens, hfov):
-    column, row = sources(CameraSpec(160, 120, hfov, distortion=lens))
+    column, row = source_pixels(CameraSpec(160, 120, hfov, distortion=lens))
     assert (column >= 0).all() and (column <= 159).all() and (row >= 0).all() and (row <= 119).all()
     f = 80 / math.tan(hfov / 2)
     middle = (160 * lens.center[0] - 0.5, 120 * lens.center[1] - 0.5)
-    x, y = distorted(lens, (column - middle[0]) / f, (row - middle[1]) / f)
+    x, y = distort(lens, (column - middle[0]) / f, (row - middle[1]) / f)
     pixels_x, pixels_y = np.meshgrid(np.arange(160), np.arange(120))
     assert np.abs(x * f + middle[0] - pixels_x).max() < 1e-6
     assert np.abs(y * f + middle[1] - pixels_y).max() < 1e-6
@@ -155,7 +160,7 @@ def test_a_pincushion_lens_leaves_no_pixel_black(lens, hfov):
 
 def test_where_a_barrel_lens_folds_the_picture_only_its_inner_part_is_seen():
     lens = Distortion(-1.0)  # folds at 0.577, which it puts at 0.385; -1.19 would fall on 0.5, too
-    column, row = sources(CameraSpec(161, 121, 2.4, distortion=lens))
+    column, row = source_pixels(CameraSpec(161, 121, 2.4, distortion=lens))
     f = 80.5 / math.tan(1.2)
     seen = np.hypot(*np.meshgrid(np.arange(161) - 80, np.arange(121) - 60)) / f
     assert np.array_equal(np.isfinite(column[np.abs(seen - 0.385) > 1 / f]),
@@ -167,9 +172,10 @@ def test_where_a_barrel_lens_folds_the_picture_only_its_inner_part_is_seen():
 def test_pictures_are_looked_up_between_pixels_and_black_outside():
     picture = np.array([[[0, 0, 0], [100, 0, 0]], [[50, 0, 0], [150, 0, 0]]], dtype=np.uint8)
     column, row = np.array([[0.5, 1.0, -0.1, np.inf]]), np.array([[0.5, 0.0, 0.0, 0.0]])
-    assert blended(picture, column, row)[0, :, 0].tolist() == [75, 100, 0, 0]
+    assert sample_bilinear(picture, column, row)[0, :, 0].tolist() == [75, 100, 0, 0]
     depth = np.array([[1.0, 2.0], [3.0, 4.0]], dtype=np.float32)
-    assert nearest(depth, column + 0.1, row, math.inf)[0].tolist() == [2.0, 2.0, 1.0, math.inf]
+    assert sample_nearest(depth, column + 0.1, row, math.inf)[0].tolist() == [
+        2.0, 2.0, 1.0, math.inf]
 
 
 def test_textures_come_from_files_small_enough_and_from_patterns(tmp_path):

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from my_simulations.description.sensor import Noise as NoiseSpec
-from my_simulations.sensing.noise import Noise, SampleGenerator, generator, noisy_picture
+from my_simulations.sensing.noise import Noise, SampleGenerator, noisy_picture, sample_generator
 
 MANY = 200_000
 
@@ -42,8 +42,8 @@ def test_a_sample_depends_on_seed_sensor_quantity_and_number_and_on_nothing_else
 def test_a_moved_generator_draws_what_a_new_one_draws():
     moved = SampleGenerator(1, "s", "q")
     for sample in (3, 0, (1 << 63) + 5, -2, 3):
-        assert moved.at(sample).normal(size=5).tolist() == generator(1, "s", "q", sample).normal(
-            size=5).tolist()
+        own = sample_generator(1, "s", "q", sample)
+        assert moved.at(sample).normal(size=5).tolist() == own.normal(size=5).tolist()
         moved.at(sample, 2).integers(10, dtype=np.uint32)   # leaves half a number in its buffer
     # NumPy's own generator at that counter.
     key = moved._state["state"]["key"]

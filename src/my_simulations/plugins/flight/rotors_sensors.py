@@ -16,7 +16,7 @@ from ...description.surroundings import SphericalCoordinates
 from ...geometry import Vec3, add, conjugate, rotate, transform
 from ...sensing.models import gps
 from ...sensing.models.motion import velocity_at
-from ...sensing.noise import GAUSSIAN, generator
+from ...sensing.noise import GAUSSIAN, sample_generator
 from ..base import Plugin
 from ..context import PluginError
 from ..frames import stamp_message
@@ -98,7 +98,7 @@ class RotorsMagnetometer(Plugin):
         self._link = context.link(p.text("linkName"))
         who = f"{context.model}::{self._link.name}"
         width, self._stddev = p.vector("noiseUniformInitialBias"), p.vector("noiseNormal")
-        bias = generator(context.seed, who, "magnetic bias", 0).uniform(-1.0, 1.0, 3)
+        bias = sample_generator(context.seed, who, "magnetic bias", 0).uniform(-1.0, 1.0, 3)
         field = (p.number("refMagNorth", 0.000021493), p.number("refMagEast", 0.000000815),
                  p.number("refMagDown", 0.000042795))
         x, y, z = (value + size * float(part) for value, size, part in zip(field, width, bias))

@@ -47,15 +47,18 @@ class FigureShape:
             return []
         parts: List[PaintedPart] = []
         try:
-            parts = self._skinned_parts(figure)
+            parts = self._load_skeletons(figure)
         except MeshError as fault:
             trouble(f"{viewers} see the actor {figure.actor.name!r} in one shape: {fault}")
         return [piece_of(part.vertices, part.normals, part.uv, part.triangles,
                          own_surface(part, 1.0))
                 for part in parts or painted_parts(figure.skin)]
 
-    def _skinned_parts(self, figure: Figure) -> List[PaintedPart]:
-        """Return the parts of a skin that bones move; none if the file has no bones."""
+    def _load_skeletons(self, figure: Figure) -> List[PaintedPart]:
+        """Load the skeletons of a figure; return its skin in the rest pose, or [] without bones.
+
+        Raises MeshError: a bone is at infinity.
+        """
         found = read_figure(figure.skin.path)
         if found is None:
             return []

@@ -8,7 +8,7 @@ import numpy as np
 from ..api import NO_ROW
 from ..surfaces import Piece, Surface
 from .shaders import MOST_LAYERS
-from .sky import linear
+from .sky import srgb_to_linear
 
 _INSTANCE: Any = np.dtype([("rows", "<f4", (3, 4)), ("link", "<i4")])
 
@@ -114,9 +114,9 @@ def _bounds(rows: np.ndarray) -> Tuple[np.ndarray, float]:
 
 def _uniforms(surface: Surface) -> Dict[str, Union[float, bytes, Tuple[float, ...]]]:
     """What a surface says to its program; bytes of float32 for arrays."""
-    return {"diffuse": (*(linear(surface.diffuse) * surface.brightness), surface.opacity),
-            "specular": tuple(linear(surface.specular)),
-            "emissive": tuple(linear(surface.emissive)), "repeats": surface.repeats,
+    return {"diffuse": (*(srgb_to_linear(surface.diffuse) * surface.brightness), surface.opacity),
+            "specular": tuple(srgb_to_linear(surface.specular)),
+            "emissive": tuple(srgb_to_linear(surface.emissive)), "repeats": surface.repeats,
             "alpha_test": surface.alpha_test,
             **({"layer_form": _layer_forms(surface)} if surface.layers else {})}
 

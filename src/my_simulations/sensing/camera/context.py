@@ -35,8 +35,8 @@ def draws_with_a_card(context: Any) -> bool:
     return not any(word in name for word in ("llvmpipe", "softpipe", "swrast", "software"))
 
 
-def finisher() -> Callable[[], object]:
-    """glFinish that lets other threads run while it waits; moderngl's does not."""
+def load_gl_finish() -> Callable[[], object]:
+    """Return a glFinish that releases the GIL while it waits; moderngl's does not."""
     egl = ctypes.CDLL("libEGL.so.1")
     egl.eglGetProcAddress.restype = ctypes.c_void_p
     egl.eglGetProcAddress.argtypes = [ctypes.c_char_p]

@@ -16,8 +16,8 @@ _Bend = Tuple[np.ndarray, np.ndarray, np.ndarray]
 """The derivative of the lens, a symmetric matrix: xx, xy and yy."""
 
 
-def distorted(model: Distortion, x: np.ndarray, y: np.ndarray) -> Tuple[np.ndarray, np.ndarray]:
-    """Where the lens puts ideal normalised coordinates (Brown's model, as OpenCV's)."""
+def distort(model: Distortion, x: np.ndarray, y: np.ndarray) -> Tuple[np.ndarray, np.ndarray]:
+    """Apply lens distortion to normalised coordinates (Brown's model, as in OpenCV)."""
     squared = x * x + y * y
     radial = _radial(model, squared)
     return (x * radial + 2.0 * model.p1 * x * y + model.p2 * (squared + 2.0 * x * x),
@@ -30,8 +30,8 @@ def _radial(lens: Distortion, squared: np.ndarray) -> np.ndarray:
     return stretch
 
 
-def sources(spec: CameraSpec) -> Tuple[np.ndarray, np.ndarray]:
-    """For each pixel of the seen picture, column and row (float) in the ideal one.
+def source_pixels(spec: CameraSpec) -> Tuple[np.ndarray, np.ndarray]:
+    """Return the column and row (float) in the undistorted picture of each distorted pixel.
 
     The inverse of the model: of its radial part from a table, the rest by Newton's rounds. Pixels
     that no ideal one falls on, short of where the lens folds the picture, lie outside.
@@ -81,7 +81,7 @@ def _misses(lens: Distortion, x: np.ndarray, y: np.ndarray, x_seen: np.ndarray,
     squared = x * x + y * y
     radial = _radial(lens, squared)
     slope = 2.0 * (lens.k1 + squared * (2.0 * lens.k2 + squared * 3.0 * lens.k3))
-    at_x, at_y = distorted(lens, x, y)
+    at_x, at_y = distort(lens, x, y)
     return x_seen - at_x, y_seen - at_y, (
         radial + x * x * slope + 2.0 * lens.p1 * y + 6.0 * lens.p2 * x,
         x * y * slope + 2.0 * lens.p1 * x + 2.0 * lens.p2 * y,
@@ -101,13 +101,13 @@ def crop_share(spec: CameraSpec) -> float:
         return 1.0
     x = np.array([spec.width / 2 / f])
     y = np.array([spec.height / 2 / f])
-    edge_x, _ = distorted(lens, x, np.zeros(1))
-    _, edge_y = distorted(lens, np.zeros(1), y)
+    edge_x, _ = distort(lens, x, np.zeros(1))
+    _, edge_y = distort(lens, np.zeros(1), y)
     return float(min(edge_x[0] / x[0], edge_y[0] / y[0], 1.0))
 
 
-def blended(picture: np.ndarray, column: np.ndarray, row: np.ndarray) -> np.ndarray:
-    """A picture (h, w, 3) seen at these places, between pixels by parts; black outside."""
+def sample_bilinear(picture: np.ndarray, column: np.ndarray, row: np.ndarray) -> np.ndarray:
+    """Sample a picture (h, w, 3) with bilinear interpolation; black outside of it."""
     height, width = picture.shape[:2]
     inside = (column >= 0) & (row >= 0) & (column <= width - 1) & (row <= height - 1)
     column, row = np.where(inside, column, 0.0), np.where(inside, row, 0.0)
@@ -122,9 +122,9 @@ def blended(picture: np.ndarray, column: np.ndarray, row: np.ndarray) -> np.ndar
     return made
 
 
-def nearest(picture: np.ndarray, column: np.ndarray, row: np.ndarray, outside: float,
-            ) -> np.ndarray:
-    """A picture (h, w) seen at these places, whole pixels only."""
+def sample_nearest(picture: np.ndarray, column: np.ndarray, row: np.ndarray, outside: float,
+                   ) -> np.ndarray:
+    """Sample the nearest pixels of a picture (h, w); `outside` for positions outside of it."""
     height, width = picture.shape
     column, row = np.where(np.isfinite(column), column, -9.0), np.where(np.isfinite(row), row, -9.0)
     x, y = np.rint(column).astype(np.int64), np.rint(row).astype(np.int64)

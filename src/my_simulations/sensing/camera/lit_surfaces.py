@@ -12,7 +12,7 @@ from ..poses import inverse
 from . import shaders
 from .batches import Batch
 from .lamps import ShadowView, light_kinds, light_uniforms
-from .sky import fog_law, linear
+from .sky import fog_law, srgb_to_linear
 from .uploaded_textures import Textures
 
 
@@ -65,7 +65,7 @@ class LitSurfaces:
                   **dict(light_uniforms(lights, view))}
         if fog is not None and fog.type != "none":
             kind, density = fog_law(fog)
-            values["fog_color"] = linear(fog.color)
+            values["fog_color"] = srgb_to_linear(fog.color)
             values["fog"] = np.array([fog.start, fog.end, density])
         for n, texture in enumerate(self._maps):
             texture.use(location=1 + n)

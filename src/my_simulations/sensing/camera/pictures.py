@@ -56,7 +56,7 @@ def draw_pattern(name: str) -> Optional[np.ndarray]:
     return np.concatenate([np.clip(canvas, 0, 255), solid], axis=2).astype(np.uint8)[::-1].copy()
 
 
-def _plain(canvas: np.ndarray, colors: Tuple[Rgb, ...], _count: int) -> None:
+def _fill(canvas: np.ndarray, colors: Tuple[Rgb, ...], _count: int) -> None:
     canvas[:] = colors[0]
 
 
@@ -106,5 +106,5 @@ def _checker(canvas: np.ndarray, colors: Tuple[Rgb, ...], _count: int) -> None:
     canvas[:half, :half] = canvas[half:, half:] = colors[1]
 
 
-_PAINTERS = {"plain": _plain, "planks": _planks, "bricks": _bricks, "tiles": _tiles,
+_PAINTERS = {"plain": _fill, "planks": _planks, "bricks": _bricks, "tiles": _tiles,
              "road": _road, "checker": _checker}

@@ -17,7 +17,7 @@ from ..scenery import Scenery
 from ..surfaces import pieces_of
 from . import distortion, shaders
 from .batches import Batch
-from .context import Targets, draws_with_a_card, finisher, new_context
+from .context import Targets, draws_with_a_card, load_gl_finish, new_context
 from .frustum import check, is_in_view, projection
 from .kept_pictures import Drawn, PictureCache
 from .lamps import (
@@ -48,7 +48,7 @@ class Renderer:
         self._trouble = trouble
         self._context = new_context()
         self._context.front_face = "cw"  # `projection` turns pictures upside down
-        self._finish = finisher()
+        self._finish = load_gl_finish()
         self._smooth = 4 if draws_with_a_card(self._context) else 1
         program = self._context.program
         self._programs = {
@@ -350,11 +350,11 @@ class Renderer:
     def _distort(self, spec: CameraSpec, rgb: Optional[np.ndarray], depth: Optional[np.ndarray],
                  labels: Optional[np.ndarray]) -> Tuple[Optional[np.ndarray], ...]:
         if spec not in self._lenses:
-            self._lenses[spec] = distortion.sources(spec)
+            self._lenses[spec] = distortion.source_pixels(spec)
         column, row = self._lenses[spec]
-        return (None if rgb is None else distortion.blended(rgb, column, row),
-                None if depth is None else distortion.nearest(depth, column, row, np.inf),
-                None if labels is None else distortion.nearest(labels, column, row, NO_ROW))
+        return (None if rgb is None else distortion.sample_bilinear(rgb, column, row),
+                None if depth is None else distortion.sample_nearest(depth, column, row, np.inf),
+                None if labels is None else distortion.sample_nearest(labels, column, row, NO_ROW))
 
 
 def _set(program: Any, name: str, values: np.ndarray) -> None:

@@ -10,14 +10,14 @@ from ...appearance.palette import SKY
 from ...description.surroundings import Fog, Sky
 
 
-def linear(color: Sequence[float]) -> np.ndarray:
-    """A colour of a file (sRGB, 0 to 1) in linear units, (3,)."""
+def srgb_to_linear(color: Sequence[float]) -> np.ndarray:
+    """Convert an sRGB colour (0 to 1) to linear components, (3,)."""
     part = np.clip(np.array(color[:3], dtype=float), 0.0, 1.0)
     return np.where(part <= 0.04045, part / 12.92, ((part + 0.055) / 1.055) ** 2.4)
 
 
 def _hex(value: int) -> np.ndarray:
-    return linear([(value >> shift & 255) / 255.0 for shift in (16, 8, 0)])
+    return srgb_to_linear([(value >> shift & 255) / 255.0 for shift in (16, 8, 0)])
 
 
 _DAY = _hex(SKY.day_zenith), _hex(SKY.day_horizon)
@@ -38,7 +38,7 @@ def sky_uniforms(sky: Sky) -> Dict[str, Any]:
     return {
         "sun": tuple(sun / np.linalg.norm(sun)), "zenith": tuple(zenith),
         "horizon": tuple(horizon + (_DUSK - horizon) * dusk),
-        "cloud_color": tuple(linear(sky.cloud_ambient) * (1.15 * light + 0.05)),
+        "cloud_color": tuple(srgb_to_linear(sky.cloud_ambient) * (1.15 * light + 0.05)),
         "cover": min(max(sky.cloud_humidity, 0.0), 1.0), "size": 0.6 + sky.cloud_mean_size,
         "drift": sky.cloud_direction}
 

@@ -11,7 +11,7 @@ from typing import Callable, List, Mapping, Optional, Sequence, Tuple
 import numpy as np
 
 from ..api import NO_ROW, CameraSpec, WideLens
-from .distortion import blended, nearest
+from .distortion import sample_bilinear, sample_nearest
 from .kept_pictures import Drawn
 
 _INVERSE: Mapping[str, Callable[[np.ndarray], np.ndarray]] = {
@@ -75,13 +75,14 @@ class LensMap:
         for side, (colours, away, rows) in zip(self.sides, drawn):
             if colours is not None:
                 rgb = np.zeros((size, 3), np.uint8) if rgb is None else rgb
-                rgb[side.pixels] = blended(colours, side.column, side.row)
+                rgb[side.pixels] = sample_bilinear(colours, side.column, side.row)
             if away is not None:
                 depth = np.full(size, np.inf, np.float32) if depth is None else depth
-                depth[side.pixels] = nearest(away, side.column, side.row, np.inf) * side.ahead
+                seen = sample_nearest(away, side.column, side.row, np.inf)
+                depth[side.pixels] = seen * side.ahead
             if rows is not None:
                 labels = np.full(size, NO_ROW, np.int32) if labels is None else labels
-                labels[side.pixels] = nearest(rows, side.column, side.row, NO_ROW)
+                labels[side.pixels] = sample_nearest(rows, side.column, side.row, NO_ROW)
         return (None if rgb is None else rgb.reshape(*shape, 3),
                 None if depth is None else depth.reshape(shape),
                 None if labels is None else labels.reshape(shape))

@@ -9,7 +9,7 @@ import numpy as np
 from ...description.shapes import Capsule, Ellipsoid, Geometry, Sphere
 from ...geometry import Pose
 from ..poses import matrix
-from ..tessellation import sides, tapered, triangles_of
+from ..tessellation import side_count, triangles_of, truncated_cone
 from .embree import FLOAT3, FLOAT4, INDEX, SPHERES, TRIANGLES, UINT3, VERTEX
 
 
@@ -36,7 +36,7 @@ def buffers_of(shape: RayShape) -> "List[Tuple[int, Tuple[Tuple[int, int, np.nda
     if isinstance(solid, Sphere):
         return [_sphere_buffers(frame, [(0.0, 0.0, 0.0, solid.radius)])]
     if isinstance(solid, Capsule):
-        side = tapered(solid.radius, solid.radius, solid.length, sides(solid.radius))
+        side = truncated_cone(solid.radius, solid.radius, solid.length, side_count(solid.radius))
         half = solid.length / 2
         return [triangle_buffers(frame, side.vertices, side.triangles),
                 _sphere_buffers(frame, [(0, 0, -half, solid.radius), (0, 0, half, solid.radius)])]
