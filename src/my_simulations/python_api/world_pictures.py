@@ -52,8 +52,8 @@ def camera_pose(position: Vec3, target: Vec3) -> Pose:
     return Pose(position, quat_from_rpy(0.0, pitch, yaw))
 
 
-def checked_camera(camera: CameraSpec, outputs: Sequence[str]) -> None:
-    """Raises CommandError for a camera that cannot take a picture, or an unknown output."""
+def check_camera(camera: CameraSpec, outputs: Sequence[str]) -> None:
+    """Check that a camera can take pictures and that the outputs exist. Raises CommandError."""
     if not (0 < camera.width <= _LARGEST and 0 < camera.height <= _LARGEST):
         raise CommandError(f"width and height must be between 1 and {_LARGEST} pixels, are"
                            f" {camera.width} and {camera.height}")
@@ -96,7 +96,7 @@ class Photographer:
         Raises:
             CommandError: no such frame, a camera that cannot be, or there is nothing to draw with.
         """
-        checked_camera(camera, outputs)
+        check_camera(camera, outputs)
         row, offset = self._simulator.states.mounting(frame)
         mount = Mount(row, compose(offset, pose))
         ns = self._simulator.clock.sim_ns

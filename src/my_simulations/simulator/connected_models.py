@@ -29,7 +29,7 @@ class ConnectedModels(KnownModels):
 
         Without those of `attach`, which belong to the caller that made them.
         """
-        return self._links.lasting_joints.joints
+        return self._links.permanent_joints.joints
 
     @property
     def links(self) -> ModelConnections:

@@ -27,8 +27,8 @@ class ModelConnections:
     held: Tuple[str, ...] = ()
 
     @property
-    def lasting_joints(self) -> InterModelJoints:
-        """The joints that the world has of its own, without those that `Models.attach` made."""
+    def permanent_joints(self) -> InterModelJoints:
+        """The joints between models without those of `Models.attach`, which a reset removes."""
         return self.between.removed(self.attached)
 
     def without(self, model: str) -> "ModelConnections":
@@ -52,7 +52,7 @@ class ModelConnections:
 
     def detached(self) -> "ModelConnections":
         """After everything that `Models.attach` joined was detached."""
-        return replace(self, between=self.lasting_joints, attached=())
+        return replace(self, between=self.permanent_joints, attached=())
 
     def joint(self, name: str) -> List[Joint]:
         return self.between.named(name).joints

@@ -201,7 +201,7 @@ class Models(ConnectedModels):
         """Remove an entity, which the engine no longer has, from the registry."""
         registry, name = self._session.registry, entity.model.name
         deleted = DeletedModel(OrderSlot.of(registry.names(), name),
-                               self._links.lasting_joints.of(name),
+                               self._links.permanent_joints.of(name),
                                entity.launched, entity.start, entity.articulated)
         registry.remove(name)
         self._links = self._links.without(name)

@@ -266,11 +266,11 @@ class SetPoses:
         try:
             for name, pose in self.poses.items():
                 was = pose_of(world, name)
-                place(world, name, pose)
+                move_entity(world, name, pose)
                 done[name] = was
         except CommandError:
             for name, pose in done.items():
-                place(world, name, pose)
+                move_entity(world, name, pose)
             raise
         before = {name: pose for name, pose in self.before.items() if name in done}
         return SetPoses({**done, **before})
@@ -288,7 +288,7 @@ def pose_of(world: Simulator, name: str) -> Pose:
     return world.states.link_state(name)[0]
 
 
-def place(world: Simulator, name: str, pose: Pose) -> None:
+def move_entity(world: Simulator, name: str, pose: Pose) -> None:
     """Set the world pose of a model, light or link, at rest. Raises CommandError."""
     if world.models.has(name):
         world.states.set_model_state(name, pose, STILL)
@@ -409,7 +409,7 @@ class Reset:
     what: str
 
     def apply(self, world: Simulator) -> Operation:
-        """Reset the world; the inverse restores states and time."""
+        """Reset time, poses or the whole world; the inverse restores states and time."""
         back = RestoreState(world.states.capture())
         resets: Dict[str, Callable[[], None]] = {
             "time": world.resets.reset_time, "poses": world.resets.reset_world,

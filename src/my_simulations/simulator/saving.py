@@ -149,7 +149,7 @@ def save_world(simulator: Simulator, path: str, *, roots: Sequence[str],
         CommandError: the path is not allowed, the file ships with this package, or it cannot be
             written; an existing file is unchanged.
     """
-    target = allowed_path(path, roots)
+    target = check_save_path(path, roots)
     refuse_shipped(target)
     if not despite_losses and overwrite:
         _refuse_losses(simulator, target)
@@ -217,8 +217,8 @@ def default_roots(world_file: str = "", caller: str = "") -> List[str]:
     return list(dict.fromkeys(root for root in roots if root and root != os.sep))
 
 
-def allowed_path(path: str, roots: Sequence[str]) -> str:
-    """The absolute path to write, with symbolic links in its folders resolved.
+def check_save_path(path: str, roots: Sequence[str]) -> str:
+    """Check the path of a file to save; return it absolute, without symbolic links in its folders.
 
     Raises CommandError: not below a root, not a .world or .sdf file, a link to another place, or a
     character that is not shown.

@@ -68,7 +68,7 @@ class States:
                     pose = compose(pose, entity.link_from_model)
                 return pose, twist
             snapshot = session.snapshot()
-        return relative(entity.state(snapshot), anchor, snapshot)
+        return relative_state(entity.state(snapshot), anchor, snapshot)
 
     def link_state(self, name: str, frame: str = "") -> Tuple[Pose, Twist]:
         """Pose and twist of a link in `frame`. Raises UnknownEntityError, UnknownFrameError."""
@@ -80,7 +80,7 @@ class States:
             if anchor is None:
                 return session.ring.link(row)
             snapshot = session.snapshot()
-        return relative(snapshot.link(row), anchor, snapshot)
+        return relative_state(snapshot.link(row), anchor, snapshot)
 
     def await_posted(self) -> None:
         """Wait until snapshots show all states that were set. Raises CommandError."""
@@ -152,7 +152,7 @@ class States:
         does.
         """
         session = self._session
-        pose = usable(pose, twist)
+        pose = check_state(pose, twist)
         with session.registry_lock:
             entity = session.registry.model(name)
         if not entity.link_names:
@@ -175,7 +175,7 @@ class States:
     def set_link_state(self, name: str, pose: Pose, twist: Twist, frame: str = "") -> None:
         """Move a link (see `engine.commands.SetLinkState`). Raises CommandError."""
         session = self._session
-        pose = usable(pose, twist)
+        pose = check_state(pose, twist)
 
         def look_up() -> Command:
             (entity, number), anchor = session.registry.link(name), session.registry.frame(frame)
@@ -211,8 +211,8 @@ class States:
             self._wrenches.replace_all(pending)
 
 
-def usable(pose: Pose, twist: Twist) -> Pose:
-    """The pose with a unit quaternion. Raises CommandError for NaN or infinity."""
+def check_state(pose: Pose, twist: Twist) -> Pose:
+    """Return the pose with a unit quaternion. Raises CommandError for NaN or infinity."""
     if not pose_is_finite(pose):
         raise CommandError("the pose contains NaN or infinity")
     if not pose_is_finite(Pose(twist.linear, (*twist.angular, 0.0))):
@@ -232,9 +232,9 @@ def in_frame(pose: Pose, twist: Twist,
             Twist(rotate(turn, twist.linear), rotate(turn, twist.angular)), None)
 
 
-def relative(state: Tuple[Pose, Twist], frame: Optional[ReferenceFrame],
+def relative_state(state: Tuple[Pose, Twist], frame: Optional[ReferenceFrame],
               snapshot: Snapshot) -> Tuple[Pose, Twist]:
-    """Gazebo's relative state: pose in the frame, velocity differences turned, no w x r term."""
+    """Express a state in a frame as Gazebo does: velocity differences, without w x r."""
     if frame is None:
         return state
     (position, turn), (linear, angular) = state

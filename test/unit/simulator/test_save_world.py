@@ -27,7 +27,12 @@ from my_simulations.resources.package_files import own_directory
 from my_simulations.resources.resolver import Resolver
 from my_simulations.simulator import safe_file
 from my_simulations.simulator.operations import SetGroups
-from my_simulations.simulator.saving import allowed_path, default_roots, present_world, save_world
+from my_simulations.simulator.saving import (
+    check_save_path,
+    default_roots,
+    present_world,
+    save_world,
+)
 from my_simulations.simulator.simulator import Simulator
 
 AWAY = Pose((1.25, -2.5, 0.125), quat_from_rpy(0.1, 0.2, 0.3))
@@ -247,22 +252,22 @@ def test_a_path_outside_of_the_roots_is_refused(path, tmp_path):
     (root / "link").symlink_to(tmp_path / "elsewhere")
     (root / "file_link.world").symlink_to(tmp_path / "elsewhere" / "x.world")
     with pytest.raises(CommandError):
-        allowed_path(path, [str(root)])
+        check_save_path(path, [str(root)])
 
 
 @pytest.mark.parametrize("character", ["\n", "\x1b", "\x85", "\u2028", "\u202e", "\u2066"])
 def test_a_file_name_with_a_character_that_is_not_shown_is_refused(character, tmp_path):
     with pytest.raises(CommandError, match=f"U\\+{ord(character):04X} at position 2"):
-        allowed_path(f"a{character}b.world", [str(tmp_path)])
-    assert allowed_path("\u0645\u06cc\u200c\u062f.world", [str(tmp_path)])  # a joiner is no such
+        check_save_path(f"a{character}b.world", [str(tmp_path)])
+    assert check_save_path("\u0645\u06cc\u200c\u062f.world", [str(tmp_path)])  # a joiner is no such
 
 
 def test_a_path_below_any_root_is_allowed(tmp_path):
     roots = [str(tmp_path / "a"), str(tmp_path / "b")]
-    assert allowed_path("in/x.world", roots) == str(tmp_path / "a/in/x.world")
-    assert allowed_path(str(tmp_path / "b/x.SDF"), roots) == str(tmp_path / "b/x.SDF")
+    assert check_save_path("in/x.world", roots) == str(tmp_path / "a/in/x.world")
+    assert check_save_path(str(tmp_path / "b/x.SDF"), roots) == str(tmp_path / "b/x.SDF")
     with pytest.raises(CommandError):
-        allowed_path(str(tmp_path / "bb/x.sdf"), roots)
+        check_save_path(str(tmp_path / "bb/x.sdf"), roots)
 
 
 def test_the_root_of_the_file_system_is_no_place_for_worlds(monkeypatch):

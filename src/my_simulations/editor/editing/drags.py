@@ -6,7 +6,7 @@ from typing import Dict, List
 from ...description.scoped_names import split_scoped
 from ...errors import CommandError
 from ...geometry import Pose, normalised, pose_is_finite
-from ...simulator.operations import place, pose_of
+from ...simulator.operations import move_entity, pose_of
 from ...simulator.simulator import Simulator
 
 
@@ -39,7 +39,7 @@ class Drags:
             if name not in mine or not pose_is_finite(pose):
                 continue
             try:
-                place(self._world, name, Pose(pose.position, normalised(pose.orientation)))
+                move_entity(self._world, name, Pose(pose.position, normalised(pose.orientation)))
             except CommandError:
                 mine.pop(name)
         return [name for name in fresh if name in mine]
@@ -93,7 +93,7 @@ class Drags:
             if self.others(client, [name]):
                 continue  # another hand is on it
             try:
-                place(self._world, name, pose)
+                move_entity(self._world, name, pose)
             except CommandError:
                 continue
         if before:

@@ -14,7 +14,7 @@ from ...resources.world_lookup import folder_of_users, is_shipped
 from ...simulator.history import History
 from ...simulator.saving import (
     EXTENSIONS,
-    allowed_path,
+    check_save_path,
     default_roots,
     present_world,
     refuse_shipped,
@@ -115,7 +115,7 @@ class WorldFiles:
         """The file to write. Raises CommandError, EditRefusedError."""
         if not os.path.splitext(path)[1]:
             path += EXTENSIONS[0]
-        target = allowed_path(path, self.roots())
+        target = check_save_path(path, self.roots())
         refuse_shipped(target)
         if os.path.lexists(target) and not overwrite:
             raise EditRefusedError("exists", f"{target} already exists" + self._would_lose(target),
