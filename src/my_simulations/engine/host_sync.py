@@ -90,11 +90,11 @@ class HostSync:
             return False
         self._words[WAITS_FOR_ROOM] = 0
         self._unread = self.records.is_urgent
-        self.report_records(at_once=False)
+        self.notify_of_records(at_once=False)
         return True
 
-    def report_records(self, at_once: bool = True) -> None:
-        """Notify the host of new records, if it was not notified just before."""
+    def notify_of_records(self, at_once: bool = True) -> None:
+        """Notify the host of unread records; without `at_once`, at most every `_NOTIFY_S` s."""
         if self._unread and (at_once or time.perf_counter() - self._notified_at >= _NOTIFY_S):
             self._notify_now()
 

@@ -113,7 +113,7 @@ class Runner:
                         self._step, self._clock_sets, self._clock)):
                     self._serve(_SYNC_S)   # for the host to make room
                     continue
-                self._sync.report_records(at_once=False)
+                self._sync.notify_of_records(at_once=False)
                 self._limit = self._sync.step_limit()
                 if self._step >= self._limit and self._synchronize():
                     continue
@@ -122,7 +122,7 @@ class Runner:
                     self._advance_burst()
                 elif not self._running or self._step >= self._horizon:
                     self._write_at_horizon()
-                    self._sync.report_records()
+                    self._sync.notify_of_records()
                     self._serve(_IDLE_S)
                 elif self._settings.rate > 0.0:
                     self._paced_step()
@@ -328,7 +328,7 @@ class Runner:
             now = time.perf_counter()
         if self._step >= self._limit:
             return
-        made = self._make_steps(self._late_steps(now))
+        made = self._make_steps(self._count_due_steps(now))
         if not made:   # a record waits for room
             return
         cost = (time.perf_counter() - now) / made
@@ -337,8 +337,8 @@ class Runner:
         self._due = max(self._due + made / self._settings.rate, now - _MAX_LAG_S)
         self._after_steps(_SHARE_LATE if self._due < time.perf_counter() else _SHARE_ON_TIME)
 
-    def _late_steps(self, now: float) -> int:
-        """How many steps are due; a row of them costs much less than each by itself."""
+    def _count_due_steps(self, now: float) -> int:
+        """Return how many steps are due, at least 1: several in one call cost much less."""
         late = int((now - self._due) * self._settings.rate)
         return max(1, min(1 + late, int(_BURST_S / self._least_cost),
                           self._horizon - self._step, self._limit - self._step))
@@ -376,7 +376,7 @@ class Runner:
             self._after_steps(_SHARE_LATE)
             return
         self._advance = None
-        self._sync.report_records()
+        self._sync.notify_of_records()
         sequence = self._write(force=True)
         self._channel.reply(number, Reply(self._step, sequence, self._step))
         self._report_events()
