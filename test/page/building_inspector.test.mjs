@@ -37,7 +37,7 @@ function lastWindow() {
 
 test('the level inspector edits its own level after a lower one was deleted', async () => {
   const session = drawn();
-  session.goTo(1);
+  session.showLevel(1);
   inspectLevel(session);
   const {fields: [name], press} = lastWindow();
   session.commit(removeLevel(session.plan, 0), 'delete level');
@@ -48,14 +48,14 @@ test('the level inspector edits its own level after a lower one was deleted', as
 
 test('an inspector says that its level is deleted or its building closed', async () => {
   const session = drawn();
-  session.goTo(2);
+  session.showLevel(2);
   inspectLevel(session);
   const {press, said} = lastWindow();
   session.commit(removeLevel(session.plan, 2), 'delete level');
   await press('Apply');
   assert.match(said(), /the level no longer exists/);
 
-  session.goTo(0);
+  session.showLevel(0);
   inspectItem(session, {kind: 'walls', id: 0});
   const wall = lastWindow();
   session.open(drawn().plan);
@@ -67,7 +67,7 @@ test('an inspector says that its level is deleted or its building closed', async
 
 test('an item is edited where its level is now', async () => {
   const session = drawn();
-  session.goTo(1);
+  session.showLevel(1);
   const ref = {kind: 'walls', id: session.level.walls[0].id};
   inspectItem(session, ref);
   const {fields, press} = lastWindow();

@@ -340,7 +340,7 @@ test('a level is followed while others come and go, and lost with its building',
   const commit = (plan) => session.commit(plan, 'edit');
   commit(addLevel(session.plan));
   commit(addLevel(session.plan));
-  session.goTo(1);
+  session.showLevel(1);
   const level = followLevel(session);
   commit(withLevel(session.plan, 1, {name: 'Middle'}));
   commit(removeLevel(session.plan, 0));

@@ -93,8 +93,8 @@ class Leg {
     if (measured && this.keys.length) this.#distances = distancesOf(this.keys);
   }
 
-  /** The segment at a time since `begin`, and the part of it that is behind. */
-  #place(time: number) {
+  /** Returns the number of the segment at a time since `begin` and the share of it already walked, 0 to 1. */
+  #segmentAt(time: number) {
     const next = this.keys.findIndex((key) => key.time > time);
     if (next <= 0) return {n: next < 0 ? this.keys.length - 1 : 0, part: 0};
     const [from, to] = [this.keys[next - 1].time, this.keys[next].time];
@@ -106,7 +106,7 @@ class Leg {
    * @returns pose7 in the world
    */
   poseAt(time: number): number[] {
-    const {n, part} = this.#place(time);
+    const {n, part} = this.#segmentAt(time);
     const [from, to] = [this.keys[n], this.keys[n + 1]];
     return part ? [...onSpline(from, to, part), ...onTurn(from, to, part)] : [...from.pose];
   }
@@ -116,7 +116,7 @@ class Leg {
     const onPath = this.keys.length > 0;
     const stride = {type: this.#type, time: onPath ? time : Math.min(time, this.length), onPath};
     if (!this.#distances.length) return {...stride, distance: null};
-    const {n, part} = this.#place(time);
+    const {n, part} = this.#segmentAt(time);
     const chord = Math.floor(part * CHORDS);
     const last = this.#distances.length - 1;
     const [from, to] = [chord, chord + 1]

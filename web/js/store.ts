@@ -86,7 +86,7 @@ const OVERLAY_FLAGS: readonly OverlayFlag[] = Object.freeze([
   'contacts', 'frames', 'skeleton', 'hidden', 'locked', 'cameraColors', 'simplifiedMeshes',
 ]);
 
-/** What is never mentioned in a world file: how much of it the user wants to see. */
+/** Returns the overlays of a new page. World files do not store them. */
 function initialOverlays() {
   const off = Object.fromEntries(OVERLAY_FLAGS.map((flag) => [flag, false])) as Record<OverlayFlag,
       boolean>;

@@ -235,7 +235,7 @@ function showFaults(element: HTMLElement, session: Session, issues: Fault[]) {
     class: fault.severity, text: fault.message,
     onclick: () => {
       if (fault.at === undefined) return;
-      session.goTo(fault.at);
+      session.showLevel(fault.at);
       session.select(fault.refs ?? []);
     },
   }));

@@ -111,7 +111,8 @@ export class Session extends Emitter<{change: undefined, tool: undefined}> {
 
   isSelected = ({kind, id}: Ref) => this.selection.some((ref) => ref.kind === kind && ref.id === id);
 
-  goTo(at: number) {
+  /** Shows the level of this number, or the nearest one that exists, and clears the selection. */
+  showLevel(at: number) {
     this.at = Math.min(Math.max(at, 0), this.plan.levels.length - 1);
     this.selection = [];
     this.#tool.cancel();

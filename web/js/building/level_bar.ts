@@ -13,7 +13,7 @@ export function newLevel(session: Session) {
     return;
   }
   session.commit(plan, 'add level');
-  session.goTo(plan.levels.length - 1);
+  session.showLevel(plan.levels.length - 1);
 }
 
 /** Deletes the level being drawn with all in it. */
@@ -24,13 +24,13 @@ export function dropLevel(session: Session) {
     return;
   }
   session.commit(plan, 'delete level');
-  session.goTo(session.at);
+  session.showLevel(session.at);
 }
 
 export function mountLevels(element: HTMLElement, {session,
     canvas}: {session: Session,
     canvas: Canvas}) {
-  const choice = h('select', {'aria-label': 'Level', onchange: () => { session.goTo(Number(choice.value)); }});
+  const choice = h('select', {'aria-label': 'Level', onchange: () => { session.showLevel(Number(choice.value)); }});
   const button = (text: string, title: string, run: () => void) => h('button',
       {type: 'button', title, 'aria-label': title, onclick: run, text});
   const check = (what: keyof Session['shown'], text: string) => {

@@ -38,7 +38,7 @@ export class Palette {
       this.#ofModel(h('div', {class: 'flags'}, this.#flag('static', 'Static'), this.#flag('allow_auto_disable', 'Auto disable'))),
       h('h3', {text: 'Add link'}),
       h('div', {class: 'tools'}, ...SOLID_SHAPES.map((shape) =>
-        button(capital(shape), () => this.#place(shape), {'aria-label': `Link: ${shape}`})),
+        button(capital(shape), () => this.#startPlacing(shape), {'aria-label': `Link: ${shape}`})),
       button('Mesh…', () => this.#addMesh()),
       button('SVG…', () => this.#addSvg(), {title: 'Extrude the outline of a drawing'}), button('Model…', () => this.#nest())),
       this.#ofModel(h('h3', {text: 'Joints'})),
@@ -151,7 +151,7 @@ export class Palette {
     return true;
   }
 
-  #place(shape: SolidShape) {
+  #startPlacing(shape: SolidShape) {
     const {store} = this.editor;
     store.setPlacing({kind: 'model', document: solidModel(shape),
       op: (pose) => ({kind: 'add_link', model: store.modelEditing?.name ?? null, shape, pose})});

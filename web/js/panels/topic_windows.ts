@@ -18,10 +18,11 @@ export class TopicWindows {
     this.#container = h('div', {class: 'topic-windows'});
     element.append(this.#container);
     page.topics.listen('view', ({detail}) => this.#show(detail));
-    page.topics.listen('shown', () => this.#close());
+    page.topics.listen('shown', () => this.#closeHidden());
   }
 
-  #close() {
+  /** Closes the windows of topics that are not shown any more. */
+  #closeHidden() {
     const shown = new Set(this.#page.topics.shown);
     for (const [name, {element}] of this.#windows) {
       if (shown.has(name)) continue;

@@ -70,6 +70,7 @@ export class LogConnection extends Emitter<ConnectionEvents> {
     this.#show();
   }
 
+  /** Stops playback. */
   close() {
     this.#rate = 0;
   }

@@ -61,14 +61,15 @@ const UNITS = new Map(
  * @returns NaN where the text is none of these
  */
 export function parseNumber(text: string): number {
-  const tokens = tokensOf(text);
+  const tokens = tokenize(text);
   if (!tokens || !tokens.length) return NaN;
   const state = {tokens, at: 0};
   const value = sum(state);
   return state.at === tokens.length ? value : NaN;
 }
 
-function tokensOf(text: string) {
+/** Splits an expression into numbers, names and operators; null for an invalid character. */
+function tokenize(text: string) {
   const tokens: (number|string)[] = [];
   TOKEN.lastIndex = 0;
   const source = text.trim();
