@@ -17,7 +17,7 @@ from mutant_run import Target, shape
 from mutations import STRANGE_SCALARS, STRANGE_TEXTS, TreeKnowledge, strange_text
 
 from my_simulations.editor.topics.message_views import ACCUMULATED, VIEWS, Viewer
-from my_simulations.editor.transport.browser_client import Client, encoded
+from my_simulations.editor.transport.browser_client import Client, encode_message
 from my_simulations.editor.transport.http_pages import Pages
 from my_simulations.errors import SimulationError
 from my_simulations.ros.endpoints import make_service_callback
@@ -221,7 +221,7 @@ class TopicViews:
             frame, stamp, (fields, data) = viewer.view()
         except SimulationError as fault:
             return [(kind, shape(str(fault)))]
-        encoded({"frame": frame, "stamp": stamp, **fields})
+        encode_message({"frame": frame, "stamp": stamp, **fields})
         return [(kind, fields.get("type"), min(len(data), 3))]
 
 

@@ -50,8 +50,8 @@ def default_folder() -> str:
     return os.path.expanduser("~/building_editor_models")
 
 
-def checked_name(name: str) -> str:
-    """A building's name, as the name of its folder and model.
+def check_name(name: str) -> str:
+    """Check a building's name; return it as the name of its folder and model.
 
     Raises CommandError: it is empty or not a plain file name.
     """

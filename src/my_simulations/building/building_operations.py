@@ -14,7 +14,7 @@ from ..errors import CommandError, Issue
 from ..formats.sdf.writer.entities import write_entity
 from .building_folder import (
     About,
-    checked_name,
+    check_name,
     default_folder,
     list_buildings,
     load_building,
@@ -47,7 +47,7 @@ def building_save(plan: Any, name: str, options: Mapping[str, Any],
     Returns:
         JSON with the path of the folder, name and `model://` URI of the model, and issues.
     """
-    made = checked_name(name)
+    made = check_name(name)
     parent = _allowed(str(options.get("folder") or default_folder()), roots)
     read = plan_from_json(plan)
     read.name = name.strip()
@@ -66,7 +66,7 @@ def building_load(name: str, roots: Sequence[str] = ()) -> Dict[str, Any]:
     """
     path = os.path.expanduser(name.strip())
     if not os.path.isabs(path):
-        path = os.path.join(default_folder(), checked_name(name))
+        path = os.path.join(default_folder(), check_name(name))
     path = _allowed(path, roots)
     if not os.path.exists(path):
         raise CommandError(f"{path} does not exist")

@@ -12,8 +12,8 @@ from aiohttp import WSMsgType, web
 from .editor_options import EditorOptions
 from .transport import address_file
 from .transport.access_guard import Guard
-from .transport.browser_client import encoded
-from .transport.listening import listening, save_address, url_of
+from .transport.browser_client import encode_message
+from .transport.listening import open_listening_socket, save_address, url_of
 from .transport.page_files import PageFiles
 
 _WAIT_S = 10.0
@@ -36,7 +36,7 @@ class LoadingServer:
     def __init__(self, options: EditorOptions) -> None:
         self.guard = Guard(options)
         self._files = PageFiles(options.web, options.cache_dir)
-        self._listener = listening(options)
+        self._listener = open_listening_socket(options)
         self.url = url_of(self._listener, options.host, self.guard.token)
         self.public_url = address_file.without_token(self.url)
         self._state: Dict[str, Any] = {"type": "loading", "title": "", "text": "", "done": 0,
@@ -68,7 +68,7 @@ class LoadingServer:
     def stop(self) -> None:
         """End for good: the world cannot be loaded, or loading was cancelled."""
         self._end()
-        address_file.remove(self._address_files)
+        address_file.remove_files(self._address_files)
         self._listener.close()
 
     def _end(self) -> None:
@@ -118,7 +118,7 @@ class LoadingServer:
         await browser.prepare(request)
         self._sockets.add(browser)
         try:
-            await browser.send_str(encoded(self._state))
+            await browser.send_str(encode_message(self._state))
             async for message in browser:
                 if message.type != WSMsgType.TEXT:
                     break  # requests have no answer yet: the page repeats its greeting
@@ -127,7 +127,7 @@ class LoadingServer:
         return browser
 
     def _push_state(self) -> None:
-        text = encoded(self._state)
+        text = encode_message(self._state)
         for browser in list(self._sockets):
             asyncio.ensure_future(self._send(browser, text))
 

@@ -16,7 +16,7 @@ from .assembly import Assembly
 from .editor_options import EditorOptions
 from .transport import address_file
 from .transport.access_guard import Guard
-from .transport.listening import listening, save_address, url_of
+from .transport.listening import open_listening_socket, save_address, url_of
 
 if TYPE_CHECKING:
     from .loading_server import LoadingServer
@@ -47,7 +47,8 @@ class EditorServer:
         self._editor: Optional[Assembly] = None
         self._loop: Optional[asyncio.AbstractEventLoop] = None
         self._stopping: "Optional[asyncio.Future[str]]" = None
-        self._listener = loading.hand_over() if loading is not None else listening(options)
+        self._listener = (loading.hand_over() if loading is not None
+                          else open_listening_socket(options))
         self._started: "Future[None]" = Future()
         self._thread = threading.Thread(target=self._main, name="editor", daemon=True)
         self._thread.start()
@@ -63,7 +64,7 @@ class EditorServer:
         """Notify the pages, and end; unsaved edits stay in the autosave."""
         if self._loop is None or not self._thread.is_alive():
             return
-        address_file.remove(self._address_files)
+        address_file.remove_files(self._address_files)
         try:
             self._loop.call_soon_threadsafe(self._end, reason)
         except RuntimeError:

@@ -41,7 +41,7 @@ def show(url: str, program: str) -> None:
     if is_private(sys.stdout):
         _write(sys.stdout, f"{program}: the world editor is at {full_url}")
     else:
-        page = address_file.page(full_url)
+        page = address_file.local_page(full_url)
         hint = f"open {page}, which leads there, or run gzclient, where ROS runs" if page else (
             "run gzclient in a terminal for the address with the token")
         _write(sys.stdout, f"{program}: the world editor is at"
@@ -51,7 +51,7 @@ def show(url: str, program: str) -> None:
     import webbrowser
 
     has_token = full_url != address_file.without_token(full_url)
-    shown = address_file.page(full_url) if has_token else full_url
+    shown = address_file.local_page(full_url) if has_token else full_url
     try:
         opened = bool(shown) and webbrowser.open(shown)
     except webbrowser.Error:

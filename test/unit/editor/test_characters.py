@@ -9,7 +9,7 @@ import pytest
 from building_plans import two_rooms
 from editor_case import Refused, box, cases
 
-from my_simulations.building.building_folder import checked_name
+from my_simulations.building.building_folder import check_name
 from my_simulations.building.plan_json import plan_from_json, plan_to_json
 from my_simulations.description.light import Light
 from my_simulations.description.shapes import Material
@@ -98,7 +98,7 @@ def test_plans_and_building_names_hold_none(character, name):
     with pytest.raises(InputError):
         plan_from_json(tree)
     with pytest.raises(CommandError):
-        checked_name(f"house{character}")
+        check_name(f"house{character}")
 
 
 @pytest.mark.parametrize("escape, name", [("\\x01", "U+0001"), ("\\uFFFE", "U+FFFE"),

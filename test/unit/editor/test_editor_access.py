@@ -97,7 +97,7 @@ def test_the_address_with_the_token_is_in_a_file_for_its_user_alone(guarded):
     files = [os.path.join(folder, name) for name in os.listdir(folder)]
     assert len(files) == 3    # for programs, for browsers, and the key of the page's addresses
     assert all(stat.S_IMODE(os.stat(path).st_mode) == 0o600 for path in files)
-    page = address_file.page(base, cache)
+    page = address_file.local_page(base, cache)
     with open(page[len("file://"):], encoding="utf-8") as stream:
         assert f'content="0;url={made.url}"' in stream.read()
     made.server.stop()
@@ -133,7 +133,7 @@ def test_output_that_others_can_read_gets_no_token(monkeypatch, tmp_path, mode, 
         web_browser.show("http://127.0.0.1:1/", "gzclient")
     assert ("secret" in path.read_text()) == told
     assert "gzclient: the world editor is at http://127.0.0.1:1/" in path.read_text()
-    assert (f"open {address_file.page('http://127.0.0.1:1/')}," in path.read_text()) != told
+    assert (f"open {address_file.local_page('http://127.0.0.1:1/')}," in path.read_text()) != told
 
 
 def test_a_browser_is_started_without_the_token_in_its_command_line(monkeypatch, tmp_path):
@@ -147,7 +147,7 @@ def test_a_browser_is_started_without_the_token_in_its_command_line(monkeypatch,
     web_browser.show("http://127.0.0.1:1/", "gzclient")
     web_browser.show("http://127.0.0.1:2/", "gzclient")
     web_browser.show("http://127.0.0.1:3/?token=lost", "gzclient")
-    assert opened == [address_file.page("http://127.0.0.1:1/"), "http://127.0.0.1:2/"]
+    assert opened == [address_file.local_page("http://127.0.0.1:1/"), "http://127.0.0.1:2/"]
     assert opened[0].startswith("file:///")
 
 

@@ -332,7 +332,8 @@ def test_a_default_port_that_is_taken_is_named_and_the_next_free_one_used(monkey
     monkeypatch.setattr(listening, "DEFAULT_PORT", taken)
     issues = []
     options = EditorOptions(port=taken, log=issues.append)
-    with listening.listening(options) as first, listening.listening(options) as second:
+    with listening.open_listening_socket(options) as first, \
+            listening.open_listening_socket(options) as second:
         assert first.getsockname()[1] == taken
         port = second.getsockname()[1]
     assert taken < port < taken + 100

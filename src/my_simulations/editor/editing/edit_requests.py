@@ -42,7 +42,7 @@ from . import history_labels
 from .history_labels import join_names
 from .inserts import (
     Entity,
-    checked_meshes,
+    check_meshes,
     entities_of_text,
     entity_of_text,
     entity_of_uri,
@@ -53,7 +53,7 @@ from .inserts import (
 )
 from .model_building import ModelBuilding
 from .model_parts import FreeNames, free_name
-from .model_scaling import resized
+from .model_scaling import resize_model
 from .property_path import dataclass_from_json
 from .property_target import is_of_light, property_change, split_target
 
@@ -143,7 +143,7 @@ class EditRequests:
         for issue in issues:
             self._report(issue)
         if isinstance(entity, Model) and op.get("scale"):
-            entity = resized(entity, tuple(op["scale"]))  # type: ignore[arg-type]
+            entity = resize_model(entity, tuple(op["scale"]))  # type: ignore[arg-type]
         name = free_name(op.get("name") or entity.name, used_names(self._world))
         pose = pose_from(op["pose"]) if op.get("pose") else entity.pose
         return f"Insert {name}", self._addition(entity, name, pose), {"name": name}
@@ -156,7 +156,7 @@ class EditRequests:
             return AddLight(replace(entity, name=name, pose=pose))
         model = replace(entity, name=name, pose=pose)
         if meshes is None:
-            meshes, issues = checked_meshes(model)
+            meshes, issues = check_meshes(model)
             for issue in issues:
                 self._report(issue)
         return AddModel(model, pose, meshes)
@@ -236,8 +236,8 @@ class EditRequests:
     def _scale(self, op: Dict[str, Any]) -> Planned:
         model = self._world.models.get(op["name"])
         x, y, z = op["scale"]
-        new = resized(model, (float(x), float(y), float(z)))
-        meshes, _ = checked_meshes(new)
+        new = resize_model(model, (float(x), float(y), float(z)))
+        meshes, _ = check_meshes(new)
         return f"Scale {model.name}", EditModel(model.name, new, meshes), {"name": model.name}
 
     def _rename(self, op: Dict[str, Any]) -> Planned:

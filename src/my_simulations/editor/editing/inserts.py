@@ -107,10 +107,10 @@ def _usable(entity: Entity, issues: List[Issue]) -> Tuple[Entity, List[Issue]]:
     return entity, [issue for issue in issues if issue not in errors_of(issues)]
 
 
-def checked_meshes(model: Model) -> Tuple[MeshTable, List[Issue]]:
-    """The collision meshes of a model that can be simulated, and what is odd about it.
+def check_meshes(model: Model) -> Tuple[MeshTable, List[Issue]]:
+    """Load the collision meshes of a model; return them and warnings about the model.
 
-    Raises InputError for one that cannot.
+    Raises InputError: the model cannot be simulated.
     """
     found = validate(model)
     if errors_of(found):

@@ -27,7 +27,7 @@ from ...simulator.simulator import Simulator
 from ..scene.plain_json import pose_of as pose_from
 from ..scene.scene_json import NAMES
 from . import model_parts as parts
-from .inserts import checked_meshes, entity_of_text, entity_of_uri, shape_material, used_names
+from .inserts import check_meshes, entity_of_text, entity_of_uri, shape_material, used_names
 from .model_parts import free_name
 from .part_inertia import inertial_of
 from .property_path import dataclass_from_json
@@ -236,7 +236,7 @@ class ModelBuilding:
         return compose(inverse(self._world.states.model_state(model.name)[0]), pose)
 
     def _checked(self, model: Model) -> Any:
-        meshes, issues = checked_meshes(model)
+        meshes, issues = check_meshes(model)
         for issue in issues:
             self._report(issue)
         return meshes

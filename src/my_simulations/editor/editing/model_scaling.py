@@ -14,8 +14,8 @@ SMALLEST = 1e-4
 """Least factor (Gazebo behaviour)."""
 
 
-def resized(model: Model, factor: Vec3) -> Model:
-    """The model with its shapes scaled by `factor` along the link's axes; its mass stays.
+def resize_model(model: Model, factor: Vec3) -> Model:
+    """Scale the shapes of a model by `factor` along the link's axes; its mass stays.
 
     Raises CommandError for a model that cannot be scaled, and for factors below `SMALLEST`.
     """
@@ -26,11 +26,11 @@ def resized(model: Model, factor: Vec3) -> Model:
                            " without a size of its own")
     made = scale_model(model, factor)
     return replace(made, links=[
-        replace(link, inertial=scaled_inertial(link.inertial, factor)) for link in made.links])
+        replace(link, inertial=scale_inertial(link.inertial, factor)) for link in made.links])
 
 
-def scaled_inertial(inertial: Inertial, factor: Vec3) -> Inertial:
-    """The inertia of the same mass, every piece of it moved by the scale.
+def scale_inertial(inertial: Inertial, factor: Vec3) -> Inertial:
+    """Scale the mass distribution of an inertia; its mass stays.
 
     The integrals of x x, x y, … over the mass scale with the product of two factors, and the
     tensor is made of them; exact for any body.

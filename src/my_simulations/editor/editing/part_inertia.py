@@ -35,7 +35,7 @@ def inertial_of(collisions: List[Collision], *, density: Optional[float] = None,
         CommandError: no shape has a volume, or the density is out of range.
         InputError: a mesh cannot be read.
     """
-    solids = [(_solid(one.geometry), one.pose) for one in collisions]
+    solids = [(_unit_density_inertial(one.geometry), one.pose) for one in collisions]
     volume = sum(solid.mass for solid, _ in solids if solid is not None)
     if not volume > 0.0:
         raise CommandError("the link has no collision with a volume to compute the inertia from")
@@ -52,13 +52,13 @@ def inertial_of(collisions: List[Collision], *, density: Optional[float] = None,
 
 
 def with_density(i: Inertial, factor: float) -> Inertial:
-    """The inertial of the same solid at another density, of 1 kg/m^3 before."""
+    """Multiply the mass and the inertia tensor by a density."""
     return replace(i, mass=i.mass * factor, ixx=i.ixx * factor, iyy=i.iyy * factor,
                    izz=i.izz * factor, ixy=i.ixy * factor, ixz=i.ixz * factor, iyz=i.iyz * factor)
 
 
-def _solid(geometry: Geometry) -> Optional[Inertial]:
-    """Of density 1 kg/m^3, in the frame of the shape; None for what has no volume."""
+def _unit_density_inertial(geometry: Geometry) -> Optional[Inertial]:
+    """Return the inertia of a shape of density 1 kg/m^3 in its frame; None without a volume."""
     known = solid_moments(geometry)
     if known is not None:
         return _diagonal(known[0], *known[1])
@@ -67,9 +67,9 @@ def _solid(geometry: Geometry) -> Optional[Inertial]:
         return _diagonal(4 / 3 * math.pi * a * b * c, (b * b + c * c) / 5, (a * a + c * c) / 5,
                          (a * a + b * b) / 5)
     if isinstance(geometry, Capsule):
-        return _capsule(geometry.radius, geometry.length)
+        return _capsule_inertial(geometry.radius, geometry.length)
     if isinstance(geometry, Cone):
-        return _cone(geometry.radius, geometry.length)
+        return _cone_inertial(geometry.radius, geometry.length)
     if isinstance(geometry, Mesh):
         return mesh_solid(load_mesh(geometry))[0]
     if isinstance(geometry, Polyline):
@@ -78,13 +78,14 @@ def _solid(geometry: Geometry) -> Optional[Inertial]:
 
 
 def _diagonal(volume: float, x: float, y: float, z: float) -> Inertial:
-    """Of moments of 1 kg."""
+    """Return the inertia of a solid of density 1 kg/m^3; `x`, `y`, `z`: moments per mass."""
     return Inertial(volume, ixx=volume * x, iyy=volume * y, izz=volume * z)
 
 
-def _capsule(r: float, h: float) -> Inertial:
-    """A cylinder of length h between two half balls, whose centre of mass is 3/8 r off their
-    plane (parallel axis theorem).
+def _capsule_inertial(r: float, h: float) -> Inertial:
+    """Return the inertia of a capsule of density 1 kg/m^3, a cylinder of length h with end caps.
+
+    The centre of mass of a hemisphere is 3/8 r off its plane (parallel axis theorem).
     """
     tube, balls = math.pi * r * r * h, 4 / 3 * math.pi * r ** 3
     side = tube * (3 * r * r + h * h) / 12 + balls * (
@@ -92,9 +93,10 @@ def _capsule(r: float, h: float) -> Inertial:
     return Inertial(tube + balls, ixx=side, iyy=side, izz=tube * r * r / 2 + balls * 2 / 5 * r * r)
 
 
-def _cone(r: float, h: float) -> Inertial:
-    """Point up, its frame half-way up; the centre of mass is a quarter of the height above its
-    base.
+def _cone_inertial(r: float, h: float) -> Inertial:
+    """Return the inertia of a cone of density 1 kg/m^3 that points along z.
+
+    Its frame is half-way up, its centre of mass a quarter of the height above the base.
     """
     volume = math.pi * r * r * h / 3
     side = volume * (3 / 20 * r * r + 3 / 80 * h * h)

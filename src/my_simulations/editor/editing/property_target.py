@@ -24,7 +24,7 @@ from ...simulator.operations import (
     SetWorldField,
 )
 from ...simulator.simulator import Simulator
-from .inserts import checked_meshes
+from .inserts import check_meshes
 from .property_path import with_value
 from .sensor_edits import sensor_of, with_sensor_value
 
@@ -107,12 +107,12 @@ def _of_joint(owner: Model, joint: Joint, path: str, value: Any) -> Operation:
     _refuse_name(path)
     changed = with_value(joint, path, value)
     model = replace(owner, joints=[changed if one is joint else one for one in owner.joints])
-    checked_meshes(model)
+    check_meshes(model)
     return EditJoint(owner.name, changed)
 
 
 def _edited(old: Model, new: Model) -> Operation:
-    meshes, _ = checked_meshes(new)
+    meshes, _ = check_meshes(new)
     return EditModel(old.name, new, meshes)
 
 

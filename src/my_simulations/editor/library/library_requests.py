@@ -26,12 +26,12 @@ from ..transport.error_messages import EditRefusedError
 from ..transport.hub import Hub
 from ..transport.web_socket import Route
 from .model_import import (
+    check_folder_name,
     check_loading,
-    checked_folder_name,
     config_text,
     default_folder,
     import_model,
-    relocated,
+    relocate_issue,
 )
 from .model_library import Library
 
@@ -184,7 +184,7 @@ def save_model(message: Dict[str, Any], world: Simulator,
         EditRefusedError: `exists`, where there is a folder of that name that must not be replaced.
         CommandError: no such model, no usable name, or the folder cannot be written.
     """
-    name = checked_folder_name(message["name"])
+    name = check_folder_name(message["name"])
     model = world.models.get(message["model"])
     height = world.states.model_state(model.name)[0].position[2]
     target = os.path.join(default_folder(), name)
@@ -215,4 +215,4 @@ def _readable(files: Dict[str, bytes], name: str, target: str, resolver: Resolve
         for file, data in files.items():
             with open(os.path.join(folder, file), "wb") as stream:
                 stream.write(data)
-        return [relocated(issue, folder, target) for issue in check_loading(folder, resolver)]
+        return [relocate_issue(issue, folder, target) for issue in check_loading(folder, resolver)]

@@ -17,7 +17,7 @@ from ...formats.mesh.loading import load_mesh
 from ...formats.sdf.writer.entities import write_entity
 from ...geometry import Pose
 from ...resources.resolver import Resolver
-from ..editing.inserts import checked_meshes, entity_of_uri
+from ..editing.inserts import check_meshes, entity_of_uri
 from ..editing.part_inertia import mesh_solid, with_density
 from ..transport.error_messages import EditRefusedError
 
@@ -47,7 +47,7 @@ def import_model(message: Dict[str, Any], resolver: Resolver) -> Tuple[Dict[str,
         EditRefusedError: `exists`, where a folder of that name is there and must not be replaced.
         CommandError: the request itself is at fault, or the folder cannot be written.
     """
-    name = checked_folder_name(message["name"])
+    name = check_folder_name(message["name"])
     files = _contents(message["files"], name)
     target = os.path.join(default_folder(), name)
     if os.path.lexists(target) and not message.get("overwrite"):
@@ -76,10 +76,10 @@ def _stored(files: Dict[str, bytes], name: str, target: str, density: float,
             issues += check_loading(folder, resolver)
             _use_model_uris(folder, name)
         except InputError as fault:
-            raise InputError([relocated(issue, folder, target)
+            raise InputError([relocate_issue(issue, folder, target)
                               for issue in fault.issues]) from fault
         _replace_folder(folder, target, os.path.join(scratch, "former"))
-    return [relocated(issue, folder, target) for issue in issues]
+    return [relocate_issue(issue, folder, target) for issue in issues]
 
 
 def _replace_folder(folder: str, target: str, former: str) -> None:
@@ -95,8 +95,11 @@ def _replace_folder(folder: str, target: str, former: str) -> None:
         raise
 
 
-def checked_folder_name(name: str) -> str:
-    """The name of a model folder without spaces round it. Raises CommandError."""
+def check_folder_name(name: str) -> str:
+    """Check the name of a model folder; return it without surrounding spaces.
+
+    Raises CommandError.
+    """
     name = name.strip()
     if not _NAME.fullmatch(name) or name.endswith("."):
         raise CommandError(f"{name!r} cannot be the name of a model folder; use letters, digits,"
@@ -235,11 +238,11 @@ def check_loading(folder: str, resolver: Resolver) -> List[Issue]:
     entity, issues = entity_of_uri(f"file://{folder}",
                                    resolver.with_first_folder(os.path.dirname(folder)))
     if isinstance(entity, Model):
-        issues += checked_meshes(entity)[1]
+        issues += check_meshes(entity)[1]
     return issues
 
 
-def relocated(issue: Issue, scratch: str, target: str) -> Issue:
-    """An issue that names the files where they end up."""
+def relocate_issue(issue: Issue, scratch: str, target: str) -> Issue:
+    """Replace the scratch folder by the target folder in the file and message of an issue."""
     return replace(issue, file=issue.file.replace(scratch, target),
                    message=issue.message.replace(scratch, target))

@@ -75,7 +75,7 @@ class Library:
     def locations(self) -> List[Dict[str, Any]]:
         """All locations with their models, as the protocol's `Location`s."""
         found = [{"id": place.known, "title": place.title, "kind": place.kind,
-                  "path": place.path, "models": self._listed(place.path), "problem": None}
+                  "path": place.path, "models": self._list_models(place.path), "problem": None}
                  for place in self._places()]
         found += self._fuel_locations()
         if self._database is not None:
@@ -195,13 +195,13 @@ class Library:
 
     # -- models ----------------------------------------------------------------------------------
 
-    def _listed(self, folder: str) -> List[Dict[str, Any]]:
-        models = [self._model(folder, name, changed) for name, changed in _entries(folder)]
+    def _list_models(self, folder: str) -> List[Dict[str, Any]]:
+        models = [self._model_entry(folder, name, changed) for name, changed in _entries(folder)]
         return sorted(models, key=lambda model: str(model["title"]).lower())
 
     def _fuel_locations(self) -> List[Dict[str, Any]]:
         """The Fuel caches as one location, which is there where they hold a model."""
-        models = [self._model(model.folder, "", _changed(model.folder), model.uri)
+        models = [self._model_entry(model.folder, "", _changed(model.folder), model.uri)
                   for model in self._fuel.models()]
         if not models:
             return []
@@ -209,17 +209,17 @@ class Library:
                  "models": sorted(models, key=lambda model: str(model["title"]).lower()),
                  "problem": None}]
 
-    def _model(self, folder: str, name: str, changed: float, uri: str = "") -> Dict[str, Any]:
+    def _model_entry(self, folder: str, name: str, changed: float, uri: str = "") -> Dict[str, Any]:
         path = os.path.join(folder, name) if name else folder
         with self._lock:
             known = self._models.get((path, changed))
         if known is None:
-            known = self._described(path, name or uri.rpartition("/")[2], changed, uri)
+            known = self._read_model(path, name or uri.rpartition("/")[2], changed, uri)
             with self._lock:
                 self._models[(path, changed)] = known
         return known
 
-    def _described(self, path: str, name: str, changed: float, uri: str) -> Dict[str, Any]:
+    def _read_model(self, path: str, name: str, changed: float, uri: str) -> Dict[str, Any]:
         text = ""
         for file in (os.path.join(path, config) for config in _CONFIGS):
             if os.path.isfile(file):   # a named pipe may have no writer

@@ -13,29 +13,29 @@ HIDDEN = frozenset(("extra", "base_dir", "path", "script_uris", "sensors", "soft
 """Fields that are the files' business, besides those that do not count in comparisons."""
 
 
-def plain(value: Any) -> Any:
-    """The JSON form. Numbers that JSON cannot hold become SDF's "no limit", +-1e16."""
+def to_json(value: Any) -> Any:
+    """Convert a value to JSON; infinite numbers become SDF's "no limit", +-1e16."""
     if isinstance(value, Pose):
-        return [*map(number, value.position), *map(number, value.orientation)]
+        return [*map(finite_number, value.position), *map(finite_number, value.orientation)]
     if is_dataclass(value) and not isinstance(value, type):
-        return plain_fields(value)
+        return fields_to_json(value)
     if isinstance(value, (list, tuple)):
-        return [plain(item) for item in value]
+        return [to_json(item) for item in value]
     if isinstance(value, dict):
-        return {str(name): plain(item) for name, item in value.items()}
+        return {str(name): to_json(item) for name, item in value.items()}
     if isinstance(value, float):
-        return number(value)
+        return finite_number(value)
     return value
 
 
-def plain_fields(value: Any, *left_out: str) -> Dict[str, Any]:
-    """All fields but the hidden ones and those named."""
-    return {field.name: plain(getattr(value, field.name)) for field in fields(value)
+def fields_to_json(value: Any, *left_out: str) -> Dict[str, Any]:
+    """Convert a dataclass to JSON without hidden fields and those of `left_out`."""
+    return {field.name: to_json(getattr(value, field.name)) for field in fields(value)
             if field.compare and field.name not in HIDDEN and field.name not in left_out}
 
 
-def number(value: float) -> float:
-    """A number that JSON can hold."""
+def finite_number(value: float) -> float:
+    """Return a number that JSON can represent: 0 for NaN, +-1e16 for infinity."""
     if math.isfinite(value):
         return value
     return 0.0 if math.isnan(value) else math.copysign(INFINITE, value)

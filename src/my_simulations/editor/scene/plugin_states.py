@@ -5,7 +5,7 @@ import time
 from typing import Any, Callable, Dict, Optional, Sequence
 
 from ...plugins.plugin_state import PluginState
-from .plain_json import plain
+from .plain_json import to_json
 
 _PERIOD_S = 0.5
 
@@ -35,4 +35,4 @@ class PluginStates:
 
     def greeting(self) -> Dict[str, Any]:
         """Return the push with the states that were last read."""
-        return {"type": "plugins", "states": [plain(state) for state in self._sent]}
+        return {"type": "plugins", "states": [to_json(state) for state in self._sent]}

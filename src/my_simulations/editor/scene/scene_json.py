@@ -38,7 +38,7 @@ from ...geometry import Pose, Vec3
 from ...resources.resolver import Resolver, ResourceNotFoundError
 from ...simulator.entity import Entity
 from .generated_meshes import Solids
-from .plain_json import plain, plain_fields
+from .plain_json import fields_to_json, to_json
 from .served_files import MESHES, ServedFiles
 
 NAMES = {Box: "box", Sphere: "sphere", Cylinder: "cylinder", Capsule: "capsule", Cone: "cone",
@@ -65,7 +65,7 @@ class Documents:
             self.served.add_root(os.path.dirname(os.path.abspath(world.file)))
         return {**self.surroundings(world, physics, gravity), "models": list(models),
                 "lights": [self.light(light) for light in world.lights],
-                "roads": [{**plain_fields(road, "material"),
+                "roads": [{**fields_to_json(road, "material"),
                            "material": self._materials.document(road.material)}
                           for road in world.roads],
                 "actors": [self.actor(actor) for actor in world.actors]}
@@ -73,8 +73,8 @@ class Documents:
     def surroundings(self, world: World, physics: Any, gravity: Vec3) -> Dict[str, Any]:
         """Everything of a world but models, lights, roads and actors."""
         return {"name": world.name, "file": world.file, "gravity": list(gravity),
-                "physics": plain(physics), "plugins": [plain(p) for p in world.plugins],
-                **{name: plain(getattr(world, name))
+                "physics": to_json(physics), "plugins": [to_json(p) for p in world.plugins],
+                **{name: to_json(getattr(world, name))
                    for name in ("magnetic_field", "scene", "gui_camera", "wind", "atmosphere",
                                 "spherical_coordinates")}}
 
@@ -85,26 +85,26 @@ class Documents:
     def model(self, model: Model, pose: Pose, first_id: int = 0) -> Dict[str, Any]:
         """The protocol's `Model` of a flattened model at a world pose."""
         return {
-            "name": model.name, "pose": plain(pose), "static": model.static,
+            "name": model.name, "pose": to_json(pose), "static": model.static,
             "self_collide": model.self_collide, "allow_auto_disable": model.allow_auto_disable,
             "enable_wind": model.enable_wind,
             "canonical_link": model.canonical_link,
             "links": [self._link(link, first_id + n) for n, link in enumerate(model.links)],
             "joints": [_joint(joint) for joint in model.joints],
-            "plugins": [plain(plugin) for plugin in model.plugins],
+            "plugins": [to_json(plugin) for plugin in model.plugins],
             "uri": model.uri, "scalable": is_scalable(model), "group": group_of(model),
         }
 
     @staticmethod
     def light(light: Light) -> Dict[str, Any]:
         """The protocol's `Light`."""
-        return {**plain_fields(light), "group": group_of(light)}
+        return {**fields_to_json(light), "group": group_of(light)}
 
     def actor(self, actor: Actor) -> Dict[str, Any]:
         """The protocol's `Actor`: its skin is a geometry, "empty" for an actor without one."""
-        return {**plain_fields(with_random_walk(actor), "plugins", "skin_scale", "include"),
+        return {**fields_to_json(with_random_walk(actor), "plugins", "skin_scale", "include"),
                 "geometry": self._found_mesh(actor.skin, actor.base_dir, actor.skin_scale),
-                "animations": [{**plain_fields(one, "scale"), "geometry":
+                "animations": [{**fields_to_json(one, "scale"), "geometry":
                                 self._found_mesh(one.filename, actor.base_dir, one.scale)}
                                for one in actor.animations]}
 
@@ -118,27 +118,27 @@ class Documents:
         return self.geometry(Mesh(uri, path, (scale, scale, scale)))
 
     def _link(self, link: Link, known: int) -> Dict[str, Any]:
-        return {**plain_fields(link, "collisions", "visuals"), "id": known,
+        return {**fields_to_json(link, "collisions", "visuals"), "id": known,
                 "sensors": sensor_documents(link),
                 "collisions": [self._collision(one) for one in link.collisions],
                 "visuals": [self._visual(one) for one in link.visuals]}
 
     def _collision(self, collision: Collision) -> Dict[str, Any]:
-        return {**plain_fields(collision, "geometry"),
+        return {**fields_to_json(collision, "geometry"),
                 "geometry": self.geometry(collision.geometry)}
 
     def _visual(self, visual: Visual) -> Dict[str, Any]:
         geometry = self.geometry(visual.geometry)
         if isinstance(visual.geometry, Heightmap):
             geometry["layers"] = self._materials.layers(visual)
-        return {**plain_fields(visual, "geometry", "material"), "geometry": geometry,
+        return {**fields_to_json(visual, "geometry", "material"), "geometry": geometry,
                 "material": self._materials.document(visual.material),
                 "picture_size": picture_size_of(visual)}
 
     def geometry(self, shape: Geometry) -> Dict[str, Any]:
         """The protocol's `Geometry`, with a URL where the page must load something."""
         found = {"type": NAMES.get(type(shape), "empty"),
-                 **plain_fields(shape, "textures", "blends")}
+                 **fields_to_json(shape, "textures", "blends")}
         if isinstance(shape, Mesh):
             found.update(self._mesh(shape))
         elif isinstance(shape, Heightmap):
@@ -166,7 +166,7 @@ class Documents:
 
 
 def _joint(joint: Joint) -> Dict[str, Any]:
-    return {**plain_fields(joint), "sensors": sensor_documents(joint)}
+    return {**fields_to_json(joint), "sensors": sensor_documents(joint)}
 
 
 def is_scalable(model: Model) -> bool:
@@ -182,7 +182,7 @@ def sensor_documents(holder: Union[Link, Joint]) -> List[Dict[str, Any]]:
     """The protocol's `Sensor`s of a link or joint."""
     texts = [xml for xml in holder.extra if xml.startswith("<sensor")]
     return [{"name": sensor.name, "type": sensor.type,
-             "parameters": [{"path": one.path, "kind": one.kind, "value": plain(one.value)}
+             "parameters": [{"path": one.path, "kind": one.kind, "value": to_json(one.value)}
                             for one in sensor_parameters(xml, sensor)]}
             for sensor, xml in zip(holder.sensors, texts)]
 
@@ -199,8 +199,8 @@ class Materials:
         look = self._looks.resolve(material)
         if look is None:
             return None
-        return {"ambient": _plain(look.ambient), "diffuse": _plain(look.diffuse),
-                "specular": _plain(look.specular), "emissive": _plain(look.emissive),
+        return {"ambient": _color_json(look.ambient), "diffuse": _color_json(look.diffuse),
+                "specular": _color_json(look.specular), "emissive": _color_json(look.emissive),
                 "name": look.name, "texture": self._texture(look),
                 "transparency": look.transparency, "lighting": look.lit,
                 "alpha_test": look.alpha_test, "blended": look.blended}
@@ -223,5 +223,5 @@ class Materials:
         return {"url": url, "pattern": look.pattern or None, "scale": list(look.scale)}
 
 
-def _plain(color: Optional[Color]) -> Any:
+def _color_json(color: Optional[Color]) -> Any:
     return None if color is None else list(color)

@@ -12,7 +12,7 @@ from typing import Any, Callable, Dict, List, Optional, Set
 
 from ...errors import CommandError, SimulationError
 from ..topic_source import Subscription, TopicSource, type_of
-from ..transport.browser_client import Client, encoded
+from ..transport.browser_client import Client, encode_message
 from ..transport.hub import Hub
 from ..transport.watch_requests import PREFIX
 from .message_fields import number_at
@@ -211,7 +211,7 @@ class LiveTopics:
                 "problem": topic.problem}
         self._hub.check([push])
         for client in clients:
-            client.append(encoded(push))
+            client.append(encode_message(push))
 
     def _clients_of(self, topic: LiveTopic) -> List[Client]:
         known = self._hub.clients

@@ -6,7 +6,7 @@ import struct
 from typing import Any, Dict, Tuple
 
 from ...errors import CommandError
-from ..scene.plain_json import plain
+from ..scene.plain_json import to_json
 from ..topic_source import ListedTopic
 
 TOPIC = 3
@@ -41,5 +41,5 @@ def document_of(topic: ListedTopic) -> Dict[str, Any]:
     if topic.model:
         found.update(model=topic.model, driven=topic.driven)
     if topic.link:
-        found["mount"] = {"link": topic.link, "pose": plain(topic.pose)}
+        found["mount"] = {"link": topic.link, "pose": to_json(topic.pose)}
     return found

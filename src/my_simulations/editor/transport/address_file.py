@@ -22,7 +22,7 @@ def without_token(address: str) -> str:
 
 
 def write(address: str, cache_dir: str = "") -> List[str]:
-    """Keep an address for `with_token` and `page`; returns the files, for `remove`.
+    """Keep an address for `with_token` and `local_page`; returns the files, for `remove_files`.
 
     Raises OSError.
     """
@@ -39,7 +39,7 @@ def write(address: str, cache_dir: str = "") -> List[str]:
     return list(texts)
 
 
-def remove(paths: List[str]) -> None:
+def remove_files(paths: List[str]) -> None:
     for path in paths:
         with contextlib.suppress(OSError):  # it is gone, or the disk cannot be written any more
             os.unlink(path)
@@ -57,8 +57,8 @@ def with_token(address: str, cache_dir: str = "") -> str:
     return found
 
 
-def page(address: str, cache_dir: str = "") -> str:
-    """The URL of the local page that leads to the whole address; "" where there is none."""
+def local_page(address: str, cache_dir: str = "") -> str:
+    """Return the URL of the local page that redirects to the address with token; "" without one."""
     path = _path(address, ".html", cache_dir)
     return f"file://{path}" if os.path.isfile(path) else ""
 

@@ -16,7 +16,7 @@ _MOST_WAITING = 64 << 20
 _FULL = 1 << 20
 
 
-def encoded(message: Dict[str, Any]) -> str:
+def encode_message(message: Dict[str, Any]) -> str:
     return json.dumps(message, separators=(",", ":"), allow_nan=False)
 
 
@@ -60,7 +60,7 @@ class Client:
         return self._waiting > _MOST_WAITING
 
     def post(self, message: Dict[str, Any]) -> None:
-        self.append(encoded(message))
+        self.append(encode_message(message))
 
     def append(self, data: Union[str, bytes]) -> None:
         """Queue a message that is text already, or a frame."""

@@ -15,7 +15,7 @@ from ...errors import CommandError, Issue, error
 from ...simulator.simulator import Simulator
 from ..scene.scene_changes import Mirror
 from ..scene.scene_json import Documents
-from .browser_client import Client, encoded
+from .browser_client import Client, encode_message
 from .clock_statistics import ClockStatistics
 from .error_messages import issue_document
 from .pose_messages import LIVE, Poses
@@ -76,7 +76,7 @@ class Hub:
 
     def push(self, message: Dict[str, Any], to: Optional[Iterable[Client]] = None) -> None:
         self.check([message])
-        text = encoded(message)
+        text = encode_message(message)
         for client in list(self.clients.values()) if to is None else to:
             client.append(text)
 
@@ -270,7 +270,7 @@ class Hub:
     def _encoded_world(self) -> str:
         message = self._mirror.world_push()
         self.check([message])
-        return encoded(message)
+        return encode_message(message)
 
     def _send_poses(self) -> None:
         poses = self._poses

@@ -13,8 +13,8 @@ _NEXT_PORTS = 100
 """How many ports after the default one are tried."""
 
 
-def listening(options: EditorOptions) -> socket.socket:
-    """A listening socket; logs if the default port is in use. Raises CommandError."""
+def open_listening_socket(options: EditorOptions) -> socket.socket:
+    """Open a listening socket; log a warning if its port is in use. Raises CommandError."""
     listener = _bound(options)
     port = int(listener.getsockname()[1])
     if options.port not in (0, port):

@@ -14,7 +14,7 @@ from ...simulator.entity import Entity
 from ...simulator.joint_gains import default_gains
 from ...simulator.simulator import Simulator
 from ...simulator.wrenches import Effort
-from .browser_client import Client, encoded
+from .browser_client import Client, encode_message
 from .clock_statistics import ClockStatistics
 from .hub import Hub
 from .pose_messages import Poses
@@ -93,7 +93,7 @@ class WatchRequests:
             pushes = await loop.run_in_executor(self._thread, self._watches.pushes, topics)
         except CommandError:
             return  # no engine for the moment; the next tick asks again
-        texts = {topic: encoded(push) for topic, push in pushes.items()}
+        texts = {topic: encode_message(push) for topic, push in pushes.items()}
         self._hub.check(pushes.values())
         for client in self._hub.clients.values():
             for topic in client.topics & topics if client.live and not client.is_full else ():
