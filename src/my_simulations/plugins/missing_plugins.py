@@ -35,9 +35,29 @@ _KNOWN: Tuple[Tuple[str, str, str], ...] = (
     ("the forces of water on vehicles are not simulated",
      "libBuoyancyPlugin.so lifts a model, and libgazebo_ros_force.so pushes it",
      "uuv_underwater_object_plugin uuv_underwater_object_ros_plugin uuv_thruster_plugin"
-     " uuv_thruster_ros_plugin uuv_fin_plugin uuv_fin_ros_plugin usv_gazebo_dynamics_plugin"
+     " uuv_thruster_ros_plugin uuv_fin_plugin uuv_fin_ros_plugin"
+     " uuv_underwater_current_plugin uuv_underwater_current_ros_plugin uuv_sc_ros_interface_plugin"
+     " usv_gazebo_dynamics_plugin"
      " usv_gazebo_thrust_plugin usv_gazebo_wind_plugin freefloating_gazebo_fluid"
      " freefloating_gazebo_control"),
+    ("its joints and controllers are those of libraries in C++",
+     "libgazebo_ros_control.so moves the same joints with the controllers of ros_control",
+     "panda_gazebo_ros_control baxter_gazebo_ros_control sawyer_gazebo_ros_control"),
+    ("actors have no contacts", "a model with libRandomVelocityPlugin.so is an obstacle that moves",
+     "ActorCollisionsPlugin"),
+    ("sensors of the ARIAC competition are not simulated",
+     "libgazebo_ros_range.so, libgazebo_ros_laser.so and libgazebo_ros_depth_camera.so measure"
+     " distances", "ROSLogicalCameraPlugin ROSProximityRayPlugin"),
+    ("the vacuum gripper of the ARIAC competition is not simulated",
+     "libgazebo_ros_vacuum_gripper.so holds objects, too",
+     "ROSVacuumGripperPlugin VacuumGripperPlugin"),
+    ("it publishes the pose and velocity of a vehicle",
+     "libgazebo_ros_p3d.so does, too", "uuv_gazebo_ros_pose_gt_plugin"),
+    ("underwater sensors are not simulated",
+     "libgazebo_ros_imu_sensor.so, libgazebo_ros_camera.so and libgazebo_ros_p3d.so can replace"
+     " some", "uuv_gazebo_ros_imu_plugin uuv_gazebo_ros_dvl_plugin uuv_gazebo_ros_rpt_plugin"
+     " uuv_gazebo_ros_subsea_pressure_plugin uuv_gazebo_ros_magnetometer_plugin"
+     " uuv_gazebo_ros_gps_plugin uuv_gazebo_ros_camera_plugin uuv_gazebo_ros_cpc_plugin"),
     ("the scan patterns of Livox are not simulated",
      "libgazebo_ros_velodyne_laser.so scans in rows", "livox_laser_simulation"),
 )
