@@ -248,8 +248,12 @@ def _not_positive(what: str, values: Sequence[float]) -> str:
 
 
 def closest_name_hint(name: str, known: List[str]) -> str:
-    """Return the hint `did you mean X?` with the known name most like `name`; "" if none is."""
-    near = difflib.get_close_matches(name, known, 1)
+    """Return the hint `did you mean X?` with the known name most like `name`; "" if none is.
+
+    One with the same letters comes first: `ixy` for `iyx`.
+    """
+    near = ([one for one in known if sorted(one) == sorted(name)]
+            or difflib.get_close_matches(name, known, 1))
     return f"did you mean {near[0]}?" if near else ""
 
 

@@ -98,6 +98,14 @@ def test_the_log_has_one_line_for_all_visuals_of_an_unknown_package():
                              " found; also in lines 2, 3")
 
 
+@pytest.mark.parametrize("name, meant", [("iyx", "ixy"), ("izx", "ixz"), ("izy", "iyz")])
+def test_the_other_half_of_an_inertia_tensor_is_compared_with_the_first(name, meant):
+    _, issues = read_entity('<robot name="r"><link name="l"><inertial><mass value="1"/><inertia'
+                            f' ixx="1" iyy="1" izz="1" {name}="0"/></inertial></link></robot>',
+                            Resolver())
+    assert [issue.hint for issue in issues] == [f"did you mean {meant}?"]
+
+
 def test_an_unknown_part_of_a_robot_is_told_how_macros_are_called():
     _, issues = read_entity('<robot name="r"><link name="l"/><table_leg x="1"/><jont/></robot>',
                             Resolver())
