@@ -256,9 +256,9 @@ def test_a_module_named_xacro_in_the_current_folder_is_not_run(tmp_path, monkeyp
 
 
 def test_a_number_of_seconds_is_positive_and_finite():
-    from my_simulations.cli.object_client import seconds
+    from my_simulations.cli.object_client import parse_seconds
 
-    assert seconds("2.5") == 2.5
+    assert parse_seconds("2.5") == 2.5
     for text in ("0", "-1", "inf", "nan"):
         with pytest.raises(argparse.ArgumentTypeError):
-            seconds(text)
+            parse_seconds(text)
