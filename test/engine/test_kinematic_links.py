@@ -10,7 +10,7 @@ import pytest
 from closed_forms import pendulum
 from conftest import Lab, ball, box, ground, inertial_of_box, link_of
 
-from my_simulations.description.flatten import flattened
+from my_simulations.description.flatten import flatten_model
 from my_simulations.description.model import Inertial, Joint, JointAxis, Link, Model
 from my_simulations.description.shapes import Box, Collision, Mesh, MeshData, mesh_key
 from my_simulations.engine.commands import SetLinkState, SetModelState
@@ -58,7 +58,7 @@ def test_a_door_hangs_on_the_static_frame_nested_in_its_model(lab: Lab):
                                                        "post", Pose((0.0, 0.0, 1.0)))])
     door = link_of(Box((0.8, 0.05, 1.8)), inertial_of_box(10.0, 0.8, 0.05, 1.8), None, "door",
                    Pose((0.45, 0.0, 1.0)))
-    model = flattened(Model("entrance", links=[door], models=[frame], joints=[
+    model = flatten_model(Model("entrance", links=[door], models=[frame], joints=[
         Joint("turn", "revolute", "frame::post", "door", Pose((-0.45, 0.0, 0.0)),
               JointAxis((0.0, 0.0, 1.0)))]))
     number = drop(lab, model, 1.0)

@@ -7,10 +7,10 @@ from typing import Optional
 import pytest
 from conftest import Lab, ground, inertial_of_box, link_of
 
-from my_simulations.description.flatten import flattened
+from my_simulations.description.flatten import flatten_model
 from my_simulations.description.model import Inertial, Joint, JointAxis, Link, Model
 from my_simulations.description.shapes import Box
-from my_simulations.description.unflatten import unflattened
+from my_simulations.description.unflatten import unflatten_model
 from my_simulations.geometry import Pose
 
 SIDE = 0.2
@@ -92,8 +92,8 @@ def test_links_of_a_nested_model_do_what_their_own_model_says(lab: Lab, outer: b
                                                               expected: float):
     inside = Model("inside", self_collide=inner, links=[cube("lower", 0.1), cube("upper", 0.4)])
     whole = Model("whole", self_collide=outer, allow_auto_disable=False, models=[inside])
-    flat = flattened(whole)
-    assert unflattened(flat) == whole
+    flat = flatten_model(whole)
+    assert unflatten_model(flat) == whole
     lab.configure(gravity=(0.0, 0.0, -9.8))
     lab.load(ground())
     number = lab.load(flat)

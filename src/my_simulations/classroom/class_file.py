@@ -6,7 +6,7 @@ import re
 from typing import Any, List, Mapping, Optional, Sequence, Tuple
 
 from ..errors import Issue
-from ..studies.value_reader import ValueReader, kind_of, read_document
+from ..studies.value_reader import ValueReader, describe_value, read_document
 from .class_plan import ClassLimits, ClassPlan, Student
 from .containers import PROGRAMS
 
@@ -44,7 +44,7 @@ class _ClassReader(ValueReader):
     def plan(self, tree: Any, file: str) -> Optional[ClassPlan]:
         """The class; None if it is not a mapping at all."""
         if not isinstance(tree, Mapping):
-            self.fault((), f"a class must be a mapping, is {kind_of(tree)}")
+            self.fault((), f"a class must be a mapping, is {describe_value(tree)}")
             return None
         top = self.mapping(tree, (), _KEYS)
         if "students" not in top:
@@ -100,7 +100,7 @@ class _ClassReader(ValueReader):
         if value is None:
             return ()
         if not isinstance(value, Mapping):
-            self.fault(("args",), f"'args' must be a mapping, is {kind_of(value)}")
+            self.fault(("args",), f"'args' must be a mapping, is {describe_value(value)}")
             return ()
         return tuple(f"{name}:={_argument(given)}" for name, given in value.items())
 

@@ -9,7 +9,7 @@ from dataclasses import asdict
 from typing import Any, Dict, List, Optional, Sequence, Tuple, Union
 
 from ..description.actor import Actor
-from ..description.flatten import flattened
+from ..description.flatten import flatten_model
 from ..description.light import Light
 from ..description.model import Model
 from ..description.world import World
@@ -103,7 +103,7 @@ def unknown_plugins(loaded: Loaded) -> List[Issue]:
     """Notes on the plugins of libraries for which there is no class, one for each library."""
     from ..plugins.found_plugins import plugins_of, world_plugins
 
-    specs = [one.spec for model in _models(loaded) for one in plugins_of(flattened(model))]
+    specs = [one.spec for model in _models(loaded) for one in plugins_of(flatten_model(model))]
     if isinstance(loaded, World):
         specs += world_plugins(loaded)
     elif isinstance(loaded, Actor):
@@ -169,7 +169,7 @@ def _models(loaded: Loaded) -> List[Model]:
 def counts(loaded: Optional[Loaded]) -> Dict[str, Any]:
     """Number of entities by kind, for `--json`."""
     models = [] if loaded is None else _models(loaded)
-    flat = [flattened(model) for model in models]
+    flat = [flatten_model(model) for model in models]
     links = [link for model in flat for link in model.links]
     kinds: Dict[str, int] = {}
     for link in links:

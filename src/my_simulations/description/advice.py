@@ -32,10 +32,10 @@ _TOO_LARGE = 10.0
 _TOO_SMALL = 0.01
 
 
-def advice(models: Sequence[Model], only: str = "") -> Iterator[Fault]:
-    """Findings about the models of one world, each with its model and link.
+def find_advice(models: Sequence[Model], only: str = "") -> Iterator[Fault]:
+    """Find suspicious properties of the models of a world; each with its model and link.
 
-    With `only`, the findings that involve the model of that name.
+    `only`: the name of the one model to report on; "" for all.
     """
     for model in models:
         if only not in ("", model.name):
@@ -109,7 +109,7 @@ def half_extents(geometry: Geometry) -> Optional[Vec3]:
 def reach_of(link: Link) -> float:
     """Radius about the link's origin, m, that contains its shapes; infinite for planes.
 
-    Meshes are left out: `advice` does not check whether they overlap.
+    Meshes are left out: `find_advice` does not check whether they overlap.
     """
     reach = 0.0
     for collision in link.collisions:

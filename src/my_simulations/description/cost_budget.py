@@ -9,7 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any, Dict, Iterator, List, Optional, Tuple
 
-from .flatten import flattened
+from .flatten import flatten_model
 from .model import WORLD, Model
 from .model_plugins import plugin_count
 from .self_collision import requests_self_collision
@@ -86,7 +86,7 @@ _NAMES: Dict[str, str] = {
 
 def cost_of(model: Model, meshes: Optional[MeshTable] = None) -> Cost:
     """The cost of a model; collisions whose mesh is not in `meshes` have no triangles."""
-    flat = flattened(model)
+    flat = flatten_model(model)
     table = meshes or {}
     shapes = triangles = 0
     for link in flat.links:

@@ -12,17 +12,17 @@ from ..geometry import compose
 from .model import WORLD, Joint, JointAxis, Link, Model
 
 
-def flattened(model: Model) -> Model:
-    """The model without nested models; all link poses are in the frame of the outer model.
+def flatten_model(model: Model) -> Model:
+    """Merge nested models into the outer one; all link poses are in its frame.
 
-    Its `guide` is the original model, for `unflattened`.
+    Its `guide` is the original model, for `unflatten_model`.
     """
     if not model.models:
         return model
     links: List[Link] = list(model.links)
     joints: List[Joint] = list(model.joints)
     for nested in model.models:
-        inner = flattened(nested)
+        inner = flatten_model(nested)
         links += [_moved(link, nested, model) for link in inner.links]
         joints += [_scoped(joint, nested.name) for joint in inner.joints]
     return replace(model, links=links, joints=joints, models=[], guide=model)
@@ -42,11 +42,11 @@ def _moved(link: Link, nested: Model, outer: Model) -> Link:
 
 
 def _scoped(joint: Joint, scope: str) -> Joint:
-    return renamed(joint, lambda name: f"{scope}::{name}")
+    return rename_joint(joint, lambda name: f"{scope}::{name}")
 
 
-def renamed(joint: Joint, new: Callable[[str], str]) -> Joint:
-    """The joint with other names: its own, and those of the links and joints that it names."""
+def rename_joint(joint: Joint, new: Callable[[str], str]) -> Joint:
+    """Rename a joint and the links and joints that it refers to."""
     def link(name: str) -> str:
         return new(name) if name and name != WORLD else name
 

@@ -12,8 +12,8 @@ SCOPE = "::"
 """Separator between the names of a model and its link, joint or nested model."""
 
 
-def scoped(*names: str) -> str:
-    """The names joined by the separator, the outermost first."""
+def join_scope(*names: str) -> str:
+    """Join names to a scoped name, the outermost first."""
     return SCOPE.join(names)
 
 

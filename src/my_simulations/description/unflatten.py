@@ -5,18 +5,18 @@ from dataclasses import replace
 from typing import Dict, List, Optional, Sequence
 
 from ..geometry import IDENTITY, Pose, compose, inverse
-from .flatten import flattened, renamed
+from .flatten import flatten_model, rename_joint
 from .model import WORLD, Joint, Link, Model
 from .scoped_names import SCOPE
 
 
-def unflattened(flat: Model) -> Model:
-    """The model with a nested model for every scope in its link names.
+def unflatten_model(flat: Model) -> Model:
+    """Restore a nested model for every scope in the link names of a flat model.
 
     Args:
-        flat: a result of `flattened`, possibly edited. Links and joints are taken from it; poses,
-            plugins and kept XML of nested models from its `guide`. Without a guide, nested models
-            are at the origin of the outer model.
+        flat: a result of `flatten_model`, possibly edited. Links and joints are taken from it;
+            poses, plugins and kept XML of nested models from its `guide`. Without a guide, nested
+            models are at the origin of the outer model.
     """
     guide = flat.guide or Model("")
     if not guide.models and not any(SCOPE in link.name for link in flat.links):
@@ -61,7 +61,7 @@ def _gathered(model: Model, links: Sequence[Link], joints: Sequence[Joint], guid
         models.append(_gathered(nested, some, theirs.get(name, []), nested,
                                 compose(above, nested.pose)))
     models += [nested for nested in guide.models
-               if nested.name not in inner and not flattened(nested).links]
+               if nested.name not in inner and not flatten_model(nested).links]
     return replace(model, links=own, joints=ours, models=models)
 
 
@@ -80,4 +80,4 @@ def _lies_in(joint: Joint, scope: str) -> bool:
 
 def _seen_from_inside(joint: Joint, scope: str) -> Joint:
     inside = scope + SCOPE
-    return renamed(joint, lambda name: name[len(inside):] if name.startswith(inside) else name)
+    return rename_joint(joint, lambda name: name[len(inside):] if name.startswith(inside) else name)

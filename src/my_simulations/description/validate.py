@@ -56,20 +56,20 @@ def validate(model: Model, locate: Optional[Locate] = None) -> List[Issue]:
     return [
         Issue(fault.severity, fault.code, fault.message, hint=fault.hint,
               **(locate(fault.subject) if locate else {}))
-        for fault in faults(model)
+        for fault in find_faults(model)
     ]
 
 
-def faults(model: Model, static: bool = False) -> Iterator[Fault]:
-    """All faults of the model and its nested models; `static`: an outer model is static."""
+def find_faults(model: Model, static: bool = False) -> Iterator[Fault]:
+    """Yield all faults of a model and its nested models; `static`: an outer model is static."""
     static = static or model.static
-    yield from own_faults(model, static)
+    yield from find_own_faults(model, static)
     for nested in model.models:
-        yield from faults(nested, static)
+        yield from find_faults(nested, static)
 
 
-def own_faults(model: Model, static: bool = False) -> Iterator[Fault]:
-    """Faults of the model without those of its nested models."""
+def find_own_faults(model: Model, static: bool = False) -> Iterator[Fault]:
+    """Yield the faults of a model without those of its nested models."""
     static = static or model.static
     yield from name_and_pose_faults(model)
     yield from _repeated("link", model.links)

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 from itertools import islice
 from typing import Any, Dict, Iterator, List, Mapping, Optional, Sequence
 
-from ..description.advice import advice, links_of, thin_mesh
-from ..description.flatten import flattened
+from ..description.advice import find_advice, links_of, thin_mesh
+from ..description.flatten import flatten_model
 from ..description.model import Link, Model
 from ..description.shapes import Mesh, MeshTable, mesh_key
 from ..description.validate import Fault
@@ -44,7 +44,7 @@ def findings(models: Sequence[Model], meshes: Mapping[str, MeshTable],
         meshes: their loaded collision meshes by model name.
         only: name of the model whose findings are wanted, "" for all models.
     """
-    yield from advice(models, only)
+    yield from find_advice(models, only)
     for model in models:
         table = meshes.get(model.name)
         if table and only in ("", model.name):
@@ -88,7 +88,7 @@ def located_issue(fault: Fault, models: Sequence[Model], written: Written) -> Is
 
 def _element_of(subject: Any, models: Sequence[Model], written: Written) -> Any:
     for model in models:
-        for link in flattened(model).links:
+        for link in flatten_model(model).links:
             if subject is link.inertial or any(subject is one for one in link.collisions):
                 return _named(written.root, written.name or model.name, model.uri, link,
                               getattr(subject, "name", ""))

@@ -6,7 +6,7 @@ import re
 from typing import Any, Dict, List, Mapping, Optional, Tuple
 
 from ..errors import Issue
-from ..studies.value_reader import kind_of, read_document
+from ..studies.value_reader import describe_value, read_document
 from .assignment import (
     Assignment,
     Check,
@@ -46,7 +46,7 @@ class _AssignmentReader(AssignmentValues):
     def assignment(self, tree: Any, file: str) -> Optional[Assignment]:
         """The assignment; None if it is not a mapping at all."""
         if not isinstance(tree, Mapping):
-            self.fault((), f"an assignment must be a mapping, is {kind_of(tree)}",
+            self.fault((), f"an assignment must be a mapping, is {describe_value(tree)}",
                        code="grade-value")
             return None
         top = self.mapping(tree, (), _KEYS)
@@ -96,7 +96,8 @@ class _AssignmentReader(AssignmentValues):
 
     def _checks(self, value: Any, world: bool, form: SubmissionForm) -> Tuple[Check, ...]:
         if not isinstance(value, list) or not value:
-            self.fault(("checks",), f"'checks' must be a list of checks, is {kind_of(value)}")
+            self.fault(("checks",),
+                       f"'checks' must be a list of checks, is {describe_value(value)}")
             return ()
         reader = CheckReader(self)
         found = [reader.check(entry, ("checks", str(index)))

@@ -6,7 +6,7 @@ import os
 from dataclasses import dataclass, replace
 from typing import Callable, Dict, List, Optional, Sequence
 
-from ..description.flatten import flattened
+from ..description.flatten import flatten_model
 from ..description.model import Model
 from ..description.world import World
 from ..errors import InputError, Issue, Severity, error, errors_of, tolerated_as_errors
@@ -153,14 +153,14 @@ def _shaped(check: EntityCount, world: World) -> List[str]:
 
 def _shapes(model: Model) -> List[str]:
     found = []
-    for link in flattened(model).links:
+    for link in flatten_model(model).links:
         found += [type(one.geometry).__name__.lower() for one in link.collisions]
         found += [type(one.geometry).__name__.lower() for one in link.visuals]
     return found
 
 
 def _flat(world: World) -> List[Model]:
-    return [flattened(model) for model in world.models]
+    return [flatten_model(model) for model in world.models]
 
 
 _NAMES: Dict[str, Callable[[World], List[str]]] = {

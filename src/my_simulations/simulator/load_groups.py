@@ -4,7 +4,7 @@ from __future__ import annotations
 from typing import Iterator, List, Sequence
 
 from ..description.cost_budget import cost_of
-from ..description.flatten import flattened
+from ..description.flatten import flatten_model
 from ..description.model import Model
 from ..description.shapes import SOLIDS, MeshTable
 from ..engine.body_plan import BodyPlanError, plan_bodies
@@ -25,7 +25,7 @@ def small_groups(models: Sequence[Model]) -> Iterator[List[Model]]:
     names = set()
     links = shapes = 0
     for model in models:
-        flat = flattened(model)
+        flat = flatten_model(model)
         many, more = len(flat.links), sum(len(link.collisions) for link in flat.links)
         full = (len(group) == _MOST_MODELS or links + many > _MOST_LINKS
                 or shapes + more > _MOST_SHAPES)

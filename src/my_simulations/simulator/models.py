@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from dataclasses import replace as replaced
 from typing import Dict, List, Optional, Sequence
 
-from ..description.flatten import flattened
+from ..description.flatten import flatten_model
 from ..description.model import Inertial, Model
 from ..description.model_plugins import has_plugins
 from ..description.shapes import Material, MeshTable
@@ -94,7 +94,7 @@ class Models(ConnectedModels):
             CommandError: empty or existing name, unknown frame, or rejected by the engine.
         """
         check_name(model.name, "model")
-        model = flattened(model)
+        model = flatten_model(model)
         meshes = self._convex_meshes.of(model, meshes or {})
         session = self._session
         if has_plugins(model):
@@ -163,7 +163,7 @@ class Models(ConnectedModels):
     def _new_entity(self, new: NewModel, others: Sequence[str]) -> Entity:
         """The entity of a model that is added after `others`. Raises CommandError."""
         check_name(new.model.name, "model")
-        model, deleted, session = flattened(new.model), new.deleted, self._session
+        model, deleted, session = flatten_model(new.model), new.deleted, self._session
         if has_plugins(model):
             session.before_plugins()
         parts = self._convex_meshes.of(model, new.meshes)
@@ -254,7 +254,7 @@ class Models(ConnectedModels):
             CommandError: unknown or existing name, or rejected by the engine; nothing has changed.
         """
         check_name(model.name, "model")
-        model = flattened(model)
+        model = flatten_model(model)
         session = self._session
         if has_plugins(model):
             session.before_plugins()
@@ -391,7 +391,7 @@ class Models(ConnectedModels):
 
         With `gently`, at low priority, because another world is running meanwhile.
         """
-        self._convex_meshes.prepare([(flattened(model), meshes.get(model.name) or {})
+        self._convex_meshes.prepare([(flatten_model(model), meshes.get(model.name) or {})
                                      for model in world.models], gently)
 
     def forget_all(self) -> None:

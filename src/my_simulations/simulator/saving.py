@@ -13,7 +13,7 @@ from ..description.compare import differences
 from ..description.joint_positions import anchored_pose
 from ..description.model import Joint, Model
 from ..description.saved_state import LightState, LinkState, ModelState, SavedState
-from ..description.unflatten import unflattened
+from ..description.unflatten import unflatten_model
 from ..description.world import World
 from ..engine.ring import Snapshot
 from ..engine.ring_rows import axis_rows
@@ -50,7 +50,7 @@ def present_world(simulator: Simulator, *, state: bool = True, launched: bool = 
     if not launched:
         entities = [entity for entity in entities if not entity.launched]
     world = simulator.world
-    models = [replace(unflattened(entity.model), pose=_frame(entity, snapshot))
+    models = [replace(unflatten_model(entity.model), pose=_frame(entity, snapshot))
               for entity in entities]
     saved = (_state if state else _configuration)(world, entities, snapshot)
     return replace(

@@ -10,7 +10,7 @@ from importlib import metadata
 from typing import Any, Dict, Iterable, Iterator, List, Sequence, Set
 
 from .. import __version__
-from ..description.flatten import flattened
+from ..description.flatten import flatten_model
 from ..description.model import Model
 from ..description.world import World
 from ..errors import SimulationError
@@ -155,7 +155,8 @@ class PluginFiles:
 
     def add_models(self, models: Iterable[Model]) -> None:
         for model in models:
-            self._libraries.update(found.spec.filename for found in plugins_of(flattened(model)))
+            self._libraries.update(found.spec.filename
+                                   for found in plugins_of(flatten_model(model)))
 
     def paths(self) -> List[str]:
         """Return the files of the plugins' packages, or their modules, sorted; import nothing."""

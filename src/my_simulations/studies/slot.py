@@ -41,11 +41,11 @@ class CaseRefusedError(CommandError):
     """A case that cannot be run as the study says."""
 
 
-class OneLifeEngine(ProcessEngine):
-    """An engine that is not started again after its death: a case must not go on from a snapshot.
+class NoRestartEngine(ProcessEngine):
+    """An engine that does not restart after a crash: a case must not continue from a snapshot.
 
     Attributes:
-        death: why it ended; "" while it lives.
+        death: why it ended; "" while it runs.
     """
 
     def __init__(self) -> None:
@@ -54,7 +54,7 @@ class OneLifeEngine(ProcessEngine):
         super().__init__()
 
     def restart(self) -> None:
-        """Start the child, once. Raises OSError afterwards."""
+        """Start the child process. Raises OSError at the second call."""
         if self._started:
             raise OSError("a study begins the case again in another engine")
         self._started = True
@@ -107,7 +107,7 @@ class Slot:
         self._files = files
         self._hook = hook
         self._world: Optional[OpenWorld] = None
-        self._engine: Optional[OneLifeEngine] = None
+        self._engine: Optional[NoRestartEngine] = None
         self._guard = threading.Lock()
         self._began: Optional[float] = None  # processor time of the engine as the case began
         self._opened_world = False  # of the case that runs
@@ -254,7 +254,7 @@ class Slot:
             raise
 
     def _new_engine(self) -> Engine:
-        engine = OneLifeEngine()
+        engine = NoRestartEngine()
         with self._guard:
             self._engine = engine
             self._began = 0.0

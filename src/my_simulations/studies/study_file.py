@@ -8,7 +8,7 @@ from ..errors import Issue, errors_of
 from .expressions import Expression, ExpressionError, parse
 from .scenario_files import SCENARIO, scenarios_named
 from .study import Limits, Plan, Seeds, Study, Trajectory
-from .value_reader import ValueReader, kind_of, read_document
+from .value_reader import ValueReader, describe_value, read_document
 from .variation import FORMS, SCENARIO_FORMS, Parameter, Target
 from .variation_file import name_of_column, parameter_of
 
@@ -38,7 +38,7 @@ class StudyReader(ValueReader):
     def study(self, tree: Any, file: str) -> Optional[Study]:
         """The study; None if it is not a mapping at all."""
         if not isinstance(tree, Mapping):
-            self.fault((), f"a study must be a mapping, is {kind_of(tree)}")
+            self.fault((), f"a study must be a mapping, is {describe_value(tree)}")
             return None
         if "scenarios" in tree:
             return self._scenario_study(tree, file)

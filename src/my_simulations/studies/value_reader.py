@@ -100,7 +100,7 @@ class ValueReader:
         if value is None:
             return {}
         if not isinstance(value, Mapping):
-            self.fault(path, f"'{_shown(path)}' must be a mapping, is {kind_of(value)}")
+            self.fault(path, f"'{_shown(path)}' must be a mapping, is {describe_value(value)}")
             return {}
         found = {}
         for key, inner in value.items():
@@ -120,7 +120,7 @@ class ValueReader:
                most: float = math.inf, above: float = -math.inf) -> float:
         """A finite number in a range."""
         if not is_finite_number(value):
-            self.fault(path, f"'{_shown(path)}' must be a number, is {kind_of(value)}")
+            self.fault(path, f"'{_shown(path)}' must be a number, is {describe_value(value)}")
         elif not least <= value <= most or value <= above:
             bounds = f"above {above:g}" if above > -math.inf else f"at least {least:g}"
             more = f" and at most {most:g}" if most < math.inf else ""
@@ -132,7 +132,7 @@ class ValueReader:
     def integer(self, value: Any, path: KeyPath, least: int = 0, most: int = 2 ** 62) -> int:
         """A whole number in a range."""
         if isinstance(value, bool) or not isinstance(value, int):
-            self.fault(path, f"'{_shown(path)}' must be a whole number, is {kind_of(value)}")
+            self.fault(path, f"'{_shown(path)}' must be a whole number, is {describe_value(value)}")
         elif not least <= value <= most:
             self.fault(path, f"'{_shown(path)}' must be between {least} and {most}, is {value}")
         else:
@@ -143,7 +143,7 @@ class ValueReader:
         """A text that is not empty."""
         if isinstance(value, str) and value.strip():
             return value
-        self.fault(path, f"'{_shown(path)}' must be text, is {kind_of(value)}")
+        self.fault(path, f"'{_shown(path)}' must be text, is {describe_value(value)}")
         return ""
 
     def numbers(self, value: Any, path: KeyPath, counts: Sequence[int]) -> Tuple[float, ...]:
@@ -151,7 +151,7 @@ class ValueReader:
         if not isinstance(value, list) or len(value) not in counts:
             wanted = " or ".join(map(str, counts))
             self.fault(path, f"'{_shown(path)}' must be a list of {wanted} numbers,"
-                             f" is {kind_of(value)}")
+                             f" is {describe_value(value)}")
             return (0.0,) * counts[0]
         return tuple(self.number(item, path) for item in value)
 
@@ -175,7 +175,8 @@ def _shown(path: Sequence[str]) -> str:
     return ".".join(path)
 
 
-def kind_of(value: Any) -> str:
+def describe_value(value: Any) -> str:
+    """Describe an unexpected value for a message: `empty`, `a list of 3`, `a mapping`, `'x'`."""
     if value is None:
         return "empty"
     if isinstance(value, (list, tuple)):

@@ -14,7 +14,7 @@ from my_simulations.description.cost_budget import (
     cost_of,
     world_excess,
 )
-from my_simulations.description.flatten import flattened
+from my_simulations.description.flatten import flatten_model
 from my_simulations.description.model import Joint, Link, Model
 from my_simulations.description.plugin import PluginSpec
 from my_simulations.description.sensor import Sensor
@@ -69,7 +69,7 @@ def test_plugins_of_sensors_and_nested_models_are_counted():
     inner = Model("n", plugins=[plugin, plugin], links=[Link("c", sensors=[sensor])])
     model = Model("m", plugins=[plugin], links=[Link("a", sensors=[sensor]), Link("b")],
                   joints=[Joint("j", "fixed", "a", "b", sensors=[sensor])], models=[inner])
-    for one in (model, flattened(model)):
+    for one in (model, flatten_model(model)):
         assert cost_of(one).plugins == 6
 
 

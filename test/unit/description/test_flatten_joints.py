@@ -3,10 +3,10 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from my_simulations.description.flatten import flattened
+from my_simulations.description.flatten import flatten_model
 from my_simulations.description.model import Joint, JointAxis, Link, Mimic, Model
 from my_simulations.description.plugin import PluginSpec
-from my_simulations.description.unflatten import unflattened
+from my_simulations.description.unflatten import unflatten_model
 
 INNER = Model("in", links=[Link("base"), Link("a"), Link("b")], joints=[
     Joint("ja", "revolute", "base", "a", axis=JointAxis()),
@@ -18,14 +18,14 @@ OUTER = Model("out", links=[Link("l")], models=[INNER])
 
 
 def test_what_a_nested_joint_follows_and_measures_about_is_scoped():
-    ja, jb, gears, to_world = flattened(OUTER).joints
+    ja, jb, gears, to_world = flatten_model(OUTER).joints
     assert jb.axis.mimic.joint == ja.name == "in::ja"
     assert (gears.parent, gears.child, gears.gearbox_reference) == ("in::a", "in::b", "in::base")
     assert to_world.parent == "world"
 
 
 def test_nested_joints_come_back_as_they_were():
-    assert unflattened(flattened(OUTER)).models[0].joints == INNER.joints
+    assert unflatten_model(flatten_model(OUTER)).models[0].joints == INNER.joints
 
 
 def test_nested_models_without_links_stay():
@@ -33,10 +33,10 @@ def test_nested_models_without_links_stay():
     empty = Model("empty", plugins=[plugin], models=[Model("deeper")])
     for models in ([empty], [INNER, empty]):
         whole = replace(OUTER, models=models)
-        assert unflattened(flattened(whole)) == whole
+        assert unflatten_model(flatten_model(whole)) == whole
 
 
 def test_a_nested_model_that_lost_its_links_goes():
-    flat = flattened(OUTER)
-    left = unflattened(replace(flat, links=flat.links[:1], joints=[]))
+    flat = flatten_model(OUTER)
+    left = unflatten_model(replace(flat, links=flat.links[:1], joints=[]))
     assert left.models == []

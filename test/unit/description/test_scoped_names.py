@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from my_simulations.description.scoped_names import scoped, split_scoped
+from my_simulations.description.scoped_names import join_scope, split_scoped
 
 TABLE = Path(__file__).parents[2] / "data" / "scoped_names.json"
 CASES = json.loads(TABLE.read_text(encoding="utf-8"))["cases"]
@@ -16,4 +16,4 @@ def test_longest_model_name_wins(case):
 
 
 def test_names_are_joined_by_the_separator():
-    assert scoped("arm", "hand", "finger") == "arm::hand::finger"
+    assert join_scope("arm", "hand", "finger") == "arm::hand::finger"

@@ -15,9 +15,9 @@ from reading import (
     world_of,
 )
 
-from my_simulations.description.flatten import flattened
+from my_simulations.description.flatten import flatten_model
 from my_simulations.description.model import Inertial
-from my_simulations.description.unflatten import unflattened
+from my_simulations.description.unflatten import unflatten_model
 from my_simulations.formats.reading import read_world
 from my_simulations.formats.xml.values import BOOL, COLOR, FLOAT, INT, LIMIT, POSE, VECTOR2, VECTOR3
 from my_simulations.geometry import IDENTITY, pose_from_xyzrpy
@@ -272,9 +272,9 @@ def test_the_first_link_of_a_model_may_be_that_of_an_include(tmp_path):
 def test_a_static_model_in_one_that_moves_stands_and_is_saved_as_it_was():
     model, _ = model_of(f'<link name="a">{INERTIAL}</link><model name="n"><static>true</static>'
                         '<link name="l"/></model>')
-    flat = flattened(model)
+    flat = flatten_model(model)
     assert [(link.name, link.kinematic) for link in flat.links] == [("a", False), ("n::l", True)]
-    again = unflattened(flat)
+    again = unflatten_model(flat)
     assert not again.models[0].links[0].kinematic and again.models[0].static
 
 

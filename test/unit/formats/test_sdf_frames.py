@@ -4,7 +4,7 @@ import math
 import pytest
 from reading import INERTIAL, errors, model_of, sdf, tolerated, warnings, world_of
 
-from my_simulations.description.flatten import flattened
+from my_simulations.description.flatten import flatten_model
 from my_simulations.description.model import Mimic
 from my_simulations.formats.reading import parse_world
 from my_simulations.formats.sdf.writer.entities import write_world
@@ -67,7 +67,7 @@ def test_a_joint_reaches_a_link_of_an_included_model(resolver):
         link("post") + "<include><uri>model://arm</uri></include>"
         + joint("mount", "post", "arm::base", "<pose>0 0 0.1 0 0 0</pose>"), "1.7", resolver)
     assert errors(issues) == []
-    flat = flattened(model)
+    flat = flatten_model(model)
     assert {link.name for link in flat.links} == {"post", "arm::base", "arm::tip"}
     mount = next(one for one in flat.joints if one.name == "mount")
     assert (mount.child, mount.pose.position) == ("arm::base", (0, 0, 0.1))

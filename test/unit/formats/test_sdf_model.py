@@ -5,7 +5,7 @@ import random
 import pytest
 from reading import INERTIAL, VALID, codes, errors, link_of, model_of, sdf, tolerated, warnings
 
-from my_simulations.description.flatten import flattened
+from my_simulations.description.flatten import flatten_model
 from my_simulations.description.model import Inertial, Link, Model
 from my_simulations.description.shapes import (
     Box,
@@ -286,7 +286,7 @@ def test_nested_models_have_scoped_links_that_joints_may_name():
         f"<pose>1 0 0 0 0 0</pose>{INERTIAL}</link></model>"
         '<joint name="j" type="fixed"><parent>a</parent><child>n::b</child></joint>')
     assert errors(issues) == []
-    flat = flattened(model)
+    flat = flatten_model(model)
     assert [link.name for link in flat.links] == ["a", "n::b"]
     assert flat.links[1].pose.position == (1, 0, 1)
 
@@ -403,7 +403,7 @@ def nested_models(count):
 def test_models_inside_models_are_read_up_to_a_depth(count, kept):
     world, issues = parse_world(nested_models(count), Resolver())
     assert [model.name for model in world.models] == ["m0", "after"]
-    assert len(flattened(world.models[0]).links) == kept
+    assert len(flatten_model(world.models[0]).links) == kept
     assert [issue.code for issue in errors_of(issues)] == ["models-too-deep"] * (count > kept)
     assert all(issue.line == 2 for issue in errors_of(issues))
 
@@ -412,8 +412,8 @@ def test_a_fault_of_a_nested_model_is_told_once_however_deep_it_lies(monkeypatch
     text = nested_models(20).replace('<link name="l"/></model>', '<link name="l"><inertial><mass>-1'
                                      '</mass></inertial></link></model>', 1)
     asked = []
-    original = model.own_faults
-    monkeypatch.setattr(model, "own_faults",
+    original = model.find_own_faults
+    monkeypatch.setattr(model, "find_own_faults",
                         lambda model, static: asked.append(model) or original(model, static))
     _, issues = parse_world(text, Resolver())
     assert len(errors_of(issues)) == 1

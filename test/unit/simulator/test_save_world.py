@@ -13,11 +13,11 @@ from inline_engine import InlineEngine
 from lxml import etree
 
 from my_simulations.description.compare import differences
-from my_simulations.description.flatten import flattened
+from my_simulations.description.flatten import flatten_model
 from my_simulations.description.light import Light
 from my_simulations.description.model import Joint, JointAxis, PluginSpec
 from my_simulations.description.model_group import group_of
-from my_simulations.description.unflatten import unflattened
+from my_simulations.description.unflatten import unflatten_model
 from my_simulations.description.world import World
 from my_simulations.errors import CommandError, errors_of
 from my_simulations.formats.reading import parse_world, read_world
@@ -175,13 +175,13 @@ def test_models_that_came_later_are_saved_and_those_that_went_are_not(running, t
 
 def test_nested_models_come_back_nested(running, tmp_path):
     sim = running(cabinet("cabinet"))
-    sim.models.spawn(flattened(cabinet("spare")), Pose((4.0, 0, 0)))
+    sim.models.spawn(flatten_model(cabinet("spare")), Pose((4.0, 0, 0)))
     world = load(save_world(sim, "s.sdf", roots=[str(tmp_path)]))
     assert differences(world.models[0], cabinet("cabinet"), 1e-12) == []
-    assert [link.name for link in flattened(world.models[1]).links] == [
+    assert [link.name for link in flatten_model(world.models[1]).links] == [
         "link", "drawer::front", "drawer::back"]
-    assert differences(flattened(world.models[1]).joints,
-                       flattened(cabinet("spare")).joints) == []
+    assert differences(flatten_model(world.models[1]).joints,
+                       flatten_model(cabinet("spare")).joints) == []
 
 
 @pytest.mark.parametrize("later", [False, True])
@@ -223,9 +223,9 @@ def test_a_state_near_a_pitch_of_90_degrees_comes_back(running, tmp_path, pitch)
 def test_unflattening_undoes_flattening():
     model = cabinet("c")
     model.models[0].models.append(box("inner", pose=Pose((0.1, 0.2, 0.3))))
-    assert differences(unflattened(flattened(model)), model) == []
-    bare = replace(flattened(model), guide=None)
-    assert differences(flattened(unflattened(bare)), flattened(model), 1e-15) == []
+    assert differences(unflatten_model(flatten_model(model)), model) == []
+    bare = replace(flatten_model(model), guide=None)
+    assert differences(flatten_model(unflatten_model(bare)), flatten_model(model), 1e-15) == []
 
 
 def test_a_file_is_replaced_only_when_asked(running, tmp_path):

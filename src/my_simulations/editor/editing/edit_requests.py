@@ -10,7 +10,7 @@ from ...description.model import Model
 from ...description.model_group import group_of
 from ...description.scoped_names import split_scoped
 from ...description.shapes import MeshTable
-from ...description.unflatten import unflattened
+from ...description.unflatten import unflatten_model
 from ...engine.timed_forces import JointPid
 from ...errors import CommandError, Issue
 from ...formats.sdf.writer.entities import write_world
@@ -106,7 +106,7 @@ class EditRequests:
         lights: List[Light] = []
         for name in names:
             if self._world.models.has(name):
-                model = unflattened(self._world.models.get(name))
+                model = unflatten_model(self._world.models.get(name))
                 models.append(replace(model, pose=self._world.states.model_state(name)[0]))
             else:
                 lights.append(self._world.lights.get(name))

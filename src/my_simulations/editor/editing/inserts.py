@@ -7,7 +7,7 @@ from dataclasses import replace
 from typing import Collection, Dict, List, Optional, Sequence, Tuple, Union
 
 from ...appearance.palette import SHAPE_COLORS
-from ...description.flatten import flattened
+from ...description.flatten import flatten_model
 from ...description.light import Light
 from ...description.model import Inertial, Link, Model
 from ...description.model_group import group_of, with_group
@@ -115,7 +115,7 @@ def check_meshes(model: Model) -> Tuple[MeshTable, List[Issue]]:
     found = validate(model)
     if errors_of(found):
         raise InputError(found)
-    meshes, issues = collision_meshes(flattened(model))
+    meshes, issues = collision_meshes(flatten_model(model))
     if errors_of(issues):
         raise InputError(issues)
     return meshes, issues

@@ -8,10 +8,10 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Any, Collection, Dict, List, Optional, Union
 
-from ...description.flatten import flattened
+from ...description.flatten import flatten_model
 from ...description.model import WORLD, Joint, JointAxis, Link, Model
 from ...description.shapes import Collision, Geometry, Material, Visual
-from ...description.unflatten import unflattened
+from ...description.unflatten import unflatten_model
 from ...errors import CommandError
 from ...geometry import Vec3
 
@@ -133,8 +133,9 @@ def _reference(model: Model, gearbox: Joint) -> str:
 
 def with_nested(model: Model, nested: Model) -> Model:
     """The model with another one in it, at its pose in the model's frame."""
-    whole = unflattened(model)
-    return flattened(replace(whole, models=[*whole.models, replace(nested, uri="")], guide=None))
+    whole = unflatten_model(model)
+    models = [*whole.models, replace(nested, uri="")]
+    return flatten_model(replace(whole, models=models, guide=None))
 
 
 def without_part(model: Model, rest: str) -> Model:

@@ -6,7 +6,7 @@ from typing import Any, Callable, Dict, List
 
 from ...building import building_operations as building
 from ...building.building_folder import default_folder
-from ...description.flatten import flattened
+from ...description.flatten import flatten_model
 from ...errors import Issue
 from ..transport.browser_client import Client
 from ..transport.error_messages import issue_document
@@ -36,7 +36,7 @@ class BuildingRequests:
         """The model and its SDF; a preview, which needs no text, asks for none."""
         model, text, issues = building.building_sdf(message["plan"],
                                                     message.get("text") is not False)
-        return {"model": self._hub.documents.model(flattened(model), model.pose), "sdf": text,
+        return {"model": self._hub.documents.model(flatten_model(model), model.pose), "sdf": text,
                 "issues": _issue_documents(issues)}
 
     def _save(self, _client: Client, message: Dict[str, Any]) -> Dict[str, Any]:

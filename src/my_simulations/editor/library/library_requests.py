@@ -8,9 +8,9 @@ from concurrent.futures import Executor
 from dataclasses import replace
 from typing import Any, Callable, Dict, List, Mapping, Optional, Tuple
 
-from ...description.flatten import flattened
+from ...description.flatten import flatten_model
 from ...description.model import Model
-from ...description.unflatten import unflattened
+from ...description.unflatten import unflatten_model
 from ...errors import CommandError, InputError, Issue
 from ...formats.sdf.writer.entities import write_entity
 from ...geometry import Pose
@@ -145,7 +145,7 @@ def preview_document(entity: Entity, documents: Documents) -> Dict[str, Any]:
     from ...description.model import Model
 
     if isinstance(entity, Model):
-        return {"model": documents.model(flattened(entity), entity.pose), "light": None}
+        return {"model": documents.model(flatten_model(entity), entity.pose), "light": None}
     return {"model": None, "light": documents.light(entity)}
 
 
@@ -203,7 +203,7 @@ def save_model(message: Dict[str, Any], world: Simulator,
 
 
 def _text(model: Model, name: str, height: float) -> bytes:
-    whole = replace(unflattened(model), name=name, pose=Pose((0.0, 0.0, height)), uri="")
+    whole = replace(unflatten_model(model), name=name, pose=Pose((0.0, 0.0, height)), uri="")
     return write_entity(whole)
 
 

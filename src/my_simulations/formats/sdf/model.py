@@ -7,7 +7,12 @@ from typing import Any, List, Optional, Sequence, Set, Tuple
 
 from ...description.cost_budget import MODEL_BUDGET, budget_faults, cost_of
 from ...description.model import WORLD, Link, Model
-from ...description.validate import closest_name_hint, link_names, name_and_pose_faults, own_faults
+from ...description.validate import (
+    closest_name_hint,
+    find_own_faults,
+    link_names,
+    name_and_pose_faults,
+)
 from ...errors import Issue, Severity
 from ...geometry import IDENTITY, Pose, compose, inverse
 from ..include_overrides import IncludeOverrides
@@ -365,7 +370,7 @@ class _ModelReader:
 
     def _check(self, model: Model) -> None:
         """Report the faults of the complete model, located at their elements."""
-        found = [*own_faults(model, self._outer_static),
+        found = [*find_own_faults(model, self._outer_static),
                  *(fault for nested in model.models for fault in name_and_pose_faults(nested)),
                  *([] if self._outer else budget_faults(cost_of(model), model))]
         for fault in found:

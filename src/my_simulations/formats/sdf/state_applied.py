@@ -9,7 +9,7 @@ from dataclasses import replace
 from typing import Any, Dict, List, Optional, Set, Tuple
 
 from ...description.compare import differences
-from ...description.flatten import flattened
+from ...description.flatten import flatten_model
 from ...description.joint_positions import joint_position, moved_child_pose
 from ...description.light import Light
 from ...description.model import WORLD, Joint, Link, Model
@@ -98,7 +98,7 @@ def _restored(model: Model, state: ModelState, initial: Dict[str, InitialState])
     twists: Dict[str, Twist] = {name: link.twist for name, link in links.items()
                                 if any(link.twist.linear) or any(link.twist.angular)}
     poses = {name: link.pose for name, link in links.items()}
-    flat = flattened(model)
+    flat = flatten_model(model)
     if not flat.joints:
         model = _links_moved(replace(model, pose=state.pose or model.pose), poses, Pose())
         positions: Dict[str, float] = {}

@@ -5,7 +5,7 @@ from typing import Any, Dict, List, Optional, Sequence, Union
 
 from ...description.cost_budget import MODEL_BUDGET, budget_faults, cost_of
 from ...description.model import WORLD, Joint, JointAxis, Link, Model
-from ...description.validate import closest_name_hint, faults
+from ...description.validate import closest_name_hint, find_faults
 from ...errors import Issue, Severity
 from ...geometry import IDENTITY, Pose, compose
 from ..include_overrides import IncludeOverrides
@@ -303,7 +303,7 @@ class _RobotReader:
                 self._source.warn("mimic-joint-unknown", f"joint {joint.name!r} follows"
                                   f" {mimic.joint!r}, which is not a joint of the model",
                                   self._elements[id(joint)], closest_name_hint(mimic.joint, known))
-        for fault in (*faults(self._model), *budget_faults(cost_of(self._model), self._model)):
+        for fault in (*find_faults(self._model), *budget_faults(cost_of(self._model), self._model)):
             element = self._elements.get(id(fault.subject), self._element)
             self._source.log.add(
                 Issue(fault.severity, fault.code, fault.message, hint=fault.hint,

@@ -11,7 +11,7 @@ from dataclasses import replace as with_changes
 from typing import Any, Callable, List, Mapping, Optional
 
 from ...description.compare import differences
-from ...description.flatten import flattened
+from ...description.flatten import flatten_model
 from ...description.light import Light
 from ...description.model import Model
 from ...description.plugin_namespace import with_namespace
@@ -166,7 +166,7 @@ class ModelServices:
         """Keep the world file's model instead of spawning, if both are equal."""
         here = self._simulator.models.get(model.name)
         other = differences(with_changes(here, pose=IDENTITY, name=""),
-                            with_changes(flattened(model), pose=IDENTITY, name=""), SAME)
+                            with_changes(flatten_model(model), pose=IDENTITY, name=""), SAME)
         world = self._simulator.world.file
         if other:
             raise CommandError(
