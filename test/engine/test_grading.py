@@ -129,7 +129,8 @@ def test_a_world_that_exceeds_the_time_leaves_the_checks_before_it(folder, capsy
 
 
 def test_programs_do_not_run_where_they_cannot_be_isolated(folder, capsys, monkeypatch):
-    monkeypatch.setattr(grade_module, "isolation_fault", lambda: "this system permits no namespaces")
+    monkeypatch.setattr(grade_module, "isolation_fault",
+                        lambda: "this system permits no namespaces")
     submit(folder, "anna", ("ball", 0, 3))
     status, rows = grade(folder, "anna")
     assert (status, points(rows["anna"])[0]) == (0, 1)
