@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Dict, List, Tuple
 
 import numpy as np
+import pybullet
 import pytest
 from conftest import Lab, ground, inertial_of_box, link_of, slab
 from laws import Laws
@@ -180,6 +181,26 @@ def test_the_first_impact_of_a_corner_turns_as_momentum_says(lab: Lab, laws: Law
     lever = RADIUS * (math.sqrt(0.5) if name == "square" else 1.0)
     rate, expected = _falling_corner(lab, number, lever)
     laws.near("a tilted landing on a corner: rate after it, rad/s", rate, expected, abs=0.15)
+
+
+@pytest.mark.parametrize("rate, bottom, partners", [(0.0, 0.1, 1), (20.0, 0.12, 0)])
+def test_only_what_can_land_flat_is_measured_against_what_is_below(
+        lab: Lab, monkeypatch: pytest.MonkeyPatch, rate: float, bottom: float, partners: int):
+    lab.load(ground())
+    can = _drop(lab, "can", (0, 0, bottom))
+    lab.push(can, (0, 0, 0), (rate, 0, 0))
+    measured: List[Tuple[int, int]] = []
+    closest = pybullet.getClosestPoints
+
+    def record(one: int, other: int, reach: float) -> object:
+        measured.append((one, other))
+        return closest(one, other, reach)
+    monkeypatch.setattr(pybullet, "getClosestPoints", record)
+    lab.steps(140)
+    reach = math.hypot(HALF, RADIUS) if rate else HALF
+    assert lab.pose(can).position[2] > reach   # it has touched nothing
+    # Of a plane and the box below it, the can meets the plane.
+    assert len(set(measured)) == partners
 
 
 @pytest.mark.parametrize("degrees", [0.05, 0.2, 1.0])

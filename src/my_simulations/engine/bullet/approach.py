@@ -6,7 +6,7 @@ from typing import AbstractSet, Dict, Sequence, Tuple
 
 import pybullet
 
-from ...geometry import Vec3, add, norm
+from ...geometry import Vec3, add, dot, norm
 from ..body_plan import BASE
 from .bodies import Body
 from .link_states import AT_REST, Motion, motion
@@ -64,3 +64,10 @@ def flies(body: Body, before: Vec3, now: Vec3, pull: Vec3) -> bool:
     """
     alone = add(before, pull) if body.parts[0].gravity else before
     return dist(now, alone) <= _SAME * (1.0 + norm(alone))
+
+
+def tumbles(angular: Vec3, gravity: Vec3, least: float) -> bool:
+    """Whether a body turns over at `least` rad/s; rotation about the vertical does not count."""
+    pull = norm(gravity)
+    about = dot(angular, gravity) / pull if pull > 0.0 else 0.0
+    return dot(angular, angular) - about * about > least * least

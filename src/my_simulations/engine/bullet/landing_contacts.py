@@ -9,8 +9,8 @@ corner too, and does not replace a better one.
 A periodic check finds flying bodies. For each, a search finds the bodies in reach of the next 16
 steps, and the distance to each of these gives the step of the next check. If two bodies fly side by
 side, one is checked again once the other has landed. A box or a can with a tilt beyond the limit of
-`LandingPoints` lands on a corner; it is checked again when it can have turned that far. Bodies that
-stand or sleep cost almost nothing.
+`LandingPoints` lands on a corner; it is checked again when it can have turned that far. A body that
+turns over fast is not searched for bodies in reach. Bodies that stand or sleep cost almost nothing.
 """
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ from ...geometry import (
 )
 from . import collision_groups
 from .agenda import Agenda
-from .approach import Motions, extent, flies
+from .approach import Motions, extent, flies, tumbles
 from .bodies import Body, Part
 from .body_events import COMMANDED, BodyEvent
 from .contact_points import DISTANCE, LOAD, NORMAL, OTHER_PLACE, PLACE, LinkKey
@@ -55,6 +55,7 @@ _BOUNCES = 4       # such checks until only the periodic check applies
 _SOFT = 2e-3       # m/s: a slower impact does not tilt the body
 _SETTLES = 2.5     # steps of free fall: a body placed at rest on a surface gains less speed
 _AHEAD = 16        # steps, at most, until the next check of a flying body
+_TUMBLES = 5.0     # rad/s across gravity: what turns over so fast lands on a corner or an edge
 _NONE = (0.0, 0.0, 0.0)
 _FOR_IMPACTS = Accuracy(10, 1e-15)
 """With 50 iterations, a block ten times as high as wide keeps turning after it lands at 10 m/s."""
@@ -126,16 +127,18 @@ class LandingContacts(StepHelper):
         self._moving: Set[int] = set()
         self._motions = Motions(self._moving)
         self._uneven: Dict[int, None] = {}  # with other shapes than boxes, spheres and planes
+        self._floors: Set[int] = set()      # boxes below planes: they touch what the planes do
         self._flights: Dict[int, _Flight] = {}
         self._agenda: Agenda[int] = Agenda()
         # By flying body: the step of the next search for bodies in reach, and those found last.
         self._near: Dict[int, Tuple[int, List[int]]] = {}
         self.body_tables = (self._bodies, self._meets, self._alone, self._moving, self._uneven,
-                            self._flights, self._agenda)
+                            self._floors, self._flights, self._agenda)
 
     def add(self, body: Body) -> None:
         """Register a new body; only bodies that can tilt as they land matter."""
         self._near.clear()
+        self._floors |= body.with_role("floor")
         known = (Box, Sphere, Empty) if body.moves else (Box, Sphere, Empty, Plane)
         if not all(isinstance(collision.geometry, known) for part in body.colliders
                    for collision in part.link.collisions):
@@ -248,12 +251,16 @@ class LandingContacts(StepHelper):
         flight.on_ground = 0
         flight.seen = (step, linear) if body.rigid else None
         flight.beside.clear()
+        later = step + _AHEAD
+        if tumbles(here.angular, gravity, _TUMBLES):
+            flight.pairs, flight.arrives = {}, step
+            self._agenda.plan(uid, later)
+            return []
         low, high = extent(flight.body)
         fall = norm(gravity) * dt
         spin = norm(here.angular) * norm(subtract(high, low))
         path = _Path(step, dt, here, low, high, fall, spin,
                      norm(linear) + spin + _AHEAD * fall)
-        later = step + _AHEAD
         touches: List[Touch] = []
         pairs: Dict[int, Tuple[int, int]] = {}
         until, near = self._near.get(uid, (step, []))
@@ -327,7 +334,7 @@ class LandingContacts(StepHelper):
         found = pybullet.getOverlappingObjects(
             subtract(path.low, margin), add(path.high, margin)) or ()
         return sorted({other for other, _ in found if other != uid
-                       and other not in flight.through
+                       and other not in self._floors and other not in flight.through
                        and (uid in self._uneven or other in self._uneven)})
 
     def _lies_in(self, flight: _Flight, other: int) -> bool:

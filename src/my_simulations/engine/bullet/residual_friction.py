@@ -24,6 +24,7 @@ from ...geometry import Vec3, add, conjugate, cross, dot, norm, rotate, scale, s
 from ..body_plan import BASE
 from . import collision_groups
 from .agenda import Agenda
+from .approach import tumbles
 from .bodies import Body
 from .body_events import COMMANDED, BodyEvent
 from .contact_points import (
@@ -158,7 +159,7 @@ class ResidualFriction(StepHelper):
         mended = self._each_step.get(uid) == 0
         rests = speed <= _FAST * _FAST and not mended and (speed == 0.0 or not self._is_held(uid))
         rolls = self._rolls(uid)
-        if rests or rolls or _tumbles(angular, gravity):
+        if rests or rolls or tumbles(angular, gravity, _TUMBLES):
             self._fast.pop(uid, None)
             soon = self._each_step.pop(uid, None) is not None or rolls
             return _REST_EVERY if speed == 0.0 else _FAST_EVERY if soon else _SLOW_EVERY
@@ -288,10 +289,3 @@ def _is_left(contact: ContactPoint) -> bool:
     Contacts of separated surfaces are excluded: their forces are of an older step.
     """
     return contact[LOAD] <= 0.0 and contact[FRICTION] != 0.0 and contact[DISTANCE] <= 0.0
-
-
-def _tumbles(angular: Vec3, gravity: Vec3) -> bool:
-    """Whether a body turns over; rotation about the vertical does not count."""
-    pull = norm(gravity)
-    about = dot(angular, gravity) / pull if pull > 0.0 else 0.0
-    return dot(angular, angular) - about * about > _TUMBLES * _TUMBLES
