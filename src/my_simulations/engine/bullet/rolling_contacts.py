@@ -57,6 +57,7 @@ _CREEP = 5e-3     # m/s: a slower cylinder counts as at rest
 _TURN = 0.2       # rad/s: the same for its angular velocity
 _LEVEL = 1e-3     # of gravity along the floor: a floor below it is level
 _ASLEEP = 3       # checks without velocity: then it sleeps, and Bullet does not move it
+_STEADY = 0.1     # m/s: a faster cylinder on a static floor is checked half as often
 _HINGED = 3       # checks until a rolling wheel, or a free link of an arm, is checked again
 _PATIENCE = 8     # checks until a sleeping or upright cylinder is checked again
 _SHIFT = 1e-5     # m between two checks: a shorter motion is drift
@@ -287,6 +288,8 @@ class RollingContacts(StepHelper):
                     and not on_moving and _is_level(contacts, gravity)):
                 self._keep_at_rest(uid, at, before)
                 return False
+            roller.wait = int(not on_moving and not seamed and norm(linear) > _STEADY)
+            roller.seen = None if roller.wait else at
         else:
             roller.wait = _HINGED
         return True
