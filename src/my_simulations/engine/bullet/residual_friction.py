@@ -153,15 +153,18 @@ class ResidualFriction(StepHelper):
         """
         if uid in self._new:
             return _SLOW_EVERY
+        if self._rolls(uid):
+            self._fast.pop(uid, None)
+            self._each_step.pop(uid, None)
+            return _FAST_EVERY
         linear, angular = pybullet.getBaseVelocity(uid)
         speed = max(dot(linear, linear), dot(angular, angular))
         checks = self._each_step.get(uid, _QUIET if uid in self._fast else 0)
         mended = self._each_step.get(uid) == 0
         rests = speed <= _FAST * _FAST and not mended and (speed == 0.0 or not self._is_held(uid))
-        rolls = self._rolls(uid)
-        if rests or rolls or tumbles(angular, gravity, _TUMBLES):
+        if rests or tumbles(angular, gravity, _TUMBLES):
             self._fast.pop(uid, None)
-            soon = self._each_step.pop(uid, None) is not None or rolls
+            soon = self._each_step.pop(uid, None) is not None
             return _REST_EVERY if speed == 0.0 else _FAST_EVERY if soon else _SLOW_EVERY
         if checks < _QUIET or speed < _MAY_STOP * _MAY_STOP:
             self._fast[uid], self._each_step[uid] = None, checks + 1
