@@ -203,6 +203,18 @@ def test_only_what_can_land_flat_is_measured_against_what_is_below(
     assert len(set(measured)) == partners
 
 
+def test_what_rolls_is_not_measured_against_its_floor(lab: Lab, monkeypatch: pytest.MonkeyPatch):
+    lab.load(ground())
+    can = _drop(lab, "can", (0, 0, RADIUS - HALF), quat_from_rpy(math.pi / 2, 0, 0))
+    lab.push(can, (0.1, 0, 0), (0, 0.1 / RADIUS, 0))
+    lab.steps(200)
+    measured: List[int] = []
+    monkeypatch.setattr(pybullet, "getClosestPoints", lambda one, *_: measured.append(one))
+    lab.steps(400)
+    assert lab.pose(can).position[0] == pytest.approx(0.06, abs=0.001)
+    assert measured == []
+
+
 @pytest.mark.parametrize("degrees", [0.05, 0.2, 1.0])
 def test_what_lands_almost_flat_does_as_a_box_does(lab: Lab, laws: Laws, degrees: float):
     lab.load(ground())

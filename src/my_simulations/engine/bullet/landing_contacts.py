@@ -179,12 +179,14 @@ class LandingContacts(StepHelper):
         return flight is not None and step < flight.arrives
 
     def see_rolling(self, links: Iterable[LinkKey], step: int) -> None:
-        """Record rolling links before their contacts are dropped: their bodies do not fly."""
+        """Plan the checks of rolling links before their contacts are dropped: they do not fly."""
         if self._agenda.next > step:
             return
         for uid in [uid for uid, _ in links if self._agenda.at(uid) <= step]:
-            if self._agenda.at(uid) <= step and uid in self._flights:
-                self._is_on_ground(self._flights[uid], step)
+            if self._agenda.at(uid) <= step:
+                flight = self._flights.get(uid) or self._find_flight(uid, step)
+                if flight is not None:
+                    self._is_on_ground(flight, step)
 
     def before(self, step: int, dt: float, gravity: Vec3) -> None:
         """Find flights periodically, and the contact points of those that end in this step."""
