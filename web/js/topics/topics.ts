@@ -28,7 +28,6 @@ export interface TopicsEvents {
 const PREFIX = 'ros:';
 const PERIOD = 2000;
 const TF = Object.freeze(['/tf', '/tf_static']);
-const TRANSFORMS = ['tf2_msgs/TFMessage', 'tf/tfMessage'];
 
 /** What a selected robot's topics of these types show by themselves, and how many at most. */
 const SENSED = Object.freeze({
@@ -220,6 +219,3 @@ export class Topics extends Emitter<TopicsEvents> {
     this.emit('view', view);
   }
 }
-
-/** Whether a topic tells tf. */
-export const tellsTransforms = (topic: Topic|undefined) => TRANSFORMS.includes(topic?.type ?? '');
