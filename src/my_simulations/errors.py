@@ -17,7 +17,7 @@ from __future__ import annotations
 
 import enum
 from dataclasses import dataclass, replace
-from typing import Dict, Iterable, List, Optional, Sequence
+from typing import Any, Dict, Iterable, List, Optional, Sequence
 
 _MOST_LINES = 5   # that `group_repeated` names
 
@@ -67,6 +67,10 @@ class Issue:
             if self.column:
                 parts.append(str(self.column))
         return ":".join(parts)
+
+    def to_json(self) -> Dict[str, Any]:
+        """Return all fields for JSON, the severity as text."""
+        return {**vars(self), "severity": self.severity.value}
 
     def __str__(self) -> str:
         where = f"{self.location}: " if self.location else ""

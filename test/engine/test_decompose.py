@@ -43,6 +43,11 @@ def box(size=(1.0, 1.0, 1.0), at=(0.0, 0.0, 0.0)):
     return made
 
 
+def decompose(mesh, **limits):
+    with decomposition.MeshDecomposer(**limits) as decomposer:
+        return decomposer.decompose(mesh)
+
+
 def angle():
     """An L, 2 m by 3 m, 1 m thick and deep, from the origin."""
     outline = np.array([(0, 0), (2, 0), (2, 1), (1, 1), (1, 3), (0, 3)], dtype=float)
@@ -359,7 +364,7 @@ def test_a_crash_leaves_the_hull_and_a_warning(tmp_path, monkeypatch, body):
 
 def test_work_that_stands_still_is_ended_and_not_kept(tmp_path, monkeypatch):
     with_vhacd(monkeypatch, tmp_path / "fake", "time.sleep(600)")
-    made = decomposition.decompose_mesh(angle(), cache_dir=str(tmp_path / "cache"), deadline=3.0)
+    made = decompose(angle(), cache_dir=str(tmp_path / "cache"), deadline=3.0)
     assert len(made.parts) == 1
     assert [one.code for one in decomposition_issues(made)] == ["mesh-not-decomposed"]
     assert not (tmp_path / "cache").exists()
@@ -369,7 +374,7 @@ def test_a_mesh_that_takes_too_much_processor_time_keeps_its_hull_at_once_the_ne
         tmp_path, monkeypatch):
     with_vhacd(monkeypatch, tmp_path / "fake", "[None for _ in iter(int, 1)]")
     folder = str(tmp_path / "cache")
-    for made in (decomposition.decompose_mesh(angle(), cache_dir=folder, cpu_seconds=2),
+    for made in (decompose(angle(), cache_dir=folder, cpu_seconds=2),
                  decomposition.ready_parts(angle(), cache_dir=folder)):
         assert len(made.parts) == 1
         assert [one.code for one in decomposition_issues(made)] == ["mesh-not-decomposed"]
@@ -384,7 +389,7 @@ def test_a_worker_divides_one_mesh_after_the_other_and_none_depends_on_those_bef
     with decomposition.MeshDecomposer(cache_dir=str(tmp_path / "one")) as divider:
         for mesh in (wide, angle()):
             last = divider.decompose(mesh)
-    alone = decomposition.decompose_mesh(angle(), cache_dir=str(tmp_path / "other"))
+    alone = decompose(angle(), cache_dir=str(tmp_path / "other"))
     assert len(last.parts) > 1 and arrays(last) == arrays(alone)
 
 
@@ -407,7 +412,7 @@ def test_a_thin_plate_gets_no_finer_voxels_than_a_block(tmp_path, monkeypatch):
     with_vhacd(monkeypatch, tmp_path / "fake",
                f"import shutil; shutil.copy(a[0], {seen!r}); os.abort()")
     plate = MeshData(angle().vertices * (1.0, 1.0, 0.01), angle().triangles)
-    decomposition.decompose_mesh(plate, cache_dir=str(tmp_path / "cache"))
+    decompose(plate, cache_dir=str(tmp_path / "cache"))
     lines = Path(seen).read_text().splitlines()
     points = np.array([line.split()[1:] for line in lines if line.startswith("v ")], float)
     used = {int(n) for line in lines if line.startswith("f ") for n in line.split()[1:]}

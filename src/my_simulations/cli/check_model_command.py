@@ -5,7 +5,6 @@ import argparse
 import json
 import os
 import sys
-from dataclasses import asdict
 from typing import Any, Dict, List, Optional, Sequence, Tuple, Union
 
 from ..description.actor import Actor
@@ -69,7 +68,7 @@ def main(argv: Optional[Sequence[str]] = None) -> int:
         failed = failed or bool(errors_of(issues))
         if options.json:
             print(json.dumps({"file": file, **counts(loaded),
-                              "issues": [_plain(issue) for issue in issues]}), flush=True)
+                              "issues": [issue.to_json() for issue in issues]}), flush=True)
         else:
             _show(file, loaded, issues)
     return 1 if failed else 0
@@ -195,10 +194,6 @@ def _nested(model: Model) -> int:
 
 def _plugins(model: Model) -> int:
     return len(model.plugins) + sum(map(_plugins, model.models))
-
-
-def _plain(issue: Issue) -> Dict[str, Any]:
-    return {**asdict(issue), "severity": issue.severity.value}
 
 
 def _show(file: str, loaded: Optional[Loaded], issues: Sequence[Issue]) -> None:

@@ -12,11 +12,6 @@ SCOPE = "::"
 """Separator between the names of a model and its link, joint or nested model."""
 
 
-def join_scope(*names: str) -> str:
-    """Join names to a scoped name, the outermost first."""
-    return SCOPE.join(names)
-
-
 def split_scoped(name: str, is_model: Callable[[str], bool]) -> Tuple[str, str]:
     """Split a scoped name into a model and the rest.
 

@@ -12,7 +12,7 @@ import struct
 import sys
 from typing import Any, Callable, Dict, List, Tuple
 
-from ..errors import InputError, Issue, error
+from ..errors import InputError, error
 
 _LARGE = 512 << 20
 _FILES = 64
@@ -102,15 +102,11 @@ def _answer(request: Dict[str, Any]) -> Tuple[Dict[str, Any], List[Any]]:
     except Exception as fault:  # the libraries raise various ones
         issues = [error(_code(request), f"it cannot be read: {type(fault).__name__}: {fault}",
                         file=path)]
-    return {"issues": [_issue_fields(issue) for issue in issues]}, []
+    return {"issues": [issue.to_json() for issue in issues]}, []
 
 
 def _code(request: Dict[str, Any]) -> str:
     return "mesh-unreadable" if request["task"] == "mesh" else "image-unreadable"
-
-
-def _issue_fields(issue: Issue) -> Dict[str, Any]:
-    return {**vars(issue), "severity": issue.severity.value}
 
 
 def main() -> None:

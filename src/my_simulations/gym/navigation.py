@@ -24,7 +24,6 @@ _HALF = 2.5        # m, from the centre of the room to a wall
 _MARGIN = 0.6      # m, from a wall to the centre of what is placed
 _APART = 1.4       # m, between the centres of what is placed
 _START = 2.0       # m, least distance of the mark from the robot
-_LASER = 0.08      # m, from the robot's origin to its laser
 _SAFE = 0.35       # m: no contact is possible if nothing is nearer to the laser
 _LIMITS = (FASTEST * 2, TURNS * 2)
 

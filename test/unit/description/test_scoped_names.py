@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from my_simulations.description.scoped_names import join_scope, split_scoped
+from my_simulations.description.scoped_names import split_scoped
 
 TABLE = Path(__file__).parents[2] / "data" / "scoped_names.json"
 CASES = json.loads(TABLE.read_text(encoding="utf-8"))["cases"]
@@ -13,7 +13,3 @@ CASES = json.loads(TABLE.read_text(encoding="utf-8"))["cases"]
 @pytest.mark.parametrize("case", CASES, ids=lambda case: case["says"])
 def test_longest_model_name_wins(case):
     assert split_scoped(case["name"], case["models"].__contains__) == tuple(case["split"])
-
-
-def test_names_are_joined_by_the_separator():
-    assert join_scope("arm", "hand", "finger") == "arm::hand::finger"

@@ -51,10 +51,10 @@ class TopicRequests:
     async def _topics(self, _client: Client, _message: Dict[str, Any]) -> Dict[str, Any]:
         if self._source is None:
             return {"available": False, "topics": []}
-        listed = await self._in_pool(self._source.topics)
+        listed = sorted(await self._in_pool(self._source.topics), key=lambda one: one.name)
         subscribed = self.live.traffic()
         return {"available": True,
-                "topics": [_document(one, subscribed.get(one.name)) for one in _ordered(listed)]}
+                "topics": [_document(one, subscribed.get(one.name)) for one in listed]}
 
     async def _fields(self, _client: Client, message: Dict[str, Any]) -> Dict[str, Any]:
         return {"fields": await self._in_pool(lambda: self._fields_of(message["topic"]))}
@@ -76,10 +76,6 @@ class TopicRequests:
             return numeric_fields(self.live.newest(name) or source.message(kind), source.message)
         except SimulationError as fault:
             raise CommandError(str(fault)) from fault
-
-
-def _ordered(listed: List[ListedTopic]) -> List[ListedTopic]:
-    return sorted(listed, key=lambda one: one.name)
 
 
 def _document(one: ListedTopic, subscribed: Optional[LiveTopic]) -> Dict[str, Any]:

@@ -156,15 +156,6 @@ class MeshDecomposer:
                 self._worker = None
 
 
-def decompose_mesh(mesh: MeshData, *, cache_dir: Optional[str] = None,
-                   deadline: float = _DEADLINE_S,
-                   cpu_seconds: int = _CPU_S) -> Decomposition:
-    """The convex parts of one mesh by a worker of its own; see `MeshDecomposer`."""
-    with MeshDecomposer(cache_dir=cache_dir, deadline=deadline,
-                        cpu_seconds=cpu_seconds) as decomposer:
-        return decomposer.decompose(mesh)
-
-
 def hull_only(mesh: MeshData) -> Decomposition:
     return Decomposition([mesh], NOT_DIVIDED)
 

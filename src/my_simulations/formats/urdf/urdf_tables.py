@@ -29,10 +29,6 @@ from ..xml.values import (
 FATAL, WARNING = FaultLevel.FATAL, FaultLevel.WARNING
 
 
-def _kept(*names: str) -> Dict[str, Entry]:
-    return {name: Kept() for name in names}
-
-
 def _ignored(*names: str) -> Dict[str, Entry]:
     """Elements that are known and not kept, because SDF, in which robots are saved, lacks them."""
     return {name: Kept(use=Use.IGNORED) for name in names}
@@ -172,7 +168,7 @@ GAZEBO_MODEL = Table("gazebo", Model, {
     "enable_wind": Value("enable_wind", BOOL, use=Use.PLUGINS),
     "plugin": Part(use=Use.PLUGINS), "link": Part(), "joint": Part(),
     "gripper": Kept(reported=True),
-    **_kept("frame", "canonicalBody", "selfCollide", "turnGravityOff"),
+    "frame": Kept(), "canonicalBody": Kept(), "selfCollide": Kept(), "turnGravityOff": Kept(),
 })
 """`<gazebo>` without a reference."""
 

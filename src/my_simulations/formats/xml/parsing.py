@@ -73,7 +73,7 @@ def parse(text: Union[str, bytes], file: str, log: IssueCollector) -> Any:
     _refuse_masses(data, file)
     try:
         root = etree.fromstring(
-            _declaration_first(data), _strict_parser("utf-8" if isinstance(text, str) else None)
+            _declaration_first(data), _parser("utf-8" if isinstance(text, str) else "", False)
         )
         if b"\xe2\x80\xb9" in data:  # a single guillemet, in UTF-8
             root = _retyped(data, root, file, log)
@@ -176,10 +176,6 @@ def _parser(encoding: str, recover: bool) -> Any:
     )
 
 
-def _strict_parser(encoding: Any) -> Any:
-    return _parser(encoding or "", False)
-
-
 def _decoded(data: bytes, was_text: bool, file: str, log: IssueCollector) -> str:
     if was_text:
         return data.decode("utf-8")
@@ -248,7 +244,7 @@ def _recover(text: str, fault: Any, file: str, log: IssueCollector) -> Any:
         entry for entry in parser.error_log
         if entry.domain_name != "NAMESPACE" and entry.level_name != "WARNING"
     ]
-    if root is None or _count(root) < result.elements:
+    if root is None or sum(1 for _ in root.iter()) < result.elements:
         message = faults[-1].message if faults else fault.msg
         raise _fault("xml-malformed", f"not well formed: {message}", file, line, column)
     for repair in result.repairs:
@@ -265,7 +261,3 @@ def _recover(text: str, fault: Any, file: str, log: IssueCollector) -> Any:
 
 def _only_lines(found: Any) -> bytes:
     return b"\n" * int(found.group().count(b"\n"))
-
-
-def _count(root: Any) -> int:
-    return sum(1 for _ in root.iter())
