@@ -188,12 +188,16 @@ def test_joint_frames_and_reversed_joints_keep_the_initial_poses(lab: Lab):
     assert lab.pose(model, "c").position == pytest.approx(moved, abs=1e-9)
 
 
-def test_a_model_moves_rigidly_and_joints_keep_their_positions(lab: Lab):
+def hinged_pair(lab: Lab):
     lab.configure(gravity=(0.0, 0.0, 0.0))
     inertial = inertial_of_box(1.0, 0.2, 0.2, 0.2)
-    model = lab.load(Model("m", links=[Link("a", inertial=inertial),
-                                       Link("b", Pose((1, 0, 0)), inertial)],
-                           joints=[Joint("hinge", "revolute", "a", "b", axis=JointAxis())]))
+    return lab.load(Model("m", links=[Link("a", inertial=inertial),
+                                      Link("b", Pose((1, 0, 0)), inertial)],
+                          joints=[Joint("hinge", "revolute", "a", "b", axis=JointAxis())]))
+
+
+def test_a_model_moves_rigidly_and_joints_keep_their_positions(lab: Lab):
+    model = hinged_pair(lab)
     lab.apply(SetJoints(((lab.joint_rows[model, "hinge"], 0.7, 2.0),)))
     lab.apply(SetModelState(model, Pose((0, 5, 0), quat_from_rpy(0, 0, 1)),
                             Twist((1, 0, 0), (0, 0, 2))))
@@ -207,11 +211,7 @@ def test_a_model_moves_rigidly_and_joints_keep_their_positions(lab: Lab):
 
 
 def test_setting_a_link_takes_its_articulated_body_along(lab: Lab):
-    lab.configure(gravity=(0.0, 0.0, 0.0))
-    inertial = inertial_of_box(1.0, 0.2, 0.2, 0.2)
-    model = lab.load(Model("m", links=[Link("a", inertial=inertial),
-                                       Link("b", Pose((1, 0, 0)), inertial)],
-                           joints=[Joint("hinge", "revolute", "a", "b", axis=JointAxis())]))
+    model = hinged_pair(lab)
     lab.apply(SetLinkState(lab.rows[model, "b"], Pose((3, 0, 0)), Twist((0, 1, 0))))
     lab.backend.read()
     assert lab.pose(model, "b").position == pytest.approx((3, 0, 0), abs=1e-9)
