@@ -10,7 +10,6 @@ from ..description.cost_budget import Cost
 from ..description.model import Joint, Model
 from ..description.model_plugins import has_plugins
 from ..description.saved_state import InitialState
-from ..description.scoped_names import join_scope
 from ..description.shapes import MeshTable
 from ..engine.commands import LinkState, ModelState
 from ..engine.ring import Snapshot
@@ -77,12 +76,12 @@ class Entity:
     @cached_property
     def scoped_links(self) -> Tuple[str, ...]:
         """`model::link` of each link, in the order of `link_names`."""
-        return tuple(join_scope(self.model.name, link) for link in self.link_names)
+        return tuple(f"{self.model.name}::{link}" for link in self.link_names)
 
     @cached_property
     def scoped_joints(self) -> Tuple[str, ...]:
         """`model::joint` of each joint axis, in the order of `joint_names`."""
-        return tuple(join_scope(self.model.name, joint) for joint in self.joint_names)
+        return tuple(f"{self.model.name}::{joint}" for joint in self.joint_names)
 
     @property
     def canonical_row(self) -> int:
