@@ -253,8 +253,8 @@ class Editor:
     def click(self, point, **options):
         self.page.mouse.click(*self.pixel(point), **options)
 
-    def place(self, tool, point):
-        """Takes a tool of the bar and clicks where its thing shall stand; returns the new name."""
+    def place(self, tool, point=(0.0, 0.0, 0.0)):
+        """Clicks a tool of the bar, then a point (m) of the world; returns the name of the new entity."""
         before = set(self.names())
         lights = set(self.get("editor.store.document.lights.map((light) => light.name)"))
         self.button(tool).click()

@@ -5,12 +5,8 @@ from pytest import approx
 from support import wait_for
 
 
-def with_box(editor, place=(0.0, 0.0)):
-    return editor.place("Box", (*place, 0.0))
-
-
 def test_a_duplicate_stands_beside_and_is_one_step(editor):
-    with_box(editor)
+    editor.place("Box")
     editor.page.keyboard.press("Control+d")
     wait_for(lambda: "unit_box_clone" in editor.names(), "the copy")
     editor.until("editor.store.selection.join() === 'unit_box_clone'", "its selection")
@@ -23,7 +19,7 @@ def test_a_duplicate_stands_beside_and_is_one_step(editor):
 
 
 def test_an_array_is_typed_in_a_dialog(editor):
-    with_box(editor)
+    editor.place("Box")
     editor.page.get_by_role("menuitem", name="Edit", exact=True).click()
     editor.page.get_by_role("menuitem", name="Array…").click()
     dialog = editor.page.get_by_role("dialog", name="Array")
@@ -57,7 +53,7 @@ def test_three_models_get_equal_gaps(editor):
 
 
 def test_hidden_and_locked_models_are_passed_over_by_the_mouse(editor):
-    with_box(editor)
+    editor.place("Box")
     middle = (0.0, 0.0, 0.5)
     editor.page.keyboard.press("l")
     row = editor.row("unit_box")
@@ -96,7 +92,7 @@ def test_a_drag_on_a_locked_model_moves_nothing_behind_it(editor):
 
 
 def test_all_means_no_ground(editor):
-    with_box(editor)
+    editor.place("Box")
     editor.page.keyboard.press("Escape")
     editor.page.locator("#view").focus()
     editor.page.keyboard.press("Control+a")
@@ -113,7 +109,7 @@ def test_a_light_is_flown_to_from_the_present_direction(editor):
 
 
 def test_a_new_world_is_seen_from_afar_and_an_opened_one_as_a_whole(editor):
-    with_box(editor)
+    editor.place("Box")
     editor.get("editor.view.moveTo('unit_box')")
     editor.rest()
     editor.get("editor.request('save', {path: 'seen_as_a_whole.world', overwrite: true})")

@@ -19,10 +19,6 @@ HINGED = """<sdf version="1.7"><model name="gate"><pose>0 0 1 0 0 0</pose>
 </model></sdf>"""
 
 
-def with_box(editor, place=(0.0, 0.0)):
-    return editor.place("Box", (*place, 0.0))
-
-
 def tag_of(editor, row):
     return editor.get(f"[...document.querySelectorAll('[role=treeitem]')].find((one) =>"
                       f" one.textContent.startsWith({row!r}))?.querySelector('.tag')?.textContent")
@@ -62,7 +58,7 @@ def test_a_plugin_of_the_world_is_added_set_undone_and_removed(editor):
 # -- properties -----------------------------------------------------------------------------------
 
 def test_a_typed_position_moves_the_model_and_is_what_services_tell(editor, node):
-    with_box(editor)
+    editor.place("Box")
     editor.row("unit_box").click()
     field = editor.field("pose x")
     field.fill("1.5")
@@ -75,12 +71,17 @@ def test_a_typed_position_moves_the_model_and_is_what_services_tell(editor, node
     assert editor.field("pose x").input_value() == "1.5"
 
 
-def test_masses_sizes_and_friction_are_set_where_they_are_shown(editor):
-    with_box(editor)
+def open_inertial(editor):
+    """Select the link of a new box and open its section Inertial."""
+    editor.place("Box")
     editor.row("unit_box").click()
     editor.page.keyboard.press("ArrowRight")
     editor.row("link").click()
     editor.page.get_by_text("Inertial", exact=True).click()
+
+
+def test_masses_sizes_and_friction_are_set_where_they_are_shown(editor):
+    open_inertial(editor)
     for label, text, path in (("mass", "2.5", "inertial.mass"),
                               ("size z", "0.5", "collisions[0].geometry.size[2]"),
                               ("friction mu", "0.3", "collisions[0].surface.mu")):
@@ -93,7 +94,7 @@ def test_masses_sizes_and_friction_are_set_where_they_are_shown(editor):
 
 
 def show_link_of_box(editor):
-    with_box(editor)
+    editor.place("Box")
     editor.row("unit_box").click()
     editor.page.keyboard.press("ArrowRight")
     editor.row("link").click()
@@ -141,11 +142,7 @@ def test_parts_of_a_vector_that_are_typed_quickly_are_all_kept(editor):
 
 
 def test_a_number_that_makes_no_sense_is_refused_and_the_old_one_comes_back(editor):
-    with_box(editor)
-    editor.row("unit_box").click()
-    editor.page.keyboard.press("ArrowRight")
-    editor.row("link").click()
-    editor.page.get_by_text("Inertial", exact=True).click()
+    open_inertial(editor)
     mass = editor.field("mass")
     mass.fill("-1")
     mass.press("Enter")
@@ -155,8 +152,8 @@ def test_a_number_that_makes_no_sense_is_refused_and_the_old_one_comes_back(edit
 
 
 def test_a_name_that_is_taken_is_refused_by_the_simulator_and_said_at_the_field(editor):
-    with_box(editor)
-    with_box(editor, (2.0, 1.0))
+    editor.place("Box")
+    editor.place("Box", (2.0, 1.0, 0.0))
     editor.row("unit_box_0").click()
     name = editor.field("name")
     name.fill("unit_box")
@@ -200,7 +197,7 @@ def test_lights_scene_and_fog_are_edited_in_the_panel(editor):
 # -- history ---------------------------------------------------------------------------------------
 
 def test_the_history_is_in_words_and_takes_back_several_steps_at_once(editor):
-    with_box(editor)
+    editor.place("Box")
     editor.place("Sphere", (2.0, 1.0, 0.0))
     editor.place("Point light", (-1.0, 1.0, 0.0))
     editor.button("Undo history").click()
@@ -218,8 +215,8 @@ def test_the_history_is_in_words_and_takes_back_several_steps_at_once(editor):
 # -- keyboard --------------------------------------------------------------------------------------
 
 def test_selecting_renaming_and_deleting_need_no_mouse(editor):
-    with_box(editor)
-    with_box(editor, (2.0, 1.0))
+    editor.place("Box")
+    editor.place("Box", (2.0, 1.0, 0.0))
     editor.row("unit_box_0").wait_for()
     press = editor.page.keyboard.press
     press("Escape")
@@ -282,7 +279,7 @@ def test_a_menu_opens_on_the_press_and_closes_on_the_next(editor):
 
 
 def test_letters_typed_into_fields_are_no_hotkeys(editor):
-    with_box(editor)
+    editor.place("Box")
     editor.page.keyboard.press("Control+f")
     editor.page.keyboard.type("ts box")
     assert editor.get("editor.store.mode") == "select"
@@ -329,7 +326,7 @@ def test_a_file_is_replaced_only_after_a_question(editor, node):
     path = os.path.join(node.worlds, "twice.world")
     with open(path, "w", encoding="utf-8") as stream:
         stream.write("precious")
-    with_box(editor)
+    editor.place("Box")
     dialog = save(editor, "twice")
     question = editor.page.get_by_role("dialog", name="Overwrite the file?")
     question.get_by_role("button", name="Cancel").click()
@@ -340,17 +337,17 @@ def test_a_file_is_replaced_only_after_a_question(editor, node):
     card = editor.page.locator(".notice", has_text="Saved")
     card.wait_for(state="visible")
     card.wait_for(state="detached")
-    with_box(editor, (2.0, 1.0))
+    editor.place("Box", (2.0, 1.0, 0.0))
     editor.page.keyboard.press("Control+s")
     wait_for(lambda: "unit_box_0" in open(path, encoding="utf-8").read(), "Ctrl+S")
     card.wait_for(state="visible")
 
 
 def test_unsaved_changes_are_asked_for_before_another_world_is_opened(editor, node):
-    with_box(editor)
+    editor.place("Box")
     save(editor, "one_box").wait_for(state="detached")
     editor.until("!editor.store.history.dirty", "the saved world")
-    with_box(editor, (2.0, 1.0))
+    editor.place("Box", (2.0, 1.0, 0.0))
     editor.page.keyboard.press("Control+o")
     question = editor.page.get_by_role("dialog", name="Save changes?")
     question.get_by_role("button", name="Don't save").click()
@@ -383,7 +380,7 @@ def test_what_is_wrong_in_an_opened_file_is_told_with_its_line(editor, node):
 
 def test_a_file_that_cannot_be_read_leaves_the_world_and_says_why(editor, node):
     write_world(node, "hollow.world", "<sdf version='1.6'>\n</sdf>\n")
-    with_box(editor)
+    editor.place("Box")
     save(editor, "kept").wait_for(state="detached")
     editor.until("!editor.store.history.dirty", "the saved world")
     editor.page.keyboard.press("Control+o")
@@ -413,7 +410,7 @@ def test_a_model_of_the_library_follows_the_mouse_and_is_placed_by_a_click(edito
 
 
 def test_a_force_from_the_dialog_pushes_the_box(editor):
-    with_box(editor)
+    editor.place("Box")
     editor.click((0.0, 0.0, 0.5), button="right")
     editor.page.get_by_role("menuitem", name="Apply Force/Torque").click()
     dialog = editor.page.get_by_role("dialog", name="Apply Force/Torque")
@@ -442,7 +439,7 @@ def opened_force_dialog(editor):
 
 
 def test_escape_in_the_view_closes_the_force_dialog_before_it_clears_the_selection(editor):
-    with_box(editor)
+    editor.place("Box")
     dialog = opened_force_dialog(editor)
     editor.page.locator("#view").focus()
     editor.page.keyboard.press("Escape")
@@ -453,7 +450,7 @@ def test_escape_in_the_view_closes_the_force_dialog_before_it_clears_the_selecti
 
 
 def test_the_force_dialog_closes_with_its_model(editor):
-    with_box(editor)
+    editor.place("Box")
     dialog = opened_force_dialog(editor)
     editor.page.locator("#view").focus()
     editor.page.keyboard.press("Delete")
@@ -525,7 +522,7 @@ def test_the_joints_panel_turns_a_hinge(editor):
 # -- plots, logs, messages -------------------------------------------------------------------------
 
 def test_a_falling_box_is_plotted_and_exported(editor, tmp_path):
-    name = with_box(editor)
+    name = editor.place("Box")
     editor.get(f"editor.actions.move({{{name!r}: [0, 0, 40, 0, 0, 0, 1]}})")
     editor.page.keyboard.press("Control+p")
     editor.page.get_by_label("Find a variable").fill(f"{name}.vz")
@@ -552,7 +549,7 @@ def test_a_falling_box_is_plotted_and_exported(editor, tmp_path):
 
 
 def test_what_was_recorded_is_replayed_with_a_slider(editor):
-    name = with_box(editor)
+    name = editor.place("Box")
     editor.get(f"editor.actions.move({{{name!r}: [0, 0, 3, 0, 0, 0, 1]}})")
     editor.page.keyboard.press("Alt+r")
     dialog = editor.page.get_by_role("dialog", name="Log Data")
@@ -575,7 +572,7 @@ def test_what_was_recorded_is_replayed_with_a_slider(editor):
 
 
 def test_a_video_of_the_view_is_recorded(editor, tmp_path):
-    with_box(editor)
+    editor.place("Box")
     editor.button("Record video").click()
     editor.page.keyboard.press("Escape")
     seen = [editor.get("editor.view.pixelOf('unit_box')")]
@@ -635,7 +632,7 @@ def drop(editor, name, data, point):
 
 
 def test_the_first_number_of_a_dialog_is_replaced_by_what_is_typed(editor):
-    name = with_box(editor)
+    name = editor.place("Box")
     editor.get(f"editor.store.select([{name!r}])")
     editor.get("editor.actions.arrayOfSelection()")
     field = editor.page.locator("dialog input").first
@@ -763,7 +760,7 @@ def test_several_models_are_set_together_and_an_empty_selection_gives_room(edito
 
 
 def test_rows_of_the_tree_say_whether_they_are_selected(editor):
-    with_box(editor)
+    editor.place("Box")
     editor.get("editor.store.select(['unit_box'])")
     for name, selected in (("unit_box", "true"), ("ground_plane", "false")):
         row = editor.row(name)
