@@ -123,8 +123,8 @@ def test_no_test_is_executable_since_completion_of_rosrun_lists_all_that_are():
     assert files and not [path for path in files if path.stat().st_mode & 0o111]
 
 
-OPTIONAL = {"hector_uav_msgs", "kobuki_msgs", "mav_msgs", "pal_control_msgs", "pr2_msgs",
-            "prius_msgs"}
+OPTIONAL = {"hector_uav_msgs", "kobuki_msgs", "mav_msgs", "pal_control_msgs", "pedsim_msgs",
+            "pr2_msgs", "prius_msgs"}
 """Packages of robots: their messages are used where their robot's packages are."""
 
 
