@@ -25,7 +25,9 @@ _Edges = Tuple[List[Tuple[int, List[ContactPoint]]], List[float], List[float], f
 """Each edge's wheel and contacts; mean positions along two directions of the plane, m; the sums of
 the loads, N, and of loads times positions, N m."""
 
-_NEAR = 1e-4   # m: an edge closer to the floor carries a load
+NEAR = 1e-4
+"""m: an edge closer to the floor carries a load."""
+
 _LYING = 0.02  # of the axle along the floor normal: a wheel tilted more has one edge
 _LEVEL = 1e-3  # m: floors with a larger height difference are not one plane
 _ALIKE = 0.999  # cosine: floors with a smaller one between their normals, likewise
@@ -90,7 +92,7 @@ def _edges(wheels: Sequence[Wheel]) -> Optional[_Edges]:
         sides: Tuple[List[ContactPoint], List[ContactPoint]] = ([], [])
         sums = [0.0, 0.0, 0.0, 0.0]
         for contact in contacts:
-            if contact[DISTANCE] >= _NEAR:
+            if contact[DISTANCE] >= NEAR:
                 continue
             (x, y, z), (p, q, r), load = contact[PLACE], contact[NORMAL], contact[LOAD]
             if (abs(x * nx + y * ny + z * nz - height) > _LEVEL
@@ -125,10 +127,13 @@ def _spread(xs: List[float], ys: List[float], total: float, x_load: float, y_loa
     x0, y0 = x0 / count, y0 / count
     xx, xy, yy = xx - count * x0 * x0, xy - count * x0 * y0, yy - count * y0 * y0
     x_load, y_load = x_load - total * x0, y_load - total * y0
-    span = xx * yy - xy * xy
-    if span <= 1e-9 * (xx + yy) ** 2:
+    span, size = xx * yy - xy * xy, xx + yy
+    if span > 1e-9 * size ** 2:
+        p, q = (yy * x_load - xy * y_load) / span, (xx * y_load - xy * x_load) / span
+    elif size > 0.0:   # all on one line, as the edges of two wheels on one axle
+        p, q = x_load / size, y_load / size
+    else:
         return None
-    p, q = (yy * x_load - xy * y_load) / span, (xx * y_load - xy * x_load) / span
     mean = total / count - p * x0 - q * y0
     loads = [mean + p * x + q * y for x, y in zip(xs, ys)]
     return loads if min(loads) > 0.0 else None

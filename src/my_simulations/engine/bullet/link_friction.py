@@ -18,7 +18,7 @@ from __future__ import annotations
 from math import hypot
 from typing import List, NamedTuple, Optional, Tuple
 
-from ...geometry import ZERO3, Vec3, cross, dot
+from ...geometry import ZERO3, Vec3, cross, dot, norm
 from .contact_points import NORMAL
 from .contact_slip import (
     STIFF,
@@ -34,6 +34,7 @@ from .contact_slip import (
 from .edge_loads import Loads
 from .link_states import AT_REST, Motion, motion
 from .surface_links import ContactMobility, SurfaceLink
+from .wheel_edges import wheel_edges
 
 _SOFT = 1.5          # steps of braking: a slip that would end sooner is reduced in proportion
 _GROWS = 1.0 / 16.0  # share of the missing force by which B grows in a step
@@ -60,7 +61,7 @@ class LinkFriction(NamedTuple):
     Attributes:
         forces: at each contact, N, world axes.
         bias: the new B, N, world axes.
-        slip: mean, m/s.
+        slip: mean, m/s; of the edges of a wheel against their middle if that is more.
         within: whether it is below Coulomb's limit at some contact.
     """
 
@@ -98,6 +99,16 @@ def link_friction(one: SurfaceLink, two: SurfaceLink, mine: Motion, loaded: Load
         dt: until the next computation, s.
         weight: gravity, m/s^2.
     """
+    edges = None if two.body.moves else wheel_edges(one.axle, mine, loaded[0])
+    if edges is None or edges.slip <= norm(mean_velocity(mine, *loaded)):
+        return _at_points(one, two, mine, loaded, bias, drive, dt, weight)
+    found = _at_points(one, two, mine, edges.points(loaded), bias, drive, dt, weight)
+    return found._replace(forces=edges.at_contacts(found.forces), slip=edges.slip)
+
+
+def _at_points(one: SurfaceLink, two: SurfaceLink, mine: Motion, loaded: Loads, bias: Vec3,
+               drive: Drive, dt: float, weight: float) -> LinkFriction:
+    """Return the friction at given points; arguments as for `link_friction`."""
     contacts, loads = loaded
     theirs = motion(two.uid, two.part.index) if two.body.moves else AT_REST
     mus = min(one.mus[0], two.mus[0]), min(one.mus[1], two.mus[1])

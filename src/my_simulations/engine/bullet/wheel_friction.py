@@ -14,12 +14,11 @@ friction back.
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from math import hypot
 from typing import Callable, Dict, Iterable, Iterator, List, NamedTuple, Optional, Set, Tuple
 
 import pybullet
 
-from ...geometry import ZERO3, Vec3, cross, norm, scale, subtract
+from ...geometry import ZERO3, Vec3, norm, scale, subtract
 from ..body_plan import BASE
 from ..drive_commands import WheelSlip
 from .bodies import Axis, Body
@@ -27,21 +26,20 @@ from .body_events import BodyEvent
 from .contact_points import (
     DISTANCE,
     LINK,
-    LOAD,
-    NORMAL,
     OTHER_BODY,
     OTHER_LINK,
     PLACE,
     ContactPoint,
     LinkKey,
 )
-from .contact_slip import direction_across, mean_slip, slips_along
-from .edge_loads import Loads, carrying, shared
+from .contact_slip import mean_velocity
+from .edge_loads import NEAR, Loads, carrying, shared
 from .extra_surfaces import anisotropy
 from .link_friction import Drive, link_friction
-from .link_states import AT_REST, Motion, hung_states, motion, motions
+from .link_states import Motion, hung_states, motion, motions
 from .step_helper import FAR, StepHelper, next_multiple
 from .surface_links import ContactMobility, SurfaceLink, contact_mobility, surface_links
+from .wheel_edges import wheel_edges
 
 EVERY = 16
 """Steps between two checks for sliding links."""
@@ -261,15 +259,15 @@ class WheelFriction(StepHelper):
         """Take the links of a body that slide on static bodies."""
         found: Dict[int, Contacts] = {}
         for contact in pybullet.getContactPoints(bodyA=uid):
-            if contact[LINK] in wheels and contact[LOAD] > 0.0 and contact[DISTANCE] <= 0.0:
+            if contact[LINK] in wheels and contact[DISTANCE] < NEAR:
                 found.setdefault(contact[LINK], []).append(contact)
-        for index, contacts in found.items():
-            if (uid, index) not in self._slides and not self._touches_others(contacts):
-                normal = contacts[0][NORMAL]
-                along = direction_across(normal)
-                slips = slips_along(contacts, (along, cross(normal, along)), motion(uid, index),
-                                    AT_REST)
-                if hypot(*mean_slip(slips, carrying(contacts)[1])) > _SLIDES:
+        for index, near in found.items():
+            contacts, loads = carrying(near)
+            if contacts and (uid, index) not in self._slides and not self._touches_others(contacts):
+                moves = motion(uid, index)
+                edges = wheel_edges(wheels[index].axle, moves, near)
+                if _SLIDES < max(norm(mean_velocity(moves, contacts, loads)),
+                                 0.0 if edges is None else edges.slip):
                     self._take((uid, index))
 
     def _begin(self, uid: int, gain: float) -> None:
