@@ -254,7 +254,7 @@ class Editor:
         self.page.mouse.click(*self.pixel(point), **options)
 
     def place(self, tool, point=(0.0, 0.0, 0.0)):
-        """Clicks a tool of the bar, then a point (m) of the world; returns the name of the new entity."""
+        """Clicks a tool of the bar, then a point (m); returns the name of the new entity."""
         before = set(self.names())
         lights = set(self.get("editor.store.document.lights.map((light) => light.name)"))
         self.button(tool).click()

@@ -8,7 +8,7 @@ import trimesh
 from axe_playwright_python.sync_playwright import Axe
 from test_building import Sheet
 from test_model_editor import build_cart
-from test_panels import drop, with_box
+from test_panels import drop
 from test_templates import form_of
 
 RULES = {"runOnly": ["wcag2a", "wcag2aa", "wcag21a", "wcag21aa", "best-practice"],
@@ -30,7 +30,7 @@ def check(editor):
 @pytest.mark.parametrize("scheme", ["dark", "light"])
 def test_the_window_with_a_selected_model(editor, scheme):
     editor.page.emulate_media(color_scheme=scheme)
-    name = with_box(editor)
+    name = editor.place("Box")
     editor.row(name).click()
     for summary in editor.page.locator(".properties details:not([open]) > summary").all():
         summary.click()
@@ -46,7 +46,7 @@ def test_the_tabs_of_the_left_panel(editor, tab):
 
 @pytest.mark.parametrize("name", DIALOGS)
 def test_dialogs_and_panels(editor, name):
-    editor.row(with_box(editor)).click()
+    editor.row(editor.place("Box")).click()
     editor.get(f"editor.store.emit('dialog', {{name: {name!r}}})")
     check(editor)
 
@@ -101,7 +101,7 @@ def open_button(editor, name):
 
 
 def test_messages_the_folder_dialogs_and_the_history(editor):
-    with_box(editor)
+    editor.place("Box")
     editor.get("editor.store.emit('issue', {severity: 'warning', message: 'odd', file: 'a.world',"
                " line: 3, xpath: '/sdf/world'})")
     open_button(editor, "Messages")
@@ -182,7 +182,7 @@ def test_the_import_of_a_floor_plan(editor):
 
 
 def test_the_questions_before_a_file_or_a_model_is_replaced(editor, node):
-    with_box(editor)
+    editor.place("Box")
     with open(os.path.join(node.typed, "there.world"), "w", encoding="utf-8") as there:
         there.write("<sdf version='1.6'><world name='default'/></sdf>")
     editor.page.keyboard.press("Control+Shift+s")
@@ -289,7 +289,7 @@ def test_a_world_is_built_run_and_saved_by_the_keyboard_alone(editor, node):
 
 
 def test_a_dialog_that_a_menu_opened_gives_the_focus_back(editor):
-    editor.row(with_box(editor)).click(button="right")
+    editor.row(editor.place("Box")).click(button="right")
     editor.page.get_by_role("menuitem", name="Apply Force/Torque").click()
     dialog = editor.page.get_by_role("dialog", name="Apply Force")
     dialog.wait_for()

@@ -411,6 +411,26 @@ def test_a_world_has_plugins_too(case, monkeypatch):
     assert OfTheWorld.found == [("world", ["robot"])]
 
 
+class Moving(Plugin):
+    faults = []
+
+    def load(self):
+        self.context.move_model("robot", Pose((1.0, 2.0, 3.0)))
+        try:
+            self.context.move_model("nobody", Pose())
+        except PluginError as fault:
+            self.faults.append(str(fault))
+
+
+def test_a_plugin_of_the_world_moves_models(case, monkeypatch):
+    monkeypatch.setattr(Moving, "faults", [])
+    one = case(robot(), extra={"libmoving.so": f"{__name__}:Moving"},
+               plugins=[PluginSpec("m", "libmoving.so", "<plugin/>", "a.world", 3)])
+    one.sim.clock.advance(1)
+    assert one.sim.states.model_state("robot")[0].position == (1.0, 2.0, 3.0)
+    assert "nobody" in Moving.faults[0]
+
+
 class Looking(Plugin):
     def load(self):
         self.context.use_namespace("eyes")
