@@ -385,6 +385,10 @@ class RingReader:
     def _copy(self, sequence: int) -> Optional[Snapshot]:
         slot = self.memory.slot(sequence)
         words, doubles = self.words, self.memory.doubles
+        held = words[HELD_STEP]
+        keep_order()
+        if words[POSES_ARE_NEWER]:   # it is the step of these poses
+            held = 0
         if words[slot + SEQ_END] != sequence:
             return None
         keep_order()
@@ -399,8 +403,8 @@ class RingReader:
         now = words[STEP]
         if not self._is_whole(slot, sequence):
             return None
-        if words[LATEST] == sequence and now > step and words[STATUS] == STATUS_PAUSED:
-            step = now
+        if words[LATEST] == sequence:
+            step = max(step, now if words[STATUS] == STATUS_PAUSED else held)
         return Snapshot(sequence, step, clock, links, joints)
 
     def _is_whole(self, slot: int, sequence: int) -> bool:

@@ -1,6 +1,7 @@
 """Values for plots, and the moment that they are of."""
 from __future__ import annotations
 
+import pytest
 from pytest import approx
 
 from my_simulations.editor.transport.watch_requests import WatchedValues
@@ -27,11 +28,25 @@ class Running:
         return [], Snapshot(1, self.written, Clock(0, 0, 10 ** 9), [], [])
 
 
+class Busy(Running):
+    """The same, with a snapshot of an earlier step."""
+
+    def latest(self):
+        return [], Snapshot(1, 800, Clock(0, 0, 10 ** 9), [], [])
+
+
 def test_a_value_has_the_time_of_the_state_that_it_is_read_from():
     world = Running()
     found = WatchedValues(world, None,
                           lambda _: None).pushes(["plot:iterations"])["plot:iterations"]
     assert found["value"] == world.written and found["time"] == approx(world.written * 1e-3)
+
+
+@pytest.mark.parametrize("topic, step", [
+    ("plot:box.vz", 800), ("joints:arm", 800), ("plot:sim_time", 820), ("plot:/odom.x", 820)])
+def test_states_have_the_time_of_their_snapshot_and_all_else_that_of_the_clock(topic, step):
+    found = WatchedValues(Busy(), None, lambda _: 1.0).pushes([topic])[topic]
+    assert found["time"] == approx(step * 1e-3)
 
 
 def test_time_goes_on_while_nothing_moves():

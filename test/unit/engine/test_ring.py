@@ -94,6 +94,19 @@ def test_the_step_count_runs_ahead_of_the_states_while_nothing_moves():
     assert (step, clock.sim_ns(step)) == (50, 50_000_000)
 
 
+def test_a_snapshot_has_the_last_step_at_which_nothing_had_moved():
+    writer, reader = _pair()
+    writer.words[ring.STATUS] = ring.STATUS_RUNNING
+    writer.write(1, CLOCK, _links([1.0] * 13), b"")
+    writer.set_step(50)
+    assert reader.read().step == 1
+    writer.mark_unchanged(50)
+    assert reader.read().step == 50
+    writer.write_poses(60, CLOCK, _links([2.0] * 13))
+    writer.mark_unchanged(70)   # of the poses
+    assert reader.read().step == 1
+
+
 def test_newer_poses_are_seen_beside_the_last_snapshot_until_the_next_one():
     writer, reader = _pair()
     writer.write(1, CLOCK, _links([1.0] * 13), b"")

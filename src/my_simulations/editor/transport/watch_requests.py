@@ -153,13 +153,14 @@ class WatchedValues:
         self._step, clock = self._world.clock.now()
         entities, snapshot = self._world.states.latest()
         names = {entity.model.name: entity for entity in entities}
-        # The snapshot may be older than the clock: while nothing moves, none is written.
         if snapshot.step > self._step:
             self._step, clock = snapshot.step, snapshot.clock
-        self._time = time = clock.sim_ns(self._step) * 1e-9
+        self._time = clock.sim_ns(self._step) * 1e-9
         found = {}
         for topic in topics:
-            push: Dict[str, Any] = {"type": "watch", "topic": topic, "time": time}
+            # A busy engine is ahead of its snapshots.
+            push: Dict[str, Any] = {"type": "watch", "topic": topic, "time": snapshot.sim_ns * 1e-9
+                                    if _is_state(topic) else self._time}
             try:
                 push.update(self._read(topic, names, snapshot))
             except (WatchedEntityMissingError, CommandError) as fault:
@@ -220,6 +221,12 @@ class WatchedValues:
         if field in _POSE:
             return (*pose.position, *rpy_from_quat(pose.orientation))[_POSE[field]]
         return (*twist.linear, *twist.angular)[_TWIST[field]]
+
+
+def _is_state(topic: str) -> bool:
+    """Whether a topic has values of a snapshot: states of models, links or joints."""
+    kind, _, rest = topic.partition(":")
+    return kind == "joints" or kind == "plot" and rest[:1] != "/" and rest not in _WORLD
 
 
 def _owner(names: Dict[str, Entity], name: str) -> Entity:
