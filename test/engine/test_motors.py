@@ -26,6 +26,7 @@ from my_simulations.engine.timed_forces import (
     FOREVER,
     AddTimedForces,
     ClearTimedForces,
+    JointPid,
     TimedEffort,
 )
 from my_simulations.geometry import STILL, Pose, quat_from_rpy
@@ -86,6 +87,16 @@ def test_a_damper_that_a_motor_cancels_takes_no_time_until_the_motor_changes(
     assert len(looks) >= 80
     lab.seconds(2.0)
     assert lab.joint(model)[1] == pytest.approx(1200.0 / 500.0, rel=0.01)
+
+
+def test_a_damper_acts_again_when_a_loop_takes_over_its_axis(lab: Lab):
+    model, row = wheel(lab, damping=500.0)
+    lab.apply(SetMotors((JointMotor(row, 2.0, 2000.0),)))
+    lab.steps(50)
+    assert lab.joint(model)[1] == pytest.approx(2.0, rel=1e-3)
+    lab.apply(AddTimedForces((TimedEffort(1, row, lab.step, FOREVER, pid=JointPid(0.0)),)))
+    lab.steps(50)
+    assert abs(lab.joint(model)[1]) < 1e-3
 
 
 def test_motors_that_dominate_their_dampers_do_not_need_the_mobility_of_each_new_pose(

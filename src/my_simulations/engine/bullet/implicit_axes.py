@@ -24,7 +24,7 @@ the effort of its motor can act for half a step only, until the axis has its rat
 from __future__ import annotations
 
 import math
-from typing import Any, Callable, Dict, List, NamedTuple, Optional, Sequence, Tuple
+from typing import Callable, Dict, List, NamedTuple, Optional, Sequence, Tuple
 
 import numpy as np
 import pybullet
@@ -49,31 +49,30 @@ Motor = Optional[Tuple[float, float]]
 """The rate of a motor, rad/s or m/s, and its largest effort, N m or N; None without a motor."""
 
 
-class _Cancelling(NamedTuple):
-    """Bounds within which a motor cancels the damper of its axis, in SI units.
+class _Bounds(NamedTuple):
+    """Bounds within which the motor of an axis cancels its damper, in SI units; none by default.
 
     Attributes:
-        slight: at a rate up to this one the damper does not matter.
+        largest_rate: at which the damper has the largest effort of the motor.
         target: rate of the motor.
         tolerance: of the target.
         load: effort of the damper at the target.
         most: largest effort of the motor.
     """
 
-    slight: float = -1.0
+    largest_rate: float = -1.0
     target: float = 0.0
     tolerance: float = -1.0
     load: float = 0.0
     most: float = 0.0
 
+    def is_below(self, share: float, rate: float) -> bool:
+        """Whether the damper is weaker than a share of the largest motor effort."""
+        return abs(rate) <= share * self.largest_rate
 
-def _still_cancelled(tests: Sequence[_Cancelling], states: Sequence[Any]) -> bool:
-    """Whether motors still cancel all dampers, from joint states of PyBullet."""
-    for (slight, target, tolerance, load, most), (_, rate, _, spent) in zip(tests, states):
-        if abs(rate) > slight and (
-                abs(rate - target) > tolerance or abs(spent + load) > most):
-            return False
-    return True
+    def cancels(self, rate: float, load: float) -> bool:
+        """Whether the motor keeps its rate against the damper and another load, N m or N."""
+        return abs(rate - self.target) <= self.tolerance and abs(load + self.load) <= self.most
 
 
 class ImplicitAxes:
@@ -110,7 +109,8 @@ class ImplicitAxes:
         self._efforts = [0.0] * len(self._rows)
         self._spent: Optional[List[float]] = None   # by motors, read before a save
         self.is_cancelled = False
-        self._tests: List[_Cancelling] = []         # of the last full check; [] for none
+        self._motors: List[Motor] = []
+        self._bounds: List[_Bounds] = []            # for these motors
 
     @property
     def first_row(self) -> int:
@@ -130,7 +130,7 @@ class ImplicitAxes:
         self._other, self._given = list(memory.other), list(memory.given)
         self._rates = None if memory.rates is None else list(memory.rates)
         self._efforts, self._spent = list(memory.efforts), list(memory.spent)
-        self.is_cancelled, self._tests = memory.cancelled, []
+        self.is_cancelled = memory.cancelled
 
     def due(self, step: int) -> int:
         """Return the first step, `step` or later, in which `add_to` must be called."""
@@ -142,19 +142,20 @@ class ImplicitAxes:
         `motor_of` returns the motor of the axis of a row.
         """
         states = pybullet.getJointStates(self._body.uid, self._indices)
-        if self.is_cancelled and self._tests and _still_cancelled(self._tests, states):
-            return
-        positions, rates = [state[0] for state in states], [state[1] for state in states]
+        rates = [state[1] for state in states]
+        # What motors spent in the last step, in which the dampers had `_efforts`.
         spent, self._spent = self._spent or [state[3] for state in states], None
         motors = [motor_of(row) for row in self._rows]
-        cancelled = [n for n, motor in enumerate(motors)
-                     if self._cancels(n, motor, rates[n], spent[n])]
-        self.is_cancelled = all(n in cancelled or self._is_below(_SLIGHT, n, motor, rates[n])
-                                for n, motor in enumerate(motors))
+        if motors != self._motors:
+            self._motors, self._bounds = motors, self._bounds_of(motors)
+        cancelled = [n for n, bounds in enumerate(self._bounds)
+                     if bounds.cancels(rates[n], spent[n] + self._efforts[n])]
+        self.is_cancelled = all(n in cancelled or bounds.is_below(_SLIGHT, rates[n])
+                                for n, bounds in enumerate(self._bounds))
         if self.is_cancelled:
             self._rates, self._efforts = None, [0.0] * len(rates)   # the estimate begins again
-            self._tests = [self._test_of(n, motor) for n, motor in enumerate(motors)]
             return
+        positions = [state[0] for state in states]
         if self._rates is not None:
             # Acceleration by all other forces: (w - w_before) / dt - given, smoothed.
             kept, per_rate, trust = self._others
@@ -162,8 +163,8 @@ class ImplicitAxes:
                            for other, rate, before, given in zip(
                                self._other, rates, self._rates, self._given)]
         if self._prepared_at is None or not all(
-                n in cancelled or self._is_below(_WEAK, n, motor, rates[n])
-                for n, motor in enumerate(motors)):
+                n in cancelled or bounds.is_below(_WEAK, rates[n])
+                for n, bounds in enumerate(self._bounds)):
             self._prepare_again(positions)
         known = [efforts.get(row, 0.0) for row in self._rows]
         answer = (self._answer @ np.array(rates + positions + self._other + known)
@@ -180,30 +181,17 @@ class ImplicitAxes:
         for row, before, effort in zip(self._rows, known, self._efforts):
             efforts[row] = before + effort
 
-    def _is_below(self, share: float, n: int, motor: Motor, rate: float) -> bool:
-        """Whether the damper of an axis is weaker than a share of the largest motor effort."""
-        return (motor is not None and not self._stiffness[n]
-                and abs(float(self._damping[n]) * rate) <= share * motor[1])
-
-    def _cancels(self, n: int, motor: Motor, rate: float, spent: float) -> bool:
-        """Whether a motor keeps its rate against the damper of an axis.
-
-        `spent` is its effort in the last step, in which the damper had `_efforts`.
-        """
-        if motor is None or self._stiffness[n]:
-            return False
-        target, most = motor
-        load = spent + self._efforts[n]
-        return (abs(rate - target) <= _AT_RATE * abs(target)
-                and abs(load + float(self._damping[n]) * target) <= most)
-
-    def _test_of(self, n: int, motor: Motor) -> _Cancelling:
-        damping = float(self._damping[n])
-        if motor is None or self._stiffness[n]:
-            return _Cancelling()
-        target, most = motor
-        return _Cancelling(_SLIGHT * most / abs(damping) if damping else math.inf,
-                           target, _AT_RATE * abs(target), damping * target, most)
+    def _bounds_of(self, motors: Sequence[Motor]) -> List[_Bounds]:
+        """Return the bounds of each axis; an axis with a spring has none."""
+        found = []
+        for motor, damping, stiffness in zip(motors, self._damping.tolist(), self._stiffness):
+            if motor is None or stiffness:
+                found.append(_Bounds())
+                continue
+            target, most = motor
+            found.append(_Bounds(most / abs(damping) if damping else math.inf, target,
+                                 _AT_RATE * abs(target), damping * target, most))
+        return found
 
     def _prepare_again(self, positions: List[float]) -> None:
         """Recompute the mobility if it may have changed; turning wheels do not change it."""
