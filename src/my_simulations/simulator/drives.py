@@ -102,12 +102,10 @@ class Drives:
                 commands.append(SetServos(tuple(steered)))
             if not commands:
                 return True
-            first, *others = commands
-            if others:
-                self._session.call(Batch(tuple(commands)))
-            elif wait or not isinstance(first, SetMotors) or not self._session.supervisor.post(
-                    first):
-                self._session.call(first)
+            command = Batch(tuple(commands)) if len(commands) > 1 else commands[0]
+            can_post = not wait and isinstance(command, SetMotors)
+            if not (can_post and self._session.supervisor.post(command)):
+                self._session.call(command)
             self._motors.update({motor.row: motor for motor in new})
             self._planar.update(moved)
             self._store_servos(steered)
