@@ -24,6 +24,7 @@ from my_simulations.description.shapes import (
     mesh_key,
 )
 from my_simulations.engine.commands import FOREVER, SetJoints, SetModelState
+from my_simulations.engine.drive_commands import JointMotor, SetMotors
 from my_simulations.engine.timed_forces import AddTimedForces, TimedWrench
 from my_simulations.geometry import Pose, Twist, quat_from_rpy
 
@@ -345,6 +346,22 @@ def test_a_sleeper_falls_when_its_support_is_moved_away(lab: Lab):
     lab.apply(SetModelState(table, Pose((10, 0, 2)), Twist()))
     lab.seconds(0.5)
     assert lab.pose(sleeper).position[2] < 2.0
+
+
+@pytest.mark.parametrize("rate", [-0.5, 0.5])
+def test_boxes_on_a_lift_that_stood_follow_it(lab: Lab, rate: float):
+    tray = slab("tray", (2, 2, 0.2)).links[0]
+    lift = Model("lift", links=[replace(tray, inertial=Inertial(50.0, Pose(), 5, 0, 0, 5, 0, 5))],
+                 joints=[Joint("rail", "prismatic", "world", tray.name,
+                               axis=JointAxis((0.0, 0.0, 1.0)))])
+    row = lab.joint_rows[lab.load(lift, (0, 0, 5)), "rail"]
+    lab.apply(SetMotors((JointMotor(row, 0.0, 1e4),)))
+    boxes = [lab.load(box(f"b{n}"), (0, 0, 5.6 + n)) for n in range(2)]
+    lab.seconds(5)
+    lab.apply(SetMotors((JointMotor(row, rate, 1e4),)))
+    lab.seconds(2)
+    for n, model in enumerate(boxes):
+        assert lab.pose(model).position[2] == pytest.approx(5.6 + n + 2 * rate, abs=0.01)
 
 
 def test_a_sleeper_moves_when_a_static_body_is_put_into_it(lab: Lab):

@@ -90,7 +90,7 @@ class HelperSet:
             lambda uid: self._rolling.drops_points_of(uid))
         self.forces = Forces(self._waker_for(BodyEvent.FORCE_APPLIED),
                              lambda rows: self.motors.yield_to(rows),
-                             lambda body, axis: self.motors.restore(body, axis),
+                             lambda body, axis: self.motors.restore(body, [axis]),
                              lambda row: self.motors.driven(row),
                              self.row_reader.read_links, self.row_reader.read_axes)
         self._friction = FrictionBalance(self.notices.misfit)
@@ -108,7 +108,8 @@ class HelperSet:
         self._stop = SurfaceStop()
         self.divergence = DivergenceStop(self.notices.stopped, lambda: self.forces.loaded_bodies,
                                           self.readout.mark_changed)
-        self.motors = JointMotors(self._axes, self._waker_for(BodyEvent.MOTOR_TARGET_CHANGED))
+        self.motors = JointMotors(self._axes,
+                                  partial(self._notify, BodyEvent.MOTOR_TARGET_CHANGED))
         self.planar = PlanarMotion(self._models, self.mover.present_model_pose,
                                    self._waker_for(BodyEvent.PLANAR_VELOCITY_CHANGED))
         self.wrenches = JointWrenches(self._models, self.forces, self.wheel_friction,

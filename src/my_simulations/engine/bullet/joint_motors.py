@@ -1,7 +1,7 @@
 """Motors of joint axes: a rate, and the largest effort for it (ODE's `vel` and `fmax`)."""
 from __future__ import annotations
 
-from typing import Callable, Dict, Iterable, List, Mapping, Optional, Set, Tuple
+from typing import Callable, Dict, Iterable, List, Mapping, Optional, Sequence, Set, Tuple
 
 import pybullet
 
@@ -14,12 +14,19 @@ from .joint_axes import specs_of
 
 
 class JointMotors(BodyObserver):
-    """Sets PyBullet's velocity motors; on axes without a motor they represent joint friction."""
+    """Sets PyBullet's velocity motors; on axes without a motor they represent joint friction.
+
+    A body with axes never sleeps, nor does what touches it. So nothing is woken for its motors.
+
+    Args:
+        axes: joint rows to bodies and their axes.
+        notify: called for each body whose motors have other targets.
+    """
 
     def __init__(self, axes: Mapping[int, Tuple[Body, Axis]],
-                 wake: Callable[[List[Body]], None]) -> None:
+                 notify: Callable[[Body], None]) -> None:
         self._axes = axes
-        self._wake = wake
+        self._notify = notify
         self._motors: Dict[int, JointMotor] = {}
         self._specs: Dict[int, JointAxis] = {}
         self._driven: Dict[int, Tuple[float, float]] = {}  # rates other than 0 now, and efforts
@@ -31,7 +38,8 @@ class JointMotors(BodyObserver):
         changed, self._yielding = rows ^ self._yielding, set(rows)
         for row in changed:
             if row in self._motors and row in self._axes:
-                self.restore(*self._axes[row])
+                body, axis = self._axes[row]
+                self.restore(body, [axis])
 
     def rate_of(self, row: int) -> float:
         """The rate to which an axis is driven, rad/s or m/s; 0 also for one that is not."""
@@ -54,24 +62,22 @@ class JointMotors(BodyObserver):
         for motor in changed:
             if motor.row not in self._axes:
                 raise CommandRefusedError("the joint of the motor does not exist")
-        woken: Dict[int, Body] = {}
+        moved: Dict[int, Tuple[Body, List[Axis]]] = {}
         for motor in changed:
-            body, axis = self._axes[motor.row]
-            before = self._motors.get(motor.row)
-            if before == motor:
-                continue
-            self._motors[motor.row] = motor
-            self.restore(body, axis)
-            woken[body.uid] = body
-        if woken:
-            self._wake(list(woken.values()))
+            if self._motors.get(motor.row) != motor:
+                self._motors[motor.row] = motor
+                body, axis = self._axes[motor.row]
+                moved.setdefault(body.uid, (body, []))[1].append(axis)
+        for body, axes in moved.values():
+            self.restore(body, axes)
+            self._notify(body)
 
     def set_up(self, body: Body, model: Model) -> None:
         """Apply motors, or friction, to axes whose limits and friction were set (again)."""
         for axis, spec in specs_of(body, model):
             self._specs[axis.row] = spec
             if axis.row in self._motors:
-                self.restore(body, axis)
+                self.restore(body, [axis])
             else:
                 self._note(axis.row, spec.motor_rate, spec.friction)
 
@@ -82,17 +88,23 @@ class JointMotors(BodyObserver):
             self._driven.pop(axis.row, None)
             self._efforts.pop(axis.row, None)
 
-    def restore(self, body: Body, axis: Axis) -> None:
-        """Enable the motor of an axis, or its friction if it has no motor."""
-        motor = self._motors.get(axis.row)
-        if motor is not None and motor.effort > 0.0 and axis.row not in self._yielding:
-            rate, effort = motor.rate, motor.effort
-        else:
-            spec = self._specs.get(axis.row) or JointAxis()
-            rate, effort = spec.motor_rate, max(0.0, spec.friction)
-        pybullet.setJointMotorControl2(body.uid, axis.index, pybullet.VELOCITY_CONTROL,
-                                       targetVelocity=rate, force=effort)
-        self._note(axis.row, rate, effort)
+    def restore(self, body: Body, axes: Sequence[Axis]) -> None:
+        """Enable the motors of axes of a body, or their friction where there is no motor."""
+        targets = [self._target_of(axis.row) for axis in axes]
+        pybullet.setJointMotorControlArray(
+            body.uid, [axis.index for axis in axes], pybullet.VELOCITY_CONTROL,
+            targetVelocities=[rate for rate, _ in targets],
+            forces=[effort for _, effort in targets])
+        for axis, target in zip(axes, targets):
+            self._note(axis.row, *target)
+
+    def _target_of(self, row: int) -> Tuple[float, float]:
+        """The rate of the motor or friction of an axis, rad/s or m/s, and its most effort."""
+        motor = self._motors.get(row)
+        if motor is not None and motor.effort > 0.0 and row not in self._yielding:
+            return motor.rate, motor.effort
+        spec = self._specs.get(row) or JointAxis()
+        return spec.motor_rate, max(0.0, spec.friction)
 
     def _note(self, row: int, rate: float, effort: float) -> None:
         self._efforts[row] = effort
