@@ -198,4 +198,5 @@ def symmetric_box(bounds: Sequence[float]) -> gymnasium.spaces.Box:
 
 def clipped_observation(space: gymnasium.spaces.Box, values: Sequence[float]) -> np.ndarray:
     """An observation of `symmetric_box`, cut to its bounds."""
-    return np.clip(np.asarray(values, dtype=np.float32), space.low, space.high)
+    # np.clip takes twice as long for so few numbers.
+    return np.minimum(np.maximum(np.asarray(values, dtype=np.float32), space.low), space.high)

@@ -92,6 +92,8 @@ class Registry:
         # By model id, in the order of models: one that goes costs no look at the others.
         self._plain_links: Dict[str, Dict[int, Tuple[Entity, int]]] = {}
         self._with_plugins: Dict[int, Entity] = {}
+        # By the name of a request, as long as no model comes, goes or changes.
+        self._joints: Dict[str, Tuple[Entity, Joint, int]] = {}
         self.revision = 0
 
     def __contains__(self, name: str) -> bool:
@@ -145,12 +147,14 @@ class Registry:
         self.revision += 1
 
     def _index_parts(self, entity: Entity) -> None:
+        self._joints.clear()
         for index, link in enumerate(entity.link_names):
             self._plain_links.setdefault(link, {})[entity.model_id] = entity, index
         if entity.has_plugins:
             self._with_plugins[entity.model_id] = entity
 
     def _forget_parts(self, entity: Entity) -> None:
+        self._joints.clear()
         for link in entity.link_names:
             del self._plain_links[link][entity.model_id]
             if not self._plain_links[link]:
@@ -216,10 +220,13 @@ class Registry:
 
         `joint::1` is the second axis. Models are searched in order. Raises UnknownEntityError.
         """
-        for entity, joint, number in self._joints_named(name):
-            self._joint_taken(name, entity)
-            return entity, joint, number
-        raise UnknownEntityError(f"unknown joint '{name}'" + self._nearest_joint(name))
+        found = self._joints.get(name) or next(self._joints_named(name), None)
+        if found is None:
+            raise UnknownEntityError(f"unknown joint '{name}'" + self._nearest_joint(name))
+        if name not in self._joints:
+            self._joints[name] = found
+            self._joint_taken(name, found[0])
+        return found
 
     def _joints_named(self, name: str) -> Iterator[Tuple[Entity, Joint, int]]:
         """The joint of a scoped name first, then those of that plain name, in order of models."""

@@ -122,8 +122,13 @@ def test_a_joint_is_found_plain_and_scoped_and_edited_in_place(case):
     sim.joints.edit("b::hinge", replace(joint, axis=JointAxis(damping=3.0)))
     assert sim.models.get("b").joints[0].axis.damping == 3.0
     assert sim.models.get("a").joints[0].axis.damping == 0.0
+    assert sim.joints.find("b::hinge")[1].axis.damping == 3.0
     with pytest.raises(UnknownEntityError):
         sim.joints.find("knee")
+    sim.models.delete("a")
+    assert sim.joints.find("hinge")[0] == "b"
+    with pytest.raises(UnknownEntityError):
+        sim.joints.find("a::hinge")
 
 
 def test_holding_an_unknown_model_is_refused_and_holds_nothing(case):
