@@ -164,7 +164,7 @@ def link_readings(entities: Sequence[Entity], snapshot: Snapshot) -> Readings:
 def joint_readings(entities: Sequence[Entity], snapshot: Snapshot) -> JointReadings:
     """Positions and rates of all joint axes of a snapshot."""
     names = [joint for entity in entities for joint in entity.scoped_joints]
-    table = np.frombuffer(snapshot.joints).reshape(-1, JOINT_WIDTH)
+    table = np.asarray(snapshot.joints).reshape(-1, JOINT_WIDTH)
     values = table[[row for entity in entities for row in entity.joint_rows]]
     return JointReadings(snapshot.sim_ns * 1e-9, NamedRows(names, values[:, 0]),
                          NamedRows(names, values[:, 1]))
@@ -187,7 +187,7 @@ def twist_row(twist: Twist) -> Tuple[float, ...]:
 
 
 def _link_table(snapshot: Snapshot) -> np.ndarray:
-    return np.frombuffer(snapshot.links).reshape(-1, LINK_WIDTH)
+    return np.asarray(snapshot.links).reshape(-1, LINK_WIDTH)
 
 
 def forces_by_pair(contacts: Sequence[ContactReading]) -> Dict[Tuple[str, str], np.ndarray]:
