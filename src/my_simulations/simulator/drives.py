@@ -70,16 +70,17 @@ class Drives:
 
     def set(self, motors: Sequence[JointMotor] = (),
             planar: Sequence[PlanarVelocity] = (), revision: Optional[int] = None,
-            servos: Sequence[JointServo] = (), wait: bool = True) -> bool:
+            servos: Sequence[JointServo] = ()) -> bool:
         """Set motors and servos by joint row, planar velocities by model id; others stay.
+
+        Motors alone are not waited for: the engine has them before all that is called afterwards,
+        and before it makes steps that a plugin host allows afterwards.
 
         Args:
             motors: joint motors by row; rate in rad/s or m/s, maximum effort in N m or N.
             planar: planar velocities by model id, m/s and rad/s.
             revision: `Models.revision` when the rows were looked up.
             servos: joint servos by row; one with an empty `drive` ends the servo.
-            wait: whether motors must be set in the engine when this returns; else they are before
-                all that is called afterwards. Use it only where `Clock.advance` makes the steps.
 
         Returns:
             False if the models have changed since then; nothing is set.
@@ -103,8 +104,7 @@ class Drives:
             if not commands:
                 return True
             command = Batch(tuple(commands)) if len(commands) > 1 else commands[0]
-            can_post = not wait and isinstance(command, SetMotors)
-            if not (can_post and self._session.supervisor.post(command)):
+            if not (isinstance(command, SetMotors) and self._session.supervisor.post(command)):
                 self._session.call(command)
             self._motors.update({motor.row: motor for motor in new})
             self._planar.update(moved)
@@ -141,7 +141,7 @@ class Drives:
             ended = [JointServo(motor.row, "") for motor in motors if motor.row in self._servos]
             if ended:
                 self.set(servos=ended)
-            self.set(motors, wait=False)
+            self.set(motors)
 
     def hold_axes(self, positions: Mapping[str, Tuple[float, float, float]]) -> None:
         """Move axes, given by name, to positions in one command and hold them there.
