@@ -9,6 +9,7 @@ from my_simulations.description.model import Inertial, Link, Model
 from my_simulations.description.plugin import PluginSpec
 from my_simulations.description.shapes import Box, Collision, Cylinder, Mesh, Sphere
 from my_simulations.geometry import Pose, Twist, cross, quat_from_rpy
+from my_simulations.plugins.context import PluginError
 from my_simulations.plugins.testing import FakeContext
 from my_simulations.plugins.world.actor_poses import ActorPoses
 from my_simulations.plugins.world.buoyancy import Buoyancy
@@ -187,3 +188,18 @@ def test_models_follow_the_agents_with_their_numbers():
         {"id": number, "pose": {"position": {"x": 2.0, "y": float(number), "z": 0.1},
                                 "orientation": {"z": 1.0}}} for number in (1, 2)])
     assert context.moved == {"1": Pose((2.0, 1.0, pytest.approx(0.85)), (0.0, 0.0, 1.0, 0.0))}
+
+
+def test_a_refused_pose_of_an_agent_is_reported_once_and_an_absent_model_is_not():
+    class Refusing(FakeContext):
+        def move_model(self, name, pose, twist=None):
+            raise PluginError("the orientation is not a rotation")
+
+    context = Refusing(model="world")
+    context.others = {"1": Model("1")}
+    ActorPoses(context).load()
+    for _ in range(2):
+        context.deliver("/pedsim_simulator/simulated_agents",
+                        agent_states=[{"id": 1}, {"id": 2}])
+    (warning,) = context.log_messages
+    assert "'1'" in warning and "the orientation is not a rotation" in warning

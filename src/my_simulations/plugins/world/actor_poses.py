@@ -5,8 +5,7 @@ the agent. It collides with other models, but nothing moves it from its way.
 """
 from __future__ import annotations
 
-import contextlib
-from typing import Any
+from typing import Any, Dict, Set
 
 from ...geometry import Pose
 from ..base import Plugin
@@ -21,11 +20,23 @@ class ActorPoses(Plugin):
     """Moves the models of agents when a message arrives."""
 
     def load(self) -> None:
+        self._reported: Set[str] = set()
         self.context.subscribe(_TOPIC, "pedsim_msgs/AgentStates", self._follow)
 
     def _follow(self, message: Any) -> None:
+        refused: Dict[str, PluginError] = {}
         for agent in message.agent_states:
-            at, turn = agent.pose.position, agent.pose.orientation
-            with contextlib.suppress(PluginError):   # an agent without a model
-                self.context.move_model(str(agent.id), Pose(
+            name, at, turn = str(agent.id), agent.pose.position, agent.pose.orientation
+            try:
+                self.context.move_model(name, Pose(
                     (at.x, at.y, at.z + _MIDDLE_M), (turn.x, turn.y, turn.z, turn.w)))
+            except PluginError as fault:
+                refused[name] = fault
+        if refused.keys() - self._reported:
+            self._report_present(refused)
+
+    def _report_present(self, refused: Dict[str, PluginError]) -> None:
+        """Report refused poses once per model; many agents do not have a model."""
+        for name in sorted(refused.keys() & self.context.models().keys() - self._reported):
+            self._reported.add(name)
+            self.context.warn(f"cannot move model {name!r}: {refused[name]}")
