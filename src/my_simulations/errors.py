@@ -20,6 +20,8 @@ from dataclasses import dataclass, replace
 from typing import Any, Dict, Iterable, List, Optional, Sequence
 
 _MOST_LINES = 5   # that `group_repeated` names
+_ONE_PER_MODEL = {"inertia-zero", "inertia-not-positive"}
+"""Codes of which `group_repeated` keeps one issue per model, whatever link the message names."""
 
 
 class Severity(enum.Enum):
@@ -101,7 +103,11 @@ def group_repeated(issues: Iterable[Issue]) -> List[Issue]:
     """
     places: Dict[Issue, List[Issue]] = {}
     for issue in issues:
-        places.setdefault(replace(issue, line=0, column=0, xpath=""), []).append(issue)
+        if issue.code in _ONE_PER_MODEL:
+            key = replace(issue, line=0, column=0, message="", xpath=_model_path(issue.xpath))
+        else:
+            key = replace(issue, line=0, column=0, xpath="")
+        places.setdefault(key, []).append(issue)
     found: List[Issue] = []
     for first, *others in places.values():
         lines = sorted({other.line for other in others if other.line})
@@ -113,6 +119,12 @@ def group_repeated(issues: Iterable[Issue]) -> List[Issue]:
         noun = "lines" if len(lines) > 1 else "line"
         found.append(replace(first, message=f"{first.message}; also in {noun} {shown}{more}"))
     return found
+
+
+def _model_path(xpath: str) -> str:
+    """The part of an XPath that leads to the innermost model, "" for the robot of a URDF."""
+    before, model, after = xpath.rpartition("/model")
+    return before + model + after.partition("/")[0]
 
 
 def tolerated_as_errors(issues: Iterable[Issue]) -> List[Issue]:

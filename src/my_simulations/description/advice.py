@@ -42,20 +42,30 @@ def find_advice(models: Sequence[Model], only: str = "") -> Iterator[Fault]:
             continue
         odd: List[Fault] = []
         shared: List[Fault] = []
+        thin: List[Fault] = []
         is_divided = _count_pieces(model) <= MOST_PIECES
         for name, link, _pose, static in links_of(model):
             for collision in link.collisions:
-                yield from _thin(collision, name)
+                thin += _thin(collision, name)
             if not static and not is_divided:
                 shared += _shared_friction(link, name)
             if not static:
                 odd += _odd_inertia(link, name)
-        for alike in (odd, shared):
-            if alike:
-                more = (f" (so it is with {len(alike) - 1} more of its links)"
-                        if len(alike) > 1 else "")
-                yield replace(alike[0], message=alike[0].message + more)
+        yield from first_with_count(thin, "collisions")
+        yield from first_with_count(odd, "links")
+        yield from first_with_count(shared, "links")
     yield from _overlaps(models, only)
+
+
+def first_with_count(alike: Sequence[Fault], parts: str) -> Iterator[Fault]:
+    """Return the first of alike faults of one model; its message counts the others.
+
+    `parts`: what has the faults, in the plural.
+    """
+    if alike:
+        more = (f" (as is true of {len(alike) - 1} more of the model's {parts})"
+                if len(alike) > 1 else "")
+        yield replace(alike[0], message=alike[0].message + more)
 
 
 def links_of(model: Model, above: Pose = IDENTITY, scope: str = "",

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from itertools import islice
 from typing import Any, Dict, Iterator, List, Mapping, Optional, Sequence
 
-from ..description.advice import find_advice, links_of, thin_mesh
+from ..description.advice import find_advice, first_with_count, links_of, thin_mesh
 from ..description.flatten import flatten_model
 from ..description.model import Link, Model
 from ..description.shapes import Mesh, MeshTable, mesh_key
@@ -48,7 +48,7 @@ def findings(models: Sequence[Model], meshes: Mapping[str, MeshTable],
     for model in models:
         table = meshes.get(model.name)
         if table and only in ("", model.name):
-            yield from _thin_meshes(model, table)
+            yield from first_with_count(list(_thin_meshes(model, table)), "collisions")
 
 
 def advice_issues(models: Sequence[Model], meshes: Mapping[str, MeshTable],

@@ -151,6 +151,20 @@ def test_a_shape_without_thickness_is_reported(found, shape):
     assert "shape-thin" in [i.code for i in found(solid("a", "0 0 5 0 0 0", shape, static=1))]
 
 
+def test_thin_shapes_of_a_model_are_one_warning(found, tmp_path):
+    (tmp_path / "flat.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nf 1 2 3\nf 2 4 3\n")
+
+    def three(name, shape):
+        collision = (f'<collision name="{{}}"><geometry>{shape}</geometry></collision>')
+        return (f'<model name="{name}"><static>1</static><link name="l">'
+                f'{"".join(map(collision.format, "abc"))}</link></model>')
+
+    issues = found(three("boxes", "<box><size>1 1 0.00001</size></box>"),
+                   three("meshes", "<mesh><uri>flat.obj</uri></mesh>"))
+    assert [issue.code for issue in issues] == ["shape-thin"] * 2
+    assert all("collision 'a'" in issue.message and "2 more" in issue.message for issue in issues)
+
+
 def test_a_flat_mesh_is_reported(found, tmp_path):
     (tmp_path / "flat.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nf 1 2 3\nf 2 4 3\n")
     issues = found(solid("a", "0 0 5 0 0 0", "<mesh><uri>flat.obj</uri></mesh>", static=1))

@@ -27,3 +27,16 @@ def test_issues_of_other_files_severities_and_places_without_lines_stay():
     kept = group_repeated([*issues[1:], unknown(0, 3)])
     assert kept == issues[1:]
     assert group_repeated([]) == []
+
+
+def test_inertia_that_links_lack_is_reported_once_for_each_model():
+    def zero(line, link, model="/sdf/world/model[1]"):
+        return warning("inertia-zero", f"the inertia of link {link!r} is zero", file="a.world",
+                       line=line, xpath=f"{model}/link[{line}]/inertial")
+
+    found = group_repeated([zero(1, "a"), zero(2, "b"), zero(3, "c"),
+                            zero(4, "a", "/sdf/world/model[2]"), zero(5, "b", "/robot"),
+                            zero(6, "c", "/robot")])
+    assert [issue.message for issue in found] == [
+        "the inertia of link 'a' is zero; also in lines 2, 3", "the inertia of link 'a' is zero",
+        "the inertia of link 'b' is zero; also in line 6"]
