@@ -234,13 +234,23 @@ class _Core:
 
 
 def _overlaps(models: Sequence[Model], only: str) -> Iterator[Fault]:
-    """Pairs of links of two models that overlap at the start, each with its deepest collision."""
-    deepest: Dict[Tuple[str, str], Tuple[float, Collision]] = {}
+    """Pairs of models that overlap at the start, each with its deepest collision."""
+    deepest: Dict[Tuple[str, str], Tuple[float, str, Collision]] = {}
     for mover, still, depth, collision in _insides(models, only):
-        if depth > deepest.get((mover, still), (DEEPEST_M, None))[0]:
-            deepest[mover, still] = depth, collision
-    for (mover, still), (depth, collision) in deepest.items():
-        yield _inside(mover, still, depth, collision)
+        pair = mover, _top_model(still)
+        if depth > deepest.get(pair, (DEEPEST_M,))[0]:
+            deepest[pair] = depth, still, collision
+    pairs: Dict[Tuple[str, str], List[Tuple[float, Fault]]] = {}
+    for (mover, other), (depth, still, collision) in deepest.items():
+        pairs.setdefault((_top_model(mover), other), []).append(
+            (depth, _inside(mover, still, depth, collision)))
+    for found in pairs.values():
+        found.sort(key=lambda one: -one[0])
+        yield from first_with_count([fault for _depth, fault in found], "links")
+
+
+def _top_model(scoped: str) -> str:
+    return scoped.partition("::")[0]
 
 
 def _insides(models: Sequence[Model], only: str) -> Iterator[Tuple[str, str, float, Collision]]:
