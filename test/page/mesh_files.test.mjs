@@ -26,6 +26,11 @@ test('a COLLADA material is clear only where its file says how that is meant', (
     `<up_axis>Y_UP</up_axis><phong><diffuse/></phong>${meant}`.replace(/\s/g, ''));
 });
 
+test('names in COLLADA may contain angle brackets', () => {
+  assert.equal(asGazeboReads('<node id="<STL_BINARY>" name="b">a < b</node>'),
+    '<node id="&lt;STL_BINARY>" name="b">a < b</node>');
+});
+
 test('animations of COLLADA are played whole, whatever clips the file names', () => {
   const keys = '<library_animations><animation id="a"/></library_animations>';
   assert.equal(asGazeboReads(`${keys}<library_animation_clips><animation_clip id="k" start="1" end="2">

@@ -370,6 +370,19 @@ def test_bytes_of_collada_that_are_not_utf_8_are_left_out_with_a_warning(tmp_pat
     assert warned.line == text[:text.index("\u00fc")].count("\n") + 1
 
 
+def test_names_in_collada_may_contain_angle_brackets(tmp_path):
+    """Assimp wrote such names; TinyXML accepts them."""
+    text = collada(("<asset>", '<asset a="<STL_BINARY>" b="a < b">'))
+    assert "<STL_BINARY>" in text
+    mesh = written(tmp_path, "a.dae", text.encode())
+    assert corners_of(load_mesh(mesh)) == CORNERS
+
+
+def test_the_first_mistake_of_collada_is_reported_if_escaping_names_does_not_help(tmp_path):
+    with pytest.raises(InputError, match="Unescaped"):
+        load_mesh(written(tmp_path, "a.dae", b'<COLLADA a="<b>"><asset>'))
+
+
 @pytest.mark.parametrize("encoding", ["utf-8", "iso-8859-1", "utf-16"])
 def test_collada_is_read_in_the_encoding_that_it_names(tmp_path, encoding):
     text = collada((DECLARATION, f"<?xml version='1.0' encoding='{encoding}'?>\n"),

@@ -38,6 +38,8 @@ const text = async (url: string, manager: LoadingManager) =>
 const UP_AXIS = /<up_axis>[^<]*<\/up_axis>/;
 const SHADING = /<(lambert|phong|blinn|constant)>.*?<\/\1>/gs;
 const CLIPS = /<library_animation_clips\b.*?<\/library_animation_clips>/gs;
+/** An attribute value with `<`, which XML does not allow and TinyXML accepts. */
+const ANGLE_IN_VALUE = /(?<==")[^"<\n]*<[^"\n]*(?=")/g;
 const HOW_CLEAR = /<(transparent|transparency)>.*?<\/\1>/gs;
 
 const PICTURE = /<texture\b[^>]*(?:\/>|>.*?<\/texture>)/s;
@@ -60,10 +62,11 @@ function withItsPicture(shading: string) {
 /**
  * COLLADA as Gazebo reads it, for three: coordinates are Z up whatever the file says (public issue
  * 1305); a material is clear only where the file says how that is meant (`opaque`), and has one
- * picture; animations are played whole, whatever clips it names.
+ * picture; animations are played whole, whatever clips it names; names may contain `<`.
  */
 export function asGazeboReads(content: string) {
-  const upright = content.replace(UP_AXIS, '<up_axis>Y_UP</up_axis>').replace(CLIPS, '');
+  const upright = content.replace(UP_AXIS, '<up_axis>Y_UP</up_axis>').replace(CLIPS, '')
+    .replace(ANGLE_IN_VALUE, (value) => value.replaceAll('<', '&lt;'));
   return upright.replace(SHADING, (shading) => withItsPicture(
     /<transparent\s[^>]*opaque\s*=/.test(shading) ? shading : shading.replace(HOW_CLEAR, '')));
 }

@@ -23,6 +23,8 @@ _LARGE_INDEX = re.compile(r"0*[1-9]\d{9,}")  # of 1e9 and more
 MOST_COLLADA_NODES = 100_000
 _NODE_TAGS = (b"<node", b"<instance_node", b"<instance_geometry", b"<instance_controller")
 _MOST_TAGS = 1_000_000  # an element takes about 200 bytes
+_ANGLE_IN_VALUE = re.compile(rb'(?<==")[^"<\n]*<[^"\n]*(?=")')
+"""An attribute value with `<`, which XML does not allow and TinyXML accepts: `name="<STL_BINARY>"`."""
 _NAMESPACE = "http://www.collada.org/2005/11/COLLADASchema"
 
 
@@ -55,12 +57,7 @@ def parse_collada(data: bytes) -> Any:
         raise MeshError("it declares entities, which are not read")
     if sum(map(data.count, _NODE_TAGS)) > MOST_COLLADA_NODES or data.count(b"<") > _MOST_TAGS:
         raise MeshError(f"it has more than {MOST_COLLADA_NODES} nodes or {_MOST_TAGS} tags")
-    parser = etree.XMLParser(resolve_entities=False, no_network=True, load_dtd=False,
-                             huge_tree=True, remove_comments=True, remove_pis=True)
-    try:
-        root = etree.fromstring(without_stray_bytes(data), parser)
-    except etree.XMLSyntaxError as fault:
-        raise MeshError(f"not well formed: {fault.msg}", fault.position[0]) from None
+    root = _parse_leniently(without_stray_bytes(data))
     name = etree.QName(root)
     if name.localname != "COLLADA":
         raise MeshError(f"expected <COLLADA>, found <{name.localname}>", 1)
@@ -68,6 +65,28 @@ def parse_collada(data: bytes) -> Any:
         for element in root.iter():
             element.tag = f"{{{_NAMESPACE}}}{_local(element)}"
     return root
+
+
+def _parse_leniently(data: bytes) -> Any:
+    """Parse XML; if that fails, parse it with `<` in attribute values escaped. Raises MeshError."""
+    from lxml import etree
+
+    def parse(text: bytes) -> Any:
+        return etree.fromstring(text, etree.XMLParser(
+            resolve_entities=False, no_network=True, load_dtd=False, huge_tree=True,
+            remove_comments=True, remove_pis=True))
+
+    try:
+        return parse(data)
+    except etree.XMLSyntaxError as fault:
+        mistake = MeshError(f"not well formed: {fault.msg}", fault.position[0])
+    escaped, count = _ANGLE_IN_VALUE.subn(lambda value: value.group().replace(b"<", b"&lt;"), data)
+    if not count:
+        raise mistake
+    try:
+        return parse(escaped)
+    except etree.XMLSyntaxError:
+        raise mistake from None
 
 
 class _Document:
