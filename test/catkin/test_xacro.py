@@ -66,6 +66,12 @@ def test_yaml_with_units_is_read_from_a_found_package(expanded, package):
     assert notes == ""
 
 
+def test_an_absent_file_is_named_without_a_traceback(tmp_path):
+    done = _run("xacro", str(tmp_path / "absent.urdf.xacro"))
+    assert done.returncode == 2
+    assert "Traceback" not in done.stderr and "absent.urdf.xacro" in done.stderr
+
+
 def test_functions_without_their_name_space_still_work_and_say_so(expanded, package):
     (package / "config" / "limits.yaml").write_text("top: 3\n")
     root, notes = expanded('<link top="${load_yaml(\'config/limits.yaml\')[\'top\']}"/>')
