@@ -118,7 +118,8 @@ class Parameters:
         try:
             return read(text)
         except (ValueError, KeyError):
-            self._warn(f"<{name}> must be {wanted}, it is {text!r}; {default!r} is used")
+            self._warn(f"<{name}> must be {wanted}, it is {text!r};"
+                       f" {parameter.default or repr(default)} is used")
             return default
 
 

@@ -46,3 +46,13 @@ def test_a_drive_declares_what_its_element_leaves_out():
     assert declared["wheelSeparation"] == PluginParameter("wheelSeparation", "number", "0.34")
     assert declared["odometrySource"].choices == ("encoder", "world")
     assert declared["commandTopic"].default == "cmd_vel"
+
+
+def test_a_warning_of_a_wrong_value_names_the_default_as_files_write_it():
+    warnings = []
+    parameters = Parameters("<plugin><source>Source</source><origin>1</origin></plugin>",
+                            warnings.append)
+    assert parameters.choice("source", {"encoder": True, "world": False}, False) is False
+    parameters.pose("origin")
+    assert [text.rpartition("; ")[2] for text in warnings] == [
+        "world is used", "0 0 0 0 0 0 is used"]
