@@ -100,8 +100,9 @@ link_companions() {
   local name target place real
   COMPANIONS=
   for name in cob_bringup_sim cob_gazebo_objects cob_gazebo_worlds control_msgs controller_manager \
-    controller_manager_msgs four_wheel_steering_msgs gazebo_msgs gazebo_ros joint_state_controller \
-    my_simulations_msgs teleop_twist_keyboard unitree_legged_msgs xacro; do
+    controller_manager_msgs force_torque_sensor_controller four_wheel_steering_msgs gazebo_msgs \
+    gazebo_ros imu_sensor_controller joint_state_controller my_simulations_msgs \
+    teleop_twist_keyboard unitree_legged_msgs xacro; do
     target="$CLONE/compat/$name"
     place="$WORKSPACE/src/$name"
     real=$(real_package "$name" "$WORKSPACE/src")

@@ -17,7 +17,8 @@ REPOSITORY = Path(__file__).resolve().parents[3]
 PACKAGE = "<package format='2'>\n  <!-- old -->\n  <name> {name} </name>\n</package>\n"
 
 CONTROL = ("cob_bringup_sim", "cob_gazebo_objects", "cob_gazebo_worlds", "control_msgs",
-           "controller_manager", "controller_manager_msgs")
+           "controller_manager", "controller_manager_msgs", "force_torque_sensor_controller")
+PARAMETERS = ("imu_sensor_controller", "joint_state_controller")
 
 
 @pytest.fixture
@@ -33,7 +34,7 @@ def make_clone(folder):
         (folder / name / "ours").write_text("ours")
         (folder / name / "both").write_text("ours")
     for name in (*CONTROL, "four_wheel_steering_msgs", "gazebo_msgs", "gazebo_ros",
-                 "joint_state_controller", "my_simulations_msgs", "my_simulations_underlay",
+                 *PARAMETERS, "my_simulations_msgs", "my_simulations_underlay",
                  "teleop_twist_keyboard", "unitree_legged_msgs", "xacro"):
         make_package(folder / "compat" / name, name)
     make_package(folder, "my_simulations")
@@ -174,7 +175,7 @@ def test_overlay_puts_ours_beside_the_users_package_and_touches_neither(clone, t
     assert done.returncode == 0, done.stderr
     source = home / "simulation_ws" / "src"
     assert sorted(path.name for path in source.iterdir()) == [
-        *CONTROL, "gazebo_msgs", "gazebo_ros", "joint_state_controller", "my_simulations",
+        *CONTROL, "gazebo_msgs", "gazebo_ros", *PARAMETERS, "my_simulations",
         "my_simulations_msgs", "my_simulations_underlay", "teleop_twist_keyboard", "xacro"]
     assert (source / "my_simulations_underlay").resolve() == \
         clone / "compat" / "my_simulations_underlay"
@@ -267,7 +268,7 @@ def linked(clone, home, script="", **variables):
 
 def test_companions_are_linked_where_nothing_is_installed(clone, tmp_path):
     assert linked(clone, tmp_path / "home") == [
-        *CONTROL, "gazebo_msgs", "gazebo_ros", "joint_state_controller", "my_simulations",
+        *CONTROL, "gazebo_msgs", "gazebo_ros", *PARAMETERS, "my_simulations",
         "my_simulations_msgs", "teleop_twist_keyboard", "xacro"]
 
 
@@ -294,7 +295,7 @@ def test_real_packages_are_preferred_to_the_companions(clone, tmp_path):
     for name in ("gazebo_msgs", "gazebo_ros"):
         make_package(share / name, name)
     found = linked(clone, tmp_path / "home", ROS_PACKAGE_PATH=str(share))
-    assert found == [*CONTROL, "joint_state_controller", "my_simulations", "my_simulations_msgs",
+    assert found == [*CONTROL, *PARAMETERS, "my_simulations", "my_simulations_msgs",
                      "teleop_twist_keyboard", "xacro"]
 
 
@@ -302,7 +303,7 @@ def test_real_package_in_the_workspace_is_preferred_too(clone, tmp_path):
     home = tmp_path / "home"
     make_package(home / "simulation_ws" / "src" / "gazebo" / "gazebo_msgs", "gazebo_msgs")
     assert linked(clone, home) == [
-        *CONTROL, "gazebo", "gazebo_ros", "joint_state_controller", "my_simulations",
+        *CONTROL, "gazebo", "gazebo_ros", *PARAMETERS, "my_simulations",
         "my_simulations_msgs", "teleop_twist_keyboard", "xacro"]
 
 
@@ -314,7 +315,7 @@ def test_real_gazebo_ros_can_be_overridden(clone, tmp_path, how):
     script = "common_option --use-companions" if how == "option" else ""
     more = {"MY_SIMULATIONS_OVERRIDE_GAZEBO_ROS": "1"} if how == "variable" else {}
     found = linked(clone, tmp_path / "home", script, ROS_PACKAGE_PATH=str(share), **more)
-    assert found == [*CONTROL, "gazebo_ros", "joint_state_controller", "my_simulations",
+    assert found == [*CONTROL, "gazebo_ros", *PARAMETERS, "my_simulations",
                      "my_simulations_msgs", "teleop_twist_keyboard", "xacro"]
 
 
@@ -325,7 +326,7 @@ def test_companion_goes_with_its_build_once_a_real_one_is_installed(clone, tmp_p
     built.mkdir(parents=True)
     make_package(tmp_path / "share" / "gazebo_msgs", "gazebo_msgs")
     found = linked(clone, home, ROS_PACKAGE_PATH=str(tmp_path / "share"))
-    assert found == [*CONTROL, "gazebo_ros", "joint_state_controller", "my_simulations",
+    assert found == [*CONTROL, "gazebo_ros", *PARAMETERS, "my_simulations",
                      "my_simulations_msgs", "teleop_twist_keyboard", "xacro"]
     assert not built.exists()
 
