@@ -26,12 +26,13 @@ def transmission(joint, *interfaces, actuated=True):
 class Arm:
     """A robot of joints `one` and `two`, or others, driven through an interface, and its
     controllers. `places` says where joints are, `kind` is the class of the plugin. An item of
-    `interfaces` can be several, in one string. `actuated` says whether transmissions have motors.
+    `interfaces` can be several, in one string. `actuated` says whether transmissions have motors;
+    `transmissions` replaces them.
     """
 
     def __init__(self, interface="hardware_interface/PositionJointInterface", inside="",
                  axis=None, parameters=None, interfaces=None, names=("one", "two"), places=None,
-                 kind=GazeboRosControl, actuated=True, **controllers):
+                 kind=GazeboRosControl, actuated=True, transmissions=None, **controllers):
         self.context = FakeContext(f"<plugin>{inside}</plugin>", joints=names)
         axis = axis or JointAxis((0.0, 0.0, 1.0), lower=-3.0, upper=3.0, effort=100.0,
                                  velocity=50.0)
@@ -40,8 +41,9 @@ class Arm:
             NS, links=[Link("base"), *(Link(name, pose=Pose((places or {}).get(
                 name, (0.0, 0.0, 0.0)))) for name in names)],
             joints=[Joint(name, "revolute", "base", name, axis=axis) for name in names],
-            transmissions=[transmission(name, *one.split(), actuated=actuated)
-                           for name, one in zip(names, kinds)])
+            transmissions=transmissions or [
+                transmission(name, *one.split(), actuated=actuated)
+                for name, one in zip(names, kinds)])
         for joint in self.context.description.joints:
             self.context.joints[joint.name].spec = joint
         self.context.ros_parameters = {NS: {**controllers, **(parameters or {})}}

@@ -261,6 +261,31 @@ def test_sensors_of_the_robot_are_published_by_their_names():
     assert (wrench.wrench.force.z, wrench.wrench.torque.x) == (-9.0, -0.5)
 
 
+def test_sensors_are_named_by_the_parameters_of_pal_hardware_gazebo():
+    arm = Arm(imus={"type": "imu_sensor_controller/ImuSensorController", "publish_rate": 50},
+              wrists={"type": "force_torque_sensor_controller/ForceTorqueSensorController",
+                      "publish_rate": 50},
+              imu={"base_imu": {"frame": "imu_frame", "gazebo_sensor_name": "trunk_imu"}},
+              force_torque={"wrist_ft": {"frame": "ft_link", "sensor_joint": "one"}})
+    context = arm.context
+    context.model_sensors = [("base", Sensor("trunk_imu", "imu", imu=Imu()))]
+    context.joint_wrenches = {"one": JointWrench((0.0, 0.0, 9.0), (0.5, 0.0, 0.0),
+                                                 (0.0, 0.0, 0.0, 1.0))}
+    arm.run("imus", "wrists")
+    context.link("base").pose = Pose()
+    context.advance(0.05)
+    assert arm.published("base_imu")[-1].header.frame_id == "imu_frame"
+    wrench = arm.published("wrist_ft")[-1]
+    assert (wrench.header.frame_id, wrench.wrench.force.z) == ("one", 9.0)
+
+
+def test_a_parameter_that_names_an_absent_imu_is_reported():
+    arm = Arm(imus={"type": "imu_sensor_controller/ImuSensorController", "publish_rate": 50},
+              imu={"base_imu": {"frame": "imu_frame", "gazebo_sensor_name": "trunk"}})
+    assert not arm.load("imus")
+    assert 'name="trunk"' in arm.context.log_messages[-1]
+
+
 @pytest.mark.parametrize("kind", ["imu_sensor_controller/ImuSensorController",
                                   "force_torque_sensor_controller/ForceTorqueSensorController"])
 def test_a_robot_without_such_sensors_is_told(kind):

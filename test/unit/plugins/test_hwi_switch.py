@@ -5,6 +5,7 @@ import pytest
 from robot_control import NS, Arm, transmission
 
 from my_simulations.description.model import Joint, Link, Model
+from my_simulations.description.transmission import Actuator, Transmission, TransmissionJoint
 from my_simulations.plugins.context import PluginError
 from my_simulations.plugins.control.gazebo_ros_control import PATIENCE_S, GazeboRosControl
 from my_simulations.plugins.control.hwi_switch import HwiSwitchGazeboRosControl
@@ -70,6 +71,16 @@ def test_a_joint_without_controller_keeps_the_interface_of_the_last_one():
 def test_gains_do_not_change_the_interface():
     robot = arm(gazebo_ros_control={"pid_gains": {"one": {"p": 10.0}}})
     assert robot.context.joints["one"].servo.drive_gains is None
+
+
+def test_hardware_of_pal_moves_each_joint_of_a_differential_transmission():
+    robot = Arm(inside="<robotSimType>pal_hardware_gazebo/PalHardwareGazebo</robotSimType>",
+                transmissions=[Transmission("wrist", joints=[
+                    TransmissionJoint(name, ALL.split()) for name in ("one", "two")],
+                    actuators=[Actuator("left"), Actuator("right")])], **CONTROLLERS)
+    robot.run("by_velocity")
+    assert (drive_of(robot), drive_of(robot, "two")) == ("velocity", "position")
+    assert robot.context.log_messages == []
 
 
 def test_the_default_hardware_has_the_first_interface_only():

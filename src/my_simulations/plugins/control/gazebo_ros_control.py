@@ -7,7 +7,7 @@ from ...description.transmission import Transmission
 from ..base import Plugin
 from ..context import CallHandle, Context
 from .franka import FrankaArm
-from .hardware import Hardware, SwitchingHardware
+from .hardware import Hardware, PalHardware, SwitchingHardware
 from .manager import ControllerManager
 from .quadrotor_hardware import QuadrotorHardware
 from .steer_bot_hardware import SteerBotHardware
@@ -17,6 +17,7 @@ DEFAULT, SWITCHING = ("gazebo_ros_control/DefaultRobotHWSim",
 FRANKA = "franka_gazebo/FrankaHWSim"
 _HARDWARE: Mapping[str, Type[Hardware]] = {
     DEFAULT: Hardware, FRANKA: Hardware, SWITCHING: SwitchingHardware,
+    "pal_hardware_gazebo/PalHardwareGazebo": PalHardware,
     "steer_bot_hardware_gazebo/SteerBotHardwareGazebo": SteerBotHardware,
     "hector_quadrotor_controller_gazebo/QuadrotorHardwareSim": QuadrotorHardware}
 

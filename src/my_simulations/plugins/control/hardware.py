@@ -248,6 +248,14 @@ class SwitchingHardware(Hardware):
     switches = True
 
 
+class PalHardware(SwitchingHardware):
+    """Joints of PAL's robots; transmissions can have several. Source: pal_hardware_gazebo."""
+
+    def __init__(self, context: Context, transmissions: Sequence[Transmission]) -> None:
+        super().__init__(context, [replace(one, joints=[joint]) for one in transmissions
+                                   for joint in one.joints])
+
+
 def _interface(name: str) -> str:
     """`hardware_interface::EffortJointInterface` of any spelling."""
     return "hardware_interface::" + name.replace("::", "/").rpartition("/")[2].strip()

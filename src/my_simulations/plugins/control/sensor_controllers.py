@@ -2,11 +2,12 @@
 
 Topics, rates and frames are those of ros_controllers. In Gazebo a robot's own hardware interface
 brings the sensors; here they are the `<sensor>`s of the model of type imu, and of type force_torque
-of its joints.
+of its joints. Parameters of pal_hardware_gazebo, `imu` and `force_torque`, name sensors and their
+frames instead.
 """
 from __future__ import annotations
 
-from typing import Any, Callable, Dict, List, Optional, Tuple
+from typing import Any, Callable, Dict, List, NamedTuple, Optional
 
 from ...description.model import Joint
 from ...description.sensor import ForceTorque, Sensor
@@ -16,6 +17,7 @@ from ...sensing.models.motion import acceleration_between, velocity_at
 from ..context import Link, PluginError, Publication
 from ..frames import stamp_message
 from .controller import Controller
+from .settings import Settings
 
 _HANDLES = 4  # messages in a topic's queue, as the original
 
@@ -28,10 +30,24 @@ class _SensorController(Controller):
             raise PluginError(f"parameter {self.name}/publish_rate is missing")
         return self.settings.number("publish_rate", 0.0)
 
+    def _named_sensors(self, kind: str, needed: str) -> Dict[str, Settings]:
+        """Sensors that parameters name, as pal_hardware_gazebo reads them."""
+        found = self.context.parameter(kind, {})
+        return {name: Settings(self.context, f"{kind}/{name}", entry)
+                for name, entry in (found.items() if isinstance(found, dict) else ())
+                if isinstance(entry, dict) and needed in entry}
+
     def _offer(self, name: str, kind: str) -> Publication:
         topic = self.context.publish(name, kind, _HANDLES)
         self.keep(topic)
         return topic
+
+
+class _ImuTopic(NamedTuple):
+    sensor: Sensor
+    link: Link
+    frame: str
+    topic: Publication
 
 
 class ImuSensorController(_SensorController):
@@ -39,18 +55,26 @@ class ImuSensorController(_SensorController):
 
     def load(self) -> None:
         self._hertz = self._rate()
-        self._sensors: List[Tuple[Sensor, Link, Publication]] = []
-        for link, sensor in self.context.sensors():
-            if sensor.type == "imu":
-                self._sensors.append((sensor, self.context.link(link),
-                                      self._offer(sensor.name, "sensor_msgs/Imu")))
+        self._sensors: List[_ImuTopic] = []
+        imus = {sensor.name: (link, sensor) for link, sensor in self.context.sensors()
+                if sensor.type == "imu"}
+        named = self._named_sensors("imu", "gazebo_sensor_name")
+        topics = [(name, settings.text("gazebo_sensor_name"), settings.text("frame", ""))
+                  for name, settings in named.items()] or [(name, name, "") for name in imus]
+        for topic, name, frame in topics:
+            if name not in imus:
+                raise PluginError(f"parameter imu/{topic}/gazebo_sensor_name: the robot has no"
+                                  f" <sensor type=\"imu\" name=\"{name}\">")
+            link, sensor = imus[name]
+            self._sensors.append(_ImuTopic(sensor, self.context.link(link), frame or link,
+                                           self._offer(topic, "sensor_msgs/Imu")))
         if not self._sensors:
             raise PluginError(f"controller '{self.name}': the robot has no <sensor type=\"imu\">")
 
     def start(self) -> None:
         self._before: Dict[str, Any] = {}
         if self._hertz > 0.0:
-            self.observe(self._hertz, self._publish_all, [topic for _, _, topic in self._sensors],
+            self.observe(self._hertz, self._publish_all, [one.topic for one in self._sensors],
                          resume=self._resume)
 
     def _resume(self) -> None:
@@ -58,7 +82,7 @@ class ImuSensorController(_SensorController):
         self._publish_all()
 
     def _publish_all(self) -> None:
-        for sensor, link, topic in self._sensors:
+        for sensor, link, frame, topic in self._sensors:
             now_ns, now = self.context.now_ns, velocity_at(link.pose, link.twist, sensor.pose)
             then_ns, then = self._before.get(sensor.name, (now_ns, now))
             self._before[sensor.name] = (now_ns, now)
@@ -66,7 +90,7 @@ class ImuSensorController(_SensorController):
                 continue
             sample = measure(link.pose, link.twist, acceleration_between(
                 then, now, (now_ns - then_ns) * 1e-9), self.context.gravity, sensor.pose)
-            message = stamp_message(self.context, "sensor_msgs/Imu", link.name)
+            message = stamp_message(self.context, "sensor_msgs/Imu", frame)
             turn = message.orientation
             turn.x, turn.y, turn.z, turn.w = sample.orientation
             rate, push = message.angular_velocity, message.linear_acceleration
@@ -82,7 +106,16 @@ class ForceTorqueSensorController(_SensorController):
         self._hertz = self._rate()
         self._measurements: List[Callable[[], None]] = []
         self._topics: List[Publication] = []
-        for joint in self.context.description.joints:
+        self._joints: List[str] = []
+        joints = self.context.description.joints
+        named = self._named_sensors("force_torque", "sensor_joint")
+        for name, settings in named.items():
+            joint = self.context.joint(settings.text("sensor_joint")).spec
+            # The frame of the parameters can be a link that was merged with the joint's child.
+            self._measurements.append(self._advertise_wrench(joint, Sensor(
+                name, "force_torque", force_torque=ForceTorque(
+                    measure_direction="parent_to_child"))))
+        for joint in () if named else joints:
             for sensor in joint.sensors:
                 if sensor.type == "force_torque":
                     self._measurements.append(self._advertise_wrench(joint, sensor))
@@ -93,6 +126,7 @@ class ForceTorqueSensorController(_SensorController):
     def _advertise_wrench(self, joint: Joint, sensor: Sensor) -> Callable[[], None]:
         topic = self._offer(sensor.name, "geometry_msgs/WrenchStamped")
         self._topics.append(topic)
+        self._joints.append(joint.name)
         block: Optional[ForceTorque] = sensor.force_torque
         frame, direction = (block.frame, block.measure_direction) if block is not None else (
             "child", "child_to_parent")
@@ -114,9 +148,7 @@ class ForceTorqueSensorController(_SensorController):
 
     def start(self) -> None:
         if self._hertz > 0.0:
-            self.observe(self._hertz, self._publish_all, self._topics, wrenches=[
-                joint.name for joint in self.context.description.joints
-                if any(sensor.type == "force_torque" for sensor in joint.sensors)])
+            self.observe(self._hertz, self._publish_all, self._topics, wrenches=self._joints)
 
     def _publish_all(self) -> None:
         for publish in self._measurements:
