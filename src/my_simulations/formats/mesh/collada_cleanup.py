@@ -24,7 +24,7 @@ MOST_COLLADA_NODES = 100_000
 _NODE_TAGS = (b"<node", b"<instance_node", b"<instance_geometry", b"<instance_controller")
 _MOST_TAGS = 1_000_000  # an element takes about 200 bytes
 _ANGLE_IN_VALUE = re.compile(rb'(?<==")[^"<\n]*<[^"\n]*(?=")')
-"""An attribute value with `<`, which XML does not allow and TinyXML accepts: `name="<STL_BINARY>"`."""
+"""An attribute value with `<`: not allowed in XML, accepted by TinyXML; `name="<STL_BINARY>"`."""
 _NAMESPACE = "http://www.collada.org/2005/11/COLLADASchema"
 
 
