@@ -20,7 +20,7 @@ from dataclasses import dataclass, replace
 from typing import Any, Dict, Iterable, List, Optional, Sequence
 
 _MOST_LINES = 5   # that `group_repeated` names
-_ONE_PER_MODEL = {"inertia-zero", "inertia-not-positive"}
+_ONE_PER_MODEL = {"inertia-zero", "inertia-not-positive", "inertia-impossible"}
 """Codes of which `group_repeated` keeps one issue per model, whatever link the message names."""
 
 

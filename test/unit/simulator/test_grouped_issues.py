@@ -1,6 +1,8 @@
 """Issues that a file repeats are logged once."""
 from __future__ import annotations
 
+import pytest
+
 from my_simulations.errors import error, group_repeated, warning
 
 
@@ -29,9 +31,10 @@ def test_issues_of_other_files_severities_and_places_without_lines_stay():
     assert group_repeated([]) == []
 
 
-def test_inertia_that_links_lack_is_reported_once_for_each_model():
+@pytest.mark.parametrize("code", ["inertia-zero", "inertia-not-positive", "inertia-impossible"])
+def test_inertia_that_links_lack_is_reported_once_for_each_model(code):
     def zero(line, link, model="/sdf/world/model[1]"):
-        return warning("inertia-zero", f"the inertia of link {link!r} is zero", file="a.world",
+        return warning(code, f"the inertia of link {link!r} is zero", file="a.world",
                        line=line, xpath=f"{model}/link[{line}]/inertial")
 
     found = group_repeated([zero(1, "a"), zero(2, "b"), zero(3, "c"),
