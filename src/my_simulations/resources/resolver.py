@@ -161,7 +161,7 @@ class Resolver:
         """Text and hint of an issue about a missing URI.
 
         An existing, similar URI comes first in the hint; the text then names no places. The text
-        about an unknown package has no URI: it is the same for all files of the package, so that
+        about an unknown package or model has no URI: it is the same for all of its files, so that
         the log has one line for them.
 
         Args:
@@ -174,6 +174,9 @@ class Resolver:
         unknown = _unknown_package(missing.uri, missing.tried)
         if not found and unknown:
             return f"is in the ROS package {unknown!r}, which was not found", otherwise
+        model = "" if found else _unknown_model(missing.uri, missing.tried)
+        if model:
+            return f"is in the model {model!r}, which was not found", otherwise
         if not found:
             return str(missing), otherwise
         return f"{missing.uri!r} was not found", f"did you mean {found}? Otherwise {otherwise}"
@@ -391,6 +394,17 @@ def _unknown_package(uri: str, tried: Sequence[str]) -> str:
     if not uri.startswith("package://"):
         return ""
     return next((place[len(NO_PACKAGE):] for place in tried if place.startswith(NO_PACKAGE)), "")
+
+
+def _unknown_model(uri: str, tried: Sequence[str]) -> str:
+    """The model of a `model://` URI of a file if no searched folder has that model, else ""."""
+    scheme, _, rest = uri.partition("://")
+    name, _, inside = rest.strip("/").partition("/")
+    places = [place for place in tried if not place.startswith(NO_PACKAGE)]
+    if scheme != "model" or not inside or not all(map(os.path.isabs, places)):
+        return ""  # a place that is no path says why a download failed
+    folders = [place[:-len(inside)] for place in places if place.endswith(inside)]
+    return "" if any(map(os.path.isdir, folders)) else name
 
 
 def _listed(variable: str) -> List[str]:

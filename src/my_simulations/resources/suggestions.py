@@ -37,8 +37,7 @@ def suggestion(uri: str, tried: Sequence[str], packages: Callable[[], List[str]]
     found, first = "", ""
     for place in tried:
         if place.startswith(NO_PACKAGE):
-            wrong = place[len(NO_PACKAGE):]
-            meant = _with(uri, wrong, [os.path.basename(folder) for folder in packages()])
+            meant = _in_similar_package(uri, place[len(NO_PACKAGE):], packages())
             exists = bool(meant)
         else:
             meant, exists = _corrected(uri, place)
@@ -47,6 +46,14 @@ def suggestion(uri: str, tried: Sequence[str], packages: Callable[[], List[str]]
         found = found or (meant if exists else "")
         first = first or meant
     return found or first
+
+
+def _in_similar_package(uri: str, package: str, folders: Sequence[str]) -> str:
+    """The URI with a similar package that has the file; "" if no such package has it."""
+    inside = uri.partition(package)[2].strip("/")
+    having = [os.path.basename(folder) for folder in folders
+              if os.path.exists(os.path.join(folder, inside))]
+    return _with(uri, package, having)
 
 
 def _corrected(uri: str, path: str) -> "tuple[str, bool]":

@@ -1,6 +1,8 @@
 """Typical typos, and what the messages about them suggest."""
 from __future__ import annotations
 
+import os
+
 import pytest
 from reading import sdf
 
@@ -83,10 +85,14 @@ def test_scripts_and_textures_are_compared_with_those_beside_them(tmp_path):
     assert hints("room.material") == ["did you mean wood_floor.png?"]
 
 
-def test_an_unknown_package_is_compared_with_the_known_ones():
-    found = suggestion("package://my_simulatons/a.dae", ["ROS package my_simulatons"],
-                       lambda: ["/ws/src/other", "/ws/src/my_simulations"])
-    assert found == "package://my_simulations/a.dae"
+def test_an_unknown_package_is_compared_with_those_that_have_the_file(tmp_path):
+    folders = [str(tmp_path / name) for name in ("other", "my_simulations", "my_simulation")]
+    for folder in folders:
+        os.mkdir(folder)
+    (tmp_path / "my_simulations" / "a.dae").write_text("")
+    for name, found in (("a.dae", "package://my_simulations/a.dae"), ("b.dae", "")):
+        assert suggestion(f"package://my_simulatons/{name}", ["ROS package my_simulatons"],
+                          lambda: folders) == found
 
 
 def test_the_log_has_one_line_for_all_visuals_of_an_unknown_package():
@@ -96,6 +102,16 @@ def test_the_log_has_one_line_for_all_visuals_of_an_unknown_package():
     (issue,) = group_repeated(one for one in issues if one.code == "mesh-not-found")
     assert issue.message == ("the mesh of this visual is in the ROS package 'gone', which was not"
                              " found; also in lines 2, 3")
+
+
+def test_the_log_has_one_line_for_all_visuals_of_an_unknown_model():
+    visuals = "".join(f'<visual name="{name}"><geometry><mesh><uri>model://gone/{name}.dae</uri>'
+                      "</mesh></geometry></visual>\n" for name in "abc")
+    _, issues = read_entity(sdf(f'<model name="m"><link name="l">{visuals}</link></model>'),
+                            Resolver())
+    (issue,) = group_repeated(one for one in issues if one.code == "mesh-not-found")
+    assert issue.message == ("the mesh of this visual is in the model 'gone', which was not found;"
+                             " also in lines 2, 3")
 
 
 @pytest.mark.parametrize("name, meant", [("iyx", "ixy"), ("izx", "ixz"), ("izy", "iyz")])
