@@ -303,8 +303,13 @@ def test_an_unreadable_picture_is_told_and_the_rest_is_drawn(view):
     assert "/nowhere/wood.png" in view.renderer.said[0]
 
 
+def test_a_mesh_that_its_reader_did_not_find_is_not_reported_again(view):
+    view([body("stool", Mesh("model://gone/stool.dae"), 0)], [Pose()])
+    assert view.renderer.said == []
+
+
 def test_a_mesh_that_is_missing_is_told_with_its_link(view):
-    view([body("stool", Mesh("/nowhere/stool.dae"), 0)], [Pose()])
+    view([body("stool", Mesh("/nowhere/stool.dae", "/nowhere/stool.dae"), 0)], [Pose()])
     (said,) = view.renderer.said
     assert "/nowhere/stool.dae" in said and "'stool::link'" in said
 
