@@ -292,7 +292,7 @@ def test_sensors_of_one_state_are_answered_together_and_fail_each_by_itself(sens
 
 
 def test_an_unreadable_mesh_is_left_out_and_named_once_for_rays_and_once_for_cameras(sensing):
-    gone = Mesh("model://none/a.dae", "")
+    gone = Mesh("model://none/a.dae", "/nowhere/a.dae")
     sensing.change(AddBody(body("gone", gone, 2)))
     assert ahead(sensing) == pytest.approx(5.0, abs=1e-6)
     assert ahead(sensing) == pytest.approx(5.0, abs=1e-6)

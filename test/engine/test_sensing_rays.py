@@ -216,12 +216,17 @@ def test_a_ray_passes_many_back_faces_one_after_the_other(scene):
 
 
 def test_a_shape_that_cannot_be_read_is_told_and_passed_through(scene):
-    scene.add("m", [(0, [RayShape(Mesh("gone.stl"), IDENTITY, 1.0),
+    scene.add("m", [(0, [RayShape(Mesh("gone.stl", "/nowhere/gone.stl"), IDENTITY, 1.0),
                          RayShape(Sphere(0.5), IDENTITY, 2.0)])])
     scene.move(table([Pose((3.0, 0, 0))]))
     found, retro, _ = scene.cast(LEVEL, np.array([[1.0, 0, 0]]), 0.0, 10.0)
     assert found[0] == pytest.approx(2.5, abs=1e-6) and retro[0] == 2.0
     assert "gone.stl" in scene.said[0]
+
+
+def test_a_mesh_that_its_reader_did_not_find_is_not_reported_again(scene):
+    scene.add("m", [(0, [RayShape(Mesh("gone.stl"), IDENTITY, 1.0)])])
+    assert scene.said == []
 
 
 def test_a_fan_goes_row_by_row_from_the_lowest_and_each_from_the_minimum_angle():

@@ -352,6 +352,11 @@ MeshTable = Dict[str, MeshData]
 """Loaded collision meshes by `mesh_key`."""
 
 
+def is_mesh_without_file(geometry: object) -> bool:
+    """Whether the reader of a model did not find the file of this mesh, and has reported it."""
+    return isinstance(geometry, Mesh) and not geometry.path
+
+
 def mesh_key(solid: Solid) -> str:
     """Key of a loaded mesh: file, scale and submesh, or the numbers that define it."""
     if isinstance(solid, Heightmap):

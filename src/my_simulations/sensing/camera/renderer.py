@@ -9,7 +9,7 @@ import numpy as np
 
 from ...description.light import Light
 from ...description.picture_size import picture_size_of
-from ...description.shapes import Mesh
+from ...description.shapes import is_mesh_without_file
 from ...description.surroundings import Scene
 from ...errors import InputError
 from ..api import DEPTH, LABELS, NO_ROW, RGB, Body, CameraSpec, Pictures, SetScenery
@@ -98,8 +98,8 @@ class Renderer:
                     batch.add(body.name, body.first_link_row + n, local)
 
     def _prepare(self, key: str, visual: Any, look: Any, link: str) -> bool:
-        if isinstance(visual.geometry, Mesh) and not visual.geometry.path:
-            return False  # a file that was not found; the reader of the model has reported it
+        if is_mesh_without_file(visual.geometry):
+            return False
         try:
             pieces = pieces_of(visual, look)
         except InputError as fault:

@@ -11,7 +11,7 @@ from typing import Any, Callable, Dict, List, Optional, Sequence, Tuple, Union
 
 import numpy as np
 
-from ...description.shapes import Plane
+from ...description.shapes import Plane, is_mesh_without_file
 from ...errors import InputError
 from ..api import NO_ROW, SetScenery
 from ..poses import matrices, matrix, transforms
@@ -178,6 +178,8 @@ class RayScene:
         retro: List[float] = []
         double_sided: List[bool] = []
         for shape in shapes:
+            if is_mesh_without_file(shape.geometry):
+                continue
             try:
                 made = buffers_of(shape)
             except InputError as fault:
