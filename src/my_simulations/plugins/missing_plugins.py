@@ -31,7 +31,17 @@ _KNOWN: Tuple[Tuple[str, str, str], ...] = (
      " librotors_gazebo_motor_model.so and its sensors fly without an autopilot",
      "gazebo_mavlink_interface gazebo_motor_model gazebo_imu_plugin gazebo_gps_plugin"
      " gazebo_barometer_plugin gazebo_magnetometer_plugin gazebo_multirotor_base_plugin"
-     " gazebo_groundtruth_plugin gazebo_lidar_plugin gazebo_opticalflow_plugin"),
+     " gazebo_groundtruth_plugin gazebo_lidar_plugin gazebo_opticalflow_plugin"
+     " gazebo_opticalflow_mockup_plugin gazebo_airspeed_plugin gazebo_vision_plugin"
+     " gazebo_sonar_plugin gazebo_irlock_plugin gazebo_aruco_plugin gazebo_gst_camera_plugin"
+     " gazebo_camera_manager_plugin gazebo_gimbal_controller_plugin gazebo_uuv_plugin"
+     " gazebo_usv_dynamics_plugin gazebo_airship_dynamics_plugin gazebo_catapult_plugin"
+     " gazebo_drop_plugin gazebo_parachute_plugin"),
+    ("its wind acts on the vehicles of PX4 only",
+     "libWindPlugin.so moves models, and librotors_gazebo_wind_plugin.so a link",
+     "gazebo_wind_plugin"),
+    ("its coefficients of control surfaces are not simulated",
+     "libLiftDragPlugin.so simulates wings and rudders", "AdvancedLiftDragPlugin"),
     ("the forces of water on vehicles are not simulated",
      "libBuoyancyPlugin.so lifts a model, and libgazebo_ros_force.so pushes it",
      "uuv_underwater_object_plugin uuv_underwater_object_ros_plugin uuv_thruster_plugin"
@@ -45,6 +55,15 @@ _KNOWN: Tuple[Tuple[str, str, str], ...] = (
      "panda_gazebo_ros_control baxter_gazebo_ros_control sawyer_gazebo_ros_control"),
     ("actors have no contacts", "a model with libRandomVelocityPlugin.so is an obstacle that moves",
      "ActorCollisionsPlugin"),
+    ("the social forces between pedestrians are not simulated",
+     "an actor can walk along a <trajectory>, and libActorPosesPlugin.so follows the agents of"
+     " pedsim_ros", "PedestrianSFMPlugin"),
+    ("radio ranges are not simulated",
+     "libgazebo_ros_p3d.so publishes the positions that they can be computed from",
+     "gtec_uwb_plugin gtec_tag_pos_publisher_plugin"),
+    ("the motion sensors of the camera are not simulated",
+     "libgazebo_ros_imu_sensor.so measures accelerations and turn rates",
+     "realsense_gazebo_accel_sensor realsense_gazebo_gyro_sensor"),
     ("sensors of the ARIAC competition are not simulated",
      "libgazebo_ros_range.so, libgazebo_ros_laser.so and libgazebo_ros_depth_camera.so measure"
      " distances", "ROSLogicalCameraPlugin ROSProximityRayPlugin"),

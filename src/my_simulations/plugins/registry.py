@@ -54,6 +54,7 @@ BUILT_IN: Mapping[str, str] = {
     "libhector_servo_plugin.so": "state.hector_servo:HectorServo",
     "libInitialVelocityPlugin.so": "state.random_velocity:InitialVelocity",
     "libRandomVelocityPlugin.so": "state.random_velocity:RandomVelocity",
+    "libgazebo_random_velocity_plugin.so": "state.random_velocity:RandomVelocity",
     "libGimbalSmall2dPlugin.so": "state.gimbal:Gimbal",
     "libgazebo_ros_vacuum_gripper.so": "gripping.vacuum_gripper:VacuumGripper",
     "libgazebo_grasp_fix.so": "gripping.grasp_fix:GraspFix",
