@@ -15,6 +15,8 @@ def main() -> int:
     if os.path.isfile(python) and os.path.realpath(prefix) != os.path.realpath(sys.prefix):
         os.execv(python, [python, os.path.abspath(__file__), *sys.argv[1:]])
     try:
+        import xml.parsers.expat  # noqa: F401 - xacro uses it and does not import it
+
         import xacro
     except ImportError as fault:
         sys.stderr.write(f"xacro: {fault}\n")
