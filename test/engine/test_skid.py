@@ -172,6 +172,8 @@ def test_sliding_wheels_tell_their_friction(lab: Lab, laws: Laws):
     wheels = {lab.rows[base, f"w{n}"] for n in range(4)}
     contacts = [contact for contact in lab.apply(ReadContacts()) if contact.force > 0.0]
     assert wheels <= {row for contact in contacts for row in (contact.row_a, contact.row_b)}
+    laws.near("the same: sum of the normal forces, N", sum(contact.force for contact in contacts),
+              9.8 * (10 + 4 * 0.5), rel=0.02)
     for contact in contacts:
         laws.near("friction of wheels that slide, by normal force",
                   norm(contact.friction) / contact.force, 1.0, rel=0.02)

@@ -21,6 +21,7 @@ from .contact_points import (
     PLACE,
     friction_force,
 )
+from .edge_loads import NEAR
 from .wheel_friction import WheelFriction
 
 
@@ -45,6 +46,7 @@ def read_contacts(bodies: Dict[int, Body], limit: int,
             # Bullet does not solve points of separated surfaces: their forces are of an older step.
             force = contact[LOAD] if contact[DISTANCE] <= 0.0 else 0.0
             acting = [wheel_friction.acting_at(*mine, (theirs[0], theirs[1]))
+                      if contact[DISTANCE] < NEAR else None
                       for mine, theirs in zip(places, reversed(places))]
             force = next((each.load for each in acting if each is not None), force)
             if force <= 0.0 and contact[DISTANCE] > 0.0:
