@@ -62,13 +62,13 @@ class LinkFriction(NamedTuple):
         forces: at each contact, N, world axes.
         bias: the new B, N, world axes.
         slip: mean, m/s; of the edges of a wheel against their middle if that is more.
-        within: whether it is below Coulomb's limit at some contact.
+        ended: slip that Coulomb's limit ends until the next computation, m/s.
     """
 
     forces: List[Vec3]
     bias: Vec3
     slip: float
-    within: bool
+    ended: float
 
 
 class _Law(NamedTuple):
@@ -121,7 +121,7 @@ def _at_points(one: SurfaceLink, two: SurfaceLink, mine: Motion, loaded: Loads, 
         yields = STIFF if lever is None else yielding(
             lever, ease, drive.effort, mean_velocity(mine, contacts, loads), end)
         forces, slip, bias = isotropic(contacts, loads, mine, bias, mus[0], end, yields, _GROWS)
-        return LinkFriction(forces, bias, slip, bias != ZERO3)
+        return LinkFriction(forces, bias, slip, end * mus[0] * sum(loads))
     ends = end, end
     if mus[0] != mus[1] and not any(slow):   # friction is along M (M v), also where it is least
         most = max(mus)
@@ -159,7 +159,8 @@ def _along_axes(axes: Tuple[Vec3, Vec3], slips: List[Tuple[float, float]], loads
         (holds[0] - _GROWS * ((slip[0] + slow[0] * total[0]) / soft[0] - spared[0]),
          holds[1] - _GROWS * ((slip[1] + slow[1] * total[1]) / soft[1] - spared[1])),
         mus, soft, carried))
-    return LinkFriction(forces, bias, hypot(*slip), within)
+    return LinkFriction(forces, bias, hypot(*slip),
+                        max(soft[0] * mus[0], soft[1] * mus[1]) * carried)
 
 
 def _end(one: SurfaceLink, two: SurfaceLink, mine: Motion, theirs: Motion, loaded: Loads,

@@ -47,6 +47,7 @@ EVERY = 16
 _SELDOM = 4          # checks until a body with a fixed base is checked again
 _SLIDES = 2e-3       # m/s of slip: links at rest stay below it
 _HELD = 5e-4         # m/s of slip: a link below it is at rest
+_CARRIES = 0.02      # of the load: a link with more lasting friction does not return to Bullet's
 _QUIET = 32          # steps at rest until Bullet's friction holds a body again
 _PERIOD = 4e-3       # s between two computations of the friction on a link that goes on sliding
 _LEFT = (1e-3, 1e-3) # shares of Bullet's friction that stay
@@ -344,13 +345,13 @@ class WheelFriction(StepHelper):
             under = self._links[other]
             mobility = None if link.body.rigid or under.body.moves else (
                 self._mobility(link, points[0], min(link.mus) * weight))
-            forces, bias, slip, within = link_friction(
+            forces, bias, slip, ended = link_friction(
                 link, under, moves, (points, carried), biases.get(other, ZERO3),
                 Drive(effort, self._holding(link.joint), mobility), steps * dt, weight)
             slide.biases[other] = bias
-            if link.joint >= 0 and slip > _HELD:
+            if link.joint >= 0 and (slip > _HELD or norm(bias) > _CARRIES * sum(carried)):
                 slide.quiet = 0
-            slide.steady &= not within or slip <= _SLIDES
+            slide.steady &= slip <= _SLIDES or slip > ended * _PERIOD / (steps * dt)
             slide.acting += [(contact[PLACE], force, load, other)
                              for contact, force, load in zip(points, forces, carried)]
 
