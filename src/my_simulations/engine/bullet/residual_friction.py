@@ -16,7 +16,8 @@ a pile. The selection depends on the step count and their state only, so runs re
 from __future__ import annotations
 
 from math import inf
-from typing import Callable, Dict, List, Sequence, Set, Tuple
+from operator import itemgetter
+from typing import Callable, Dict, List, Sequence, Set
 
 import pybullet
 
@@ -60,6 +61,7 @@ _TUMBLES = 1.5     # rad/s across gravity: the slip of a body that turns over is
 _REACH = 0.02      # m: contacts exist a little before surfaces meet
 _MOST_CONTACTS = 8 # a body with more that touches a moving body, or two bodies, is in a pile
 _NONE = (0.0, 0.0, 0.0)
+_OTHER_BODY = itemgetter(OTHER_BODY)
 
 # Classes of bodies by their contacts:
 _FLIES, _PILED, _SLIDES, _MENDED = range(4)
@@ -220,15 +222,17 @@ class ResidualFriction(StepHelper):
 
     def _mend(self, uid: int, seen: Set[int], dt: float) -> int:
         """Undo the residual friction at the contacts of a body. Returns the class of the body."""
-        contacts = pybullet.getContactPoints(bodyA=uid)
+        contacts = pybullet.getContactPoints(uid)
         if not contacts:
             return _FLIES
-        if len(contacts) > _MOST_CONTACTS:
-            return _PILED if any(each[OTHER_BODY] in self._moving for each in contacts) else _SLIDES
-        neighbours, left = _neighbours_and_left(contacts, self._moving)
-        if len(neighbours) > 1:
+        neighbours = self._moving.intersection(map(_OTHER_BODY, contacts))
+        if len(neighbours) > 1 or neighbours and len(contacts) > _MOST_CONTACTS:
             return _PILED
-        if neighbours and left and not neighbours.isdisjoint(seen | self._trees):
+        left = [each for each in contacts if each[LOAD] <= 0.0 and _is_left(each)]
+        if not left or len(contacts) > _MOST_CONTACTS:
+            return _SLIDES
+        # Bodies with joints use another solver, which leaves no such friction.
+        if not neighbours.isdisjoint(seen | self._trees):
             left = [each for each in left if each[OTHER_BODY] not in neighbours]
         if left:
             linear, angular = pybullet.getBaseVelocity(uid)
@@ -268,22 +272,6 @@ def _push(body: Body, before: Motion, impulse: Vec3, at: Vec3) -> None:
     pybullet.resetBaseVelocity(body.uid, (
         before.linear[0] + impulse[0] / part.mass, before.linear[1] + impulse[1] / part.mass,
         before.linear[2] + impulse[2] / part.mass), add(before.angular, gained))
-
-
-def _neighbours_and_left(contacts: Sequence[ContactPoint], moving: Set[int]
-                         ) -> Tuple[Set[int], List[ContactPoint]]:
-    """Return the moving bodies at contacts, and the contacts with residual friction.
-
-    Bodies with joints use another solver, which leaves none.
-    """
-    neighbours: Set[int] = set()
-    left: List[ContactPoint] = []
-    for each in contacts:   # one loop: it runs for each sliding body in each step
-        if each[OTHER_BODY] in moving:
-            neighbours.add(each[OTHER_BODY])
-        if each[LOAD] <= 0.0 and _is_left(each):
-            left.append(each)
-    return neighbours, left
 
 
 def _is_left(contact: ContactPoint) -> bool:
