@@ -78,16 +78,15 @@ class HelperSet:
         """Create all helpers that store nothing but data of bodies."""
         self._parameters = WorldParameters()
         self._residual = ResidualFriction(lambda uid: self._rolling.rolls(uid))
-        self._landing = LandingContacts(lambda uid, normal: self._rolling.landed(uid, normal),
-                                        self._parameters)
-        self._rolling = RollingContacts(self._landing, lambda: self.forces.loaded_bodies,
+        self._landing = LandingContacts(
+            lambda uid, other, normal: self._rolling.landed(uid, other, normal), self._parameters)
+        self._rolling = RollingContacts(self._landing.flies, lambda: self.forces.loaded_bodies,
                                         self._parameters.find_pairs, self._holding)
         self._seams = SeamContacts(self._rolling, self._parameters)
         self._level = LevelSeams(lambda: self._residual.fast, self._parameters)
         self.wheel_friction = WheelFriction(
             self._holding, lambda row: self.motors.rate_of(row),
-            lambda row, step: self.forces.effort_on(row, step),
-            lambda uid: self._rolling.drops_points_of(uid))
+            lambda row, step: self.forces.effort_on(row, step))
         self.forces = Forces(self._waker_for(BodyEvent.FORCE_APPLIED),
                              lambda rows: self.motors.yield_to(rows),
                              lambda body, axis: self.motors.restore(body, [axis]),
@@ -116,8 +115,8 @@ class HelperSet:
                                       self._measured_joints)
         # The step helpers, in the order in which they act.
         helpers = (self._friction, self._bounces, self.settling, self._decay, self.forces,
-                   self.planar, self._rolling, self._spin, self._residual, self.wheel_friction,
-                   self.holds, self._stop, self._landing, self._level, self._seams,
+                   self.planar, self._spin, self._residual, self.wheel_friction, self.holds,
+                   self._stop, self._landing, self._rolling, self._level, self._seams,
                    self.divergence, self.restored_sleep)
         self.loop = StepLoop(helpers, pybullet.stepSimulation, self._parameters.apply)
         # All that store data of single bodies.

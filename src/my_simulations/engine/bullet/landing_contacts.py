@@ -17,7 +17,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from math import acos, asin
 from operator import attrgetter, itemgetter
-from typing import Callable, Dict, Iterable, List, NamedTuple, Optional, Set, Tuple
+from typing import Callable, Dict, List, NamedTuple, Optional, Set, Tuple
 
 import pybullet
 
@@ -39,7 +39,7 @@ from .agenda import Agenda
 from .approach import Motions, extent, flies, tumbles
 from .bodies import Body, Part
 from .body_events import COMMANDED, BodyEvent
-from .contact_points import DISTANCE, LOAD, NORMAL, OTHER_PLACE, PLACE, LinkKey
+from .contact_points import DISTANCE, LOAD, NORMAL, OTHER_PLACE, PLACE
 from .landing_points import MOST_TILT, Filters, LandingPoints, Touch, extents_across
 from .link_states import Motion
 from .step_helper import FAR, StepHelper, next_multiple
@@ -110,13 +110,13 @@ class LandingContacts(StepHelper):
     """Finds the contact points of landing bodies before Bullet solves the impact.
 
     Args:
-        landed: called with the number of a landing body, and the normal of the surface.
+        landed: called with the numbers of a landing body and the other one, and the normal.
         parameters: solver parameters of the world.
     """
 
     events = COMMANDED
 
-    def __init__(self, landed: Callable[[int, Vec3], None],
+    def __init__(self, landed: Callable[[int, int, Vec3], None],
                  parameters: WorldParameters) -> None:
         self._landed = landed
         self._parameters = parameters
@@ -177,16 +177,6 @@ class LandingContacts(StepHelper):
         """Whether a body certainly touches nothing in this step."""
         flight = self._flights.get(uid)
         return flight is not None and step < flight.arrives
-
-    def see_rolling(self, links: Iterable[LinkKey], step: int) -> None:
-        """Plan the checks of rolling links before their contacts are dropped: they do not fly."""
-        if self._agenda.next > step:
-            return
-        for uid in [uid for uid, _ in links if self._agenda.at(uid) <= step]:
-            if self._agenda.at(uid) <= step:
-                flight = self._flights.get(uid) or self._find_flight(uid, step)
-                if flight is not None:
-                    self._is_on_ground(flight, step)
 
     def before(self, step: int, dt: float, gravity: Vec3) -> None:
         """Find flights periodically, and the contact points of those that end in this step."""
@@ -282,7 +272,7 @@ class LandingContacts(StepHelper):
         flight.arrives = min([free for _, free in pairs.values()], default=later)
         if touches:
             touch = min(touches, key=attrgetter("gap"))
-            self._landed(uid, touch.normal)
+            self._landed(uid, touch.other, touch.normal)
             self._recheck_neighbours(uid, step)
             return [touch]
         return []

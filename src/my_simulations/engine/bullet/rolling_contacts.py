@@ -15,7 +15,9 @@ The motor takes up the small moment of points that lag.
 """
 from __future__ import annotations
 
+from collections import deque
 from dataclasses import dataclass
+from itertools import starmap
 from math import dist
 from typing import AbstractSet, Any, Callable, Dict, Iterable, List, Optional, Set, Tuple
 
@@ -43,7 +45,6 @@ from .bodies import Body, Part
 from .body_events import ACTUATED, COMMANDED, BodyEvent
 from .contact_points import DISTANCE, NORMAL, OTHER_BODY, LinkKey
 from .extra_surfaces import SOFT
-from .landing_contacts import LandingContacts
 from .link_states import place
 from .step_helper import FAR, StepHelper, next_multiple
 
@@ -70,6 +71,9 @@ _PUSH = 2.0         # separation speed of overlaps / speed that gravity adds in 
 _HARD = 1e12        # N/m: so stiff that only the share counts
 _CHANGE = 0.1       # smaller relative changes of the share are not applied
 
+_Filter = Tuple[int, int, int, int]
+"""A link, by PyBullet's numbers of its body and itself, and its collision group and mask."""
+
 
 @dataclass
 class _Roller:
@@ -89,7 +93,7 @@ class _Roller:
     body: Body
     part: Part
     axis: Vec3
-    meets: collision_groups.Filter
+    meets: _Filter
     hard: bool
     joint_row: int = -1
     reach: float = 0.0
@@ -104,7 +108,7 @@ class RollingContacts(StepHelper):
     """Drops the contact points of lying cylinders before each step.
 
     Args:
-        landing: knows which bodies fly; reads contact points of others before they are dropped.
+        flies: returns whether a body certainly touches nothing in a step.
         loaded: returns the bodies that timed forces act on in this step.
         find_pairs: finds new pairs before a step with the point spacing for cylinders on
             triangles; otherwise all new pairs would get this spacing.
@@ -116,14 +120,15 @@ class RollingContacts(StepHelper):
 
     events = COMMANDED
 
-    def __init__(self, landing: LandingContacts, loaded: Callable[[], AbstractSet[int]],
+    def __init__(self, flies: Callable[[int, int], bool], loaded: Callable[[], AbstractSet[int]],
                  find_pairs: Callable[[], None], holding: Callable[[int], float]) -> None:
-        self._landing, self._loaded, self._find_pairs = landing, loaded, find_pairs
+        self._flies, self._loaded, self._find_pairs = flies, loaded, find_pairs
         self._holding, self._cone = holding, True
         self.on_seams: Dict[LinkKey, Vec3] = {}
         self._rollers: Dict[LinkKey, _Roller] = {}
-        self._rolling: Dict[LinkKey, collision_groups.Filter] = {}
+        self._rolling: Dict[LinkKey, _Filter] = {}
         self._standing: Dict[int, Pose] = {}
+        self._landed: Set[int] = set()   # in this step, and the bodies on which they land
         self._moving: Set[int] = set()
         self._seams: Set[int] = set()   # floors of triangles
         self.body_tables = (self.on_seams, self._rollers, self._rolling, self._standing,
@@ -147,7 +152,7 @@ class RollingContacts(StepHelper):
             if axis is not None:
                 self._rollers[body.uid, part.index] = _Roller(
                     body, part, rotate(conjugate(part.link_from_com.orientation), axis),
-                    collision_groups.moving(part.link),
+                    (body.uid, part.index, *collision_groups.moving(part.link)),
                     part.link.collisions[0].surface.kp >= SOFT, rows.get(part.index, -1),
                     _LAG * total * _widest(part.link))
 
@@ -166,8 +171,10 @@ class RollingContacts(StepHelper):
             roller.seen = None
             self._rolling[body.uid, BASE] = roller.meets
 
-    def landed(self, uid: int, normal: Vec3) -> None:
-        """Keep the points of a rigid body that is about to land on its end."""
+    def landed(self, uid: int, other: int, normal: Vec3) -> None:
+        """Keep the points of a landing in this step, and later if a rigid body lands on its end."""
+        if self._rolling:
+            self._landed |= {uid, other}
         roller = self._rollers.get((uid, BASE))
         if roller is not None and (uid, BASE) in self._rolling:
             turn = pybullet.getBasePositionAndOrientation(uid)[1]
@@ -177,10 +184,6 @@ class RollingContacts(StepHelper):
     def rolls(self, uid: int) -> bool:
         """Whether a rigid body rolls on its side."""
         return (uid, BASE) in self._rolling
-
-    def drops_points_of(self, uid: int) -> bool:
-        """Whether a link of a body loses its contact points before each step."""
-        return any(key[0] == uid for key in self._rolling)
 
     @property
     def knows_seams(self) -> bool:
@@ -198,7 +201,7 @@ class RollingContacts(StepHelper):
             for key, roller in self._rollers.items():
                 if roller.wait:
                     roller.wait -= 1
-                elif self._landing.flies(key[0], step):
+                elif self._flies(key[0], step):
                     continue
                 elif self._rolls(roller, dt, gravity, roller.body.uid in loaded):
                     self._rolling[key] = roller.meets
@@ -212,27 +215,16 @@ class RollingContacts(StepHelper):
             linear, angular = pybullet.getBaseVelocity(uid)
             if (linear != _NONE or angular != _NONE) and _slow(linear, angular):
                 pybullet.resetBaseVelocity(uid, _NONE, _NONE)
-        rolling: Iterable[LinkKey] = self._rolling
-        self._landing.see_rolling(rolling, step)
+        flies, landed = self._flies, self._landed
+        rolling = [each for each in self._rolling.values()
+                   if each[0] not in landed and not flies(each[0], step)]
+        landed.clear()
         if self.on_seams:
-            self._clear_contacts([key for key in rolling if key not in self.on_seams], step)
+            _clear_contacts([each for each in rolling if each[:2] not in self.on_seams])
             if not self._moving.issubset({uid for uid, _ in self.on_seams}):
                 self._find_pairs()
-            rolling = [key for key in rolling if key in self.on_seams]
-        self._clear_contacts(rolling, step)
-
-    def _clear_contacts(self, links: Iterable[LinkKey], step: int) -> None:
-        """Discard the contact points of links.
-
-        Bullet does so when a filter group is set, and finds new ones in the next step.
-        """
-        flies, filters = self._landing.flies, self._rolling
-        clear = pybullet.setCollisionFilterGroupMask
-        for key in links:
-            uid, index = key
-            if not flies(uid, step):
-                meets = filters[key]
-                clear(uid, index, meets.group, meets.mask)
+            rolling = [each for each in rolling if each[:2] in self.on_seams]
+        _clear_contacts(rolling)
 
     def due(self, step: int) -> int:
         """Each step while a link rolls or is kept at rest, otherwise the step of the next check."""
@@ -324,6 +316,14 @@ class RollingContacts(StepHelper):
             at = Pose((x, y, at.position[2]), before.orientation)
             pybullet.resetBasePositionAndOrientation(uid, at.position, at.orientation)
         self._standing[uid] = at
+
+
+def _clear_contacts(links: Iterable[_Filter]) -> None:
+    """Discard the contact points of links.
+
+    Bullet does so when a filter group is set, and finds new ones in the next step.
+    """
+    deque(starmap(pybullet.setCollisionFilterGroupMask, links), maxlen=0)
 
 
 def _is_level(contacts: Tuple[Any, ...], gravity: Vec3) -> bool:

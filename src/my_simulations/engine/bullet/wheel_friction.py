@@ -89,17 +89,14 @@ class WheelFriction(StepHelper):
         rate: returns the rate, rad/s, to which it drives the joint.
         effort: returns the effort, N m, of loops, dampers and commands on a joint row in the step
             that begins at a count.
-        drops_points: returns whether links of a body have lost their contact points by now.
     """
 
     # A new force or motor target does not end the sliding of a wheel.
     events = frozenset({BodyEvent.ACTIVATED, BodyEvent.MOTOR_TARGET_CHANGED})
 
     def __init__(self, holding: Callable[[int], float], rate: Callable[[int], float],
-                 effort: Callable[[int, int], float], drops_points: Callable[[int], bool],
-                 ) -> None:
+                 effort: Callable[[int, int], float]) -> None:
         self._holding, self._rate, self._effort = holding, rate, effort
-        self._drops_points = drops_points
         self._commanded: Set[int] = set()
         self._links: Dict[LinkKey, SurfaceLink] = {}
         self._wheels: Dict[int, Dict[int, SurfaceLink]] = {}   # links that can slide, by body
@@ -229,10 +226,7 @@ class WheelFriction(StepHelper):
                                                 pybullet.WORLD_FRAME)
 
     def after(self, step: int, dt: float, gravity: Vec3) -> None:
-        """Find links that slide, every few steps; read the loads for the friction that is due next.
-
-        Contacts are read here: other helpers drop some of them before the next step.
-        """
+        """Find links that slide, every few steps; read the loads for friction that is due next."""
         if step % EVERY == 0 and self._cone:
             seldom = step % (_SELDOM * EVERY) == 0
             for uid, wheels in self._wheels.items():
@@ -278,7 +272,7 @@ class WheelFriction(StepHelper):
         `gain`: speed that gravity gives in a step, m/s.
         """
         wheels = self._wheels[uid]
-        if uid in self._fixed and not self._drops_points(uid) and not any(
+        if uid in self._fixed and not any(
                 contact[LINK] in wheels for contact in pybullet.getContactPoints(bodyA=uid)):
             return
         if any(link.axle is not None and abs(
