@@ -26,9 +26,9 @@ export type Outcome<Value = unknown> = {ok: true, value: Value, issues: Issue[]}
     value?: undefined, issues: Issue[]};
 
 /** quiet: issues are returned only */
-export type AskOptions = {quiet?: boolean};
+type AskOptions = {quiet?: boolean};
 
-export type JointFields = Omit<JointOperation, 'kind'>;
+type JointFields = Omit<JointOperation, 'kind'>;
 
 export type ShownWrench = {link: string, force: Vec3, torque: Vec3, point?: Vec3|null,
     in_link_axes?: boolean};
@@ -50,7 +50,7 @@ export interface ActionParts {
   view: () => SceneView|null;
 }
 
-export type Ask = <T extends keyof Requests>(type: T, fields?: Requests[T]['fields'],
+type Ask = <T extends keyof Requests>(type: T, fields?: Requests[T]['fields'],
     options?: AskOptions) =>
     Promise<Outcome<Requests[T]['reply']>>;
 

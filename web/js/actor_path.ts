@@ -15,7 +15,7 @@ import type {Actor, Trajectory, Waypoint} from './protocol.js';
  * time: s since the trajectory began; slope: of the spline, m for a whole segment; turn: the
  * orientation; control: of the spline of turns
  */
-export type Key = {time: number, pose: number[], slope: number[], turn: number[], control: number[]};
+type Key = {time: number, pose: number[], slope: number[], turn: number[], control: number[]};
 
 /** Into which a segment is divided to measure it. */
 const CHORDS = 32;

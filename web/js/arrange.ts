@@ -3,7 +3,7 @@ import {add, orientation, position} from './pose.js';
 import type {Pose7, Vec3} from './pose.js';
 
 /** in world axes, m */
-export type Bounds = {min: number[], max: number[]};
+type Bounds = {min: number[], max: number[]};
 
 /** The most copies of one array. */
 export const MOST_COPIES = 1000;

@@ -34,7 +34,7 @@ export type AskedRequest = {id: number, type: keyof Requests, fields?: Requests[
 export type RequestFunction = <T extends keyof Requests>(type: T, fields?: Requests[T]['fields'])
     => Promise<Requests[T]['reply']>;
 
-export type Waiting = {resolve: (value: unknown) => void, reject: (error: Error) => void};
+type Waiting = {resolve: (value: unknown) => void, reject: (error: Error) => void};
 
 /** The first error with its place. */
 function textOf(issues: Issue[]) {

@@ -104,7 +104,7 @@ function spoke(centre: Vec3, axis: Vec3, ray: Ray) {
 }
 
 /** The kinds of models by what their sizes allow. */
-export type Roundness = 'free'|'round'|'ball';
+type Roundness = 'free'|'round'|'ball';
 
 const ROUNDNESS: Record<string, Roundness> = {sphere: 'ball', cylinder: 'round', capsule: 'round',
     cone: 'round'};

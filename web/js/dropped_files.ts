@@ -6,7 +6,7 @@ export type DroppedFile = {path: string, file: File};
 /** What browsers give of a drop: folders and files, or files alone. */
 export type Dropped = FileSystemEntry|File;
 /** text: an SDF or URDF that is inserted as it is */
-export type DropKind = 'text'|'world'|'model'|'mesh';
+type DropKind = 'text'|'world'|'model'|'mesh';
 
 export const MOST_BYTES = 20 * 2 ** 20;
 const MOST_FILES = 500;

@@ -2,7 +2,7 @@
 import type {World} from './protocol.js';
 
 /** A model or light. */
-export type Member = {name: string, group: string};
+type Member = {name: string, group: string};
 
 /** The models and lights of a world, in its order. */
 export const membersOf = (document: World|null): Member[] =>

@@ -4,7 +4,7 @@
  */
 
 /** Between the name of a model and that of what belongs to it. */
-export const SCOPE = '::';
+const SCOPE = '::';
 
 /** The names joined by the separator, the outermost first. */
 export const scoped = (...names: string[]) => names.join(SCOPE);

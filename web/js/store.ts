@@ -18,13 +18,13 @@ export type OverlayFlag = 'grid'|'origin'|'transparent'|'wireframe'|'collisions'
     'contacts'|'frames'|'skeleton'|'hidden'|'locked'|'cameraColors'|'simplifiedMeshes';
 
 /** What follows the mouse until it is placed. */
-export type Placing = {op: (pose: Pose7) => Operation, items?: CopiedItem[], keepHeight?: boolean,
+type Placing = {op: (pose: Pose7) => Operation, items?: CopiedItem[], keepHeight?: boolean,
     shape?: ShapeName, uri?: string} & CopiedItem;
 
 export type CopiedItem = {kind: 'model', document: Model}|{kind: 'light', document: Light};
 
 /** What was copied: SDF, and documents for the ghost. */
-export type Clipboard = {text: string, items: CopiedItem[]};
+type Clipboard = {text: string, items: CopiedItem[]};
 
 export type CameraChoices = {projection: 'perspective'|'orthographic', controller: 'orbit'|'fps',
     following: string|null};

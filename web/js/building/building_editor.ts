@@ -26,7 +26,7 @@ import type {Store} from '../store.js';
 import type {Draft} from './unsaved_plan.js';
 
 /** The model of a building that was opened, at its pose as drawn. */
-export type OpenedModel = {name: string, pose: Pose7, plan: Plan};
+type OpenedModel = {name: string, pose: Pose7, plan: Plan};
 
 export interface FileCommands {
   save: () => Promise<boolean>;

@@ -12,7 +12,7 @@ import type {Draft} from './unsaved_plan.js';
 const LARGEST_IMAGE = 16 * 1024 * 1024;
 
 /** How a building is saved, besides its plan. */
-export type SaveOptions = BuildingOptions & BuildingAbout & {folder: string};
+type SaveOptions = BuildingOptions & BuildingAbout & {folder: string};
 
 /** The folder that a building's name becomes, as on the server. */
 const folderName = (name: string) => name.trim().split(/\s+/).join('_');

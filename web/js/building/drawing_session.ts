@@ -11,7 +11,7 @@ import type {Opening, Plan, Stairs} from '../protocol.js';
 import type {Point} from './plane_geometry.js';
 
 /** What the canvas draws besides the plan. */
-export interface Sketch {
+interface Sketch {
   /** a wall */
   segment?: {start: Point, end: Point, thickness: number, on?: string};
   mark?: Point|null;

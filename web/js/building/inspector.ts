@@ -108,7 +108,7 @@ function inspect({title, fields, values, apply}: {title: string, fields: Inspect
 }
 
 /** A field's element, and how a value is put in and taken out. */
-export type FieldInput = {element: HTMLElement, put: (value: unknown) => void,
+type FieldInput = {element: HTMLElement, put: (value: unknown) => void,
     get: (before: unknown) => unknown};
 
 /** By type of a field. */

@@ -31,7 +31,7 @@ export const KINDS: readonly Kind[] = Object.freeze(['walls', 'windows', 'doors'
 export const OPENING_KINDS: readonly OpeningKind[] = Object.freeze(['windows', 'doors']);
 
 /** What the link of an item is called in the model, before its number. */
-export const LINK_NAMES: Record<Kind, string> = Object.freeze(
+const LINK_NAMES: Record<Kind, string> = Object.freeze(
   {walls: 'Wall', windows: 'Window', doors: 'Door', stairs: 'Stairs', floors: 'Floor'});
 
 const LOOK = {color: WHITE, texture: ''};

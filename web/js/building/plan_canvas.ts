@@ -22,7 +22,7 @@ export type Look = [string, string, string?];
 export type Drawn = {element: SVGElement, item: AnyItem|null,
     state: string|null, wall: Wall|null};
 /** What of the world stands on the plan. */
-export type Footprint = {name: string, outline: Point[]};
+type Footprint = {name: string, outline: Point[]};
 
 /** How an item is drawn: attributes of the parts of its group. */
 const LOOKS: {[K in Kind]: (item: ItemOf[K], level: Level) => Look[]} = {

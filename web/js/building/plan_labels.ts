@@ -10,7 +10,7 @@ import type {Point} from './plane_geometry.js';
 import type {Session} from './drawing_session.js';
 
 /** A text on the sheet: where, what, and its class. */
-export type SheetLabel = [Point, string, string];
+type SheetLabel = [Point, string, string];
 
 export function labelsOf(session: Session): SheetLabel[] {
   const words: SheetLabel[] = [];

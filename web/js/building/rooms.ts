@@ -4,7 +4,7 @@ import type {Point} from './plane_geometry.js';
 import type {Wall} from '../protocol.js';
 
 /** A corner with its neighbors, and the half thickness of the wall to each. */
-export type Corner = {point: Point, edges: Map<number, number>};
+type Corner = {point: Point, edges: Map<number, number>};
 
 /**
  * The rooms, the outer loop of each group of connected walls, and all corners. Outer loops are

@@ -13,7 +13,7 @@ const MOST = 10;
  * The floor-plan picture of a level, which is too large to be kept: its scale, and the level of the
  * saved building that has the same picture; null where the building was not saved with it.
  */
-export type KeptPicture = {at: number, savedAt: number|null, resolution: number};
+type KeptPicture = {at: number, savedAt: number|null, resolution: number};
 
 export interface Draft {
   /** whose it is: each tab of the browser may draw a building of its own */

@@ -15,7 +15,7 @@ import type {Model} from '../protocol.js';
 import type {Notices} from '../panels/notices.js';
 import type {Store} from '../store.js';
 
-export type EditorParts = {store: Store, request: RequestFunction, actions: Actions, notices: Notices};
+type EditorParts = {store: Store, request: RequestFunction, actions: Actions, notices: Notices};
 
 /** Shown of the edited model alone. */
 const OVERLAYS = ['joints', 'transparent'] as const;

@@ -6,7 +6,7 @@ import type {Model} from '../protocol.js';
 import type {Mode, Store} from '../store.js';
 
 /** keys, and what they do */
-export type Hints = [string, string][];
+type Hints = [string, string][];
 
 const LOOKING: Hints = [
   ['drag', 'pan'], ['Shift+drag', 'turn'], ['wheel', 'zoom'], ['click', 'select'], ['T R S', 'move, rotate, scale'],

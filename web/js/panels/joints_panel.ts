@@ -11,12 +11,12 @@ import type {Drive, Gains, Joint, Model, WatchPush} from '../protocol.js';
 import type {Input, InputField} from './property_inputs.js';
 import type {Page} from './panels.js';
 
-export type DriveMode = Drive['mode'];
+type DriveMode = Drive['mode'];
 /** A joint that can be driven, with its unit in each mode. */
-export type DrivenJoint = {joint: Joint, units: Record<DriveMode, string>};
+type DrivenJoint = {joint: Joint, units: Record<DriveMode, string>};
 
 /** A row of the panel. */
-export interface JointRow {
+interface JointRow {
   /** shows the joint's state */
   present: HTMLElement;
   /** rad or m of the shown unit */

@@ -46,7 +46,7 @@ export interface Page {
 }
 
 /** What the panels ask of the view, which may be without a picture. */
-export type PageView = Pick<SceneView, 'fps'|'available'|'thumbnail'|'redraw'>;
+type PageView = Pick<SceneView, 'fps'|'available'|'thumbnail'|'redraw'>;
 
 export function mountPanels(parts: Omit<Page, 'request'|'notices'|'theme'>): Page {
   const page = Object.assign(parts, {

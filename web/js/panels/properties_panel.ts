@@ -21,7 +21,7 @@ import type {Row} from './world_rows.js';
 import type {Page} from './panels.js';
 
 /** A field on the panel; `field` is that of the newest document. */
-export type Entry = {key: string, field: Field, input: Input, element: HTMLElement};
+type Entry = {key: string, field: Field, input: Input, element: HTMLElement};
 
 /** Shows the properties of the selected row of the tree, and sends changes. */
 export class Properties {

@@ -15,7 +15,7 @@ export interface Input {
 export type InputField = Omit<Field, 'path'> & {path?: string};
 
 /** Called with a new value, checked against the field; resolves to false for one that is refused. */
-export type Commit = (value: unknown) => unknown;
+type Commit = (value: unknown) => unknown;
 
 /**
  * @param refuse  called with what is wrong with an input

@@ -12,7 +12,7 @@ import type {Row} from './world_rows.js';
 import type {World} from '../protocol.js';
 
 /** A section whose fields' paths begin below `prefix` of its target. */
-export type BareSection = Section & {prefix: string};
+type BareSection = Section & {prefix: string};
 /** The heading and sections of a row. */
 export type Found = {title: string, sections: Section[]};
 

@@ -5,7 +5,7 @@ import type {ImageView} from '../protocol.js';
 import type {TopicView} from '../topics/topics.js';
 import type {Page} from './panels.js';
 
-export type TopicWindow = {element: HTMLElement, body: HTMLElement, canvas: HTMLCanvasElement|null,
+type TopicWindow = {element: HTMLElement, body: HTMLElement, canvas: HTMLCanvasElement|null,
     busy: boolean};
 
 export class TopicWindows {

@@ -21,7 +21,7 @@ import type {WorldTab} from './world_tab.js';
 import type {ModelEditor} from '../model_editor/model_editor.js';
 
 /** The tabs of the left panel. */
-export type Tabs = {world: WorldTab, show: (name: string) => void};
+type Tabs = {world: WorldTab, show: (name: string) => void};
 
 /** The parts of the window that F6 visits, each with what takes the focus there. */
 const REGIONS = [

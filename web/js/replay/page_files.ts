@@ -1,7 +1,7 @@
 /** Takes apart the data that a replay page contains: the recording, and the files of its models. */
 
 /** What the page contains. Offsets count from the end of the head, sizes are bytes. */
-export interface ReplayHead {
+interface ReplayHead {
   name: string;
   /** offset and size of the state log */
   log: [number, number];

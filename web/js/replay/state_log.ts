@@ -13,7 +13,7 @@ const RECORD_BYTES = 32;
 /** Longest time between two states, s, over which a pose is interpolated. */
 const LONGEST_GAP = 0.5;
 
-export type LogRecord = {kind: number, time: number, at: number, size: number};
+type LogRecord = {kind: number, time: number, at: number, size: number};
 
 /** What belongs to a state: contacts, or a binary frame with a message of a topic. */
 export interface Note {

@@ -13,7 +13,7 @@ import type {Watches} from '../watches.js';
 
 export type TopicView = {head: TopicHead, buffer: ArrayBuffer, start: number};
 
-export interface TopicsEvents {
+interface TopicsEvents {
   /** the list, or what is measured of it */
   list: undefined;
   /** which are shown */

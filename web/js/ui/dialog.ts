@@ -22,7 +22,7 @@ export function closeDialogs() {
   for (const dialog of [...opened].reverse()) dialog.close(undefined);
 }
 
-export interface DialogButton {
+interface DialogButton {
   title: string;
   /** the dialog closes with it */
   value?: unknown;

@@ -109,7 +109,7 @@ function usesArrows(element: unknown) {
 }
 
 /** Whether key presses in this element are text, and so no hotkeys. */
-export function isTextInput(element: unknown) {
+function isTextInput(element: unknown) {
   if (!(element instanceof HTMLElement)) return false;
   if (element.isContentEditable || element.matches('textarea, select')) return true;
   return (

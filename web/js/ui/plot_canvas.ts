@@ -18,7 +18,7 @@ export const CURVE_COLORS = [
 
 export type Curve = {series: Series, color: string};
 /** Where the curves are drawn, px. */
-export type PlotBox = {left: number, top: number, width: number, height: number};
+type PlotBox = {left: number, top: number, width: number, height: number};
 /** What the axes show. */
 export type Range = {from: number, to: number, low: number, high: number};
 export type Drawn = {box: PlotBox, range: Range};

@@ -15,7 +15,7 @@ export interface MenuItem {
   separator?: boolean;
 }
 /** where it opens: beside an anchor, or at a point (px) */
-export interface PopupOptions {
+interface PopupOptions {
   anchor?: HTMLElement;
   x?: number;
   y?: number;

@@ -38,7 +38,7 @@ function trimmed(text: string) {
 }
 
 /** What is left to parse. */
-export type TokenState = {tokens: (number|string)[], at: number};
+type TokenState = {tokens: (number|string)[], at: number};
 
 const TOKEN =
   /\s*(?:(\d+\.?\d*(?:[eE][+-]?\d+)?|\.\d+(?:[eE][+-]?\d+)?)|([a-zA-Z°]+)|([-+*/()]))/y;

@@ -147,7 +147,7 @@ class Gaits {
 }
 
 /** An actor as it is drawn. */
-export class Figure {
+class Figure {
   group = new Group();
   path;
   #actor;

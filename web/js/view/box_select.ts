@@ -3,7 +3,7 @@
 import {membersOf, withGroups} from '../model_groups.js';
 import type {Store} from '../store.js';
 
-export type Dragged = {x: number, y: number, lastX: number, lastY: number};
+type Dragged = {x: number, y: number, lastX: number, lastY: number};
 
 export class BoxSelect {
   #store;

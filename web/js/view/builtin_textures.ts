@@ -88,7 +88,7 @@ function checker(paint: CanvasRenderingContext2D, size: number, [ground, squares
 }
 
 /** Draws a square of `size` px. */
-export type Painter = (paint: CanvasRenderingContext2D, size: number, colors: string[],
+type Painter = (paint: CanvasRenderingContext2D, size: number, colors: string[],
     count: number) => void;
 
 const PAINTERS: Record<string, Painter> = {plain, planks, bricks, tiles, road, checker};

@@ -19,7 +19,7 @@ export type Place = {point: Vec3, level: boolean};
  * @param box  about the origin of the thing, along the world's axes, m
  * @param away  unit vector from the wall, horizontal
  */
-export function standOff(box: {min: Vec3, max: Vec3}, away: Vec3): number {
+function standOff(box: {min: Vec3, max: Vec3}, away: Vec3): number {
   const nearest = away.reduce((sum, part, axis) => sum + part * (part > 0 ? box.min : box.max)[axis], 0);
   return Math.max(0, -nearest) + CLEAR;
 }

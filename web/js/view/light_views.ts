@@ -13,7 +13,7 @@ import type {Store} from '../store.js';
 
 export type Lamp = DirectionalLight|PointLight|SpotLight;
 /** A light of the world with its lamp and its icon in the view. */
-export type LightEntry = {light: Light, lamp: Lamp, icon: Group};
+type LightEntry = {light: Light, lamp: Lamp, icon: Group};
 
 /** three's lamps are physical: three divides the light on a white wall by pi. */
 const STRENGTH = Math.PI;

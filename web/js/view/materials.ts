@@ -10,16 +10,16 @@ import {DULLEST, GREY, GROUND, SHININESS} from '../palette.js';
 import {terrainMaterial} from './terrain_material.js';
 import type {Color, LoadingManager, Material, Texture} from 'three';
 
-export type MaterialDocument = import('../protocol.js').Material;
-export type Paint = Pick<MaterialDocument, 'texture'> & Partial<MaterialDocument>;
-export type TextureDocument = import('../protocol.js').Texture;
+type MaterialDocument = import('../protocol.js').Material;
+type Paint = Pick<MaterialDocument, 'texture'> & Partial<MaterialDocument>;
+type TextureDocument = import('../protocol.js').Texture;
 export type TerrainLayer = import('../protocol.js').TerrainLayer;
-export type ThreeMaterial = Material;
+type ThreeMaterial = Material;
 /**
  * How a surface is drawn; `pushed`: it lies just behind others; `endless`: its rim goes over into
  * what is behind it.
  */
-export type MaterialUse = {doubleSided?: boolean, pushed?: boolean, endless?: boolean};
+type MaterialUse = {doubleSided?: boolean, pushed?: boolean, endless?: boolean};
 
 const DULL = [0, 0, 0, 1];
 

@@ -7,7 +7,7 @@ import type {Owner} from './model_views.js';
 import type {Ray} from '../drag_math.js';
 import type {Stage} from './stage.js';
 
-export interface Hit {
+interface Hit {
   /** the item's */
   owner: Owner;
   /** world */

@@ -18,13 +18,13 @@ export type MousePoint = {clientX: number, clientY: number} & KeyState;
 /** The keys that are held while another one changes. */
 export type KeyState = Partial<Record<'ctrlKey'|'metaKey'|'shiftKey', boolean|undefined>>;
 /** The parts that the mouse works with. */
-export type PointerParts = {manipulator: Manipulator,
+type PointerParts = {manipulator: Manipulator,
     placer: Placer,
     faceSnap: FaceSnap, forces: Forces,
     selector: Selector, pivotMark: PivotMark,
     measure: Measure, boxSelect: BoxSelect};
 /** A pressed button: where it was pressed and who has the drag. */
-export type Press = {x: number, y: number,
+type Press = {x: number, y: number,
     lastX: number, lastY: number, button: number, moved: number, point: Vec3,
     owner: 'camera'|'force'|'manipulator'|'box', touch: boolean};
 

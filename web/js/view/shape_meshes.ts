@@ -17,7 +17,7 @@ import type {Variant} from './materials.js';
 export type Stock = {meshes: Meshes, materials: Materials};
 
 /** A visual, or a collision, which has no material of its own. */
-export type DrawnShape = {pose: Pose7, geometry: Geometry,
+type DrawnShape = {pose: Pose7, geometry: Geometry,
     material?: import('../protocol.js').Material|null,
     transparency?: number, picture_size?: number|null};
 
@@ -25,7 +25,7 @@ export type DrawnShape = {pose: Pose7, geometry: Geometry,
 export type Look = Variant & {material?: Material};
 
 /** A geometry of a shape before its material is chosen; `own`: the material of the mesh file. */
-export type BasicPart = {geometry: BufferGeometry, matrix: Matrix4, pushed?: boolean,
+type BasicPart = {geometry: BufferGeometry, matrix: Matrix4, pushed?: boolean,
     endless?: boolean, own?: Material|Material[]};
 
 export interface Part {

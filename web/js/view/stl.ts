@@ -4,7 +4,7 @@ import {fillNormals} from './facet_normals.js';
 import type {Shape} from './coarse_mesh.js';
 
 /** Nine numbers a triangle each. */
-export type Facets = {position: Float32Array, normal: Float32Array};
+type Facets = {position: Float32Array, normal: Float32Array};
 
 /** The most triangles at rest and in a moving scene. */
 export type Limits = {rest: number, moving: number};

@@ -9,7 +9,7 @@ import type {Texture} from 'three';
 import type {TerrainLayer} from '../protocol.js';
 
 /** A layer and its pictures, null for none. */
-export type CoveredLayer = {layer: TerrainLayer, map: Texture|null, bumps: Texture|null};
+type CoveredLayer = {layer: TerrainLayer, map: Texture|null, bumps: Texture|null};
 
 /**
  * @param layers  lowest first

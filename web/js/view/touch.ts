@@ -11,7 +11,7 @@ const LONG = 550;
 /** A finger that rests wanders by so many pixels. */
 export const TOUCH_PIXELS = 12;
 
-export type Finger = {x: number, y: number};
+type Finger = {x: number, y: number};
 
 export class Touch {
   #rig;

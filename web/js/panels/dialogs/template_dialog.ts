@@ -39,7 +39,7 @@ function groupsOf(fields: Field[]): HTMLElement[] {
 }
 
 /** The models with plugins, whose topics a robot without a namespace may share. */
-export const robotNames = (models: Pick<Model, 'name'|'plugins'|'links'>[]): string[] => models.filter(({plugins, links}) =>
+const robotNames = (models: Pick<Model, 'name'|'plugins'|'links'>[]): string[] => models.filter(({plugins, links}) =>
   plugins.length > 0 || links.some(({sensors}) => sensors?.length)).map(({name}) => name);
 
 /** The name that the robot of a template gets in the world. */

@@ -12,7 +12,7 @@ import type {Page} from '../panels.js';
 import type {RequestFunction} from '../../connection.js';
 import type {Requests} from '../../protocol.js';
 
-export interface FolderHandlers {
+interface FolderHandlers {
   /** a file was chosen */
   onFile: (file: string) => void;
   /** a file was double-clicked */
@@ -22,7 +22,7 @@ export interface FolderHandlers {
 }
 
 /** What the dialogs need of the page. */
-export type FileDialogPage = Pick<Page, 'store'|'request'>;
+type FileDialogPage = Pick<Page, 'store'|'request'>;
 
 const ENDINGS = /\.(world|sdf|xml)$/i;
 
