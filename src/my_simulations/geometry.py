@@ -193,11 +193,11 @@ def rpy_from_quat(q: Quat) -> Vec3:
     pitch = 2.0 * math.atan2(up - down, up + down)
     if min(up, down) < 1e-12:
         # Gimbal lock: only yaw -/+ roll is defined; put it all into yaw.
-        return (0.0, pitch, _wrapped(difference if up > down else total))
-    return (_wrapped((total - difference) / 2), pitch, _wrapped((total + difference) / 2))
+        return (0.0, pitch, _wrap_angle(difference if up > down else total))
+    return (_wrap_angle((total - difference) / 2), pitch, _wrap_angle((total + difference) / 2))
 
 
-def _wrapped(angle: float) -> float:
+def _wrap_angle(angle: float) -> float:
     """The same angle in [-pi, pi]."""
     return math.remainder(angle, 2.0 * math.pi) if abs(angle) > math.pi else angle
 

@@ -103,7 +103,7 @@ def test_a_lost_scheduler_is_told_whichever_call_notices_it(tmp_path, monkeypatc
     said = []
     runner = DaskRunner(CasePlan(read_study(str(tmp_path / "s.yaml"))[0]), Recorder(), set(), 1,
                         "tls://127.0.0.1:2", TlsFiles("", "", ""), lambda row: None, said.append)
-    monkeypatch.setattr(runner, "_connected", lambda: client)
+    monkeypatch.setattr(runner, "_connect_client", lambda: client)
     with pytest.raises(CommandError) as told:
         runner.run()
     assert "was lost" in str(told.value) and "`study resume` goes on" in str(told.value)

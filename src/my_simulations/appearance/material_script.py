@@ -200,11 +200,11 @@ def materials_of(script: str) -> Dict[str, ScriptMaterial]:
     status = os.stat(script)
     if not os.path.isfile(script):  # a named pipe may never have a writer
         return {}
-    return _read(script, status.st_mtime_ns, status.st_size)
+    return _read_script(script, status.st_mtime_ns, status.st_size)
 
 
 @functools.lru_cache(maxsize=256)
-def _read(script: str, _changed: int, _size: int) -> Dict[str, ScriptMaterial]:
+def _read_script(script: str, _changed: int, _size: int) -> Dict[str, ScriptMaterial]:
     with open(script, encoding="utf-8", errors="replace") as stream:
         return read_materials(stream.read(LARGEST))
 

@@ -44,7 +44,7 @@ class Materials:
         if material is None:
             return None
         with self._lock:
-            found = self._named(material)
+            found = self._find_named_look(material)
         said = {name: getattr(material, name) for name in _COLORS}
         found = replace(found, **{name: color for name, color in said.items() if color is not None})
         if material.texture:
@@ -62,7 +62,7 @@ class Materials:
         layers = terrain_layers(visual, self._resolver)
         return replace(found or Look(), layers=layers) if layers else found
 
-    def _named(self, material: Material) -> Look:
+    def _find_named_look(self, material: Material) -> Look:
         name = material.script_name
         if not name:
             return Look()
@@ -104,10 +104,10 @@ class Materials:
         except ResourceNotFoundError:
             return []
         for script in scripts:
-            self._read(script, wanted)
+            self._read_script(script, wanted)
         return folders
 
-    def _read(self, path: str, wanted: str) -> None:
+    def _read_script(self, path: str, wanted: str) -> None:
         """Note the materials of a script: all when it is read, then the wanted one.
 
         Many visuals may name a folder of many materials.

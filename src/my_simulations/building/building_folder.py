@@ -214,7 +214,7 @@ def _with_image_files(plan: Plan, folder: str) -> Tuple[Plan, Dict[str, bytes]]:
     for number, level in enumerate(plan.levels):
         image = level.image
         if image is not None and image.data:
-            content = _decoded(image)
+            content = _decode_image(image)
             name = f"floor_plan_{number + 1}{_ENDINGS[image_kind(content, image.file)]}"
             files[name] = content
             image = FloorImage(name, image.resolution)
@@ -227,7 +227,7 @@ def _with_image_files(plan: Plan, folder: str) -> Tuple[Plan, Dict[str, bytes]]:
     return replace(plan, levels=levels), files
 
 
-def _decoded(image: FloorImage) -> bytes:
+def _decode_image(image: FloorImage) -> bytes:
     try:
         head = _DATA_URL.match(image.data)
         if head is None:

@@ -48,7 +48,7 @@ def building_save(plan: Any, name: str, options: Mapping[str, Any],
         JSON with the path of the folder, name and `model://` URI of the model, and issues.
     """
     made = check_name(name)
-    parent = _allowed(str(options.get("folder") or default_folder()), roots)
+    parent = _resolve_allowed_path(str(options.get("folder") or default_folder()), roots)
     read = plan_from_json(plan)
     read.name = name.strip()
     about = About(**{item.name: str(options[item.name])
@@ -67,7 +67,7 @@ def building_load(name: str, roots: Sequence[str] = ()) -> Dict[str, Any]:
     path = os.path.expanduser(name.strip())
     if not os.path.isabs(path):
         path = os.path.join(default_folder(), check_name(name))
-    path = _allowed(path, roots)
+    path = _resolve_allowed_path(path, roots)
     if not os.path.exists(path):
         raise CommandError(f"{path} does not exist")
     plan, issues = load_building(path)
@@ -84,7 +84,7 @@ def building_list(parents: Sequence[str] = ()) -> List[Dict[str, str]]:
     return list(seen.values())
 
 
-def _allowed(path: str, roots: Sequence[str]) -> str:
+def _resolve_allowed_path(path: str, roots: Sequence[str]) -> str:
     """The real path. Raises CommandError if it is outside the default folder and all roots."""
     places = [os.path.realpath(os.path.expanduser(root)) for root in (default_folder(), *roots)]
     real = os.path.realpath(os.path.join(places[0], os.path.expanduser(path.replace("\0", ""))))

@@ -211,7 +211,7 @@ class _Reader:
             return None
         if tree.get("format") != FORMAT:
             self._fault("plan-format", f"expected a plan of format {FORMAT}, found"
-                        f" {_shown(tree.get('format'))}", "format")
+                        f" {_format_value(tree.get('format'))}", "format")
             return None
         levels = tree.get("levels")
         if not isinstance(levels, list) or not levels:
@@ -277,13 +277,14 @@ class _Reader:
             plan.next[kind] = max([start, *(number + 1 for number in seen)])
 
     def _wrong(self, path: str, expected: str, found: Any) -> None:
-        self._fault("plan-value", f"{path}: expected {expected}, found {_shown(found)}", path)
+        self._fault("plan-value",
+                    f"{path}: expected {expected}, found {_format_value(found)}", path)
 
     def _fault(self, code: str, message: str, path: str) -> None:
         self.issues.append(error(code, message, file=self._file, xpath=path))
 
 
-def _shown(value: Any) -> str:
+def _format_value(value: Any) -> str:
     if value is None:
         return "nothing"
     text = json.dumps(value, ensure_ascii=False, default=repr)

@@ -235,13 +235,13 @@ def roof_parts(plan: Plan) -> Optional[Tuple[Vec3, float, Parts]]:
     if plan.roof is None or level is None:
         return None
     top = base + max(wall.height for wall in level.walls)
-    covered = _covered(level)
+    covered = _compute_floor_area(level)
     if plan.roof.kind == "gable":
         return _gable(covered, plan.roof, top, max(wall.thickness for wall in level.walls))
     return _flat(covered, plan.roof, top)
 
 
-def _covered(level: Level) -> Any:
+def _compute_floor_area(level: Level) -> Any:
     """The area below and between the walls (a shapely polygon or several)."""
     import shapely
     from shapely.geometry import LineString, Polygon

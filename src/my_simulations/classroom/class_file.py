@@ -102,7 +102,7 @@ class _ClassReader(ValueReader):
         if not isinstance(value, Mapping):
             self.fault(("args",), f"'args' must be a mapping, is {describe_value(value)}")
             return ()
-        return tuple(f"{name}:={_argument(given)}" for name, given in value.items())
+        return tuple(f"{name}:={_format_argument(given)}" for name, given in value.items())
 
     def _limits(self, value: Any) -> ClassLimits:
         inside = self.mapping(value, ("limits",), _LIMITS)
@@ -131,6 +131,6 @@ class _ClassReader(ValueReader):
         return found
 
 
-def _argument(value: Any) -> str:
+def _format_argument(value: Any) -> str:
     """A value of YAML as roslaunch takes it."""
     return str(value).lower() if isinstance(value, bool) else str(value)

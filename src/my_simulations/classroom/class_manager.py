@@ -161,21 +161,21 @@ class ClassManager:
 
     def picture(self, name: str) -> str:
         """A picture of the world of a student, SVG. Raises CommandError: no such student."""
-        return self._monitored(name).monitor.picture.svg()
+        return self._find_world(name).monitor.picture.svg()
 
     async def start_world(self, name: str) -> None:
         """Start the world of a student if it does not run. Raises CommandError: no such student."""
-        monitored = self._monitored(name)
+        monitored = self._find_world(name)
         if not monitored.world.is_alive:
             self._start(monitored)
 
     async def stop_world(self, name: str) -> None:
         """Stop the world of a student. Raises CommandError: no such student."""
-        monitored = self._monitored(name)
+        monitored = self._find_world(name)
         self._unwait(monitored)
         await self._stop(monitored, "stopped by the tutor")
 
-    def _monitored(self, name: str) -> MonitoredWorld:
+    def _find_world(self, name: str) -> MonitoredWorld:
         monitored = self._worlds.get(name)
         if monitored is None:
             raise CommandError(f"there is no student {name!r}")

@@ -73,7 +73,7 @@ class Containers:
 
     def _unpack(self, student: Student, store: Store) -> None:
         limit = int(self._plan.limits.file_mb * 1e6)
-        process = self._started(student, _ARCHIVE, (self._plan.submission,), subprocess.DEVNULL)
+        process = self._exec(student, _ARCHIVE, (self._plan.submission,), subprocess.DEVNULL)
         assert process.stdout is not None and process.stderr is not None
         archive = _LimitedStream(process.stdout, limit + MOST_FILES * _HEAD_BYTES)
         is_whole, problem = False, ""
@@ -99,13 +99,13 @@ class Containers:
 
     def measure(self, student: Student) -> "subprocess.Popen[bytes]":
         """Print the memory of a container, bytes; fails if it does not run. Raises CommandError."""
-        return self._started(student, _MEMORY, (), subprocess.DEVNULL)
+        return self._exec(student, _MEMORY, (), subprocess.DEVNULL)
 
     # -- programs in containers ------------------------------------------------------------------
 
     def _run(self, student: Student, script: str, arguments: Sequence[str] = (),
              data: bytes = b"") -> bytes:
-        process = self._started(student, script, arguments, subprocess.PIPE)
+        process = self._exec(student, script, arguments, subprocess.PIPE)
         try:
             output, said = process.communicate(data, _CALL_S)
         except subprocess.TimeoutExpired:
@@ -116,8 +116,8 @@ class Containers:
             raise CommandError(f"container of {student.name}: {_last_line(said)}")
         return output
 
-    def _started(self, student: Student, script: str, arguments: Sequence[str], source: int
-                 ) -> "subprocess.Popen[bytes]":
+    def _exec(self, student: Student, script: str, arguments: Sequence[str], source: int
+              ) -> "subprocess.Popen[bytes]":
         words = [self._program, "exec", "-i", container_name(self._plan, student)]
         if self._program == KUBECTL:
             words = [KUBECTL, "-n", label(self._plan.name), "exec", "-i",

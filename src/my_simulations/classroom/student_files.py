@@ -49,7 +49,7 @@ def collect_submission(plan: ClassPlan, student: Student, out: str) -> int:
     def copy(store: Store) -> None:
         def receive(reading: int) -> None:
             with os.fdopen(os.dup(reading), "rb") as stream:
-                for name, mode, content in _received(stream.read, limit):
+                for name, mode, content in _receive_files(stream.read, limit):
                     store(name, mode, content)
 
         _as_student(plan, student, lambda home, writing: _send_all(
@@ -151,7 +151,7 @@ def _send_all(home: int, inside: str, limit: int, writing: int) -> None:
         for path, folders, names, here in os.fwalk(".", dir_fd=folder, follow_symlinks=False):
             folders[:] = sorted(one for one in folders if not one.startswith("."))
             for name in sorted(names):
-                found = _opened(name, here)
+                found = _open_file(name, here)
                 if found is None:
                     continue
                 with os.fdopen(found, "rb") as source:
@@ -166,7 +166,7 @@ def _send_all(home: int, inside: str, limit: int, writing: int) -> None:
                 stream.write(relative + content)
 
 
-def _opened(name: str, folder: int) -> "int | None":
+def _open_file(name: str, folder: int) -> "int | None":
     """A descriptor of a regular file; None for others and for what cannot be read."""
     try:
         found = os.open(name, os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK, dir_fd=folder)
@@ -180,7 +180,7 @@ def _opened(name: str, folder: int) -> "int | None":
 
 # -- in this process -------------------------------------------------------------------------------
 
-def _received(read: Callable[[int], bytes], limit: int) -> Iterator[Tuple[str, int, bytes]]:
+def _receive_files(read: Callable[[int], bytes], limit: int) -> Iterator[Tuple[str, int, bytes]]:
     """Names, permissions to execute and contents of what a student's child sends."""
     left = limit
     while True:

@@ -177,7 +177,7 @@ def counts(loaded: Optional[Loaded]) -> Dict[str, Any]:
             kinds[kind] = kinds.get(kind, 0) + 1
     lights = loaded.lights if isinstance(loaded, World) else []
     return {
-        "models": sum(1 + _nested(model) for model in models),
+        "models": sum(1 + _count_nested(model) for model in models),
         "links": len(links),
         "joints": sum(len(model.joints) for model in flat),
         "collisions": dict(sorted(kinds.items())),
@@ -188,8 +188,8 @@ def counts(loaded: Optional[Loaded]) -> Dict[str, Any]:
     }
 
 
-def _nested(model: Model) -> int:
-    return sum(1 + _nested(inner) for inner in model.models)
+def _count_nested(model: Model) -> int:
+    return sum(1 + _count_nested(inner) for inner in model.models)
 
 
 def _plugins(model: Model) -> int:

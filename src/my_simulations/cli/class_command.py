@@ -129,7 +129,7 @@ def _container_status(plan: ClassPlan, options: argparse.Namespace) -> int:
 def _stop(plan: ClassPlan, options: argparse.Namespace) -> int:
     manager = ClassState(plan).manager()
     if options.students:
-        for student in _chosen(plan, options.students):
+        for student in _select_students(plan, options.students):
             _request(manager, f"students/{student.name}/stop", b"")
         return OK
     os.kill(int(manager["pid"]), signal.SIGTERM)
@@ -183,7 +183,7 @@ def _broadcast(plan: ClassPlan, options: argparse.Namespace) -> int:
             return Containers(plan).send(student, name, content)
         return send_file(plan, student, name, content)
 
-    return _for_each(_chosen(plan, options.to) or list(plan.students), lambda student: (
+    return _for_each(_select_students(plan, options.to) or list(plan.students), lambda student: (
         f"{student.name}: {send(student)}"))
 
 
@@ -209,7 +209,7 @@ def _kubernetes(plan: ClassPlan, _options: argparse.Namespace) -> int:
     return OK
 
 
-def _chosen(plan: ClassPlan, names: Sequence[str]) -> List[Student]:
+def _select_students(plan: ClassPlan, names: Sequence[str]) -> List[Student]:
     known = {student.name: student for student in plan.students}
     for name in names:
         if name not in known:

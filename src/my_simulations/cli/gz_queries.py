@@ -122,7 +122,7 @@ def stats(options: argparse.Namespace, running: Running) -> int:
     """`gz stats`: one line five times a second; real time counts from the first line."""
     if options.plot:
         print("# real-time factor (percent), simtime (sec), realtime (sec), paused (T or F)")
-    for factor, sim, real, paused in _measured(running, options.duration):
+    for factor, sim, real, paused in _measure_speed(running, options.duration):
         still = "T" if paused else "F"
         if options.plot:
             print(f"{100 * factor:4.2f}, {sim:16.6f}, {real:16.6f}, {still}", flush=True)
@@ -148,7 +148,7 @@ def topic(options: argparse.Namespace, running: Running) -> int:
     return OK
 
 
-def _measured(running: Running, duration: float) -> Iterator[Tuple[float, float, float, bool]]:
+def _measure_speed(running: Running, duration: float) -> Iterator[Tuple[float, float, float, bool]]:
     """Real-time factor, sim time (s), real time (s) and paused, for `duration` wall seconds."""
     began = before = time.monotonic()
     sim_before = running.call_service("get_world_properties", "GetWorldProperties").sim_time

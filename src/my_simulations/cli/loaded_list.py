@@ -85,7 +85,7 @@ def upload(parameters: client.Parameters, world: str, package: str,
     state = _state(place)
     found = _upload_files(parameters, place, package)
     if needs_list and not found.file:
-        near = closest(world, _listed(os.path.join(folder, "config")), 1)
+        near = closest(world, _list_folder(os.path.join(folder, "config")), 1)
         meant = f" (did you mean {near[0]}?)" if near else ""
         found.issues.append(warning(
             "no-object-list", f"world '{world}' has no object list{meant}", file=place,
@@ -202,7 +202,7 @@ def _text(mark: Any, key: str) -> str:
     return found if isinstance(found, str) else ""
 
 
-def _listed(folder: str) -> List[str]:
+def _list_folder(folder: str) -> List[str]:
     try:
         return sorted(os.listdir(folder))
     except OSError:

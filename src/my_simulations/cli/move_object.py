@@ -181,7 +181,7 @@ def _follow(simulator: client.SimulatorClient, options: argparse.Namespace, path
         now = clock.tick()
         ahead = min(end, distance + options.velocity * max(0.0, now - last))
         last = now
-        if _blocked(simulator, path, ahead, stops, options):
+        if _is_blocked(simulator, path, ahead, stops, options):
             blocked_since = now if blocked_since is None or now < blocked_since else blocked_since
             if now - blocked_since >= BLOCKED_SECONDS:
                 distance, blocked_since = path.restart(distance), now
@@ -192,8 +192,8 @@ def _follow(simulator: client.SimulatorClient, options: argparse.Namespace, path
                                                      quat_from_rpy(0.0, 0.0, place.yaw)))
 
 
-def _blocked(simulator: client.SimulatorClient, path: Path, ahead: float, stops: List[str],
-             options: argparse.Namespace) -> bool:
+def _is_blocked(simulator: client.SimulatorClient, path: Path, ahead: float, stops: List[str],
+                options: argparse.Namespace) -> bool:
     point = path.at(ahead)
     for name in stops:
         state = simulator.model_state(name)

@@ -187,9 +187,9 @@ class SimulatorClient:
 
         Raises ToolError: it failed or did not respond.
         """
-        return self._checked("spawn_sdf_model" if sdf else "spawn_urdf_model", "SpawnModel",
-                             model_name=name, model_xml=xml,
-                             initial_pose=pose_message(Pose(position, quat_from_rpy(*rpy))))
+        return self._call_service("spawn_sdf_model" if sdf else "spawn_urdf_model", "SpawnModel",
+                                  model_name=name, model_xml=xml,
+                                  initial_pose=pose_message(Pose(position, quat_from_rpy(*rpy))))
 
     def spawn_object(self, name: str, xml: str, position: Vec3, rpy: Vec3, *, replace: bool,
                      file: str, launch_pid: int) -> str:
@@ -197,16 +197,16 @@ class SimulatorClient:
 
         Raises ToolError: it failed or did not respond.
         """
-        return self._checked("spawn_object", "SpawnObject", model_name=name, model_xml=xml,
-                             initial_pose=pose_message(Pose(position, quat_from_rpy(*rpy))),
-                             replace=replace, file=file, launch_pid=launch_pid)
+        return self._call_service("spawn_object", "SpawnObject", model_name=name, model_xml=xml,
+                                  initial_pose=pose_message(Pose(position, quat_from_rpy(*rpy))),
+                                  replace=replace, file=file, launch_pid=launch_pid)
 
     def delete(self, name: str) -> str:
         """Delete a model; returns the status message.
 
         Raises ToolError: it failed or did not respond.
         """
-        return self._checked("delete_model", "DeleteModel", model_name=name)
+        return self._call_service("delete_model", "DeleteModel", model_name=name)
 
     def model_state(self, name: str) -> Any:
         """A `GetModelState` response in the world frame, None if the model does not exist."""
@@ -221,7 +221,7 @@ class SimulatorClient:
         from gazebo_msgs.msg import ModelState
 
         state = ModelState(model_name=name, pose=pose_message(pose), reference_frame="world")
-        self._checked("set_model_state", "SetModelState", model_state=state)
+        self._call_service("set_model_state", "SetModelState", model_state=state)
 
     @contextlib.contextmanager
     def paused(self) -> Iterator[None]:
@@ -254,7 +254,7 @@ class SimulatorClient:
             for number, handler in before.items():
                 signal.signal(number, handler)
 
-    def _checked(self, service: str, kind: str, **fields: Any) -> str:
+    def _call_service(self, service: str, kind: str, **fields: Any) -> str:
         answer = self._call(service, kind, **fields)
         if not answer.success:
             raise ToolError(answer.status_message)

@@ -67,7 +67,7 @@ def main(words: List[str], program: str) -> int:
         opening.cancel()
         page.stop()
         engines.close()
-        return _refused(fault, say)
+        return _report_fault(fault, say)
     say(f"the world file is {simulator.world.file}")
     ended = threading.Event()
     for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
@@ -127,7 +127,7 @@ def _load(options: "ServerOptions", engines: "EngineSupply", log: Callable[[Issu
                        progress=progress), resolver
 
 
-def _refused(fault: InputError, say: Callable[[object], None]) -> int:
+def _report_fault(fault: InputError, say: Callable[[object], None]) -> int:
     for issue in fault.issues:
         say(issue)
     return FAILED

@@ -101,7 +101,7 @@ def cost_of(model: Model, meshes: Optional[MeshTable] = None) -> Cost:
 
 def budget_faults(cost: Cost, model: Model) -> Iterator[Fault]:
     """What a model of this cost exceeds of `MODEL_BUDGET`."""
-    for name in _exceeded(cost, MODEL_BUDGET):
+    for name in _list_exceeded(cost, MODEL_BUDGET):
         yield Fault("model-too-large", f"model {model.name!r} has {getattr(cost, name)}"
                     f" {_NAMES[name]}; {getattr(MODEL_BUDGET, name)} are possible", model,
                     hint=_HINTS[name])
@@ -109,14 +109,14 @@ def budget_faults(cost: Cost, model: Model) -> Iterator[Fault]:
 
 def world_excess(cost: Cost) -> str:
     """The first limit of `WORLD_BUDGET` that a world of this cost exceeds; "" if none."""
-    for name in _exceeded(cost, WORLD_BUDGET):
+    for name in _list_exceeded(cost, WORLD_BUDGET):
         what = _NAMES[name].replace("its", "all")
         return f"the world would have {getattr(cost, name)} {what}; " \
                f"{getattr(WORLD_BUDGET, name)} are possible"
     return ""
 
 
-def _exceeded(cost: Cost, budget: Cost) -> List[str]:
+def _list_exceeded(cost: Cost, budget: Cost) -> List[str]:
     return [name for name in _NAMES if getattr(cost, name) > getattr(budget, name)]
 
 

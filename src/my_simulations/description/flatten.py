@@ -23,12 +23,12 @@ def flatten_model(model: Model) -> Model:
     joints: List[Joint] = list(model.joints)
     for nested in model.models:
         inner = flatten_model(nested)
-        links += [_moved(link, nested, model) for link in inner.links]
-        joints += [_scoped(joint, nested.name) for joint in inner.joints]
+        links += [_move_link(link, nested, model) for link in inner.links]
+        joints += [_scope_joint(joint, nested.name) for joint in inner.joints]
     return replace(model, links=links, joints=joints, models=[], guide=model)
 
 
-def _moved(link: Link, nested: Model, outer: Model) -> Link:
+def _move_link(link: Link, nested: Model, outer: Model) -> Link:
     """The link of a nested model; static ones inside a dynamic model become kinematic links.
 
     What it says of self-collision is what its own model does (Gazebo, Link::Load).
@@ -41,7 +41,7 @@ def _moved(link: Link, nested: Model, outer: Model) -> Link:
         kinematic=link.kinematic or (nested.static and not outer.static), self_collide=own)
 
 
-def _scoped(joint: Joint, scope: str) -> Joint:
+def _scope_joint(joint: Joint, scope: str) -> Joint:
     return rename_joint(joint, lambda name: f"{scope}::{name}")
 
 

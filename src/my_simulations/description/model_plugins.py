@@ -9,7 +9,8 @@ from .model import Model
 
 def has_plugins(model: Model) -> bool:
     """Whether a model, a sensor of its links or joints, or a nested model has a plugin."""
-    return bool(model.plugins) or _of_sensors(model) > 0 or any(map(has_plugins, _nested(model)))
+    return (bool(model.plugins) or _of_sensors(model) > 0
+            or any(map(has_plugins, _list_nested(model))))
 
 
 def plugin_count(model: Model) -> int:
@@ -24,8 +25,8 @@ def _of_sensors(model: Model) -> int:
 
 
 def _of_models(models: Iterable[Model]) -> int:
-    return sum(len(model.plugins) + _of_models(_nested(model)) for model in models)
+    return sum(len(model.plugins) + _of_models(_list_nested(model)) for model in models)
 
 
-def _nested(model: Model) -> Iterable[Model]:
+def _list_nested(model: Model) -> Iterable[Model]:
     return model.models if model.guide is None else model.guide.models

@@ -20,7 +20,7 @@ def with_namespace(model: Model, namespace: str) -> Model:
 
 
 def _plugin(plugin: PluginSpec, namespace: str) -> PluginSpec:
-    return replace(plugin, xml=_injected(plugin.xml, namespace)) if plugin.xml else plugin
+    return replace(plugin, xml=_add_namespace(plugin.xml, namespace)) if plugin.xml else plugin
 
 
 def _link(link: Link, namespace: str) -> Link:
@@ -32,10 +32,10 @@ def _link(link: Link, namespace: str) -> Link:
 
 
 def _extra(texts: List[str], namespace: str) -> List[str]:
-    return [_injected(text, namespace) if "<plugin" in text else text for text in texts]
+    return [_add_namespace(text, namespace) if "<plugin" in text else text for text in texts]
 
 
-def _injected(xml: str, namespace: str) -> str:
+def _add_namespace(xml: str, namespace: str) -> str:
     """The element `xml` with the namespace added to every `<plugin>` without one.
 
     XML that cannot be parsed by itself (an undeclared prefix) is unchanged.

@@ -21,12 +21,12 @@ def unflatten_model(flat: Model) -> Model:
     guide = flat.guide or Model("")
     if not guide.models and not any(SCOPE in link.name for link in flat.links):
         return flat
-    whole = _gathered(flat, flat.links, flat.joints, guide, IDENTITY)
+    whole = _gather_parts(flat, flat.links, flat.joints, guide, IDENTITY)
     return replace(whole, guide=None)
 
 
-def _gathered(model: Model, links: Sequence[Link], joints: Sequence[Joint], guide: Model,
-              above: Pose) -> Model:
+def _gather_parts(model: Model, links: Sequence[Link], joints: Sequence[Joint], guide: Model,
+                  above: Pose) -> Model:
     """Add these links and joints to `model`, with names relative to it.
 
     `above`: pose of its frame in the outermost model, whose frame the link poses are in.
@@ -58,8 +58,8 @@ def _gathered(model: Model, links: Sequence[Link], joints: Sequence[Joint], guid
     models = []
     for name, some in inner.items():
         nested = guides.get(name, Model(name))
-        models.append(_gathered(nested, some, theirs.get(name, []), nested,
-                                compose(above, nested.pose)))
+        models.append(_gather_parts(nested, some, theirs.get(name, []), nested,
+                                    compose(above, nested.pose)))
     models += [nested for nested in guide.models
                if nested.name not in inner and not flatten_model(nested).links]
     return replace(model, links=own, joints=ours, models=models)

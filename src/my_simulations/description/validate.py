@@ -72,9 +72,9 @@ def find_own_faults(model: Model, static: bool = False) -> Iterator[Fault]:
     """Yield the faults of a model without those of its nested models."""
     static = static or model.static
     yield from name_and_pose_faults(model)
-    yield from _repeated("link", model.links)
-    yield from _repeated("joint", model.joints)
-    yield from _repeated("model", model.models)
+    yield from _find_repeated("link", model.links)
+    yield from _find_repeated("joint", model.joints)
+    yield from _find_repeated("model", model.models)
     for link in model.links:
         yield from link_faults(link, static)
     known = set(link_names(model))
@@ -103,7 +103,7 @@ def link_names(model: Model) -> Iterator[str]:
         waiting += [(f"{scope}{nested.name}::", nested) for nested in reversed(one.models)]
 
 
-def _repeated(kind: str, items: Sequence[Any]) -> Iterator[Fault]:
+def _find_repeated(kind: str, items: Sequence[Any]) -> Iterator[Fault]:
     seen: Set[str] = set()
     for item in items:
         if not item.name:

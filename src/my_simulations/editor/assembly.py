@@ -101,7 +101,7 @@ class Assembly:
             works.append(self._autosave_loop)
         self._tasks = [asyncio.ensure_future(work()) for work in works]
         for task in self._tasks:
-            task.add_done_callback(self._ended)
+            task.add_done_callback(self._report_ended_task)
 
     async def close(self, reason: str, runner: web.AppRunner) -> None:
         """Say farewell, end what runs, keep unsaved edits."""
@@ -139,7 +139,7 @@ class Assembly:
             # A world that takes long to write is written less often.
             await asyncio.sleep(_AUTOSAVE_S + 10.0 * (loop.time() - started))
 
-    def _ended(self, task: "asyncio.Future[Any]") -> None:
+    def _report_ended_task(self, task: "asyncio.Future[Any]") -> None:
         """Report a task that ended by itself, which is a defect, to the owner of the server."""
         if not task.cancelled():
             defect = task.exception()

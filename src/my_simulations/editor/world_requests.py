@@ -240,15 +240,15 @@ class WorldRequests:
     # -- files -----------------------------------------------------------------------------------
 
     def _save(self, client: Client, message: Dict[str, Any]) -> Dict[str, Any]:
-        return self._filed(client, "saved", self._files.save, message)
+        return self._run_file_request(client, "saved", self._files.save, message)
 
     def _open(self, client: Client, message: Dict[str, Any]) -> Dict[str, Any]:
         self._set_aside(message)
-        return self._filed(client, "opened", self._files.open, message)
+        return self._run_file_request(client, "opened", self._files.open, message)
 
     def _new(self, client: Client, message: Dict[str, Any]) -> Dict[str, Any]:
         self._set_aside(message)
-        return self._filed(client, "opened", self._files.new, message)
+        return self._run_file_request(client, "opened", self._files.new, message)
 
     def _set_aside(self, message: Dict[str, Any]) -> None:
         """What is discarded can be recovered."""
@@ -261,8 +261,9 @@ class WorldRequests:
     def _new_folder(self, _client: Client, message: Dict[str, Any]) -> Dict[str, Any]:
         return self._files.new_folder(message)
 
-    def _filed(self, client: Client, verb: str, handler: Callable[[Dict[str, Any]], Dict[str, Any]],
-               message: Dict[str, Any]) -> Dict[str, Any]:
+    def _run_file_request(self, client: Client, verb: str,
+                          handler: Callable[[Dict[str, Any]], Dict[str, Any]],
+                          message: Dict[str, Any]) -> Dict[str, Any]:
         with self._notices.notify_of_deletions(client.number):
             value = handler(message)
             if verb == "opened":

@@ -161,12 +161,12 @@ class _Planner:
 
     def _from_held(self, name: str) -> List[BodyPlan]:
         """Plan the bodies of a kinematic link, the links connected to it, and their children."""
-        body = self._grow(BodyPlan([self._fixed(name)], fixed_base=True), name, 0)
+        body = self._grow(BodyPlan([self._plan_fixed_link(name)], fixed_base=True), name, 0)
         if any(link.joint is not None for link in body.links):
             return [body]
         return [BodyPlan([TreeLink(link.index, BASE)]) for link in body.links]
 
-    def _fixed(self, name: str) -> TreeLink:
+    def _plan_fixed_link(self, name: str) -> TreeLink:
         """A kinematic link, on a fixed base."""
         self.visited.add(name)
         index = self.by_name[name]
@@ -182,7 +182,7 @@ class _Planner:
                 if joint.name in self.used or other == WORLD or other in self.visited:
                     continue
                 if other in self.held:   # all that reaches it is on a fixed base; the joint is open
-                    body.links.append(self._fixed(other))
+                    body.links.append(self._plan_fixed_link(other))
                 else:
                     self.visited.add(other)
                     self.used.add(joint.name)

@@ -36,7 +36,7 @@ class Scratch:
         while not self._path:
             remove_stale_folders()
             made = tempfile.mkdtemp(prefix=_PREFIX)
-            self._lock = _locked(made)
+            self._lock = _lock_folder(made)
             if self._lock >= 0:  # otherwise another process removed it in between
                 self._path = made
         return self._path
@@ -58,13 +58,13 @@ def remove_stale_folders() -> None:
     for name in names:
         if name.startswith(_PREFIX):
             path = os.path.join(parent, name)
-            lock = _locked(path)
+            lock = _lock_folder(path)
             if lock >= 0:
                 shutil.rmtree(path, ignore_errors=True)
                 os.close(lock)
 
 
-def _locked(path: str) -> int:
+def _lock_folder(path: str) -> int:
     """A descriptor that locks a folder; -1 if it cannot be locked."""
     descriptor = -1
     with contextlib.suppress(OSError):  # gone, another user's, or locked

@@ -46,10 +46,10 @@ def complete_inertia(inertial: Inertial, collisions: List[Collision],
     if is_zero(inertial):
         better = of_shapes(inertial, collisions)
         return None if better is None else (better, "is zero; that of its shapes is used")
-    return _raised(inertial)
+    return _raise_moments(inertial)
 
 
-def _raised(i: Inertial) -> Optional[Tuple[Inertial, str]]:
+def _raise_moments(i: Inertial) -> Optional[Tuple[Inertial, str]]:
     """Replace zero moments by the least value that is possible beside the other moments.
 
     No principal moment exceeds the sum of the two others.
@@ -145,8 +145,8 @@ def combine_inertia(a: Optional[Inertial], b: Optional[Inertial],
     )
     tensor_a = _rotate_tensor(_tensor(a), a.pose.orientation)
     total = _sum(
-        _shifted(tensor_a, a.mass, subtract(a.pose.position, centre)),
-        _shifted(tensor_b, b.mass, subtract(centre_b, centre)),
+        _shift_tensor(tensor_a, a.mass, subtract(a.pose.position, centre)),
+        _shift_tensor(tensor_b, b.mass, subtract(centre_b, centre)),
     )
     return _inertial(mass, centre, total)
 
@@ -167,7 +167,7 @@ def _rotate_tensor(t: Matrix, q: Quat) -> Matrix:
     return (x, y, z)
 
 
-def _shifted(t: Matrix, mass: float, d: Vec3) -> Matrix:
+def _shift_tensor(t: Matrix, mass: float, d: Vec3) -> Matrix:
     """The tensor about a point that lies -d from the centre of mass (Steiner)."""
     square = d[0] * d[0] + d[1] * d[1] + d[2] * d[2]
     rows = []

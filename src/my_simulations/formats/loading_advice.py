@@ -90,12 +90,12 @@ def _element_of(subject: Any, models: Sequence[Model], written: Written) -> Any:
     for model in models:
         for link in flatten_model(model).links:
             if subject is link.inertial or any(subject is one for one in link.collisions):
-                return _named(written.root, written.name or model.name, model.uri, link,
-                              getattr(subject, "name", ""))
+                return _find_element(written.root, written.name or model.name, model.uri, link,
+                                     getattr(subject, "name", ""))
     return None
 
 
-def _named(root: Any, model: str, uri: str, link: Link, collision: str) -> Any:
+def _find_element(root: Any, model: str, uri: str, link: Link, collision: str) -> Any:
     """The innermost element with the names of model, link and collision; None if not found."""
     holder = root if root.tag == "robot" else None
     for element in root.iter("model", "include"):

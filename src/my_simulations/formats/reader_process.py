@@ -107,7 +107,7 @@ class ReaderProcess:
     def _answer(self, request: Dict[str, Any], until: float) -> Tuple[Any, List[Any]]:
         import numpy as np
 
-        child = self._started()
+        child = self._start_worker()
         try:
             child.stdin.write(json.dumps(request).encode() + b"\n")
             child.stdin.flush()
@@ -143,7 +143,7 @@ class ReaderProcess:
             at += count
         return data
 
-    def _started(self) -> Any:
+    def _start_worker(self) -> Any:
         if self._child is not None and self._child.poll() is not None:
             self._end()  # it was ended from outside while idle
         if self._child is None:

@@ -70,7 +70,7 @@ def _limit(what: int, most: int) -> None:
     resource.setrlimit(what, (most if hard == resource.RLIM_INFINITY else min(most, hard), hard))
 
 
-def _limited(memory: int, seconds: int) -> None:
+def _set_limits(memory: int, seconds: int) -> None:
     """Limits of what the next file may take in addition to what is in use."""
     with open("/proc/self/statm", encoding="ascii") as stream:
         used = int(stream.read().split()[0]) * resource.getpagesize()
@@ -119,7 +119,7 @@ def main() -> None:
     os.dup2(2, 1)
     for line in sys.stdin.buffer:
         request = json.loads(line)
-        _limited(request["memory"], request["seconds"])
+        _set_limits(request["memory"], request["seconds"])
         header, arrays = _answer(request)
         text = json.dumps(header).encode()
         out.write(struct.pack("<Q", len(text)) + text)

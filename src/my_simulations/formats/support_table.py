@@ -92,13 +92,13 @@ def support_tables() -> str:
 
 def _row(table: Table) -> str:
     rows = list(supported_rows(table))
-    cells = [", ".join(_shown(row) for row in rows if row.use is use) for use in Use]
+    cells = [", ".join(_format_status(row) for row in rows if row.use is use) for use in Use]
     if not rows:
         cells[list(Use).index(table.use)] = "yes"
     return f"| `{table.name}` | " + " | ".join(cells) + " |"
 
 
-def _shown(row: Supported) -> str:
+def _format_status(row: Supported) -> str:
     since: Optional[str] = row.since if row.since > "1.7" or len(row.since) > 3 else ""
     return f"`{row.path}`" + (f" (SDF {since})" if since else "")
 

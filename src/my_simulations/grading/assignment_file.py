@@ -65,7 +65,7 @@ class _AssignmentReader(AssignmentValues):
             self.models(top.get("models")),
             self.number(top.get("sample", 0.01), ("sample",), above=0.0, most=_LONGEST_S),
             self._limits(top.get("limits")), checks, services == _ALL,
-            self._recorded(top.get("record"), form))
+            self._read_recorded(top.get("record"), form))
 
     def _form(self, value: Any) -> SubmissionForm:
         path = ("submission",)
@@ -73,7 +73,7 @@ class _AssignmentReader(AssignmentValues):
         inside = self.mapping(value, path, keys)
         return SubmissionForm(*(self.names(inside.get(key), (*path, key)) for key in keys))
 
-    def _recorded(self, value: Any, form: SubmissionForm) -> Tuple[str, ...]:
+    def _read_recorded(self, value: Any, form: SubmissionForm) -> Tuple[str, ...]:
         names = self.names(value, ("record",))
         for name in names:
             if not _RECORDED.match(name):

@@ -40,7 +40,7 @@ class ConfinedResolver(Resolver):
         except ResourceNotFoundError as missing:
             self._looked_up.update(dict.fromkeys(filter(os.path.isabs, missing.tried)))
             raise
-        if not (self._is_in(self._allowed, path) or self._is_in(self._installed(), path)):
+        if not (self._is_in(self._allowed, path) or self._is_in(self._list_installed(), path)):
             raise ResourceNotFoundError(uri, reason="it lies outside of the submission and of"
                                                     " all model and resource folders")
         self._looked_up[path] = None
@@ -54,10 +54,10 @@ class ConfinedResolver(Resolver):
 
     def add_unlisted_folder(self, uri: str, base_dir: str) -> str:
         """As `Resolver.add_unlisted_folder`; the added folder does not become permitted."""
-        self._installed()
+        self._list_installed()
         return super().add_unlisted_folder(uri, base_dir)
 
-    def _installed(self) -> Tuple[str, ...]:
+    def _list_installed(self) -> Tuple[str, ...]:
         """The folders of models, resources and packages before a file has added others."""
         self._searched = self._searched or tuple(map(os.path.realpath, self.all_folders()))
         return self._searched

@@ -95,7 +95,7 @@ def check_files(assignment: Assignment, file: "WorldFile | None", missing: str
     if file is None:
         return [score_check(check, 0.0, missing) for check in assignment.of(ValidFile, EntityCount)]
     found = [_valid(check, file) for check in assignment.of(ValidFile)]
-    return found + [_counted(check, file) for check in assignment.of(EntityCount)]
+    return found + [_count_entities(check, file) for check in assignment.of(EntityCount)]
 
 
 def _valid(check: ValidFile, file: WorldFile) -> CheckResult:
@@ -113,13 +113,13 @@ def _valid(check: ValidFile, file: WorldFile) -> CheckResult:
                        first.line)
 
 
-def _counted(check: EntityCount, file: WorldFile) -> CheckResult:
+def _count_entities(check: EntityCount, file: WorldFile) -> CheckResult:
     if file.world is None:
         first = errors_of(file.issues)[:1]
         why = f": {first[0].message}" if first else ""
         return score_check(check, 0.0, f"the world file cannot be read{why}", file.name,
                            first[0].line if first else 0)
-    names = _NAMES[check.kind](file.world) if not check.shape else _shaped(check, file.world)
+    names = _NAMES[check.kind](file.world) if not check.shape else _find_shaped(check, file.world)
     counted = [name for name in names if name not in check.excluded]
     number = len(counted)
     if number < check.least:
@@ -130,22 +130,22 @@ def _counted(check: EntityCount, file: WorldFile) -> CheckResult:
     if check.most is not None and number > check.most:
         return score_check(check, 0.0, f"{_of(number, check)}, at most {check.most} are allowed",
                            file.name)
-    return score_check(check, 1.0, f"found {_listed(counted)}" if counted else "")
+    return score_check(check, 1.0, f"found {_join_names(counted)}" if counted else "")
 
 
 def _of(number: int, check: EntityCount) -> str:
     shape = f" with the shape {check.shape}" if check.shape else ""
     noun = f"{check.kind} model" if check.kind in (STATIC, DYNAMIC) else check.kind
-    excluded = f" besides {_listed(check.excluded)}" if check.excluded else ""
+    excluded = f" besides {_join_names(check.excluded)}" if check.excluded else ""
     return f"the world has {number} {noun}{'' if number == 1 else 's'}{shape}{excluded}"
 
 
-def _listed(names: Sequence[str]) -> str:
+def _join_names(names: Sequence[str]) -> str:
     shown = ", ".join(names[:8])
     return f"{shown}, …" if len(names) > 8 else shown
 
 
-def _shaped(check: EntityCount, world: World) -> List[str]:
+def _find_shaped(check: EntityCount, world: World) -> List[str]:
     wanted = set(_NAMES[check.kind](world))
     return [model.name for model in world.models if model.name in wanted
             and check.shape in _shapes(model)]

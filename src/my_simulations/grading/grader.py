@@ -104,11 +104,11 @@ class Grader:
         try:
             mark, was_kept = self._kept_or_new(submission, folder, slot, hidden)
         except SubmissionError as fault:
-            mark, was_kept = self._refused(submission, GRADED, f"cannot be graded: {fault}"), False
+            mark, was_kept = self._refuse(submission, GRADED, f"cannot be graded: {fault}"), False
         except (OSError, ValueError) as fault:   # such as a full disk: one submission, not all
             reason = (f"could not be graded: {fault}" if os.path.exists(submission.path)
                       else "was deleted")
-            mark, was_kept = self._refused(submission, FAILED, reason), False
+            mark, was_kept = self._refuse(submission, FAILED, reason), False
         finally:
             self._slots.put(slot)
         if not was_kept:
@@ -123,26 +123,26 @@ class Grader:
         limit = int(self._assignment.limits.file_mb * 1e6)
         size = size_of(submission.path)
         key = content_key(submission.path, self._base) if size <= limit else ""
-        kept = self._kept(submission.student, key) if key else None
+        kept = self._find_kept_mark(submission.student, key) if key else None
         if kept is not None:
             return kept, True
         shutil.rmtree(folder, ignore_errors=True)
         os.makedirs(folder, exist_ok=True)
         if not key:          # such files are not even read
-            return self._refused(submission, GRADED, f"has {size / 1e6:.0f} MB, the limit is"
-                                 f" {limit / 1e6:.0f} MB"), False
+            return self._refuse(submission, GRADED, f"has {size / 1e6:.0f} MB, the limit is"
+                                f" {limit / 1e6:.0f} MB"), False
         try:
             with unpack_submission(submission, folder, limit) as content:
                 mark = grade_in_box(self._assignment, content, slot, hidden, folder,
                                     self._namespaces, self._stop)
         except ArchiveError as fault:
-            mark = self._refused(submission, GRADED, f"cannot be unpacked: {fault}")
+            mark = self._refuse(submission, GRADED, f"cannot be unpacked: {fault}")
         if self._key_of(submission) != key:
             note = "the submission was changed while it was graded; the next run grades it again"
             return replace(mark, notes=[*mark.notes, note]), False
         return replace(mark, key=key), False
 
-    def _refused(self, submission: Submission, status: str, reason: str) -> Mark:
+    def _refuse(self, submission: Submission, status: str, reason: str) -> Mark:
         """A mark without points; `reason` continues "the submission"."""
         return all_failed(self._assignment, submission.student, status,
                           f"the submission {reason}")
@@ -153,7 +153,7 @@ class Grader:
             return content_key(submission.path, self._base)
         return ""
 
-    def _kept(self, student: str, key: str) -> Optional[Mark]:
+    def _find_kept_mark(self, student: str, key: str) -> Optional[Mark]:
         """The mark of a run before, if it is of the same submission and was decided."""
         with contextlib.suppress(OSError, ValueError, TypeError, KeyError):
             with open(os.path.join(self.folder_of(student), MARK), encoding="utf-8") as stream:

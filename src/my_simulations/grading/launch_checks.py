@@ -131,7 +131,7 @@ class LaunchChecks:
         """
         if shutil.which("rostest") is None:
             raise GradingError("rostest is not installed")
-        started, tests = self._copied(check.file)
+        started, tests = self._copy_rostest(check.file)
         words = [*check.arguments]
         try:
             declared = declared_arguments(check.file)
@@ -180,7 +180,7 @@ class LaunchChecks:
         return score_check(check, passed / found.tests, found.first and
                            f"{passed} of {found.tests} tests passed; {found.first}")
 
-    def _copied(self, file: str) -> Tuple[str, str]:
+    def _copy_rostest(self, file: str) -> Tuple[str, str]:
         """Copies of a rostest: of its nodes for the submission, of its tests for the tester.
 
         Each has the files beside the rostest, as its user can read them.

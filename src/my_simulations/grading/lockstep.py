@@ -97,7 +97,7 @@ class Lockstep:
             began = time.monotonic()
             if self._threads.any_runs():
                 waiting, is_quiet = 0, False
-                used = self._used()
+                used = self._read_processor_time()
                 first = used if first is None else first
                 self._spent_s = used - first
                 if self._spent_s >= processor_seconds or began > deadline:
@@ -122,7 +122,7 @@ class Lockstep:
         """Close the files of the thread states."""
         self._threads.close()
 
-    def _used(self) -> float:
+    def _read_processor_time(self) -> float:
         """Processor time of the program so far, s: of its threads, and of processes that ended."""
         total = 0.0
         for pid in self._program.processes.pids():

@@ -80,7 +80,7 @@ class WorldRun:
                 if recorder is not None:
                     recorder.record_state(self._world)
                 while checks and made >= round(checks[0].within / size):
-                    done(self._decided(checks[0]))
+                    done(self._decide_check(checks[0]))
                     del checks[0]
                 if checks and time.monotonic() > self._until:
                     self._end(checks, late_reason(self._assignment), done)
@@ -120,7 +120,7 @@ class WorldRun:
                 self._faults[check.name] = str(fault)
                 self._readers.pop(check.name, None)
 
-    def _decided(self, check: Timed) -> CheckResult:
+    def _decide_check(self, check: Timed) -> CheckResult:
         if isinstance(check, (TopicRate, ServiceAnswer)):
             if self._graph is None:
                 return score_check(check, 0.0, "the submission contains no program")
@@ -147,7 +147,7 @@ def _signals(check: Timed) -> List[Signal]:
     return []
 
 
-def _placed(check: Place, samples: Samples, name: str) -> CheckResult:
+def _check_place(check: Place, samples: Samples, name: str) -> CheckResult:
     now = [float(samples[signal][-1]) for signal in _signals(check)]
     distance = math.sqrt(sum((value - wanted) ** 2 for value, wanted in zip(now, check.at)
                              if wanted is not None))
@@ -162,7 +162,7 @@ def _placed(check: Place, samples: Samples, name: str) -> CheckResult:
         f" {distance:.{_SHOWN}f} m from its place; {check.tolerance:g} m are allowed", name)
 
 
-def _required(check: Requirement, samples: Samples, name: str) -> CheckResult:
+def _check_requirement(check: Requirement, samples: Samples, name: str) -> CheckResult:
     if check.require is None:
         return score_check(check, 0.0, "there is no condition")
     if check.require.value(samples):
@@ -190,4 +190,4 @@ def _apart(check: NoContact, samples: Samples, name: str) -> CheckResult:
 
 
 _DECIDE: Dict[type, Callable[[Any, Samples, str], CheckResult]] = {
-    Place: _placed, Requirement: _required, NoContact: _apart}
+    Place: _check_place, Requirement: _check_requirement, NoContact: _apart}

@@ -99,7 +99,7 @@ class PickAndPlace:
 
     def evaluate(self, world: OpenWorld, action: Any) -> Evaluation:
         assert self._scene is not None, "observe is called before judge"
-        placed = self._scene.is_at_rest() and not _held(world)
+        placed = self._scene.is_at_rest() and not _is_cube_held(world)
         return Evaluation(self._before - self._scene.distance() + placed, placed,
                          {"is_success": placed})
 
@@ -118,7 +118,7 @@ def _axis_rates(world: OpenWorld, velocity: np.ndarray) -> np.ndarray:
     return rates / max(1.0, float(np.abs(rates).max()) / arm_scene.FASTEST)
 
 
-def _held(world: OpenWorld) -> bool:
+def _is_cube_held(world: OpenWorld) -> bool:
     """Whether the gripper touches the cube."""
     return any("cube::link" in pair and any(link.startswith("arm::") for link in pair)
                for pair in world.contact_forces())

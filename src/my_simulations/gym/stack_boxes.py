@@ -117,11 +117,11 @@ class StackBoxes:
         left = scene.distance()
         nearer = 0.0 if self._left is None else self._left - left
         self._left = left
-        stands = scene.is_at_rest() and not self._held(world)
+        stands = scene.is_at_rest() and not self._is_box_held(world)
         return Evaluation(nearer + stands, stands, {"is_success": stands})
 
     @staticmethod
-    def _held(world: OpenWorld) -> bool:
+    def _is_box_held(world: OpenWorld) -> bool:
         """Whether the gripper touches the red box."""
         return any("red::link" in contact.links and contact.force > 0.0
                    and any(link.startswith("gripper::") for link in contact.links)

@@ -76,10 +76,10 @@ class Converter:
             convert = _list(one, _simple(one.kind) or self._of_type(one.kind))
         else:
             convert = _simple(one.kind) or self._of_type(one.kind)
-        return _named(convert, f"{kind}.{one.name}")
+        return _name_field(convert, f"{kind}.{one.name}")
 
 
-def _named(convert: Convert, name: str) -> Convert:
+def _name_field(convert: Convert, name: str) -> Convert:
     def checked(value: Any) -> Any:
         try:
             return convert(value)

@@ -61,12 +61,12 @@ class Message:
 
     def __reduce__(self) -> Tuple[Any, ...]:
         """Pickle the type by its definition, because its class is made at run time."""
-        return _restored, (self.DEFINITION, vars(self))
+        return _restore_message, (self.DEFINITION, vars(self))
 
     __hash__ = None  # type: ignore[assignment]  # messages can be changed
 
 
-def _restored(definition: Definition, fields: Dict[str, Any]) -> Message:
+def _restore_message(definition: Definition, fields: Dict[str, Any]) -> Message:
     """Return a message that was pickled; its nested messages are complete already."""
     made = (standard_type(definition.kind) if definition.kind in standard_definitions()
             else make_type(definition, lambda kind: Message))
@@ -97,7 +97,7 @@ class MessageTypes:
         if kind in standard_definitions():
             return standard_type(kind)
         if kind not in self._types:
-            self._types[kind] = self._made(kind, self._statements(kind, "msg"))
+            self._types[kind] = self._make_type(kind, self._statements(kind, "msg"))
         return self._types[kind]
 
     def service(self, kind: str) -> Tuple[Type[Message], Type[Message]]:
@@ -109,10 +109,10 @@ class MessageTypes:
             statements = self._statements(kind, "srv")
             at = statements.index("---") if "---" in statements else len(statements)
             for name, part in zip(names, (statements[:at], statements[at + 1:])):
-                self._types[name] = self._made(name, part)
+                self._types[name] = self._make_type(name, part)
         return self._types[names[0]], self._types[names[1]]
 
-    def _made(self, kind: str, statements: List[str]) -> Type[Message]:
+    def _make_type(self, kind: str, statements: List[str]) -> Type[Message]:
         try:
             definition = parse_definition(kind, statements)
         except DefinitionError as fault:

@@ -235,8 +235,8 @@ class _Reader:
             kind = self._text(value, path, name, "model_type")
             if kind is None:
                 return None
-            found = self._typed(self._package, f"objects/{model}.{kind}", kind,
-                                (*path, "model_type"), name)
+            found = self._read_typed_file(self._package, f"objects/{model}.{kind}", kind,
+                                          (*path, "model_type"), name)
             return None if found is None else replace(found, named=False)
         package, slash, inside = model.partition("/")
         if not slash or not package or not inside:
@@ -247,10 +247,10 @@ class _Reader:
             return None
         base = inside.rsplit("/", 1)[-1]
         ending = next((e for e in ENDINGS if base.endswith("." + e)), base.partition(".")[2])
-        return self._typed(package, inside, ending, (*path, "model"), name)
+        return self._read_typed_file(package, inside, ending, (*path, "model"), name)
 
-    def _typed(self, package: str, inside: str, ending: str, path: KeyPath,
-               name: str) -> Optional[ObjectFile]:
+    def _read_typed_file(self, package: str, inside: str, ending: str, path: KeyPath,
+                         name: str) -> Optional[ObjectFile]:
         kind = ENDINGS.get(ending)
         if kind is None:
             hint = f"use one of {', '.join(ENDINGS)}"

@@ -74,7 +74,7 @@ class _Call:
         self.where = ""
         self.why = ""
 
-    def _used(self) -> float:
+    def _read_processor_time(self) -> float:
         return time.clock_gettime(self._clock)
 
     def overdue(self) -> str:
@@ -82,8 +82,8 @@ class _Call:
         if not self.looked:
             self.looked = True
             self._clock = time.pthread_getcpuclockid(self.thread)
-            self._computed, self._begun = self._used(), time.monotonic()
-        used = self._used() - self._computed
+            self._computed, self._begun = self._read_processor_time(), time.monotonic()
+        used = self._read_processor_time() - self._computed
         if used > self.limits.computing:
             return f"it did not return within {self.limits.computing:g} s of processor time"
         waited = time.monotonic() - self._begun

@@ -70,12 +70,12 @@ class Parameters:
     def number(self, name: str, default: float) -> float:
         """A number; one beyond SDF's "no limit", +-1e16, or infinite, is that."""
         return self._read(name, default, _number, "a number", PluginParameter(
-            name, "number", _written(default)))
+            name, "number", _format_numbers(default)))
 
     def positive(self, name: str, default: float) -> float:
         """A number above 0, of what is divided by; at least a billionth."""
         return self._read(name, default, _positive, "a number above 0", PluginParameter(
-            name, "number", _written(default)))
+            name, "number", _format_numbers(default)))
 
     def integer(self, name: str, default: int) -> int:
         return self._read(name, default, lambda text: int(_number(text)), "a whole number",
@@ -89,18 +89,18 @@ class Parameters:
 
     def vector(self, name: str, default: Vec3 = (0.0, 0.0, 0.0)) -> Vec3:
         return self._read(name, default, _three, "three numbers", PluginParameter(
-            name, "text", _written(*default)))
+            name, "text", _format_numbers(*default)))
 
     def turn(self, name: str, default: Quat = IDENTITY_QUAT) -> Quat:
         """Return roll, pitch and yaw (rad) as a quaternion."""
         return self._read(name, default, lambda text: quat_from_rpy(*_three(text)),
                           "three numbers", PluginParameter(
-                              name, "text", _written(*rpy_from_quat(default))))
+                              name, "text", _format_numbers(*rpy_from_quat(default))))
 
     def pose(self, name: str) -> Pose:
         """Return a pose from x y z (m) and roll pitch yaw (rad); the default is the identity."""
         return self._read(name, Pose(), _pose, "six numbers", PluginParameter(
-            name, "text", _written(*[0.0] * 6)))
+            name, "text", _format_numbers(*[0.0] * 6)))
 
     def choice(self, name: str, options: Mapping[str, T], default: T) -> T:
         """Return one of some allowed words."""
@@ -123,7 +123,7 @@ class Parameters:
             return default
 
 
-def _written(*numbers: float) -> str:
+def _format_numbers(*numbers: float) -> str:
     """Numbers as an SDF file has them."""
     return " ".join(f"{value:.12g}" for value in numbers)
 

@@ -53,7 +53,8 @@ class FileCache:
 
         # A seed matters to files with populations alone.
         seed = choice.seed if self._keep and self._has_population(choice.world) else 0
-        world, (meshes, issues) = self._found(("world", choice.world, choice.profile, seed), read)
+        key = ("world", choice.world, choice.profile, seed)
+        world, (meshes, issues) = self._read_once(key, read)
         for issue in group_repeated(issues):
             log(issue)
         return LoadedWorld(world, meshes, issues)
@@ -71,7 +72,7 @@ class FileCache:
             meshes, faults = collision_meshes(entity)
             return entity, (meshes, [*issues, *faults])
 
-        model, (meshes, issues) = self._found(("model", document), read)
+        model, (meshes, issues) = self._read_once(("model", document), read)
         return model, meshes, issues
 
     def objects(self, names: Sequence[str], file: str, world: str
@@ -84,7 +85,7 @@ class FileCache:
             placed, issues = read_objects(self.resolver, names, file, world)
             return [one.model for one in placed], ([one.meshes for one in placed], issues)
 
-        models, (meshes, issues) = self._found(("objects", tuple(names), file, world), read)
+        models, (meshes, issues) = self._read_once(("objects", tuple(names), file, world), read)
         return [PlacedModel(*pair) for pair in zip(models, meshes)], list(issues)
 
     def _entity(self, document: Text) -> Tuple[Entity, List[Issue]]:
@@ -92,7 +93,7 @@ class FileCache:
             return read_file(os.path.expanduser(document), self.resolver)
         return read_entity(document, self.resolver)
 
-    def _found(self, key: Hashable, read: Callable[[], Tuple[Any, Any]]) -> Tuple[Any, Any]:
+    def _read_once(self, key: Hashable, read: Callable[[], Tuple[Any, Any]]) -> Tuple[Any, Any]:
         """What was read: a copy of the first part, the second part itself."""
         with self._lock:
             kept: Optional[Tuple[bytes, Any]] = self._kept.get(key)

@@ -91,14 +91,14 @@ class Randomisation:
         random = np.random.default_rng([seed, 1, zlib.crc32(model.name.encode())])
         factors = _Factors(random.uniform(*self.friction), random.uniform(*self.mass),
                            random.uniform(*self.sensor_noise))
-        return self._changed(model, factors, random)
+        return self._randomise(model, factors, random)
 
-    def _changed(self, model: Model, factors: _Factors, random: np.random.Generator) -> Model:
+    def _randomise(self, model: Model, factors: _Factors, random: np.random.Generator) -> Model:
         return replace(
             model, links=[self._link(link, factors, random) for link in model.links],
             joints=[replace(joint, sensors=_noisier(joint.sensors, factors.noise))
                     for joint in model.joints],
-            models=[self._changed(inner, factors, random) for inner in model.models])
+            models=[self._randomise(inner, factors, random) for inner in model.models])
 
     def _link(self, link: Link, factors: _Factors, random: np.random.Generator) -> Link:
         return replace(
@@ -118,8 +118,8 @@ class Randomisation:
             before = material = replace(before, texture=texture, ambient=_WHITE, diffuse=_WHITE,
                                         script_uris=[], script_name="")
         if shift is not None:
-            material = replace(material, ambient=_shifted(before.ambient, shift),
-                               diffuse=_shifted(before.diffuse, shift),
+            material = replace(material, ambient=_shift_colour(before.ambient, shift),
+                               diffuse=_shift_colour(before.diffuse, shift),
                                script_uris=[], script_name="")
         return replace(visual, material=material)
 
@@ -160,7 +160,7 @@ def _brighter(light: Light, factor: float) -> Light:
     return replace(light, diffuse=(red, green, blue, light.diffuse[3]))
 
 
-def _shifted(colour: Optional[Color], shift: np.ndarray) -> Color:
+def _shift_colour(colour: Optional[Color], shift: np.ndarray) -> Color:
     old = colour or (0.7, 0.7, 0.7, 1.0)
     red, green, blue = np.clip(np.array(old[:3]) + shift, 0.0, 1.0).tolist()
     return (red, green, blue, old[3])

@@ -32,7 +32,7 @@ class Topic:
         self._count = 0
         self._kept: Deque[Message] = deque(maxlen=_KEPT)
         self.is_closed = False
-        self._end = graph.listen(name, self._arrived)
+        self._end = graph.listen(name, self._receive_message)
 
     def __repr__(self) -> str:
         return f"Topic({self.name!r}, {self.kind!r}, count={self._count})"
@@ -86,7 +86,7 @@ class Topic:
         self._latest, self._count = None, 0
         self._kept.clear()
 
-    def _arrived(self, message: Message) -> None:
+    def _receive_message(self, message: Message) -> None:
         self._latest = message
         self._kept.append(message)
         self._count += 1

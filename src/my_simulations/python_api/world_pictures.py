@@ -109,7 +109,7 @@ class Photographer:
         except FutureTimeoutError as fault:
             raise CommandError(f"no picture within {_PATIENCE_S:g} s") from fault
         numbers, names = self._links()
-        labels = None if found.labels is None else _numbered(found.labels, numbers)
+        labels = None if found.labels is None else _number_rows(found.labels, numbers)
         return Picture(ns * 1e-9, found.rgb, found.depth, labels, names)
 
     def _links(self) -> Tuple[Dict[int, int], Tuple[str, ...]]:
@@ -118,7 +118,7 @@ class Photographer:
         return {row: number for number, row in enumerate(rows)}, tuple(rows.values())
 
 
-def _numbered(rows: "np.ndarray", numbers: Dict[int, int]) -> "np.ndarray":
+def _number_rows(rows: "np.ndarray", numbers: Dict[int, int]) -> "np.ndarray":
     import numpy as np
 
     table = np.full(max([NO_ROW, *numbers, int(rows.max(initial=NO_ROW))]) + 2, -1, np.int32)

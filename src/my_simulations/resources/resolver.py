@@ -40,7 +40,7 @@ class ResourceNotFoundError(ResourceError):
         self.uri = uri
         self.tried: List[str] = list(tried)
         self.reason = reason
-        why = reason or _searched(uri, self.tried)
+        why = reason or _describe_search(uri, self.tried)
         super().__init__(f"{uri!r} was not found" + (f": {why}" if why else ""))
 
 
@@ -112,8 +112,8 @@ class Resolver:
         Saved buildings are models, too (Gazebo behaviour). `progress` is called during downloads.
         """
         own = package_directories()
-        models = [os.path.expanduser("~/.gazebo/models"), *_listed("GAZEBO_MODEL_PATH")]
-        resources = _listed("GAZEBO_RESOURCE_PATH")
+        models = [os.path.expanduser("~/.gazebo/models"), *_read_path_variable("GAZEBO_MODEL_PATH")]
+        resources = _read_path_variable("GAZEBO_RESOURCE_PATH")
         for folder in own:
             models.append(os.path.join(folder, "models"))
             # `worlds/empty.world` and `empty.world` both name the world in our `world/` folder.
@@ -226,7 +226,7 @@ class Resolver:
                 return os.path.abspath(candidate)
             if candidate not in tried:
                 tried.append(candidate)
-        return self._provided(uri, tried)
+        return self._download_model(uri, tried)
 
     def _from_fuel(self, uri: str) -> str:
         known = fuel_uri(uri)
@@ -241,7 +241,7 @@ class Resolver:
         except ModelNotProvidedError as fault:
             raise ResourceNotFoundError(uri, reason=str(fault)) from None
 
-    def _provided(self, uri: str, tried: List[str]) -> str:
+    def _download_model(self, uri: str, tried: List[str]) -> str:
         """The path of a downloaded model. Raises ResourceNotFoundError."""
         name, inside = _split_package(uri.partition("://")[2])
         if self._missing is not None and uri.startswith("model://") and name:
@@ -371,7 +371,7 @@ def _is_file_or_folder(path: str) -> bool:
     return stat.S_ISREG(mode) or stat.S_ISDIR(mode)
 
 
-def _searched(uri: str, tried: Sequence[str]) -> str:
+def _describe_search(uri: str, tried: Sequence[str]) -> str:
     """Where a URI was searched, for its message; "" for an absolute path, which says it itself."""
     if not tried:
         return "no search path is set"
@@ -407,7 +407,7 @@ def _unknown_model(uri: str, tried: Sequence[str]) -> str:
     return "" if any(map(os.path.isdir, folders)) else name
 
 
-def _listed(variable: str) -> List[str]:
+def _read_path_variable(variable: str) -> List[str]:
     return [entry for entry in os.environ.get(variable, "").split(os.pathsep) if entry]
 
 

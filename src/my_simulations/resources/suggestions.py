@@ -40,7 +40,7 @@ def suggestion(uri: str, tried: Sequence[str], packages: Callable[[], List[str]]
             meant = _in_similar_package(uri, place[len(NO_PACKAGE):], packages())
             exists = bool(meant)
         else:
-            meant, exists = _corrected(uri, place)
+            meant, exists = _correct_uri(uri, place)
         if exists and meant.lower() == uri.lower():
             return meant
         found = found or (meant if exists else "")
@@ -56,12 +56,12 @@ def _in_similar_package(uri: str, package: str, folders: Sequence[str]) -> str:
     return _with(uri, package, having)
 
 
-def _corrected(uri: str, path: str) -> "tuple[str, bool]":
+def _correct_uri(uri: str, path: str) -> "tuple[str, bool]":
     """A URI with the parts corrected that a path does not have, and whether such a file exists."""
     meant = ""
     for _ in range(_MOST_CORRECTIONS):
         folder, wrong = _first_missing(path)
-        near = _with(wrong, wrong, _listed(folder))
+        near = _with(wrong, wrong, _list_folder(folder))
         if not near or wrong not in uri:
             break
         corrected = _with(uri, wrong, [near])
@@ -158,7 +158,7 @@ def _first_missing(path: str) -> "tuple[str, str]":
     return folder, name
 
 
-def _listed(folder: str) -> List[str]:
+def _list_folder(folder: str) -> List[str]:
     try:
         return os.listdir(folder)
     except OSError:

@@ -43,29 +43,30 @@ class Template:
         return self.build(checked_values(self.parameters, given))
 
 
-def _named(default: str, *more: Parameter) -> Tuple[Parameter, ...]:
+def _with_name(default: str, *more: Parameter) -> Tuple[Parameter, ...]:
     return (Parameter("name", "Model name", default), *more)
 
 
 TEMPLATES: Tuple[Template, ...] = (
     Template("differential_drive", "Differential drive",
              "A robot car with two driven wheels and a caster, and with sensors of your choice",
-             _named("car", *car_parameters(0.4, 0.24, 3.0, 0.08)), differential_drive),
+             _with_name("car", *car_parameters(0.4, 0.24, 3.0, 0.08)), differential_drive),
     Template("four_wheels", "Four wheels",
              "A skid-steered robot car with four driven wheels, and with sensors of your choice",
-             _named("rover", *car_parameters(0.5, 0.3, 6.0, 0.1)), four_wheels),
+             _with_name("rover", *car_parameters(0.5, 0.3, 6.0, 0.1)), four_wheels),
     Template("arm", "Arm with gripper",
              "A robot arm with four joints and a gripper, fixed to the world, for the Joints panel",
-             _named("arm", *ARM), arm_with_gripper),
+             _with_name("arm", *ARM), arm_with_gripper),
     Template("camera", "Camera", "A camera on a post that publishes images",
-             _named("camera_post", HEIGHT, NAMESPACE, *CAMERA), camera_on_post),
+             _with_name("camera_post", HEIGHT, NAMESPACE, *CAMERA), camera_on_post),
     Template("laser", "Laser scanner", "A laser scanner on a post that publishes scans",
-             _named("laser_post", number("height", "Height above the ground", 0.4, "m", 0.1, 10.0),
-                    NAMESPACE, *LASER), laser_on_post),
+             _with_name("laser_post",
+                        number("height", "Height above the ground", 0.4, "m", 0.1, 10.0),
+                        NAMESPACE, *LASER), laser_on_post),
     Template("imu", "IMU", "A free box with an IMU on it",
-             _named("imu_box", number("size", "Size of the box", 0.2, "m", 0.02, 2.0),
-                    number("mass", "Mass of the box", 1.0, "kg", 0.01, 1000.0), NAMESPACE, *IMU),
-             imu_box),
+             _with_name("imu_box", number("size", "Size of the box", 0.2, "m", 0.02, 2.0),
+                        number("mass", "Mass of the box", 1.0, "kg", 0.01, 1000.0),
+                        NAMESPACE, *IMU), imu_box),
 )
 
 

@@ -167,7 +167,7 @@ def direct_publish(publisher: rospy.Publisher) -> Callable[[Any], None]:
                 implementation.publish(message)
             elif implementation.connections:
                 implementation.seq += 1
-                data = _packed(buffer, message, implementation.seq)
+                data = _pack_message(buffer, message, implementation.seq)
                 implementation.message_data_sent += len(data)
                 _send(data, implementation.connections)
     return publish
@@ -201,7 +201,7 @@ def _without_thread(connection: Any) -> Any:
     return transport
 
 
-def _packed(buffer: BytesIO, message: Any, number: int) -> bytes:
+def _pack_message(buffer: BytesIO, message: Any, number: int) -> bytes:
     """A message as it goes over the wire: its length, and what it is; it is given its number."""
     if message._has_header:
         message.header.seq = number

@@ -60,7 +60,7 @@ def make_service_callback(endpoint: Endpoint) -> Callable[[Any], Any]:
             rospy.logerr("%s: internal error in %s:\n%s", endpoint.title, endpoint.name,
                          traceback.format_exc())
             text, succeeded = f"internal error: {type(fault).__name__}: {fault}", False
-        text = _shortened(text)
+        text = _shorten_message(text)
         if has_status:
             response.success = succeeded
             response.status_message = f"{endpoint.title}: {text}"
@@ -71,7 +71,7 @@ def make_service_callback(endpoint: Endpoint) -> Callable[[Any], Any]:
     return answer
 
 
-def _shortened(text: str) -> str:
+def _shorten_message(text: str) -> str:
     """A status message without the middle of a name of a megabyte that it repeats."""
     more = len(text) - LONGEST_STATUS
     if more <= 0:

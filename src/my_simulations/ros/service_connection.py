@@ -89,7 +89,7 @@ class ServiceConnection:
             raise ServiceCallError(f"unable to send the request: {fault}") from fault
         self._send(buffer.getvalue())
         done = self._exactly(1)
-        body = self._received()
+        body = self._receive_bytes()
         if done != b"\1":
             raise ServiceCallError("service responded with an error: "
                                    + body.decode("utf-8", "replace"))
@@ -104,7 +104,7 @@ class ServiceConnection:
     def _shake_hands(self, header: Dict[str, str]) -> None:
         fields = [f"{key}={value}".encode() for key, value in header.items()]
         self._send(b"".join(_LENGTH.pack(len(field)) + field for field in fields))
-        answer, at = self._received(), 0
+        answer, at = self._receive_bytes(), 0
         while at + _LENGTH.size <= len(answer):
             (length,) = _LENGTH.unpack_from(answer, at)
             at += _LENGTH.size
@@ -116,7 +116,7 @@ class ServiceConnection:
     def _send(self, body: bytes) -> None:
         self._socket.sendall(_LENGTH.pack(len(body)) + body)
 
-    def _received(self) -> bytes:
+    def _receive_bytes(self) -> bytes:
         (length,) = _LENGTH.unpack(self._exactly(_LENGTH.size))
         return self._exactly(length)
 

@@ -146,7 +146,7 @@ def _ring(count: int) -> np.ndarray:
     return circle
 
 
-def _widened(count: int) -> float:
+def _compute_widening(count: int) -> float:
     """By how much a circle's corners lie outside, so that its sides are right on average."""
     return 2.0 / (1.0 + math.cos(math.pi / count))
 
@@ -156,7 +156,7 @@ def truncated_cone(bottom: float, top: float, length: float, count: int) -> Tria
 
     `bottom`, `top`: radii (m); the origin is half-way up.
     """
-    circle, wide = _ring(count), _widened(count)
+    circle, wide = _ring(count), _compute_widening(count)
     slope = np.array([length, bottom - top]) / (math.hypot(length, bottom - top) or 1.0)
     sides_at = np.linspace(0.0, 1.0, count + 1)
     outwards = np.column_stack([circle * slope[0], np.full(count + 1, slope[1])])
@@ -185,17 +185,17 @@ def truncated_cone(bottom: float, top: float, length: float, count: int) -> Tria
 
 def ellipsoid(radii: Vec3, count: int) -> Triangles:
     """Return the surface of an ellipsoid with `count` meridians."""
-    return _revolved(np.linspace(-math.pi / 2, math.pi / 2, count // 2 + 1), np.array(radii), 0.0,
-                     count)
+    return _revolve(np.linspace(-math.pi / 2, math.pi / 2, count // 2 + 1), np.array(radii), 0.0,
+                    count)
 
 
 def capsule(radius: float, length: float, count: int) -> Triangles:
     """Return the surface of a cylinder along z with a hemisphere at each end."""
     half = np.linspace(0.0, math.pi / 2, count // 4 + 1)
-    return _revolved(np.concatenate([-half[::-1], half]), np.full(3, radius), length, count)
+    return _revolve(np.concatenate([-half[::-1], half]), np.full(3, radius), length, count)
 
 
-def _revolved(latitudes: np.ndarray, radii: np.ndarray, length: float, count: int) -> Triangles:
+def _revolve(latitudes: np.ndarray, radii: np.ndarray, length: float, count: int) -> Triangles:
     circle, levels = _ring(count), len(latitudes)
     across = np.cos(latitudes)
     across[np.abs(latitudes) > math.pi / 2 - 1e-9] = 0.0  # nor through the poles

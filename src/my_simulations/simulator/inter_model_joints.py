@@ -55,8 +55,8 @@ class InterModelJoints:
         """The same joints after a model was renamed; those of the names `kept` keep theirs."""
         return self._of([replace(one, joint=replace(
             one.joint, name=one.joint.name if one.joint.name in kept
-            else _rescoped(one.joint.name, old, new), parent=_rescoped(one.joint.parent, old, new),
-            child=_rescoped(one.joint.child, old, new))) for one in self._all])
+            else _rescope(one.joint.name, old, new), parent=_rescope(one.joint.parent, old, new),
+            child=_rescope(one.joint.child, old, new))) for one in self._all])
 
     def present(self, registry: Registry) -> "InterModelJoints":
         """The joints whose parent and child links exist in the registry."""
@@ -136,7 +136,7 @@ def _touches(joint: Joint, model: str) -> bool:
     return any(end.startswith(model + "::") for end in (joint.parent, joint.child))
 
 
-def _rescoped(name: str, old: str, new: str) -> str:
+def _rescope(name: str, old: str, new: str) -> str:
     return new + name[len(old):] if name.startswith(old + "::") else name
 
 

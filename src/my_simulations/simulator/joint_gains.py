@@ -39,8 +39,8 @@ def default_gains(model: Model, joint: Joint, rate: bool, dt: float,
     """
     stiff = _STABLE * max(axis_inertia(model, joint, second), _LEAST) / dt
     if rate:
-        return _rounded(p=stiff, i=_RATE_INTEGRAL * stiff, d=0.0)
-    return _rounded(p=_POSITION * stiff, i=_INTEGRAL * _POSITION * stiff, d=stiff)
+        return _round_gains(p=stiff, i=_RATE_INTEGRAL * stiff, d=0.0)
+    return _round_gains(p=_POSITION * stiff, i=_INTEGRAL * _POSITION * stiff, d=stiff)
 
 
 def axis_inertia(model: Model, joint: Joint, second: bool = False) -> float:
@@ -98,7 +98,7 @@ def _effective_inertia(links: Iterable[Link], origin: Vec3, axis: Vec3, slides: 
     return total
 
 
-def _rounded(**gains: float) -> Dict[str, float]:
+def _round_gains(**gains: float) -> Dict[str, float]:
     return {name: _round(gain) for name, gain in gains.items()}
 
 

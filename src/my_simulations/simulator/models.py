@@ -195,9 +195,9 @@ class Models(ConnectedModels):
             commands = tuple(RemoveModel(entity.model_id) for entity in entities)
             session.call(Batch(commands) if len(commands) > 1 else commands[0])
             with session.registry_lock:
-                return list(map(self._deleted, entities))
+                return list(map(self._unregister, entities))
 
-    def _deleted(self, entity: Entity) -> DeletedModel:
+    def _unregister(self, entity: Entity) -> DeletedModel:
         """Remove an entity, which the engine no longer has, from the registry."""
         registry, name = self._session.registry, entity.model.name
         deleted = DeletedModel(OrderSlot.of(registry.names(), name),

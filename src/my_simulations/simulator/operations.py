@@ -61,7 +61,7 @@ class Group:
     def apply(self, world: Simulator) -> Operation:
         """Apply the parts in order; the inverse undoes them in reverse order."""
         done: List[Operation] = []
-        for part in _joined(self.parts):
+        for part in _join_neighbours(self.parts):
             try:
                 done.append(part.apply(world))
             except CommandError:
@@ -103,10 +103,10 @@ class RemoveModel:
 
     def apply(self, world: Simulator) -> Operation:
         """Delete the model; the inverse restores it with the states of its links and joints."""
-        return _removed(world, [self.name])
+        return _remove_models(world, [self.name])
 
 
-def _removed(world: Simulator, names: Sequence[str]) -> Operation:
+def _remove_models(world: Simulator, names: Sequence[str]) -> Operation:
     """Delete models, whose names are different, by one command; returns the inverse."""
     for name in names:
         world.models.get(name)  # raises UnknownEntityError
@@ -141,10 +141,10 @@ class _RemoveModels:
     names: Tuple[str, ...]
 
     def apply(self, world: Simulator) -> Operation:
-        return _removed(world, self.names)
+        return _remove_models(world, self.names)
 
 
-def _joined(parts: Iterable[Operation]) -> Iterator[Operation]:
+def _join_neighbours(parts: Iterable[Operation]) -> Iterator[Operation]:
     """The parts in their order; neighbours that add or delete models are joined."""
     for kind, run in groupby(_without_groups(parts), _joined_as):
         same = list(run)

@@ -62,7 +62,7 @@ class Simulator:
     def __init__(self, world: World, *, engine_factory: Callable[[], Engine],
                  log: Callable[[Issue], None], paused: bool = False,
                  meshes: Optional[Dict[str, MeshTable]] = None, steps: int = FOREVER) -> None:
-        log = _guarded(log)
+        log = _guard_log(log)
         supervisor = Supervisor(engine_factory, self._restore, log)
         self._session = session = Session(world, supervisor, log)
         self._world_meshes = meshes or {}
@@ -185,7 +185,7 @@ class Simulator:
             raise CommandError(reply.error)
 
 
-def _guarded(log: Callable[[Issue], None]) -> Callable[[Issue], None]:
+def _guard_log(log: Callable[[Issue], None]) -> Callable[[Issue], None]:
     """A log whose faults do not end the thread that reports, such as that which restarts engines.
 
     They may be no `Exception`, such as those of pytest.fail.

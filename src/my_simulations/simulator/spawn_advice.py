@@ -33,14 +33,14 @@ def _as_it_stands(entity: Entity, state: Callable[[int], Tuple[Pose, Twist]]) ->
 def _near(new: Entity, entities: Sequence[Entity], snapshot: Snapshot) -> List[Entity]:
     """The new entity, and those of which a link may overlap one of its links."""
     values = snapshot.links
-    spheres = [(*values[at:at + 3], reach) for at, reach in _placed(new)]
+    spheres = [(*values[at:at + 3], reach) for at, reach in _locate_links(new)]
     return [entity for entity in entities if entity is new or any(
         (values[at] - x) ** 2 + (values[at + 1] - y) ** 2 + (values[at + 2] - z) ** 2
         <= (reach + mine) ** 2
-        for at, reach in _placed(entity) for x, y, z, mine in spheres)]
+        for at, reach in _locate_links(entity) for x, y, z, mine in spheres)]
 
 
-def _placed(entity: Entity) -> List[Tuple[int, float]]:
+def _locate_links(entity: Entity) -> List[Tuple[int, float]]:
     """Of each link where its row begins, and its reach."""
     return [((entity.first_link_row + n) * LINK_WIDTH, reach)
             for n, reach in enumerate(entity.reaches)]

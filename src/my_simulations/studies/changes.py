@@ -47,10 +47,10 @@ class CaseChanges:
             if target.kind not in _ON_MODELS or name != model.name:
                 continue
             if target.kind == "pose":
-                changed = replace(model, pose=_posed(model.pose, target.part, value))
+                changed = replace(model, pose=_set_pose_part(model.pose, target.part, value))
                 found = not link
             elif target.kind == "mass":
-                changed, found = _weighed(model, link, _number(value))
+                changed, found = _change_mass(model, link, _number(value))
             else:
                 changed, found = _with_surface(model, link, target.kind, _number(value))
             if found:
@@ -65,7 +65,7 @@ def _number(value: Setting) -> float:
     raise TypeError(f"{value!r} is no number")
 
 
-def _posed(pose: Pose, part: str, value: Setting) -> Pose:
+def _set_pose_part(pose: Pose, part: str, value: Setting) -> Pose:
     if not part:
         if not isinstance(value, tuple):
             raise TypeError(f"{value!r} is no pose")
@@ -78,7 +78,7 @@ def _posed(pose: Pose, part: str, value: Setting) -> Pose:
     return Pose((position[0], position[1], position[2]), pose.orientation)
 
 
-def _weighed(model: Model, link: str, mass: float) -> Tuple[Model, bool]:
+def _change_mass(model: Model, link: str, mass: float) -> Tuple[Model, bool]:
     """With another mass of a link, or of all together; inertia grows with mass."""
     before = sum(found.inertial.mass for name, found in _links(model) if link in ("", name))
     if before <= 0.0:
@@ -91,7 +91,7 @@ def _weighed(model: Model, link: str, mass: float) -> Tuple[Model, bool]:
             old.mass * factor, old.pose, old.ixx * factor, old.ixy * factor, old.ixz * factor,
             old.iyy * factor, old.iyz * factor, old.izz * factor))
 
-    return _changed(model, link, heavier), True
+    return _edit_link(model, link, heavier), True
 
 
 def _with_surface(model: Model, link: str, kind: str, value: float) -> Tuple[Model, bool]:
@@ -102,7 +102,7 @@ def _with_surface(model: Model, link: str, kind: str, value: float) -> Tuple[Mod
             for collision in found.collisions])
 
     there = any(link in ("", name) for name, _ in _links(model))
-    return _changed(model, link, other), there
+    return _edit_link(model, link, other), there
 
 
 def _surface(surface: Surface, kind: str, value: float) -> Surface:
@@ -119,9 +119,9 @@ def _links(model: Model, before: str = "") -> List[Tuple[str, Link]]:
     return found
 
 
-def _changed(model: Model, link: str, change: Callable[[Link], Link], before: str = "") -> Model:
+def _edit_link(model: Model, link: str, change: Callable[[Link], Link], before: str = "") -> Model:
     return replace(
         model, links=[change(found) if link in ("", before + found.name) else found
                for found in model.links],
-        models=[_changed(inner, link, change, f"{before}{inner.name}::")
+        models=[_edit_link(inner, link, change, f"{before}{inner.name}::")
                 for inner in model.models])

@@ -148,7 +148,7 @@ def _work(options: argparse.Namespace, folder: StudyFolder, plan: CasePlan, shar
     try:
         # Not before: the folder may be that of another study.
         folder.copy_study_file(plan.study.file)
-        finished = _finished(plan, shard, journal.path, options.retry)
+        finished = _find_finished(plan, shard, journal.path, options.retry)
         recorder = Recorder(journal, folder.path, folder.stem("trajectories", shard))
         rate = Rate(total - len(finished))
         progress = Progress(rate, sys.stderr, options.json)
@@ -173,7 +173,7 @@ def _work(options: argparse.Namespace, folder: StudyFolder, plan: CasePlan, shar
     return _print_status(folder, plan, shard, options.json, files)
 
 
-def _finished(plan: CasePlan, shard: Shard, journal: str, retried: Sequence[str]) -> Set[int]:
+def _find_finished(plan: CasePlan, shard: Shard, journal: str, retried: Sequence[str]) -> Set[int]:
     """The cases of a shard that need not run; rows of former ids are not of the plan any more."""
     found = finished_cases(journal, retried)
     return {number for number in (number_of(case.id) for case in plan.cases(shard))
@@ -197,7 +197,7 @@ def _interrupt(_: int, __: Optional[FrameType]) -> None:
 
 
 def _status(options: argparse.Namespace, _: Optional[Hook]) -> int:
-    folder, plan = _opened(options.dir)
+    folder, plan = _open_folder(options.dir)
     return _print_status(folder, plan, ALL_CASES, options.json, [])
 
 
@@ -230,7 +230,7 @@ def _report(folder: StudyFolder, plan: CasePlan) -> str:
 
 
 def _write(options: argparse.Namespace, _: Optional[Hook]) -> int:
-    folder, plan = _opened(options.dir)
+    folder, plan = _open_folder(options.dir)
     files = folder.write_tables(plan, _print_error)
     if options.action == "report":
         files.append(_report(folder, plan))
@@ -238,14 +238,14 @@ def _write(options: argparse.Namespace, _: Optional[Hook]) -> int:
     return 0
 
 
-def _opened(path: str) -> Tuple[StudyFolder, CasePlan]:
+def _open_folder(path: str) -> Tuple[StudyFolder, CasePlan]:
     """The folder of a study, and the plan of the study file that it names."""
     folder = StudyFolder(path)
     return folder, _plan(folder.header()["file"])
 
 
 def _show(options: argparse.Namespace, _: Optional[Hook]) -> int:
-    folder, plan = _opened(options.dir)
+    folder, plan = _open_folder(options.dir)
     case = _case(plan, options.case)
     if case is None:
         return INVALID
@@ -271,7 +271,7 @@ def _record(options: argparse.Namespace, records: Records) -> int:
     """Run a case again and record it."""
     if not options.every > 0.0:
         raise CommandError(f"--every must be above 0, is {options.every:g}")
-    folder, plan = _opened(options.folder)
+    folder, plan = _open_folder(options.folder)
     case = _case(plan, options.dir)
     if case is None:
         return INVALID

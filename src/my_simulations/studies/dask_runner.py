@@ -187,7 +187,7 @@ class DaskRunner:
         Raises:
             CommandError: the scheduler cannot be reached or was lost, or a worker cannot run cases.
         """
-        client = self._connected()
+        client = self._connect_client()
         name = f"my_simulations study {self._plan.study.file}"
         try:
             self._register(client, name)
@@ -208,7 +208,7 @@ class DaskRunner:
 
     # -- the connection ----------------------------------------------------------------------------
 
-    def _connected(self) -> Client:
+    def _connect_client(self) -> Client:
         where: Dict[str, Any] = ({"scheduler_file": self._address}
                                  if os.path.isabs(self._address) else {"address": self._address})
         try:

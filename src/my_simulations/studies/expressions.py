@@ -87,7 +87,7 @@ class Expression:
     def measured(self, samples: Samples) -> List[str]:
         """What a run gave for each side of its comparisons, such as `final(speed.box) is 0.2`."""
         with np.errstate(all="ignore"):
-            return [f"{text} is {_shown(value(samples))}" for text, value in self.compared]
+            return [f"{text} is {_format_value(value(samples))}" for text, value in self.compared]
 
 
 @dataclass(frozen=True)
@@ -105,7 +105,7 @@ class _Node:
     signals: FrozenSet[Signal] = frozenset()
 
 
-def _shown(value: Value) -> str:
+def _format_value(value: Value) -> str:
     """A number, or the range of a series; noise of the arithmetic counts as 0."""
     ends = [0.0 if abs(end) < _NOISE else float(end) for end in (np.min(value), np.max(value))]
     texts = list(dict.fromkeys(f"{end:.3g}" for end in ends))
@@ -154,7 +154,7 @@ def parse(text: str) -> Expression:
     parser = _Parser(text)
     node = parser.parse_all()
     if node.series and node.condition:  # a condition of a run: whether it ever held
-        node = _reduced("any", node)
+        node = _reduce_series("any", node)
     if node.series:
         raise ExpressionError(f"'{text}' has a value for each sample: say which, for example"
                               f" final({text}) or max({text})")
@@ -173,7 +173,7 @@ class _Parser:
     def parse_all(self) -> _Node:
         node = self._or()
         if self._at < len(self._tokens):
-            raise self._expected("an operator or the end")
+            raise self._make_error("an operator or the end")
         return node
 
     # -- tokens ----------------------------------------------------------------------------------
@@ -190,9 +190,9 @@ class _Parser:
 
     def _need(self, sign: str) -> None:
         if not self._accept(sign):
-            raise self._expected(f"'{sign}'")
+            raise self._make_error(f"'{sign}'")
 
-    def _expected(self, expected: str) -> ExpressionError:
+    def _make_error(self, expected: str) -> ExpressionError:
         if self._at < len(self._tokens):
             _, found, column = self._tokens[self._at]
             return ExpressionError(f"'{self._text}': expected {expected} at column {column},"
@@ -289,7 +289,7 @@ class _Parser:
             number = float(text)
             return _Node(lambda samples: number)
         if kind != "word":
-            raise self._expected("a value")
+            raise self._make_error("a value")
         self._at += 1
         if text in ("contact", "force"):
             return self._pair(text)
@@ -298,12 +298,12 @@ class _Parser:
         if self._accept("("):
             return self._call(text)
         self._at -= 1
-        raise self._expected("a number, a function or one of " + ", ".join(_KNOWN))
+        raise self._make_error("a number, a function or one of " + ", ".join(_KNOWN))
 
     def _call(self, name: str) -> _Node:
         if name not in _REDUCERS and name not in _FUNCTIONS:
             self._at -= 2
-            raise self._expected("a function: " + ", ".join([*_REDUCERS, *_FUNCTIONS]))
+            raise self._make_error("a function: " + ", ".join([*_REDUCERS, *_FUNCTIONS]))
         given = [self._or()]
         while self._accept(","):
             given.append(self._or())
@@ -321,7 +321,7 @@ class _Parser:
                                   " such as pose.box.z")
         if name not in ("initial", "final"):
             self._check(given[0], _REDUCERS[name][1], name)
-        return _reduced(name, given[0])
+        return _reduce_series(name, given[0])
 
     def _pair(self, kind: str) -> _Node:
         self._need("(")
@@ -345,13 +345,13 @@ class _Parser:
         self._need(".")
         part = self._accept(*parts)
         if not part:
-            raise self._expected("one of " + ", ".join(parts))
+            raise self._make_error("one of " + ", ".join(parts))
         return _of_signal(Signal(kind, (name,), part))
 
     def _name(self) -> str:
         kind, text = self._peek()
         if kind not in ("word", "quoted"):
-            raise self._expected("a name")
+            raise self._make_error("a name")
         self._at += 1
         return text
 
@@ -366,16 +366,16 @@ class _Parser:
                 condition: bool = False) -> _Node:
         for node in nodes:
             self._check(node, False, where)
-        return _combined(function, nodes, condition)
+        return _combine_nodes(function, nodes, condition)
 
     def _conditions(self, function: Callable[..., Value], first: _Node, second: _Node,
                     where: str) -> _Node:
         self._check(first, True, where)
         self._check(second, True, where)
-        return _combined(function, [first, second], True)
+        return _combine_nodes(function, [first, second], True)
 
 
-def _combined(function: Callable[..., Value], nodes: List[_Node], condition: bool) -> _Node:
+def _combine_nodes(function: Callable[..., Value], nodes: List[_Node], condition: bool) -> _Node:
     values = [node.value for node in nodes]
     return _Node(lambda samples: function(*[value(samples) for value in values]),
                  any(node.series for node in nodes), condition, any(node.inner for node in nodes),
@@ -390,7 +390,7 @@ def _of_signal(signal: Signal, condition: bool = False) -> _Node:
     return _Node(lambda samples: samples[signal], True, condition, False, frozenset([signal]))
 
 
-def _reduced(name: str, node: _Node) -> _Node:
+def _reduce_series(name: str, node: _Node) -> _Node:
     function, _, gives, inner = _REDUCERS[name]
     if name in ("initial", "final"):
         gives = node.condition

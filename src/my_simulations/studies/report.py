@@ -132,7 +132,7 @@ def _table(study: Study, found: _Collected) -> str:
     body = []
     for row in found.rows:
         values = cells(row)
-        body.append("<tr>" + "".join(f"<td>{escape(_shown(values.get(name, '')))}</td>"
+        body.append("<tr>" + "".join(f"<td>{escape(_format_value(values.get(name, '')))}</td>"
                                      for name in columns) + "</tr>")
     note = (f"<p>The first {_MOST_ROWS} of {found.total}; all are in the CSV file.</p>"
             if found.total > _MOST_ROWS else "")
@@ -141,7 +141,7 @@ def _table(study: Study, found: _Collected) -> str:
             + "\n".join(body) + "</table></div>")
 
 
-def _shown(value: Any) -> str:
+def _format_value(value: Any) -> str:
     return f"{value:.6g}" if isinstance(value, float) else str(value)
 
 

@@ -128,7 +128,7 @@ class Slot:
             engine = self._engine
             if self._began is None or engine is None or self._excess:
                 return
-            if _used(engine) - self._began > limits.processor_seconds:
+            if _read_processor_time(engine) - self._began > limits.processor_seconds:
                 self._excess = TIMED_OUT
             elif resident_bytes(engine.pid) > limits.memory_mb * 1e6:
                 self._excess = TOO_LARGE
@@ -152,12 +152,12 @@ class Slot:
                   processor=self._processor)
         with self._guard:
             self._excess = ""
-            self._began = _used(self._engine) if self._engine is not None else 0.0
+            self._began = _read_processor_time(self._engine) if self._engine is not None else 0.0
         began = self._began
         self._opened_world = False
         trajectory = None
         try:
-            trajectory = self._measured(case, row)
+            trajectory = self._measure_case(case, row)
         except InputError as fault:
             row.status, row.issue = REFUSED, str(fault.first)
         except CaseRefusedError as fault:
@@ -176,7 +176,7 @@ class Slot:
         if self._opened_world:  # else the engine shows the case before
             row.step = row.step or engine.ring.step
         if engine.exit_code is None and not self._excess:
-            row.seconds = round(_used(engine) - began, 2)
+            row.seconds = round(_read_processor_time(engine) - began, 2)
             return
         row.status, row.values, row.hash = self._excess or CRASHED, {}, ""
         row.signal, row.issue = engine.ended_by, engine.death or "the physics engine ended"
@@ -191,10 +191,10 @@ class Slot:
 
     # -- one attempt -----------------------------------------------------------------------------
 
-    def _measured(self, case: Case, row: Row) -> Optional[CaseTrajectory]:
+    def _measure_case(self, case: Case, row: Row) -> Optional[CaseTrajectory]:
         """Run the case and fill its row."""
         study = self._study
-        world = self._opened(case)
+        world = self._open_world(case)
         self._opened_world = True
         if self._hook is not None:
             self._hook(case, row.attempt, world)
@@ -228,7 +228,7 @@ class Slot:
             return None
         return CaseTrajectory(np.array(run.times), run.names, np.array(run.frames))
 
-    def _opened(self, case: Case) -> OpenWorld:
+    def _open_world(self, case: Case) -> OpenWorld:
         choice, changes = world_choice_of(self._plan, case)
         if self._world is None:
             self._world = self._in_new_engine(choice)
@@ -320,7 +320,7 @@ def _interval(seconds: float, world: OpenWorld) -> int:
     return max(1, int(math.floor(seconds / world.step_size + 0.5)))
 
 
-def _used(engine: ProcessEngine) -> float:
+def _read_processor_time(engine: ProcessEngine) -> float:
     """Processor time of the engine in s."""
     found = process_time(engine.pid)
     return found[0] if found else 0.0

@@ -50,7 +50,7 @@ class SlotPool:
 
     def __init__(self, plan: CasePlan, slots: int, hook: Optional[Hook] = None) -> None:
         self.stop = threading.Event()
-        self._slots = _made(plan, slots, self.stop, hook)
+        self._slots = _make_slots(plan, slots, self.stop, hook)
         self._free: "SimpleQueue[CaseSlot]" = SimpleQueue()
         for slot in self._slots:
             self._free.put(slot)
@@ -130,8 +130,8 @@ class SlotPool:
                         slot.close()
 
 
-def _made(plan: CasePlan, count: int, stop: threading.Event, hook: Optional[Hook]
-          ) -> List[CaseSlot]:
+def _make_slots(plan: CasePlan, count: int, stop: threading.Event, hook: Optional[Hook]
+                ) -> List[CaseSlot]:
     processor = processor_type()
     if plan.study.scenarios:
         return [ScenarioSlot(plan, processor, stop) for _ in range(count)]

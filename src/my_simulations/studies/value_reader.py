@@ -100,7 +100,7 @@ class ValueReader:
         if value is None:
             return {}
         if not isinstance(value, Mapping):
-            self.fault(path, f"'{_shown(path)}' must be a mapping, is {describe_value(value)}")
+            self.fault(path, f"'{_join_path(path)}' must be a mapping, is {describe_value(value)}")
             return {}
         found = {}
         for key, inner in value.items():
@@ -120,11 +120,11 @@ class ValueReader:
                most: float = math.inf, above: float = -math.inf) -> float:
         """A finite number in a range."""
         if not is_finite_number(value):
-            self.fault(path, f"'{_shown(path)}' must be a number, is {describe_value(value)}")
+            self.fault(path, f"'{_join_path(path)}' must be a number, is {describe_value(value)}")
         elif not least <= value <= most or value <= above:
             bounds = f"above {above:g}" if above > -math.inf else f"at least {least:g}"
             more = f" and at most {most:g}" if most < math.inf else ""
-            self.fault(path, f"'{_shown(path)}' must be {bounds}{more}, is {value:g}")
+            self.fault(path, f"'{_join_path(path)}' must be {bounds}{more}, is {value:g}")
         else:
             return float(value)
         return 1.0
@@ -132,9 +132,10 @@ class ValueReader:
     def integer(self, value: Any, path: KeyPath, least: int = 0, most: int = 2 ** 62) -> int:
         """A whole number in a range."""
         if isinstance(value, bool) or not isinstance(value, int):
-            self.fault(path, f"'{_shown(path)}' must be a whole number, is {describe_value(value)}")
+            self.fault(path, f"'{_join_path(path)}' must be a whole number, "
+                             f"is {describe_value(value)}")
         elif not least <= value <= most:
-            self.fault(path, f"'{_shown(path)}' must be between {least} and {most}, is {value}")
+            self.fault(path, f"'{_join_path(path)}' must be between {least} and {most}, is {value}")
         else:
             return value
         return max(1, least)
@@ -143,14 +144,14 @@ class ValueReader:
         """A text that is not empty."""
         if isinstance(value, str) and value.strip():
             return value
-        self.fault(path, f"'{_shown(path)}' must be text, is {describe_value(value)}")
+        self.fault(path, f"'{_join_path(path)}' must be text, is {describe_value(value)}")
         return ""
 
     def numbers(self, value: Any, path: KeyPath, counts: Sequence[int]) -> Tuple[float, ...]:
         """A list of finite numbers; its length is one of `counts`."""
         if not isinstance(value, list) or len(value) not in counts:
             wanted = " or ".join(map(str, counts))
-            self.fault(path, f"'{_shown(path)}' must be a list of {wanted} numbers,"
+            self.fault(path, f"'{_join_path(path)}' must be a list of {wanted} numbers,"
                              f" is {describe_value(value)}")
             return (0.0,) * counts[0]
         return tuple(self.number(item, path) for item in value)
@@ -171,7 +172,7 @@ class ValueReader:
             return name
 
 
-def _shown(path: Sequence[str]) -> str:
+def _join_path(path: Sequence[str]) -> str:
     return ".".join(path)
 
 

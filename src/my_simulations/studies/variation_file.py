@@ -56,7 +56,7 @@ def parameter_of(reader: ValueReader, name: str, value: Any, path: KeyPath,
         reader.fault(below, f"'{name}' takes {target.value_kind}: list its values")
         return None
     if key == "values":
-        values = _listed(reader, target, inside[key], below)
+        values = _read_values(reader, target, inside[key], below)
         _check_values(reader, name, target, values, below)
         return Parameter(name, target, values) if len(reader.issues) == before else None
     if key == "range":
@@ -90,8 +90,8 @@ def _target(reader: ValueReader, value: Any, path: KeyPath, forms: Sequence[str]
     return target
 
 
-def _listed(reader: ValueReader, target: Target, value: Any, path: KeyPath
-            ) -> Tuple[Setting, ...]:
+def _read_values(reader: ValueReader, target: Target, value: Any, path: KeyPath
+                 ) -> Tuple[Setting, ...]:
     if not isinstance(value, list) or not value:
         reader.fault(path, "'values' must be a list with at least one value")
         return ()
@@ -104,7 +104,7 @@ def _listed(reader: ValueReader, target: Target, value: Any, path: KeyPath
         elif target.value_kind == NAME:
             found.append(reader.world(item, path))
         elif target.value_kind == TEXT:
-            found.append(_argument(reader, item, path))
+            found.append(_read_argument(reader, item, path))
         elif target.kind == "none" and isinstance(item, str):
             found.append(item)
         else:
@@ -114,7 +114,7 @@ def _listed(reader: ValueReader, target: Target, value: Any, path: KeyPath
     return tuple(found)
 
 
-def _argument(reader: ValueReader, item: Any, path: KeyPath) -> Setting:
+def _read_argument(reader: ValueReader, item: Any, path: KeyPath) -> Setting:
     """A value of a launch argument, as roslaunch takes it."""
     if isinstance(item, bool):
         return "true" if item else "false"

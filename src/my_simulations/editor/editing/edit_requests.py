@@ -94,9 +94,9 @@ class EditRequests:
 
         Raises CommandError, InputError; then nothing has changed.
         """
-        label, operation, value = self._planned(op, 0)
+        label, operation, value = self._plan_operation(op, 0)
         self._history.do(label, operation, author)
-        for issue in overlap_advice(self._world, _arrived(op, value)):
+        for issue in overlap_advice(self._world, _list_moved_names(op, value)):
             self._report(issue)
         return value
 
@@ -114,7 +114,7 @@ class EditRequests:
             raise CommandError("no models or lights are selected")
         return write_world(world_of(models, lights)).decode()
 
-    def _planned(self, op: Dict[str, Any], depth: int) -> Planned:
+    def _plan_operation(self, op: Dict[str, Any], depth: int) -> Planned:
         kind = self._protocol.check_operation(op)
         if kind == "group":
             return self._group(op, depth)
@@ -346,7 +346,7 @@ class _Deferred:
         done: List[Operation] = []
         try:
             for op in self._ops:
-                _, operation, value = self._edits._planned(op, self._depth)
+                _, operation, value = self._edits._plan_operation(op, self._depth)
                 done.append(operation.apply(world))
                 self.value["names"] += value.get("names") or (
                     [value["name"]] if value.get("name") else [])
@@ -357,7 +357,7 @@ class _Deferred:
         return Group(tuple(reversed(done)))
 
 
-def _arrived(op: Dict[str, Any], value: Dict[str, Any]) -> List[str]:
+def _list_moved_names(op: Dict[str, Any], value: Dict[str, Any]) -> List[str]:
     """Names of the models and lights that an operation has put at a new place."""
     if op["kind"] == "move":
         return list(op["poses"])

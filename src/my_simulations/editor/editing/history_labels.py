@@ -63,7 +63,7 @@ def set_property(target: str, path: str, value: Any, model: Optional[Model] = No
         model: the target's, if it is of one; see `short_target`.
     """
     of = f" of {short_target(target, model)}" if target else ""
-    shown = _shown(value)
+    shown = _format_value(value)
     return f"Set {_property(path)}{of}" + (f" to {shown}" if shown else "")
 
 
@@ -97,7 +97,7 @@ def _property(path: str) -> str:
     return " ".join([*kept, parts[-1]]).replace("_", " ")
 
 
-def _shown(value: Any) -> str:
+def _format_value(value: Any) -> str:
     """A value that fits into a label; "" for what does not."""
     if isinstance(value, bool):
         return "true" if value else "false"

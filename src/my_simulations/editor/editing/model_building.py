@@ -79,8 +79,8 @@ class ModelBuilding:
         model = self._world.models.get(op["model"])
         name = parts.numbered_name("link", parts.part_names(model))
         link = _solid_link(name, geometry, self._in_model(model, pose))
-        return self._edited(f"Add {name} to {model.name}", model,
-                            replace(model, links=[*model.links, link]), f"{model.name}::{name}")
+        return self._plan_edit(f"Add {name} to {model.name}", model,
+                               replace(model, links=[*model.links, link]), f"{model.name}::{name}")
 
     def _new_model(self, geometry: Geometry, pose: Pose) -> Planned:
         name = free_name(NEW_MODEL, used_names(self._world))
@@ -88,15 +88,15 @@ class ModelBuilding:
         place = Pose((x, y, 0.0))
         link = _solid_link("link_0", geometry, Pose((0.0, 0.0, z), pose.orientation))
         model = Model(name, place, links=[link])
-        return (f"Begin model {name}", AddModel(model, place, self._checked(model)),
+        return (f"Begin model {name}", AddModel(model, place, self._check_model(model)),
                 {"name": f"{name}::link_0"})
 
     def _add_shape(self, op: Dict[str, Any]) -> Planned:
         model, link = self._link(op["link"])
         geometry = self._geometry(op)
         changed = parts.with_shape(link, geometry, _material(geometry), op["part"])
-        return self._edited(f"Add {op['part']} to {op['link']}", model,
-                            _with_link(model, link, changed), op["link"])
+        return self._plan_edit(f"Add {op['part']} to {op['link']}", model,
+                               _with_link(model, link, changed), op["link"])
 
     def _geometry(self, op: Dict[str, Any]) -> Geometry:
         if sum(bool(op.get(name)) for name in ("shape", "uri", "polyline")) != 1:
@@ -114,14 +114,15 @@ class ModelBuilding:
         model, link = self._link(op["link"])
         name = free_name(f"{link.name}_clone", parts.part_names(model))
         copied = replace(link, name=name, pose=self._in_model(model, _pose(op) or IDENTITY))
-        return self._edited(f"Copy {op['link']}", model,
-                            replace(model, links=[*model.links, copied]), f"{model.name}::{name}")
+        return self._plan_edit(f"Copy {op['link']}", model,
+                               replace(model, links=[*model.links, copied]),
+                               f"{model.name}::{name}")
 
     def _rename_link(self, op: Dict[str, Any]) -> Planned:
         model, link = self._link(op["link"])
         to = op["to"].strip()
-        return self._edited(f"Rename {op['link']} to {to}", model,
-                            parts.with_link_renamed(model, link.name, to), f"{model.name}::{to}")
+        return self._plan_edit(f"Rename {op['link']} to {to}", model,
+                               parts.with_link_renamed(model, link.name, to), f"{model.name}::{to}")
 
     def _compute_inertial(self, op: Dict[str, Any]) -> Planned:
         model, rest = split_target(self._world, op["target"])
@@ -134,8 +135,8 @@ class ModelBuilding:
             links.append(link)
         if rest and all(link.name != rest for link in links):
             raise CommandError(f"model {model.name!r} has no link {rest!r}")
-        return self._edited(f"Compute inertia of {op['target']}", model,
-                            replace(model, links=links), op["target"])
+        return self._plan_edit(f"Compute inertia of {op['target']}", model,
+                               replace(model, links=links), op["target"])
 
     # -- joints ----------------------------------------------------------------------------------
 
@@ -145,8 +146,8 @@ class ModelBuilding:
         self._ends_exist(model, joint)
         changed = parts.with_joint(model, joint)
         name = changed.joints[-1].name
-        return self._edited(f"Connect {joint.parent} to {joint.child} by {name}", model, changed,
-                            f"{model.name}::{name}")
+        return self._plan_edit(f"Connect {joint.parent} to {joint.child} by {name}", model, changed,
+                               f"{model.name}::{name}")
 
     def _edit_joint(self, op: Dict[str, Any]) -> Planned:
         model, rest = split_target(self._world, op["joint"])
@@ -157,9 +158,9 @@ class ModelBuilding:
         if new.name != old.name and (not new.name or new.name in parts.part_names(model)):
             raise CommandError(f"{new.name!r} is not a free name in model {model.name!r}")
         self._ends_exist(model, new)
-        return self._edited(f"Edit joint {op['joint']}", model,
-                            parts.with_changed_joint(model, old, new),
-                            f"{model.name}::{new.name}")
+        return self._plan_edit(f"Edit joint {op['joint']}", model,
+                               parts.with_changed_joint(model, old, new),
+                               f"{model.name}::{new.name}")
 
     @staticmethod
     def _ends_exist(model: Model, joint: Joint) -> None:
@@ -183,15 +184,15 @@ class ModelBuilding:
         pose = _pose(op) or nested.pose
         changed = parts.with_nested(model, replace(nested, name=name,
                                                    pose=self._in_model(model, pose)))
-        return self._edited(f"Add {name} to {model.name}", model, changed, model.name)
+        return self._plan_edit(f"Add {name} to {model.name}", model, changed, model.name)
 
     def _set_plugins(self, op: Dict[str, Any]) -> Planned:
         plugins = self._plugins_of(op["text"])
         if not op["model"]:
             return "Set plugins of the world", SetWorldPlugins(tuple(plugins)), {}
         model = self._world.models.get(op["model"])
-        return self._edited(f"Set plugins of {model.name}", model,
-                            replace(model, plugins=plugins), model.name)
+        return self._plan_edit(f"Set plugins of {model.name}", model,
+                               replace(model, plugins=plugins), model.name)
 
     def _plugins_of(self, elements: str) -> List[PluginSpec]:
         """Read `<plugin>` elements. Raises CommandError, InputError."""
@@ -215,12 +216,12 @@ class ModelBuilding:
         if not rest:
             raise CommandError(f"{op['target']} is a whole model")
         left = without_sensor(model, rest) if sensor_of(rest) else parts.without_part(model, rest)
-        return self._edited(f"Remove {op['target']}", model, left, model.name)
+        return self._plan_edit(f"Remove {op['target']}", model, left, model.name)
 
     def _add_sensor(self, op: Dict[str, Any]) -> Planned:
         model, rest = split_target(self._world, op["link"])
         changed, name = with_new_sensor(model, rest, op["sensor"], self._resolver)
-        return self._edited(f"Add {name} to {op['link']}", model, changed, op["link"])
+        return self._plan_edit(f"Add {name} to {op['link']}", model, changed, op["link"])
 
     # -- common ----------------------------------------------------------------------------------
 
@@ -235,14 +236,14 @@ class ModelBuilding:
         """A world pose in the frame of a model as it stands."""
         return compose(inverse(self._world.states.model_state(model.name)[0]), pose)
 
-    def _checked(self, model: Model) -> Any:
+    def _check_model(self, model: Model) -> Any:
         meshes, issues = check_meshes(model)
         for issue in issues:
             self._report(issue)
         return meshes
 
-    def _edited(self, label: str, old: Model, new: Model, name: str) -> Planned:
-        return label, EditModel(old.name, new, self._checked(new)), {"name": name}
+    def _plan_edit(self, label: str, old: Model, new: Model, name: str) -> Planned:
+        return label, EditModel(old.name, new, self._check_model(new)), {"name": name}
 
 
 def _check_xml(text: str) -> None:

@@ -97,7 +97,7 @@ def with_changed_joint(model: Model, old: Joint, new: Joint) -> Model:
     """Return the model with a joint replaced; references follow a new name of the joint."""
     new = complete_joint(model, new)
     joints = [new if one is old else one for one in model.joints]
-    return _followed(replace(model, joints=joints), old.name, new.name)
+    return _rename_mimicked_joints(replace(model, joints=joints), old.name, new.name)
 
 
 def complete_joint(model: Model, joint: Joint) -> Joint:
@@ -195,18 +195,18 @@ def with_link_renamed(model: Model, old: str, to: str) -> Model:
     if SCOPE in old:
         raise CommandError(f"{old} belongs to a nested model, whose names stay")
     links = [replace(link, name=to) if link.name == old else link for link in model.links]
-    joints = [replace(one, parent=_named(one.parent, old, to), child=_named(one.child, old, to),
-                      gearbox_reference=_named(one.gearbox_reference, old, to))
+    joints = [replace(one, parent=_rename(one.parent, old, to), child=_rename(one.child, old, to),
+                      gearbox_reference=_rename(one.gearbox_reference, old, to))
               for one in model.joints]
     return replace(model, links=links, joints=joints,
-                   canonical_link=_named(model.canonical_link, old, to))
+                   canonical_link=_rename(model.canonical_link, old, to))
 
 
-def _named(name: str, old: str, to: str) -> str:
+def _rename(name: str, old: str, to: str) -> str:
     return to if name == old else name
 
 
-def _followed(model: Model, old: str, to: str) -> Model:
+def _rename_mimicked_joints(model: Model, old: str, to: str) -> Model:
     """Mimicked joints under their new name."""
     if old == to:
         return model

@@ -31,7 +31,7 @@ def with_value(target: T, path: str, value: Any) -> T:
     Raises:
         CommandError: no such property, or the value does not fit it.
     """
-    return _replaced(target, path.split("."), value, path)  # type: ignore[no-any-return]
+    return _replace_value(target, path.split("."), value, path)  # type: ignore[no-any-return]
 
 
 def dataclass_from_json(kind: Type[T], values: Dict[str, Any], base: Any = None) -> T:
@@ -39,16 +39,16 @@ def dataclass_from_json(kind: Type[T], values: Dict[str, Any], base: Any = None)
 
     Raises CommandError.
     """
-    return _converted(values, kind, kind.__name__.lower(), base)  # type: ignore[no-any-return]
+    return _convert_value(values, kind, kind.__name__.lower(), base)  # type: ignore[no-any-return]
 
 
-def _replaced(target: Any, names: Sequence[str], value: Any, path: str) -> Any:
+def _replace_value(target: Any, names: Sequence[str], value: Any, path: str) -> Any:
     name, rest = names[0], names[1:]
     if isinstance(target, list):
         if not name.isdigit() or int(name) >= len(target):
             raise CommandError(f"unknown property {path!r}")
         items = list(target)
-        items[int(name)] = _replaced(items[int(name)], rest, value, path)
+        items[int(name)] = _replace_value(items[int(name)], rest, value, path)
         return items
     hint = _hints_of(target).get(name)
     if hint is None or name in HIDDEN or name in _FIXED:
@@ -56,12 +56,12 @@ def _replaced(target: Any, names: Sequence[str], value: Any, path: str) -> Any:
         raise CommandError(f"unknown property {path!r}; known: {', '.join(known)}")
     present = getattr(target, name)
     if not rest:
-        return replace(target, **{name: _converted(value, hint, path, present)})
+        return replace(target, **{name: _convert_value(value, hint, path, present)})
     if present is None:
         present = _fresh(hint, path)
     if not is_dataclass(present) and not isinstance(present, list):
         raise CommandError(f"unknown property {path!r}")
-    return replace(target, **{name: _replaced(present, rest, value, path)})
+    return replace(target, **{name: _replace_value(present, rest, value, path)})
 
 
 @functools.lru_cache(maxsize=None)
@@ -87,7 +87,7 @@ def _fresh(hint: Any, path: str) -> Any:
     raise CommandError(f"unknown property {path!r}")
 
 
-def _converted(value: Any, hint: Any, path: str, present: Any) -> Any:
+def _convert_value(value: Any, hint: Any, path: str, present: Any) -> Any:
     """JSON as a value of a type hint. Raises CommandError."""
     if hint == Geometry:
         return _geometry(value, path, present)
@@ -98,13 +98,14 @@ def _converted(value: Any, hint: Any, path: str, present: Any) -> Any:
         if value is None and type(None) in inside:
             return None
         [option] = [one for one in inside if one is not type(None)]
-        return _converted(value, option, path, present)
+        return _convert_value(value, option, path, present)
     if origin is tuple:
         return _tuple(value, inside, path)
     if origin is list:
         if not isinstance(value, list):
             raise CommandError(f"{path} must be a list, found {value!r:.60}")
-        return [_converted(item, inside[0], f"{path}.{n}", None) for n, item in enumerate(value)]
+        return [_convert_value(item, inside[0], f"{path}.{n}", None)
+                for n, item in enumerate(value)]
     if is_dataclass(hint):
         return _object(value, hint, path, present)
     check = _PLAIN.get(hint)
@@ -121,8 +122,8 @@ def _object(value: Any, kind: Any, path: str, present: Any) -> Any:
     given: Dict[str, Any] = {}
     for name, item in value.items():
         if name in hints and name not in HIDDEN:
-            given[name] = _converted(item, hints[name], f"{path}.{name}",
-                                     getattr(base, name, None))
+            given[name] = _convert_value(item, hints[name], f"{path}.{name}",
+                                         getattr(base, name, None))
     if base is not None:
         return replace(base, **given)
     missing = [field.name for field in fields(kind) if field.name not in given
@@ -151,7 +152,7 @@ def _pose(value: Any, path: str) -> Pose:
 def _tuple(value: Any, inside: Sequence[Any], path: str) -> Any:
     if not isinstance(value, (list, tuple)) or len(value) != len(inside):
         raise CommandError(f"{path} must be {len(inside)} numbers, found {value!r:.60}")
-    return tuple(_converted(item, hint, path, None) for item, hint in zip(value, inside))
+    return tuple(_convert_value(item, hint, path, None) for item, hint in zip(value, inside))
 
 
 def _floats(value: Any, count: int, path: str) -> List[float]:

@@ -54,7 +54,7 @@ def property_change(world: Simulator, resolver: Resolver, target: str, path: str
         return EditLight(target, with_value(world.lights.get(target), path, value))
     owner, rest = split_target(world, target)
     if sensor_of(rest):
-        return _edited(owner, with_sensor_value(owner, rest, path, value, resolver))
+        return _make_operation(owner, with_sensor_value(owner, rest, path, value, resolver))
     if not rest:
         return _of_model(owner, path, value)
     joint = next((one for one in owner.joints if one.name == rest), None)
@@ -62,7 +62,7 @@ def property_change(world: Simulator, resolver: Resolver, target: str, path: str
         return _of_joint(owner, joint, path, value)
     _refuse_name(path)
     links = _links_with(owner, rest, path, value, resolver)
-    return _edited(owner, replace(owner, links=links))
+    return _make_operation(owner, replace(owner, links=links))
 
 
 def is_of_light(world: Simulator, name: str) -> bool:
@@ -100,7 +100,7 @@ def _of_model(model: Model, path: str, value: Any) -> Operation:
     _refuse_name(path)
     if path == "pose":
         return SetPoses({model.name: with_value(model, "pose", value).pose})
-    return _edited(model, with_value(model, path, value))
+    return _make_operation(model, with_value(model, path, value))
 
 
 def _of_joint(owner: Model, joint: Joint, path: str, value: Any) -> Operation:
@@ -111,7 +111,7 @@ def _of_joint(owner: Model, joint: Joint, path: str, value: Any) -> Operation:
     return EditJoint(owner.name, changed)
 
 
-def _edited(old: Model, new: Model) -> Operation:
+def _make_operation(old: Model, new: Model) -> Operation:
     meshes, _ = check_meshes(new)
     return EditModel(old.name, new, meshes)
 
@@ -139,11 +139,11 @@ def _with_part(link: Link, name: str, path: str, value: Any, resolver: Resolver)
         if collision.name == name and kind != "visual":
             if not kind and path.split(".")[0] not in Collision.__dataclass_fields__:
                 continue  # a visual of the same name is meant
-            changed = _found(with_value(collision, path, value), resolver)
+            changed = _resolve_shape_file(with_value(collision, path, value), resolver)
             return replace(link, collisions=_replaced_at(link.collisions, n, changed))
     for n, visual in enumerate(link.visuals):
         if visual.name == name and kind != "collision":
-            shown = _found(_painted(visual, path, value), resolver)
+            shown = _resolve_shape_file(_set_visual_property(visual, path, value), resolver)
             return replace(link, visuals=_replaced_at(link.visuals, n, shown))
     return None
 
@@ -152,7 +152,7 @@ def _replaced_at(items: List[Any], at: int, item: Any) -> List[Any]:
     return [*items[:at], item, *items[at + 1:]]
 
 
-def _painted(visual: Visual, path: str, value: Any) -> Visual:
+def _set_visual_property(visual: Visual, path: str, value: Any) -> Visual:
     """A visual with a property changed; `material.name` is the script's, as the page shows it."""
     if path != "material.name":
         return with_value(visual, path, value)
@@ -164,7 +164,7 @@ def _painted(visual: Visual, path: str, value: Any) -> Visual:
     return replace(changed, material=paint)
 
 
-def _found(part: Any, resolver: Resolver) -> Any:
+def _resolve_shape_file(part: Any, resolver: Resolver) -> Any:
     """A collision or visual whose shape names a file, with the file found."""
     shape = part.geometry
     if not isinstance(shape, (Mesh, Heightmap, ImageMap)) or not shape.uri:

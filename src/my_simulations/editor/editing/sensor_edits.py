@@ -40,7 +40,7 @@ def with_sensor_value(model: Model, rest: str, path: str, value: Any, resolver: 
 
     Raises CommandError, InputError.
     """
-    holder, sensor, xml = _found(model, rest)
+    holder, sensor, xml = _find_sensor(model, rest)
     if path == "pose" and re.search(r"<pose\s[^>]*relative_to", xml):
         raise CommandError(f"the pose of sensor {sensor.name!r} is relative to a named frame; edit "
                            "it in the file")
@@ -48,7 +48,7 @@ def with_sensor_value(model: Model, rest: str, path: str, value: Any, resolver: 
         changed = with_parameter(xml, sensor, path, value)
     except ValueError as fault:
         raise CommandError(f"{path}: {fault}") from fault
-    new = _read(changed, resolver)
+    new = _read_sensor(changed, resolver)
     if path != "pose":
         new = replace(new, pose=sensor.pose)
     new = replace(new, file=sensor.file, line=sensor.line)
@@ -70,18 +70,18 @@ def with_new_sensor(model: Model, link_name: str, kind: str,
     name = free_name(kind, taken)
     xml = sensor_alone(kind, name, link_name.replace("::", "_"))
     return _with_holder(model, link, replace(
-        link, sensors=[*link.sensors, _read(xml, resolver)], extra=[*link.extra, xml])), name
+        link, sensors=[*link.sensors, _read_sensor(xml, resolver)], extra=[*link.extra, xml])), name
 
 
 def without_sensor(model: Model, rest: str) -> Model:
     """Return the model without the sensor `LINK::sensor:NAME`. Raises CommandError."""
-    holder, sensor, xml = _found(model, rest)
+    holder, sensor, xml = _find_sensor(model, rest)
     return _with_holder(model, holder, replace(
         holder, sensors=[one for one in holder.sensors if one is not sensor],
         extra=[one for one in holder.extra if one is not xml]))
 
 
-def _found(model: Model, rest: str) -> Tuple[Union[Link, Joint], Sensor, str]:
+def _find_sensor(model: Model, rest: str) -> Tuple[Union[Link, Joint], Sensor, str]:
     names = sensor_of(rest)
     for holder in _holders(model):
         for sensor, xml in zip(holder.sensors, sensor_xml(holder)):
@@ -99,7 +99,7 @@ def _with_holder(model: Model, old: Union[Link, Joint], new: Union[Link, Joint])
                    joints=[new if one is old else one for one in model.joints])  # type: ignore
 
 
-def _read(xml: str, resolver: Resolver) -> Sensor:
+def _read_sensor(xml: str, resolver: Resolver) -> Sensor:
     text = f'<sdf version="1.7"><model name="m"><link name="link">{xml}</link></model></sdf>'
     model, issues = entity_of_text(text, resolver)
     odd = next((issue for issue in issues if issue.code in ("bad-value", "value-odd")), None)

@@ -37,7 +37,7 @@ class Users:
     def join(self, client: int, key: str, name: str) -> None:
         """A page has greeted; without a name it gets one, or the one it had."""
         with self._lock:
-            known = _cleaned(name) or self._names.get(key, "")
+            known = _clean_name(name) or self._names.get(key, "")
             number = 1
             while not known or self._is_taken(known, key):
                 known = f"Guest {number}"
@@ -53,7 +53,7 @@ class Users:
         """Rename a user; an invalid name, or that of another user, changes nothing."""
         with self._lock:
             person = self._connected.get(client)
-            name = _cleaned(name)
+            name = _clean_name(name)
             if person is None or not name or self._is_taken(name, person.key):
                 return
             self._names[person.key] = name
@@ -107,6 +107,6 @@ class Users:
                    ) or any(known == name and other != key for other, known in self._names.items())
 
 
-def _cleaned(name: str) -> str:
+def _clean_name(name: str) -> str:
     """A name in one line, of a length that fits."""
     return " ".join(name.split())[:_LONGEST_NAME].strip()

@@ -189,7 +189,7 @@ class Autosave:
 
     def _recoverable(self) -> List[AutosaveEntry]:
         """Entries that were discarded, or whose process is gone."""
-        entries = [entry for entry in map(self._read, self._listed()) if entry is not None]
+        entries = [entry for entry in map(self._read, self._list_files()) if entry is not None]
         return [entry for entry in entries
                 if entry.discarded_at or not _is_alive(entry.process)]
 
@@ -205,7 +205,7 @@ class Autosave:
             if entry.age_limit < time.time():
                 self._remove(entry.about, entry.world)
 
-    def _listed(self) -> List[str]:
+    def _list_files(self) -> List[str]:
         try:
             return [name for name in os.listdir(self._folder) if name.endswith(".json")]
         except OSError:

@@ -55,14 +55,14 @@ def import_model(message: Dict[str, Any], resolver: Resolver) -> Tuple[Dict[str,
                                "overwrite it, or choose another name")
     density = float(message.get("density") or _DENSITY)
     try:
-        issues = _stored(files, name, target, density, resolver)
+        issues = _store_model(files, name, target, density, resolver)
     except OSError as fault:
         raise CommandError(f"{target} cannot be written: {fault}") from fault
     return {"uri": f"model://{name}", "path": target}, issues
 
 
-def _stored(files: Dict[str, bytes], name: str, target: str, density: float,
-            resolver: Resolver) -> List[Issue]:
+def _store_model(files: Dict[str, bytes], name: str, target: str, density: float,
+                 resolver: Resolver) -> List[Issue]:
     """Make the model folder and try it; only a usable one takes its place."""
     os.makedirs(default_folder(), exist_ok=True)
     issues: List[Issue] = []
@@ -131,7 +131,7 @@ def _contents(given: List[Dict[str, str]], name: str) -> Dict[str, bytes]:
                            " be imported; put larger models into ~/.gazebo/models by hand")
     tops = sorted({path.split("/")[0] for path in found})
     if len(tops) == 1 and all("/" in path for path in found):  # a folder that was dropped
-        return {path.split("/", 1)[1]: _renamed(path, data, tops[0], name)
+        return {path.split("/", 1)[1]: _rename_references(path, data, tops[0], name)
                 for path, data in found.items()}
     described = {path.split("/")[0] for path in found
                  if path.lower().endswith((".sdf", "model.config"))}
@@ -141,7 +141,7 @@ def _contents(given: List[Dict[str, str]], name: str) -> Dict[str, bytes]:
     return found
 
 
-def _renamed(path: str, data: bytes, former: str, name: str) -> bytes:
+def _rename_references(path: str, data: bytes, former: str, name: str) -> bytes:
     """A text file of the model, with `name` in the URIs of its own files."""
     if former == name or not path.lower().endswith(_TEXTS):
         return data

@@ -87,7 +87,7 @@ class Library:
         with self._lock:
             remote = (self._remote is not None, self._remote_problem)
         return (remote, [(place.path, _entries(place.path)) for place in self._places()],
-                [(model.folder, _changed(model.folder)) for model in self._fuel.models()])
+                [(model.folder, _read_change_time(model.folder)) for model in self._fuel.models()])
 
     def fetch_list(self) -> None:
         """Ask the remote database, if there is one, for its list. Blocks."""
@@ -201,7 +201,7 @@ class Library:
 
     def _fuel_locations(self) -> List[Dict[str, Any]]:
         """The Fuel caches as one location, which is there where they hold a model."""
-        models = [self._model_entry(model.folder, "", _changed(model.folder), model.uri)
+        models = [self._model_entry(model.folder, "", _read_change_time(model.folder), model.uri)
                   for model in self._fuel.models()]
         if not models:
             return []
@@ -277,13 +277,13 @@ def _entries(folder: str) -> List[Tuple[str, float]]:
     for name in names:
         if name.startswith("."):
             continue
-        changed = _changed(os.path.join(folder, name))
+        changed = _read_change_time(os.path.join(folder, name))
         if changed:
             found.append((name, changed))
     return found
 
 
-def _changed(folder: str) -> float:
+def _read_change_time(folder: str) -> float:
     """When the config of a model changed; 0 where the folder holds no model."""
     for config in (*_CONFIGS, *_DESCRIPTIONS):
         try:

@@ -185,7 +185,7 @@ class WorldFiles:
         roots = self._real_roots()
         folder = _allowed_folder(message.get("path") or self._start(roots), roots)
         parent = os.path.dirname(folder)
-        folders, files = _listed(folder)
+        folders, files = _list_folder(folder)
         return {"path": folder, "roots": roots, "folders": folders, "files": files,
                 "parent": parent if _is_below(parent, roots) else None,
                 "launched": self._world.models.launched(), "chosen": dict(self._chosen)}
@@ -265,7 +265,7 @@ def _allowed_folder(path: str, roots: List[str]) -> str:
     return folder
 
 
-def _listed(folder: str) -> Tuple[List[Dict[str, Any]], List[Dict[str, Any]]]:
+def _list_folder(folder: str) -> Tuple[List[Dict[str, Any]], List[Dict[str, Any]]]:
     folders: List[Dict[str, Any]] = []
     files: List[Dict[str, Any]] = []
     try:

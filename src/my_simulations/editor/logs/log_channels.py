@@ -50,8 +50,8 @@ class ContactChannel:
                 found = self._simulator.states.contacts()
             except EngineLostError:
                 return   # it starts again, without contacts
-            rows = [{"a": a, "b": b, "position": _rounded(one.position),
-                     "normal": _rounded(one.normal), "depth": round(one.depth, _DECIMALS),
+            rows = [{"a": a, "b": b, "position": _round_values(one.position),
+                     "normal": _round_values(one.normal), "depth": round(one.depth, _DECIMALS),
                      "force": float(f"{one.force:.3g}")} for a, b, one in found]
             writer.add_record(CONTACTS, time, json.dumps(rows, separators=(",", ":")).encode())
 
@@ -148,5 +148,5 @@ def log_channels_of(simulator: Simulator, source: Optional[TopicSource],
     return (contacts, TopicChannel(source, names, lambda: simulator.clock.sim_ns * 1e-9))
 
 
-def _rounded(values: Sequence[float]) -> List[float]:
+def _round_values(values: Sequence[float]) -> List[float]:
     return [round(float(value), _DECIMALS) for value in values]

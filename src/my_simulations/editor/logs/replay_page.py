@@ -59,8 +59,8 @@ def write_replay(log: str, path: str, resolver: Resolver, name: str = "",
             cannot be written.
     """
     files = ReplayFiles(resolver)
-    states = _thinned(log, states_hz, last, files)
-    data = _packed(_container(name or _name_of(log), states, files.found, curves))
+    states = _thin_log(log, states_hz, last, files)
+    data = _compress_text(_container(name or _name_of(log), states, files.found, curves))
     page = (_template().replace("/*STYLE*/", _styles()).replace("/*PROGRAM*/", _program())
             .replace("/*DATA*/", data))
     write_atomically(os.path.abspath(path), page.encode(), overwrite=True)
@@ -72,7 +72,7 @@ def _name_of(log: str) -> str:
     return os.path.basename(folder) if file == "state.log" else file
 
 
-def _thinned(log: str, states_hz: float, last: float, files: ReplayFiles) -> bytes:
+def _thin_log(log: str, states_hz: float, last: float, files: ReplayFiles) -> bytes:
     """The log with fewer states and rounded poses; adds the files of its worlds to `files`."""
     import numpy as np
 
@@ -91,7 +91,7 @@ def _thinned(log: str, states_hz: float, last: float, files: ReplayFiles) -> byt
                     continue
                 number, poses = reader.seek(time)
                 if number != known:
-                    writer.document(time, _shown(json.loads(reader.text(number)), files))
+                    writer.document(time, _strip_document(json.loads(reader.text(number)), files))
                     known = number
                 values = np.round(poses.values / _GRID) * _GRID
                 writer.poses(Poses(poses.ids, values.astype(np.float32), 0, time, time))
@@ -127,10 +127,10 @@ class _ThinRecords:
         for topic in list(self._waiting):
             if time >= self._due.get(topic, time) - 1e-9:
                 self._due[topic] = time + _MESSAGES_S
-                self._writer.add_record(MESSAGE, time, _rounded(self._waiting.pop(topic)))
+                self._writer.add_record(MESSAGE, time, _round_frame(self._waiting.pop(topic)))
 
 
-def _rounded(frame: bytes) -> bytes:
+def _round_frame(frame: bytes) -> bytes:
     """A frame whose ranges are multiples of 1 mm (exactly: 2^-10 m); others as they are."""
     import numpy as np
 
@@ -141,7 +141,7 @@ def _rounded(frame: bytes) -> bytes:
     return encode_frame(head, (np.round(ranges * 1024.0) / 1024.0).astype("<f4").tobytes())
 
 
-def _shown(document: Dict[str, Any], files: ReplayFiles) -> Dict[str, Any]:
+def _strip_document(document: Dict[str, Any], files: ReplayFiles) -> Dict[str, Any]:
     """A world document without what a replay does not show: collisions and folders."""
     for model in document["models"]:
         for link in model["links"]:
@@ -163,7 +163,7 @@ def _container(name: str, log: bytes, files: Dict[str, bytes], curves: Sequence[
     return b"".join([_SIZE.pack(len(head)), head, log, *files.values()])
 
 
-def _packed(data: bytes) -> str:
+def _compress_text(data: bytes) -> str:
     return base64.b64encode(gzip.compress(data, 9, mtime=0)).decode()
 
 
@@ -182,7 +182,7 @@ def _program() -> str:
     folder = os.path.join(modules, FOLDER)
     try:
         if modules and _text(os.path.join(folder, "sources")).strip() == sources_of(page, modules):
-            return _packed(_text(os.path.join(folder, PROGRAM)).encode())
+            return _compress_text(_text(os.path.join(folder, PROGRAM)).encode())
     except OSError:
         pass  # it was not packed: the message below names the command that does it
     raise CommandError("the program of replay pages is not packed, or of other sources than the"

@@ -52,7 +52,7 @@ class Mirror:
             document = self._document(entities, snapshot)
             change = SceneChange({"type": "world", "revision": revision, "document": document},
                                  None)
-            self._store(revision, entities, document, self._ordered(entities))
+            self._store(revision, entities, document, self._order_names(entities))
         else:
             change = self._difference(revision, entities, snapshot)
         self._rest = rest
@@ -69,7 +69,7 @@ class Mirror:
         return self._documents.surroundings(simulator.world, simulator.physics.settings,
                                             simulator.physics.gravity)
 
-    def _ordered(self, entities: List[Entity]) -> List[str]:
+    def _order_names(self, entities: List[Entity]) -> List[str]:
         """All models, then all lights, as they stand in the world."""
         return [*(entity.model.name for entity in entities),
                 *(light.name for light in self._simulator.lights.all())]
@@ -105,7 +105,7 @@ class Mirror:
         around = self._surroundings()
         world = {name: value for name, value in around.items()
                  if self._around.get(name) != value}
-        order = self._ordered(entities)
+        order = self._order_names(entities)
         if order != self._order:
             push["order"] = order
         push.update({name: value for name, value in (

@@ -50,7 +50,7 @@ class Driving:
             async with self._opening:
                 drive = self._drives.get(model)
                 if drive is None:
-                    drive = await self._loop.run_in_executor(self._pool, self._opened, model)
+                    drive = await self._loop.run_in_executor(self._pool, self._open_drive, model)
                     self._drives[model] = drive
         drive.client, drive.moving = client.number, moving
         self._send(drive, linear, angular)
@@ -94,7 +94,7 @@ class Driving:
         twist.angular.x, twist.angular.y, twist.angular.z = map(float, angular)
         drive.publisher.send(twist)
 
-    def _opened(self, model: str) -> Drive:
+    def _open_drive(self, model: str) -> Drive:
         """In a thread of the pool. Raises CommandError."""
         if self._source is None:
             raise CommandError("there are no ROS topics: the simulator runs without ROS")

@@ -85,7 +85,7 @@ class Pages(PageFiles):
         data = await _body(request, _THUMB_BYTES)
         if not _THUMB.match(known) or not data.startswith(_PNG):
             raise web.HTTPBadRequest(text="a thumbnail is a PNG\n")
-        return _written(os.path.join(self._thumbs, known + ".png"), data, overwrite=True)
+        return _write_file(os.path.join(self._thumbs, known + ".png"), data, overwrite=True)
 
     async def _put_upload(self, request: web.Request) -> web.StreamResponse:
         name = request.match_info["name"]
@@ -98,7 +98,7 @@ class Pages(PageFiles):
             number += 1
             path = os.path.join(self._uploads, f"{stem}_{number}{extension}")
         self._documents.served.add_root(self._uploads)
-        _written(path, data, overwrite=False)
+        _write_file(path, data, overwrite=False)
         return web.json_response({"path": path, "uri": "file://" + path})
 
     async def _download(self, request: web.Request) -> web.StreamResponse:
@@ -129,7 +129,7 @@ async def _body(request: web.Request, largest: int) -> bytes:
     return bytes(data)
 
 
-def _written(path: str, data: bytes, overwrite: bool) -> web.StreamResponse:
+def _write_file(path: str, data: bytes, overwrite: bool) -> web.StreamResponse:
     try:
         write_atomically(path, data, overwrite, private=True)
     except CommandError as fault:

@@ -93,12 +93,12 @@ class PageBundle:
             if not self.folder or made_of != sources_of(self._page, self._modules):
                 return None
             with open(os.path.join(self.folder, "meta.json"), encoding="utf-8") as stream:
-                return _needed(json.load(stream)["outputs"])
+                return _list_needed_outputs(json.load(stream)["outputs"])
         except (OSError, ValueError, KeyError, TypeError, AttributeError):
             return None     # not there, or not what esbuild writes: the page needs none of it
 
 
-def _needed(outputs: Dict[str, Dict[str, Any]]) -> Optional[List[str]]:
+def _list_needed_outputs(outputs: Dict[str, Dict[str, Any]]) -> Optional[List[str]]:
     """The outputs of the entry and of the view, which is asked for at once, and their imports."""
     found: List[str] = []
     for entry in (_ENTRY, _VIEW):

@@ -76,7 +76,7 @@ class SentPoses:
         """The frame of what moved; b"" when nothing did."""
         import numpy as np
 
-        sent = self._grown(int(poses.ids.max()) + 1 if len(poses.ids) else 0)
+        sent = self._grow_buffer(int(poses.ids.max()) + 1 if len(poses.ids) else 0)
         with np.errstate(invalid="ignore"):
             still = (np.abs(poses.values - sent[poses.ids]) <= _TOLERANCE).all(axis=1)
         moved = np.nonzero(~still)[0]
@@ -90,7 +90,7 @@ class SentPoses:
                           poses.real_time, len(moved), 0)
         return head + records.tobytes()
 
-    def _grown(self, size: int) -> Any:
+    def _grow_buffer(self, size: int) -> Any:
         import numpy as np
 
         old = self._sent

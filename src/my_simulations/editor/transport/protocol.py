@@ -79,7 +79,7 @@ class TypeChecker:
         elif "|" in expected:
             self.check(value, self._alternative(value, expected.split("|")), where, depth)
         else:
-            self._named(value, expected, where, depth)
+            self._check_named(value, expected, where, depth)
 
     def fields(self, value: Any, fields: Dict[str, str], where: str, more: Tuple[str, ...] = (),
                depth: int = 0) -> None:
@@ -105,7 +105,7 @@ class TypeChecker:
         self.fields(op, fields, where, ("kind",), depth)
         return str(op["kind"])
 
-    def _named(self, value: Any, name: str, where: str, depth: int) -> None:
+    def _check_named(self, value: Any, name: str, where: str, depth: int) -> None:
         if name in self._unchecked:
             self._object(value, where)
         elif name == OPERATION:

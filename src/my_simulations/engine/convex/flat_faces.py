@@ -69,7 +69,7 @@ def flat_faces(mesh: MeshData) -> FlatFaces:
     triangles = np.asarray(mesh.triangles)
     if not len(triangles):
         return FlatFaces([], mesh)
-    points, faces = _merged(vertices, triangles)
+    points, faces = _merge_corners(vertices, triangles)
     corners = points[faces]
     crosses = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     areas = np.linalg.norm(crosses, axis=1) / 2.0
@@ -94,7 +94,7 @@ def flat_faces(mesh: MeshData) -> FlatFaces:
         vertices[used], numbers.reshape(-1, 3).astype(np.int32)))
 
 
-def _merged(vertices: Array, triangles: Array) -> Tuple[Array, Array]:
+def _merge_corners(vertices: Array, triangles: Array) -> Tuple[Array, Array]:
     """Points and triangles in which corners at one place are one."""
     extent = float(np.ptp(vertices, axis=0).max()) or 1.0
     _, first, same = np.unique(np.round(vertices / (_SAME_PLACE * extent)), axis=0,
@@ -120,7 +120,7 @@ def _candidates(points: Array, faces: Array, crosses: Array,
     away = np.einsum("ijk,ik->ij", points[faces[other]] - points[faces[one, 0]][:, None],
                      normals[one])
     level = np.abs(away).max(axis=1, initial=0.0) <= _OFF_PLANE
-    groups = _grouped(len(faces), one[level], other[level])
+    groups = _label_groups(len(faces), one[level], other[level])
     order = np.argsort(groups, kind="stable")
     starts = np.flatnonzero(np.diff(groups[order], prepend=-1))
     sizes = np.diff(np.append(starts, len(order)))
@@ -156,7 +156,7 @@ def _edges(faces: Array) -> Tuple[Array, Array]:
     return edges, np.tile(np.arange(len(faces)), 3)
 
 
-def _grouped(count: int, one: Array, other: Array) -> Array:
+def _label_groups(count: int, one: Array, other: Array) -> Array:
     """For each of `count` things the lowest number among those that pairs connect it with."""
     labels = np.arange(count)
     while True:
@@ -199,7 +199,7 @@ def _as_rectangles(points: Array, faces: Array, crosses: Array) -> List[Rectangl
     cells = (len(lines[0]) - 1) * (len(lines[1]) - 1)
     if not 0 < cells <= _MOST_CELLS or cells * len(faces) > _MOST_TESTS:
         return []
-    filled = _filled(points[faces] @ axes[:2].T, lines)
+    filled = _rasterise_triangles(points[faces] @ axes[:2].T, lines)
     sizes = np.outer(np.diff(lines[0]), np.diff(lines[1]))
     if abs(float(sizes[filled].sum()) - area) > _SAME_AREA * area:
         return []
@@ -233,7 +233,7 @@ def _lines(values: Array) -> Array:
     return found
 
 
-def _filled(corners: Array, lines: List[Array]) -> Array:
+def _rasterise_triangles(corners: Array, lines: List[Array]) -> Array:
     """Which cells of a grid triangles (n, 3, 2) cover, by their middles."""
     middles = [(line[1:] + line[:-1]) / 2.0 for line in lines]
     x, y = (each.reshape(-1)[:, None] for each in np.meshgrid(*middles, indexing="ij"))

@@ -68,13 +68,13 @@ def _decompose_file(folder: str) -> None:
     import numpy as np
 
     with np.load(os.path.join(folder, INPUT), allow_pickle=False) as held:
-        made = _decomposed(held["vertices"], held["triangles"], folder)
+        made = _decompose(held["vertices"], held["triangles"], folder)
     unfinished = os.path.join(folder, RESULT + ".new")
     save(unfinished, made)
     os.replace(unfinished, os.path.join(folder, RESULT))
 
 
-def _decomposed(vertices: Any, triangles: Any, folder: str) -> Decomposition:
+def _decompose(vertices: Any, triangles: Any, folder: str) -> Decomposition:
     from . import hulls
 
     frame = frame_of(vertices)
@@ -84,13 +84,13 @@ def _decomposed(vertices: Any, triangles: Any, folder: str) -> Decomposition:
             return made
     hull = hulls.hull_of(frame.points)
     save(os.path.join(folder, FALLBACK), frame.result([hull], NOT_DIVIDED))
-    pieces = _divided(frame.points, triangles, folder)
+    pieces = _run_vhacd(frame.points, triangles, folder)
     if len(pieces) == 1:  # the hull itself is nearer to the mesh than that of its voxels
         pieces = [hull]
     return frame.result(pieces) if pieces else frame.result([hull], NOT_DIVIDED)
 
 
-def _divided(points: Any, triangles: Any, folder: str) -> List[Any]:
+def _run_vhacd(points: Any, triangles: Any, folder: str) -> List[Any]:
     """The hulls found by V-HACD, with a limited number of corners."""
     import numpy as np
     import pybullet

@@ -74,7 +74,7 @@ def levels_of(path: str, widest: int, step: int) -> Levels:
     """As `grey_levels`, in this process."""
     import numpy as np
 
-    with _opened(path) as image:
+    with _open_tiff(path) as image:
         step = max(step, _step(image, widest))
         # Pillow opens 16-bit grey images as I or I;16.
         deep = image.mode.startswith("I")
@@ -103,7 +103,7 @@ def read_elevations(path: str, widest: int) -> Optional[Elevations]:
 def elevations_of(path: str, widest: int) -> Optional[Elevations]:
     import numpy as np
 
-    with _opened(path) as image:
+    with _open_tiff(path) as image:
         tags = getattr(image, "tag_v2", {})
         if image.mode != "F" and _GEO_KEYS not in tags:
             return None
@@ -172,7 +172,7 @@ def _costly(path: str) -> bool:
 
 
 @contextmanager
-def _opened(path: str) -> Iterator[Any]:
+def _open_tiff(path: str) -> Iterator[Any]:
     with _as_input_error(path), open_image(path) as image:
         yield image
 

@@ -22,7 +22,7 @@ def read_collada(data: bytes) -> List[MeshPart]:
 
     root = parse_collada_geometry(data)
     try:
-        document = _loaded(etree.tostring(root))
+        document = _load_collada(etree.tostring(root))
         unit = unit_of(root)
         with np.errstate(all="ignore"):  # non-finite numbers are reported later
             made = (_part(names, geometry, unit) for names, geometry in bound_geometries(document))
@@ -34,7 +34,7 @@ def read_collada(data: bytes) -> List[MeshPart]:
         raise MeshError(str(fault), _line_of_fault(root)) from None
 
 
-def _loaded(text: bytes) -> Any:
+def _load_collada(text: bytes) -> Any:
     import collada
 
     try:

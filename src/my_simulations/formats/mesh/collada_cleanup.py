@@ -110,12 +110,12 @@ class _Document:
                     break
                 matrices += inner.findall("{*}bind_shape_matrix")
                 source = self._target(inner, "source")
-            node = _made(instance, "node")
+            node = _make_element(instance, "node")
             for shape in matrices:
-                matrix = _made(instance, "matrix")
+                matrix = _make_element(instance, "matrix")
                 matrix.text, matrix.sourceline = shape.text, shape.sourceline
                 node.append(matrix)
-            geometry = _made(instance, "instance_geometry")
+            geometry = _make_element(instance, "instance_geometry")
             geometry.set("url", "#" + (source.get("id") or "" if source is not None else ""))
             node.append(geometry)
             instance.getparent().replace(instance, node)
@@ -149,7 +149,7 @@ class _Document:
     def share_nodes(self) -> None:
         """Copy nodes that are instantiated several times to where pycollada searches for them."""
         self.find_ids()  # of two nodes with one name, the one may have been removed
-        library = _made(self._root, "library_nodes")
+        library = _make_element(self._root, "library_nodes")
         wanted: Set[str] = set()
         for instance in list(self._root.iter("{*}instance_node")):
             if self._is_there(instance, "instance_node"):
@@ -225,7 +225,7 @@ def _set_xyz(array: Any, accessor: Any) -> None:
         array.text = " ".join(map(repr, rows.ravel().tolist()))
         accessor.set("stride", "3")
         accessor.attrib.pop("offset", None)
-    accessor[:] = [_made(accessor, "param", name=axis, type="float") for axis in "XYZ"]
+    accessor[:] = [_make_element(accessor, "param", name=axis, type="float") for axis in "XYZ"]
 
 
 def _tidy_primitive(primitive: Any, positions: Dict[str, Any]) -> bool:
@@ -278,7 +278,7 @@ def _first(element: Any, *kinds: str) -> Optional[Any]:
     return next((child for child in element if _local(child) in kinds), None)
 
 
-def _made(like: Any, kind: str, **attributes: str) -> Any:
+def _make_element(like: Any, kind: str, **attributes: str) -> Any:
     """A new element in the namespace of `like`."""
     from lxml import etree
 

@@ -87,7 +87,7 @@ def read_figure(path: str) -> Optional[FigureFile]:
     For files that `load_mesh` has read before, which reports faults of their shape. Raises
     MeshError: a fault of a skin or an animation.
     """
-    return _figure(path, _changed(path)) if _is_collada(path) else None
+    return _figure(path, _read_change_stamp(path)) if _is_collada(path) else None
 
 
 def read_movement(path: str) -> Optional[Movement]:
@@ -96,7 +96,7 @@ def read_movement(path: str) -> Optional[Movement]:
     Raises MeshError: it cannot be read.
     """
     known = _is_collada(path) or _is_bvh(path)
-    return _moves(path, _changed(path)) if known else None
+    return _moves(path, _read_change_stamp(path)) if known else None
 
 
 def _is_collada(path: str) -> bool:
@@ -107,7 +107,7 @@ def _is_bvh(path: str) -> bool:
     return path.lower().endswith(".bvh")
 
 
-def _changed(path: str) -> Tuple[int, int]:
+def _read_change_stamp(path: str) -> Tuple[int, int]:
     try:
         status = os.stat(path)
     except OSError as fault:

@@ -36,7 +36,7 @@ class Keys:
         span = self.times[b] - self.times[a]
         part = float((time - self.times[a]) / span) if span > 0.0 else 0.0
         return (self.places[a] + (self.places[b] - self.places[a]) * part,
-                _slerped(self.turns[a], self.turns[b], part),
+                _slerp(self.turns[a], self.turns[b], part),
                 self.scales[a] + (self.scales[b] - self.scales[a]) * part)
 
 
@@ -67,11 +67,11 @@ def clip_of(root: Any, tree: NodeTree) -> Optional[Clip]:
         groups.setdefault(keys.times.tobytes(), []).append(keys)
     if not groups:
         return None
-    keys_of_all = [_joined(group) for group in groups.values()]
+    keys_of_all = [_join_keys(group) for group in groups.values()]
     return Clip(keys_of_all, max(float(keys.times[-1]) for keys in keys_of_all))
 
 
-def _joined(group: "List[_NodeKeys]") -> Keys:
+def _join_keys(group: "List[_NodeKeys]") -> Keys:
     matrices = np.array([one.matrices for one in group]).swapaxes(0, 1)
     if not (np.isfinite(matrices).all() and np.isfinite(group[0].times).all()):
         raise ValueError("keys that are not finite numbers")
@@ -179,7 +179,7 @@ def _quaternions(turns: Array) -> Array:
     return unit
 
 
-def _slerped(a: Array, b: Array, part: float) -> Array:
+def _slerp(a: Array, b: Array, part: float) -> Array:
     """(m, 4) at a part of the shorter way between (m, 4) quaternions."""
     cosine = (a * b).sum(axis=1)
     sign = np.where(cosine < 0.0, -1.0, 1.0)

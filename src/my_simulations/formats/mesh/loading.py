@@ -55,8 +55,8 @@ def load_mesh(mesh: Mesh) -> MeshData:
         raise _fault("mesh-unreadable", f"the mesh {mesh.uri!r} names a folder", mesh.path)
     if status is None or not os.path.isfile(mesh.path):
         raise _fault("mesh-not-found", f"the mesh {mesh.uri!r} was not found", mesh.path)
-    return _loaded(mesh.path, status.st_mtime_ns, status.st_size, mesh.scale, mesh.submesh,
-                   mesh.center)
+    return _load_kept(mesh.path, status.st_mtime_ns, status.st_size, mesh.scale, mesh.submesh,
+                      mesh.center)
 
 
 def load_solid(solid: Solid) -> MeshData:
@@ -147,8 +147,8 @@ def _fault(code: str, message: str, path: str, line: int = 0, hint: str = "") ->
 
 
 @functools.lru_cache(maxsize=32)
-def _loaded(path: str, changed: int, size: int, scale: Tuple[float, float, float], submesh: str,
-            center: bool) -> MeshData:
+def _load_kept(path: str, changed: int, size: int, scale: Tuple[float, float, float], submesh: str,
+               center: bool) -> MeshData:
     """Cached by time and size of the file, so that another spawn of an object is fast."""
     try:
         check_declared_size(path, size)
@@ -195,11 +195,11 @@ def triangles_of(path: str, submesh: str) -> Tuple[Any, Any]:
 
     Read in this process. Raises InputError as `load_mesh`.
     """
-    parts = _chosen(_parts(path), submesh, path)
+    parts = _select_submesh(_parts(path), submesh, path)
     if not sum(len(part.triangles) for part in parts):
         raise _fault("mesh-empty", "the mesh has no faces", path)
     try:
-        return _joined(parts)
+        return _join_parts(parts)
     except MeshError as fault:
         raise _fault(fault.code, f"the mesh cannot be read: {fault}", path) from None
 
@@ -244,7 +244,7 @@ def _parts(path: str) -> List[MeshPart]:
         raise _fault("mesh-unreadable", f"the mesh cannot be read: {fault}", path) from None
 
 
-def _chosen(parts: List[MeshPart], submesh: str, path: str) -> List[MeshPart]:
+def _select_submesh(parts: List[MeshPart], submesh: str, path: str) -> List[MeshPart]:
     if not submesh:
         return parts
     chosen = [part for part in parts if submesh in part.names]
@@ -275,7 +275,7 @@ def _to_data(vertices: Any, triangles: Any, path: str, scale: Tuple[float, float
     return MeshData(vertices, triangles)
 
 
-def _joined(parts: List[MeshPart]) -> Tuple[Any, Any]:
+def _join_parts(parts: List[MeshPart]) -> Tuple[Any, Any]:
     """One array of all used vertices, and the triangles that index it."""
     import numpy as np
 

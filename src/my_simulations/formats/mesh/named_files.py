@@ -161,10 +161,10 @@ class _ColladaImages:
         for kind in ("diffuse", "specular", "emission", "ambient"):
             texture = effect.find(f".//{{*}}{kind}/{{*}}texture")
             if texture is not None:
-                return self._sampled(effect, texture.get("texture", ""))
+                return self._find_sampled_image(effect, texture.get("texture", ""))
         return None
 
-    def _sampled(self, effect: Any, name: str) -> Any:
+    def _find_sampled_image(self, effect: Any, name: str) -> Any:
         """The image of a sampler (COLLADA 1.4 or 1.5), or the image that has this id itself."""
         parameters = {one.get("sid"): one for one in effect.iter("{*}newparam")}
         sampler = parameters.get(name)

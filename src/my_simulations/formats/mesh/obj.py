@@ -50,7 +50,7 @@ class _ObjReader:
     def read(self, row: str, line: int) -> None:
         """Read one line. Raises MeshError."""
         if len(row) > _LONGEST_CORNER * (self._count + _MORE_CORNERS):
-            row = self._shortened(row, line)
+            row = self._shorten_line(row, line)
         words = row.partition("#")[0].split()
         key = words[0] if words else ""
         if key == "v":
@@ -63,7 +63,7 @@ class _ObjReader:
         elif key == "g":
             self._group = " ".join(words[1:])
 
-    def _shortened(self, row: str, line: int) -> str:
+    def _shorten_line(self, row: str, line: int) -> str:
         """A long line without its comment. Raises MeshError for a face that remains too long."""
         row = row.partition("#")[0].strip()
         if row[:2] in ("f ", "f\t") and len(row) > _LONGEST_CORNER * (self._count + _MORE_CORNERS):

@@ -82,10 +82,10 @@ def _opacity(effect: Any) -> float:
     luminance = sum(part * weight for part, weight in zip(transparent, _LUMINANCE))
     found = {"A_ONE": transparent[3] * times, "A_ZERO": 1.0 - transparent[3] * times,
              "RGB_ONE": luminance * times, "RGB_ZERO": 1.0 - luminance * times}
-    return _seen(found.get(element.get("opaque"), 1.0))
+    return _correct_opacity(found.get(element.get("opaque"), 1.0))
 
 
-def _seen(opacity: float) -> float:
+def _correct_opacity(opacity: float) -> float:
     """Old exporters call wholly transparent what is opaque; else it would be nothing at all."""
     return min(opacity, 1.0) if opacity > 0.0 else 1.0
 
@@ -97,18 +97,18 @@ def paint_of(material: Any) -> Paint:
     if hasattr(material, "baseColorFactor"):
         return _of_gltf(material)
     told: Dict[str, Any] = getattr(material, "kwargs", None) or {}
-    emission, opacity = _glow(told.get("ke")), _dissolved(told)
+    emission, opacity = _glow(told.get("ke")), _read_opacity(told)
     picture, color = getattr(material, "image", None), getattr(material, "diffuse", None)
     rgb = _WHITE if picture is not None or color is None else _rgb(color)
     return Paint((*rgb, opacity), picture, emission)
 
 
-def _dissolved(told: Dict[str, Any]) -> float:
+def _read_opacity(told: Dict[str, Any]) -> float:
     """The opacity of a material of an MTL file: `d`, or 1 - `Tr`."""
     try:
         if "d" in told:
-            return _seen(float(told["d"][-1]))
-        return _seen(1.0 - float(told["tr"][-1])) if "tr" in told else 1.0
+            return _correct_opacity(float(told["d"][-1]))
+        return _correct_opacity(1.0 - float(told["tr"][-1])) if "tr" in told else 1.0
     except ValueError:
         return 1.0
 
@@ -123,7 +123,7 @@ def _of_gltf(material: Any) -> Paint:
                      else None)
         emission = None if glow is None else (*_srgb(glow[:3]), 1.0)
     blends = material.alphaMode == "BLEND"
-    opacity = _seen(float(factor[3]) / 255.0) if blends and factor is not None else 1.0
+    opacity = _correct_opacity(float(factor[3]) / 255.0) if blends and factor is not None else 1.0
     cutoff = 0.5 if material.alphaCutoff is None else float(material.alphaCutoff)
     return Paint((*rgb, opacity), picture, emission,
                  blends and picture is not None and picture.mode not in ("RGB", "L", "1"),

@@ -44,12 +44,12 @@ def painted_parts(mesh: Mesh) -> List[PaintedPart]:
     """
     plain = load_mesh(mesh)
     try:
-        parts = _read(mesh)
+        parts = _read_parts(mesh)
     except Exception:  # of any library that reads them
         parts = []  # materials are optional; the shape was read
     if sum(len(part.triangles) for part in parts) != len(plain.triangles):
         return [shade_flat(plain)]
-    return _placed(parts, mesh)
+    return _place_parts(parts, mesh)
 
 
 def shade_flat(data: MeshData) -> PaintedPart:
@@ -68,7 +68,7 @@ def shade_smooth(data: MeshData) -> PaintedPart:
     return PaintedPart(vertices, _unit_rows(normals), np.zeros((len(vertices), 2)), triangles)
 
 
-def _read(mesh: Mesh) -> List[PaintedPart]:
+def _read_parts(mesh: Mesh) -> List[PaintedPart]:
     extension = os.path.splitext(mesh.path)[1].lower()
     if extension == ".dae":
         return _collada(mesh)
@@ -77,7 +77,7 @@ def _read(mesh: Mesh) -> List[PaintedPart]:
     return []
 
 
-def _placed(parts: List[PaintedPart], mesh: Mesh) -> List[PaintedPart]:
+def _place_parts(parts: List[PaintedPart], mesh: Mesh) -> List[PaintedPart]:
     """Apply scale and centring of the visual, as `load_mesh` does."""
     scale, shift = np.array(mesh.scale), np.zeros(3)
     if mesh.submesh and mesh.center:

@@ -34,10 +34,10 @@ def triangulate(loops: Sequence[Sequence[Point]]) -> Tuple[List[Point], List[Tri
     for loop in loops:
         first = len(ends[-1]) + ends[-1][0] if ends else 0
         ends.append(list(range(first, first + len(loop))))
-    return points, _clipped(_bridged(ends, points), points)
+    return points, _clip_ears(_bridge_holes(ends, points), points)
 
 
-def _bridged(loops: List[List[int]], points: List[Point]) -> List[int]:
+def _bridge_holes(loops: List[List[int]], points: List[Point]) -> List[int]:
     """One loop of indices; each hole is connected by a bridge that is passed twice.
 
     Source: Eberly, Triangulation by Ear Clipping, section 5. Holes that lie farther in x come
@@ -112,7 +112,7 @@ def _turn(a: Point, b: Point, c: Point) -> float:
     return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
 
 
-def _clipped(ring: List[int], points: List[Point]) -> List[Triangle]:
+def _clip_ears(ring: List[int], points: List[Point]) -> List[Triangle]:
     triangles: List[Triangle] = []
     ring = list(ring)
     at, waited = 0, 0
@@ -150,7 +150,7 @@ def convex_pieces(points: Sequence[Point], triangles: Sequence[Triangle]) -> Lis
         first, second = owner.get((a, b)), owner.get((b, a))
         if first is None or second is None or first == second:
             continue
-        joined = _joined(pieces[first], pieces[second], a, b)
+        joined = _join_loops(pieces[first], pieces[second], a, b)
         if _is_convex(joined, points):
             pieces[first] = joined
             for edge in _edges(pieces.pop(second)):
@@ -160,7 +160,7 @@ def convex_pieces(points: Sequence[Point], triangles: Sequence[Triangle]) -> Lis
     return list(pieces.values())
 
 
-def _joined(first: List[int], second: List[int], a: int, b: int) -> List[int]:
+def _join_loops(first: List[int], second: List[int], a: int, b: int) -> List[int]:
     """Merge two counter-clockwise loops across their common edge a-b."""
     i, j = first.index(b), second.index(a)
     return first[i:] + first[:i] + (second[j:] + second[:j])[1:-1]

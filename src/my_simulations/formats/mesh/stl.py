@@ -19,7 +19,7 @@ def read_stl(data: bytes) -> List[MeshPart]:
     Raises MeshError: neither binary nor ASCII STL, or too many triangles.
     """
     end = binary_stl_end(data, len(data))
-    return [_welded(_binary_corners(data, end) if end else _ascii_corners(data))]
+    return [_weld_corners(_binary_corners(data, end) if end else _ascii_corners(data))]
 
 
 def binary_stl_end(data: bytes, size: int) -> int:
@@ -73,7 +73,7 @@ def _ascii_corners(data: bytes) -> Any:
     return np.array(corners, np.float64).reshape(-1, 3)
 
 
-def _welded(corners: Any) -> MeshPart:
+def _weld_corners(corners: Any) -> MeshPart:
     """A part in which corners at the same position are one vertex, in order of x, y, z."""
     import numpy as np
 

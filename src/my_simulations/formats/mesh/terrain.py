@@ -28,7 +28,7 @@ def solid_mesh(solid: Solid) -> MeshData:
     many points or boxes), `solid-empty` (nothing that could collide).
     """
     if isinstance(solid, Polyline):
-        return _extruded(solid)
+        return _extrude_polyline(solid)
     try:
         changed = os.stat(solid.path).st_mtime_ns
     except OSError:
@@ -72,7 +72,7 @@ def _terrain(path: str, changed: int, size: Tuple[float, float, float],
         levels = 1.0 - levels if size[2] < 0 else levels
     if min(levels.shape) < 2:
         raise _fault("solid-empty", "a terrain needs an image of at least 2 by 2 pixels", path)
-    levels = _refined(levels, sampling)[::-1]
+    levels = _refine_levels(levels, sampling)[::-1]
     rows, columns = levels.shape
     x = np.linspace(-size[0] / 2, size[0] / 2, columns)
     y = np.linspace(-size[1] / 2, size[1] / 2, rows)
@@ -96,7 +96,7 @@ def _to_scale(model: Elevations, size: Vec3) -> Tuple[Any, Vec3]:
     return (-heights if size[2] < 0 else heights), (size[0], size[1], 1.0)
 
 
-def _refined(levels: Any, sampling: int) -> Any:
+def _refine_levels(levels: Any, sampling: int) -> Any:
     """Insert linearly interpolated points, up to the largest terrain size."""
     import numpy as np
 
@@ -154,7 +154,7 @@ def _rectangles(dark: Any) -> List[Tuple[int, int, int, int]]:
     return sorted(found)
 
 
-def _extruded(polyline: Polyline) -> MeshData:
+def _extrude_polyline(polyline: Polyline) -> MeshData:
     if sum(len(loop) for loop in polyline.loops) > _MOST_POINTS:
         raise _fault("solid-complex", f"a polyline may have {_MOST_POINTS} points in all")
     loops = orient_loops([loop for loop in map(_distinct, polyline.loops) if len(loop) >= 3])

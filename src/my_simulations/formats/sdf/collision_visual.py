@@ -66,12 +66,12 @@ def fill_material(element: Any, source: Source, extra: List[str]) -> Material:
     kept: List[str] = []
     fill(material, element, MATERIAL, source, kept)
     extra += [f"<material>{xml}</material>" for xml in kept]
-    material.script_uris = [_anchored(uri, source.base_dir) for uri in material.script_uris]
+    material.script_uris = [_make_absolute(uri, source.base_dir) for uri in material.script_uris]
     check_script(material, element, source)
     return material
 
 
-def _anchored(uri: str, base_dir: str) -> str:
+def _make_absolute(uri: str, base_dir: str) -> str:
     """A relative URI as an absolute path below `base_dir`."""
     if base_dir and "://" not in uri and not os.path.isabs(uri):
         path = os.path.join(base_dir, uri)
@@ -207,8 +207,8 @@ def check_textures(heightmap: Heightmap, shape: Any, source: Source) -> None:
         source: receives warnings.
     """
     for texture, element in zip(heightmap.textures, shape.iterfind("texture")):
-        texture.diffuse = _found(texture.diffuse, "texture", element, source)
-        texture.normal = _found(texture.normal, "normal map", element, source)
+        texture.diffuse = _resolve_uri(texture.diffuse, "texture", element, source)
+        texture.normal = _resolve_uri(texture.normal, "normal map", element, source)
         if texture.size <= 0.0:
             usual = TerrainTexture().size
             source.warn("bad-value", f"<size> of <texture> must be greater than 0;"
@@ -222,7 +222,7 @@ def check_textures(heightmap: Heightmap, shape: Any, source: Source) -> None:
                        "the last textures are not seen"), shape)
 
 
-def _found(uri: str, what: str, element: Any, source: Source) -> str:
+def _resolve_uri(uri: str, what: str, element: Any, source: Source) -> str:
     """The URI, absolute where it is a path; with a warning where it leads nowhere."""
     if not uri or uri == _PLACEHOLDER:
         return ""

@@ -52,15 +52,15 @@ class FrameTree:
     def include(self, scope: str, inner: "FrameTree", element: Any) -> None:
         """Declare the frames of a nested model, scoped by `scope`, the name of its model frame."""
         self.add(f"{scope}::{inner.root}", IDENTITY, scope, element, scope)
-        for name, pose, body in inner._resolved():
+        for name, pose, body in inner._iterate_resolved():
             self.add(f"{scope}::{name}", pose, scope, element, f"{scope}::{body}")
 
     def merge(self, base: str, inner: "FrameTree", element: Any) -> None:
         """Declare the frames of a merged model under their own names; its model frame is `base`."""
-        for name, pose, body in inner._resolved():
+        for name, pose, body in inner._iterate_resolved():
             self.add(name, pose, base, element, body)
 
-    def _resolved(self) -> Iterator[Tuple[str, Pose, str]]:
+    def _iterate_resolved(self) -> Iterator[Tuple[str, Pose, str]]:
         """(name, pose in the root frame, link) of all frames without a fault."""
         for name in self._placed:
             try:

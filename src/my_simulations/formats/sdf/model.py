@@ -94,7 +94,7 @@ class _ModelReader:
         for child in found.get("frame", ()):
             self._frame(child)
         nested = self._within_number(self._within_depth(found.get("model", ()), model), model)
-        waiting = self._nested(nested, included, model, static)
+        waiting = self._add_nested(nested, included, model, static)
         joints = self._read_joints(found.get("joint", ()))
         model.canonical_link = model.canonical_link or first_link(
             element, {child: inner.model for child, inner in included})
@@ -185,8 +185,8 @@ class _ModelReader:
             placement.model.static = self._changes.static
             placement.flags = replace(placement.flags, static=self._changes.static)
 
-    def _nested(self, elements: Sequence[Any], included: Sequence[Tuple[Any, ParsedModel]],
-                model: Model, static: bool) -> List[UnresolvedJoint]:
+    def _add_nested(self, elements: Sequence[Any], included: Sequence[Tuple[Any, ParsedModel]],
+                    model: Model, static: bool) -> List[UnresolvedJoint]:
         """Add nested models; returns their joints with links outside of them."""
         path = (*self._outer, model.name)
         waiting: List[UnresolvedJoint] = []

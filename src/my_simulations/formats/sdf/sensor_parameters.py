@@ -48,7 +48,7 @@ def sensor_parameters(xml: str, sensor: Sensor) -> List[SensorParameter]:
     """
     found = [SensorParameter(path, _KINDS[id(kind)], value)
              for path, kind, value in _values(xml, sensor)]
-    for plugin in _parsed(xml).findall("plugin"):
+    for plugin in _parse_element(xml).findall("plugin"):
         found += [SensorParameter(f"plugin:{plugin.get('name', '')}/{child.tag}", "text",
                                   (child.text or "").strip())
                   for child in plugin if isinstance(child.tag, str) and not len(child)]
@@ -67,7 +67,7 @@ def with_parameter(xml: str, sensor: Sensor, path: str, value: Any) -> str:
     Raises:
         ValueError: no such parameter, or the value does not fit it.
     """
-    root = _parsed(xml)
+    root = _parse_element(xml)
     head, _, rest = path.partition("/")
     if head.startswith("plugin:"):
         owner = next((one for one in root.findall("plugin")
@@ -85,12 +85,12 @@ def with_parameter(xml: str, sensor: Sensor, path: str, value: Any) -> str:
             root = root.findall("camera")[int(head[len("camera:"):])]
             path = rest
         _set_text(root, path, text)
-    return _written(root)
+    return _write_element(root)
 
 
 def _values(xml: str, sensor: Sensor) -> Iterator[Tuple[str, Kind, Any]]:
     yield from _of_children("", SENSOR.children, sensor)
-    root = _parsed(xml)
+    root = _parse_element(xml)
     for tag, table in BLOCKS.items():
         block = getattr(sensor, FIELDS.get(tag, tag))
         if block is not None and root.find(tag) is not None:
@@ -152,14 +152,14 @@ def _set_text(element: Any, path: str, text: str) -> None:
     element.text = text
 
 
-def _parsed(xml: str) -> Any:
+def _parse_element(xml: str) -> Any:
     from lxml import etree
 
     # Prefixes such as `ignition:` are not declared in the fragment.
     return etree.fromstring(xml, etree.XMLParser(recover=True, resolve_entities=False))
 
 
-def _written(element: Any) -> str:
+def _write_element(element: Any) -> str:
     from lxml import etree
 
     root = element

@@ -51,7 +51,7 @@ def apply_state(world: World) -> World:
     lights: List[Light] = [*world.lights, *_new(state.inserted_lights, world.lights)]
     initial = dict(world.initial)
     states = {one.name: one for one in state.models}
-    models = [_restored(model, states[model.name], initial) if model.name in states else model
+    models = [_restore_model(model, states[model.name], initial) if model.name in states else model
               for model in models]
     poses = {one.name: one.pose for one in state.lights}
     lights = [replace(light, pose=poses.get(light.name, light.pose)) for light in lights]
@@ -92,7 +92,7 @@ def _new(inserted: List[Any], present: List[Any]) -> List[Any]:
     return found
 
 
-def _restored(model: Model, state: ModelState, initial: Dict[str, InitialState]) -> Model:
+def _restore_model(model: Model, state: ModelState, initial: Dict[str, InitialState]) -> Model:
     model = scale_model(model, state.scale)
     links = {link.name: link for link in state.links}
     twists: Dict[str, Twist] = {name: link.twist for name, link in links.items()
@@ -141,7 +141,7 @@ def _loose(flat: Model, poses: Dict[str, Pose]) -> Dict[str, Pose]:
     at_zero = {link.name: link.pose for link in flat.links}
     children = {joint.child for joint in flat.joints}
     found: Dict[str, Pose] = {}
-    for group in _connected(flat):
+    for group in _group_connected_links(flat):
         if (flat.frame_link and flat.frame_link.name in group) or WORLD in group:
             continue
         root = next((name for name in group if name not in children), group[0])
@@ -151,7 +151,7 @@ def _loose(flat: Model, poses: Dict[str, Pose]) -> Dict[str, Pose]:
     return found
 
 
-def _connected(flat: Model) -> List[List[str]]:
+def _group_connected_links(flat: Model) -> List[List[str]]:
     """The names of links in groups that joints connect, in order; WORLD is in groups on it."""
     groups = {link.name: [link.name] for link in flat.links}
     groups[WORLD] = [WORLD]

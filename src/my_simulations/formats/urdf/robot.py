@@ -175,7 +175,7 @@ class _RobotReader:
         """Assemble links and joints; returns the model-frame poses of all links of the file."""
         model = self._model
         frames = lump(root)
-        dropped = self._dropped(root)
+        dropped = self._find_unsimulated_bodies(root)
         poses: Dict[str, Pose] = {}
         for body in parents_first(root):
             up = body.up
@@ -201,7 +201,7 @@ class _RobotReader:
                                   "give it an <inertial>, or make the model static")
         return poses
 
-    def _dropped(self, root: Body) -> Dict[int, Body]:
+    def _find_unsimulated_bodies(self, root: Body) -> Dict[int, Body]:
         """Bodies that cannot be simulated: those without mass, and those below them.
 
         A static model keeps them.
@@ -230,9 +230,9 @@ class _RobotReader:
         link = body.link
         if body.inertial is not None:
             link.inertial = body.inertial
-        link.collisions = [self._named(c, stem, "collision", n, body)
+        link.collisions = [self._name_shape(c, stem, "collision", n, body)
                            for n, (stem, c) in enumerate(body.collisions)]
-        link.visuals = [self._named(v, stem, "visual", n, body)
+        link.visuals = [self._name_shape(v, stem, "visual", n, body)
                         for n, (stem, v) in enumerate(body.visuals)]
         if not self._model.static:
             self._complete_inertia(body)
@@ -243,7 +243,7 @@ class _RobotReader:
     def _complete_inertia(self, body: Body) -> None:
         body.link.inertial = usable_inertia(body.link, self._source, body.element)
 
-    def _named(self, item: Any, stem: str, kind: str, number: int, body: Body) -> Any:
+    def _name_shape(self, item: Any, stem: str, kind: str, number: int, body: Body) -> Any:
         """Give a shape its name as sdformat 9 does (CreateCollision, CreateVisual of
         parser_urdf.cc): lumped or not, it has the link's name in front.
         """

@@ -137,7 +137,7 @@ class _Filler:
             tag = child.tag
             entry = children.get(tag)
             if tag in seen:
-                self._repeated(child, element)
+                self._report_repeated(child, element)
             elif entry.__class__ is Value:
                 if not entry.repeated:  # type: ignore[union-attr]
                     seen.add(tag)
@@ -150,7 +150,7 @@ class _Filler:
                 inner = getattr(target, entry.part) if entry.part else target
                 self.fill(inner, child, entry.children, entry.attributes, (), (*wrap, tag))
             elif isinstance(entry, Nested):
-                self._nested(target, child, entry, seen)
+                self._bind_nested(target, child, entry, seen)
             elif entry is not None:
                 self._keep_or_delegate(child, entry, wrap)  # type: ignore[arg-type]
             elif isinstance(tag, str):
@@ -165,7 +165,7 @@ class _Filler:
             elif name not in more and ":" not in name and name[0] != "{":
                 self._unknown(name, element, [*attributes, *more], is_attribute=True)
 
-    def _nested(self, target: Any, child: Any, entry: Nested, seen: Set[str]) -> None:
+    def _bind_nested(self, target: Any, child: Any, entry: Nested, seen: Set[str]) -> None:
         """Fill the object of a child; adds its tag to `seen` if there can be one only."""
         inner = getattr(target, entry.field)
         repeated = isinstance(inner, list)
@@ -186,7 +186,7 @@ class _Filler:
         if ":" not in tag and tag[0] != "{":
             self._unknown(tag, child, list(known))
 
-    def _repeated(self, child: Any, parent: Any) -> None:
+    def _report_repeated(self, child: Any, parent: Any) -> None:
         """Report a repeated element; Gazebo reads the first of a name only."""
         self._source.tolerate("element-repeated", f"<{child.tag}> is repeated in"
                               f" <{parent.tag}>; the first one is used", child)

@@ -62,7 +62,7 @@ def parse(text: Union[str, bytes], file: str, log: IssueCollector) -> Any:
 
     if len(text) > LARGEST:
         raise _too_large(file)
-    data = _encoded(text, file) if isinstance(text, str) else text
+    data = _encode_text(text, file) if isinstance(text, str) else text
     if len(data) > LARGEST:
         raise _too_large(file)
     if is_lfs_pointer(data):
@@ -76,9 +76,9 @@ def parse(text: Union[str, bytes], file: str, log: IssueCollector) -> Any:
             _declaration_first(data), _parser("utf-8" if isinstance(text, str) else "", False)
         )
         if b"\xe2\x80\xb9" in data:  # a single guillemet, in UTF-8
-            root = _retyped(data, root, file, log)
+            root = _replace_typographic_characters(data, root, file, log)
     except etree.XMLSyntaxError as fault:
-        root = _recover(_decoded(data, isinstance(text, str), file, log), fault, file, log)
+        root = _recover(_decode_text(data, isinstance(text, str), file, log), fault, file, log)
     if root is None:
         raise _fault("xml-no-root", "the document contains no element", file)
     return root
@@ -89,7 +89,7 @@ def _fault(code: str, message: str, file: str, line: int = 0, column: int = 0,
     return InputError([error(code, message, file=file, line=line, column=column, hint=hint)])
 
 
-def _encoded(text: str, file: str) -> bytes:
+def _encode_text(text: str, file: str) -> bytes:
     try:
         return text.encode("utf-8")
     except UnicodeEncodeError:  # a surrogate without its other half
@@ -176,7 +176,7 @@ def _parser(encoding: str, recover: bool) -> Any:
     )
 
 
-def _decoded(data: bytes, was_text: bool, file: str, log: IssueCollector) -> str:
+def _decode_text(data: bytes, was_text: bool, file: str, log: IssueCollector) -> str:
     if was_text:
         return data.decode("utf-8")
     encoding = next((name for mark, name in _BOMS if data.startswith(mark)), "")
@@ -196,7 +196,7 @@ def _decoded(data: bytes, was_text: bool, file: str, log: IssueCollector) -> str
         return data.decode("latin-1")
 
 
-def _retyped(data: bytes, root: Any, file: str, log: IssueCollector) -> Any:
+def _replace_typographic_characters(data: bytes, root: Any, file: str, log: IssueCollector) -> Any:
     """The root of a well-formed document, after replacing typographic brackets if it has any."""
     from lxml import etree
 

@@ -107,13 +107,13 @@ class Source:
 
     def resolve(self, uri: str, element: Any) -> str:
         """The path of a URI that `element` names. Raises ResourceNotFoundError."""
-        return self._located(self.resolver.resolve, uri, element)
+        return self._locate_file(self.resolver.resolve, uri, element)
 
     def model_file(self, uri: str, element: Any) -> str:
         """The description file of a model's URI. Raises ResourceNotFoundError."""
-        return self._located(self.resolver.model_file, uri, element)
+        return self._locate_file(self.resolver.model_file, uri, element)
 
-    def _located(self, locate: Callable[[str, str], str], uri: str, element: Any) -> str:
+    def _locate_file(self, locate: Callable[[str, str], str], uri: str, element: Any) -> str:
         self.report_home_path(uri, element)
         try:
             return locate(uri, self.base_dir)

@@ -25,17 +25,17 @@ def replace_typography(text: str) -> Tuple[str, List[Repair]]:
     """Replace typographic brackets, dashes and quotes; return the text and the repairs."""
     repairs: List[Repair] = []
     if is_suspicious(text):
-        text = _changed(text, _BRACKET, lambda found: "<" if found.group() == "‹" else ">",
+        text = _replace(text, _BRACKET, lambda found: "<" if found.group() == "‹" else ">",
                         "‹ and › stand here for < and >", repairs)
-    text = _changed(text, _COMMENT, lambda found: "\n" * found.group().count("\n"),
+    text = _replace(text, _COMMENT, lambda found: "\n" * found.group().count("\n"),
                     "a comment begins with <!-- and ends with -->, with two hyphens each", repairs)
-    text = _changed(text, _QUOTED, lambda found: f'{found.group(1) or found.group(3)}"'
+    text = _replace(text, _QUOTED, lambda found: f'{found.group(1) or found.group(3)}"'
                     f'{found.group(2) or found.group(4) or ""}"',
                     "the quotes of an attribute are typographic ones, not \"", repairs)
     return text, repairs
 
 
-def _changed(text: str, what: "re.Pattern[str]", becomes: Callable[[Match[str]], str],
+def _replace(text: str, what: "re.Pattern[str]", becomes: Callable[[Match[str]], str],
              message: str, repairs: List[Repair]) -> str:
     first = what.search(text)
     if first is None:

@@ -34,7 +34,7 @@ def parse_numbers(text: str, count: int) -> Tuple[float, ...]:
     if len(parts) != count:
         plural = "number" if count == 1 else "numbers"
         commas = ", separated by spaces, not by commas" if "," in text else ""
-        raise ValueError(f"expected {count} {plural}{commas}, found {_shown(text)}")
+        raise ValueError(f"expected {count} {plural}{commas}, found {_format_text(text)}")
     return tuple([parse_number(part) for part in parts])
 
 
@@ -42,7 +42,7 @@ def parse_number(text: str) -> float:
     """Parse a finite number."""
     value = parse_any_number(text)
     if not math.isfinite(value):
-        raise ValueError(f"expected a finite number, found {_shown(text)}")
+        raise ValueError(f"expected a finite number, found {_format_text(text)}")
     return value
 
 
@@ -53,15 +53,15 @@ def parse_any_number(text: str) -> float:
             raise ValueError
         return float(text)
     except ValueError:
-        raise ValueError(f"expected a number, found {_shown(text)}") from None
+        raise ValueError(f"expected a number, found {_format_text(text)}") from None
 
 
-def _shown(text: str) -> str:
+def _format_text(text: str) -> str:
     text = " ".join(text.split())
     return repr(text if len(text) <= 60 else text[:57] + "...")
 
 
-def _formatted(*values: float) -> str:
+def _format_numbers(*values: float) -> str:
     # repr is the shortest text that reads back as the same double.
     return " ".join(repr(int(v)) if v == int(v) and abs(v) < 1e15 else repr(v) for v in values)
 
@@ -84,7 +84,7 @@ class Bool:
     def parse(self, text: str) -> bool:
         value = self._words.get(text.strip().lower())
         if value is None:
-            raise ValueError(f"expected true or false, found {_shown(text)}")
+            raise ValueError(f"expected true or false, found {_format_text(text)}")
         return value
 
     def format(self, value: bool) -> str:
@@ -92,7 +92,7 @@ class Bool:
 
 
     def parse_leniently(self, text: str) -> bool:
-        raise ValueError(f"expected true or false, found {_shown(text)}")
+        raise ValueError(f"expected true or false, found {_format_text(text)}")
 
 
 class Negated(Bool):
@@ -112,7 +112,7 @@ class Float:
         return parse_number(text)
 
     def format(self, value: float) -> str:
-        return _formatted(value)
+        return _format_numbers(value)
 
 
     def parse_leniently(self, text: str) -> float:
@@ -128,12 +128,12 @@ class Friction(Float):
     _UNBOUNDED = 1e6
 
     def parse(self, text: str) -> float:
-        return self._bounded(super().parse(text))
+        return self._check_bounds(super().parse(text))
 
     def parse_leniently(self, text: str) -> float:
-        return self._bounded(super().parse_leniently(text))
+        return self._check_bounds(super().parse_leniently(text))
 
-    def _bounded(self, value: float) -> float:
+    def _check_bounds(self, value: float) -> float:
         return self._UNBOUNDED if value < 0 or value == math.inf else value
 
 
@@ -143,11 +143,11 @@ class Limit:
     def parse(self, text: str) -> float:
         value = parse_any_number(text)
         if value != value:
-            raise ValueError(f"expected a number, found {_shown(text)}")
+            raise ValueError(f"expected a number, found {_format_text(text)}")
         return value
 
     def format(self, value: float) -> str:
-        return _formatted(value) if math.isfinite(value) else repr(value)
+        return _format_numbers(value) if math.isfinite(value) else repr(value)
 
     def parse_leniently(self, text: str) -> float:
         return FLOAT.parse_leniently(text)
@@ -170,7 +170,7 @@ class Int:
             pass
         value = parse_number(text)
         if value != int(value):
-            raise ValueError(f"expected a whole number, found {_shown(text)}")
+            raise ValueError(f"expected a whole number, found {_format_text(text)}")
         return int(value)
 
     def format(self, value: int) -> str:
@@ -201,7 +201,7 @@ class Vector2:
         return (x, y)
 
     def format(self, value: Tuple[float, float]) -> str:
-        return _formatted(*value)
+        return _format_numbers(*value)
 
 
     def parse_leniently(self, text: str) -> Tuple[float, float]:
@@ -225,7 +225,7 @@ class Vector3:
         return (x, y, z)
 
     def format(self, value: Vec3) -> str:
-        return _formatted(*value)
+        return _format_numbers(*value)
 
 
     def parse_leniently(self, text: str) -> Vec3:
@@ -252,7 +252,7 @@ class Color:
     def parse(self, text: str) -> Tuple[float, float, float, float]:
         parts = text.split()
         if len(parts) not in (3, 4):
-            raise ValueError(f"expected 3 or 4 numbers, found {_shown(text)}")
+            raise ValueError(f"expected 3 or 4 numbers, found {_format_text(text)}")
         r, g, b, a = (self._share(parse_number(part)) for part in (*parts, "1")[:4])
         return (r, g, b, a)
 
@@ -266,7 +266,7 @@ class Color:
         return min(value / 255.0, 1.0) if value > 1.0 else max(value, 0.0)
 
     def format(self, value: Tuple[float, float, float, float]) -> str:
-        return _formatted(*value)
+        return _format_numbers(*value)
 
 
 class Rpy:
@@ -277,7 +277,7 @@ class Rpy:
         return quat_from_rpy(roll, pitch, yaw)
 
     def format(self, value: Quat) -> str:
-        return _formatted(*rpy_from_quat(value))
+        return _format_numbers(*rpy_from_quat(value))
 
     def parse_leniently(self, text: str) -> Quat:
         roll, pitch, yaw = _all_numbers_or_zeros(text, 3)
@@ -292,7 +292,7 @@ class PoseKind:
         return pose_from_xyzrpy(x, y, z, roll, pitch, yaw)
 
     def format(self, value: Pose) -> str:
-        return _formatted(*value.position, *rpy_from_quat(value.orientation))
+        return _format_numbers(*value.position, *rpy_from_quat(value.orientation))
 
     def parse_leniently(self, text: str) -> Pose:
         """Position and rotation are each read completely or not at all (libignition-math 6)."""
@@ -306,7 +306,7 @@ class PathPose(PoseKind):
 
     def format(self, value: Pose) -> str:
         angles = whole_turn(rpy_from_quat(value.orientation), value.orientation)
-        return _formatted(*value.position, *angles)
+        return _format_numbers(*value.position, *angles)
 
 
 def whole_turn(angles: Vec3, orientation: Quat) -> Vec3:

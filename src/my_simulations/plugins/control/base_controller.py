@@ -129,7 +129,7 @@ class BaseController(Controller):
     def observe_all(self) -> None:
         """Begin the odometry and what the controller publishes."""
         topics = [self._odom, *self.more_topics()]
-        self.observe(self._count_hz, self._count, topics, transforms=self.broadcasts,
+        self.observe(self._count_hz, self._integrate_odometry, topics, transforms=self.broadcasts,
                      remembers=True)
         if self._limited is not None:
             self.observe(self.hertz, self._publish_command, [self._limited])
@@ -185,7 +185,7 @@ class BaseController(Controller):
         message.twist.linear.x, message.twist.linear.y, message.twist.angular.z = self.last
         self._limited.publish(message)
 
-    def _count(self) -> None:
+    def _integrate_odometry(self) -> None:
         """Integrate the odometry exactly along an arc."""
         now = self.context.now_ns
         dt = (now - self._now_ns) * 1e-9

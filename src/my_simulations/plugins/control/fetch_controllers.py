@@ -121,7 +121,7 @@ class ActionController(FetchController):
         self.goal: Optional[Goal] = None
         self.watch = StepwiseChange(self.context, _LOOK_HZ, self._look)
         self.action = ActionServer(self.context, self.name, self.kind, self._start_goal,
-                                   self._cancelled)
+                                   self._on_cancel)
         self.keep(self.action)
 
     def follow(self, goal: Goal) -> str:
@@ -150,7 +150,7 @@ class ActionController(FetchController):
         self.goal = goal
         self.watch.begin()
 
-    def _cancelled(self, goal: Goal) -> None:
+    def _on_cancel(self, goal: Goal) -> None:
         if self.goal is goal:
             self._preempt("")
 
@@ -212,15 +212,15 @@ class ParallelGripper(ActionController):
             self._last = opening
             self._stall.begin()
         if not reached and not self._stall.is_over:
-            goal.feedback(self._filled("Feedback", False, False))
+            goal.feedback(self._fill_result("Feedback", False, False))
             return False
-        goal.succeed(self._filled("Result", not reached, reached))
+        goal.succeed(self._fill_result("Result", not reached, reached))
         return True
 
     def result(self) -> Any:
-        return self._filled("Result", False, False)
+        return self._fill_result("Result", False, False)
 
-    def _filled(self, part: str, stalled: bool, reached: bool) -> Any:
+    def _fill_result(self, part: str, stalled: bool, reached: bool) -> Any:
         message = self.context.message(f"{self.kind}{part}")
         message.position = self._opening
         message.effort = sum(self.hardware.efforts([one.name for one in self._fingers]))

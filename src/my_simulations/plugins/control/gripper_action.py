@@ -39,7 +39,7 @@ class Gripper(Controller):
         self._wanted, self._most = 0.0, self._default_effort
         self._action = ActionServer(self.context, f"{self.name}/gripper_cmd",
                                     "control_msgs/GripperCommand", self._start_goal,
-                                    self._cancelled)
+                                    self._on_cancel)
         self.keep(self._action)
 
     def _set_gains(self, gains: PidGains) -> None:
@@ -67,7 +67,7 @@ class Gripper(Controller):
         self._watch.begin()
         self._move_to(float(command.position), float(command.max_effort))
 
-    def _cancelled(self, goal: Goal) -> None:
+    def _on_cancel(self, goal: Goal) -> None:
         if self._goal is goal:
             self._goal = None
             self._hold()

@@ -71,7 +71,7 @@ class JointTrajectory(Controller):
                        checks=True)
         self._state = self.publish("state", "control_msgs/JointTrajectoryControllerState")
         self._action = ActionServer(self.context, self.action_name, _ACTION, self._start_goal,
-                                    self._cancelled)
+                                    self._on_cancel)
         self.keep(self._action)
         self.serve("query_state", "control_msgs/QueryTrajectoryState", self._query)
 
@@ -122,7 +122,7 @@ class JointTrajectory(Controller):
         goal.accept()
         self._check_goal()
 
-    def _cancelled(self, goal: Goal) -> None:
+    def _on_cancel(self, goal: Goal) -> None:
         if self._goal is not None and self._goal.goal is goal:
             self._goal = None
             self._hold()

@@ -132,8 +132,8 @@ class ControllerManager:
     def switch(self, start: List[str], stop: List[str], strictness: int = BEST_EFFORT) -> None:
         """Stop and start controllers. Raises PluginError; then nothing has changed."""
         strict = strictness == STRICT
-        stopping = self._named(stop, "stopped", strict)
-        starting = self._named(start, "started", strict)
+        stopping = self._find_controllers(stop, "stopped", strict)
+        starting = self._find_controllers(start, "started", strict)
         off: List[Controller] = []
         on: List[Controller] = []
         for one in stopping:
@@ -192,7 +192,7 @@ class ControllerManager:
         made: Type[Controller] = getattr(importlib.import_module(f"{__package__}.{module}"), name)
         return made
 
-    def _named(self, names: List[str], verb: str, strict: bool) -> List[Controller]:
+    def _find_controllers(self, names: List[str], verb: str, strict: bool) -> List[Controller]:
         missing = [name for name in names if name not in self._loaded]
         if missing and strict:
             raise PluginError(f"controller '{missing[0]}' cannot be {verb}: it is not loaded")
@@ -211,7 +211,7 @@ class ControllerManager:
 
     # -- services ----------------------------------------------------------------------------------
 
-    def _tried(self, what: str, call: Callable[..., None], *arguments: Any) -> bool:
+    def _try_call(self, what: str, call: Callable[..., None], *arguments: Any) -> bool:
         """Return whether a call succeeded; report a failure to the user."""
         try:
             call(*arguments)
@@ -239,16 +239,16 @@ class ControllerManager:
         response.base_classes = ["controller_interface::ControllerBase"] * len(TYPES)
 
     def _load_asked(self, request: Any, response: Any) -> None:
-        response.ok = self._tried(f"load controller '{request.name}'", self.load, request.name)
+        response.ok = self._try_call(f"load controller '{request.name}'", self.load, request.name)
 
     def _unload_asked(self, request: Any, response: Any) -> None:
-        response.ok = self._tried(f"unload controller '{request.name}'", self.unload,
-                                  request.name)
+        response.ok = self._try_call(f"unload controller '{request.name}'", self.unload,
+                                     request.name)
 
     def _switch_asked(self, request: Any, response: Any) -> None:
-        response.ok = self._tried("switch controllers", self.switch,
-                                  list(request.start_controllers),
-                                  list(request.stop_controllers), request.strictness)
+        response.ok = self._try_call("switch controllers", self.switch,
+                                     list(request.start_controllers),
+                                     list(request.stop_controllers), request.strictness)
 
     def _reload(self, request: Any, response: Any) -> None:
         if self._loaded and not request.force_kill:

@@ -154,7 +154,7 @@ class OdometryController(Controller):
             self._pose = STANDING
         self._velocity, self._states = STANDING, self._read()
         hertz = 1.0 / self.period if self.period else max(_UPDATE_HZ, self._publish_hz)
-        self.observe(hertz, self._count, [self._odometry], transforms=self._broadcasts,
+        self.observe(hertz, self._integrate_odometry, [self._odometry], transforms=self._broadcasts,
                      remembers=True)
         self.observe(self._publish_hz, self._publish, [self._odometry],
                      transforms=self._broadcasts)
@@ -166,7 +166,7 @@ class OdometryController(Controller):
     def _read(self) -> List[WheelState]:
         return [WheelState(steer.position, drive.position) for steer, drive in self._joints]
 
-    def _count(self) -> None:
+    def _integrate_odometry(self) -> None:
         """Integrate the odometry exactly along an arc."""
         now = self.context.now_ns
         dt, self._now_ns = (now - self._now_ns) * 1e-9, now

@@ -166,17 +166,17 @@ def read_wheels(context: Context, settings: Settings, steered: bool) -> List[Omn
     if not isinstance(defaults, dict):
         raise PluginError(f"parameter {settings.name}/defaults must be a dictionary")
     return [_read_wheel(context, Settings(context, f"{settings.name}/wheels/{n}", one),
-                        Settings(context, f"{settings.name}/wheels/{n}", _merged(one, defaults)),
+                        Settings(context, f"{settings.name}/wheels/{n}", _merge(one, defaults)),
                         steered)
             for n, one in enumerate(found)]
 
 
-def _merged(first: Dict[str, Any], second: Dict[str, Any]) -> Dict[str, Any]:
+def _merge(first: Dict[str, Any], second: Dict[str, Any]) -> Dict[str, Any]:
     """Both dictionaries, at each level; the first one has priority."""
     made = {**second, **first}
     for key, value in first.items():
         if isinstance(value, dict) and isinstance(second.get(key), dict):
-            made[key] = _merged(value, second[key])
+            made[key] = _merge(value, second[key])
     return made
 
 

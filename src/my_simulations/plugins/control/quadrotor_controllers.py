@@ -39,10 +39,10 @@ class _OfQuadrotor(Controller):
             raise PluginError(f"controller '{self.name}' needs the <robotSimType>"
                               " hector_quadrotor_controller_gazebo/QuadrotorHardwareSim")
         self._pids: List[Pid] = []
-        self._world = self._framed("world_frame", "/world")
-        self._stabilized = self._framed("base_stabilized_frame", "base_stabilized")
+        self._world = self._resolve_frame("world_frame", "/world")
+        self._stabilized = self._resolve_frame("base_stabilized_frame", "base_stabilized")
 
-    def _framed(self, parameter: str, default: str) -> str:
+    def _resolve_frame(self, parameter: str, default: str) -> str:
         return add_tf_prefix(self.context, str(self.context.parameter(parameter, default)))
 
     def pid(self, path: str) -> Pid:
@@ -279,7 +279,7 @@ class AttitudeController(_OfQuadrotor):
         if hardware.attitude is not None:
             self._command = hardware.attitude
             self._stamps = [hardware.attitude.stamp_ns] * 3
-        roll, pitch, yaw_rate, thrust = self._limited(dt)
+        roll, pitch, yaw_rate, thrust = self._limit_command(dt)
         # The acceleration that the command asks for, in axes that turn with the yaw.
         ahead, left, yaw = math.sin(pitch), -math.sin(roll), hardware.yaw
         c, s = math.cos(yaw), math.sin(yaw)
@@ -291,7 +291,7 @@ class AttitudeController(_OfQuadrotor):
                   inertial.izz * self._yaw_pid.command(yaw_rate - spin[2], dt))
         hardware.command(((0.0, 0.0, thrust), torque))
 
-    def _limited(self, dt: float) -> "tuple[float, float, float, float]":
+    def _limit_command(self, dt: float) -> "tuple[float, float, float, float]":
         """Roll, pitch, yaw rate and thrust now, within their limits, or those of a stop."""
         command, now = self._command, self.context.now_ns
         late = self._time_out_ns > 0 and now > min(self._stamps) + self._time_out_ns

@@ -80,9 +80,9 @@ class SteerBotHardware(Hardware):
     def __init__(self, context: Context, transmissions: Sequence[Transmission]) -> None:
         super().__init__(context, [])
         s = Settings(context, _NAMESPACE)
-        rear = [self._made(name, VELOCITY) for name in s.texts("virtual_rear_wheels")]
-        front = [self._made(name, VELOCITY) for name in s.texts("virtual_front_wheels", [])]
-        steers = [self._made(name, POSITION) for name in s.texts("virtual_front_steers")]
+        rear = [self._make_joint(name, VELOCITY) for name in s.texts("virtual_rear_wheels")]
+        front = [self._make_joint(name, VELOCITY) for name in s.texts("virtual_front_wheels", [])]
+        steers = [self._make_joint(name, POSITION) for name in s.texts("virtual_front_steers")]
         if len(steers) != 2:
             raise PluginError(f"parameter {_NAMESPACE}/virtual_front_steers must name two joints,"
                               f" right and left; it names {len(steers)}")
@@ -102,7 +102,7 @@ class SteerBotHardware(Hardware):
         """Return the y coordinate of a joint in the model, m."""
         return joint_origin(self._context.joint(joint.name).spec, self._context.description)[1]
 
-    def _made(self, name: str, interface: str) -> HardwareJoint:
+    def _make_joint(self, name: str, interface: str) -> HardwareJoint:
         joint = self._context.joint(name)
         limits = limits_of(joint.spec, self._context)
         return HardwareJoint(joint, interface, JointLimits(limits.lower, limits.upper), None, 0.0)

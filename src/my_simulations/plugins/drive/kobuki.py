@@ -36,13 +36,13 @@ class Kobuki(Plugin):
     def load(self) -> None:
         context, p = self.context, self.context.parameters
         context.use_namespace(namespace_or(p, context.model))
-        self._wheels = [context.joint(_needed(p, f"{side}_wheel_joint_name"))
+        self._wheels = [context.joint(_read_name(p, f"{side}_wheel_joint_name"))
                         for side in ("left", "right")]
         self._turns = WheelRotations(self._wheels)
         self._separation = _needed_number(p, "wheel_separation")
         self._radius = _needed_number(p, "wheel_diameter") / 2.0
         self._torque = _needed_number(p, "torque")
-        self._imu_link, self._imu = sensor_named(context, _needed(p, "imu_name"))
+        self._imu_link, self._imu = sensor_named(context, _read_name(p, "imu_name"))
         # Gazebo's ImuSensor reports orientations relative to the one at loading.
         self._reference = compose(context.link(self._imu_link).pose, self._imu.pose).orientation
         self._odometer = Odometer(context, "odom", "odom", "base_footprint", _COVARIANCE)
@@ -153,12 +153,13 @@ class KobukiEvents:
         self._context, p = base.context, base.context.parameters
         context = self._context
         self._rays = FloorRays(
-            context, {side: sensor_named(context, _needed(p, f"cliff_sensor_{side}_name"))
+            context, {side: sensor_named(context, _read_name(p, f"cliff_sensor_{side}_name"))
                       for side in _SIDES}, self._receive_cliffs)
         self._edge = _needed_number(p, "cliff_detection_threshold")
-        self._bumper = sensor_named(context, _needed(p, "bumper_name"))[0]
-        self._drops = {side: sensor_named(context, _needed(p, f"wheel_drop_{side}_sensor_name"))[0]
-                       for side in ("left", "right")}
+        self._bumper = sensor_named(context, _read_name(p, "bumper_name"))[0]
+        self._drops = {
+            side: sensor_named(context, _read_name(p, f"wheel_drop_{side}_sensor_name"))[0]
+            for side in ("left", "right")}
         self._pressed: Dict[str, bool] = dict.fromkeys(_SIDES, False)
         self._over: Dict[str, bool] = dict.fromkeys(_SIDES, False)
         self._dropped: Dict[str, bool] = dict.fromkeys(self._drops, False)
@@ -264,7 +265,7 @@ def _adc_value(distance: float) -> int:
     return int(_READING * math.atan2(_READING_AT, distance)) & 0xFFFF
 
 
-def _needed(p: Any, name: str) -> str:
+def _read_name(p: Any, name: str) -> str:
     found: str = p.text(name)
     if not found:
         raise PluginError(f"it has no <{name}>")
@@ -273,7 +274,7 @@ def _needed(p: Any, name: str) -> str:
 
 def _needed_number(p: Any, name: str) -> float:
     """A number above 0. Raises PluginError."""
-    text, found = _needed(p, name), float(p.positive(name, 0.0))
+    text, found = _read_name(p, name), float(p.positive(name, 0.0))
     if not found:
         raise PluginError(f"<{name}> must be a number above 0, it is {text!r}")
     return found

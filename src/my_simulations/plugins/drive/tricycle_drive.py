@@ -88,11 +88,11 @@ class TricycleDrive(OdometryDrive):
         """Approach the command; return whether motor and servo have reached it."""
         self._steer(max(-_MOST_STEERING, min(_MOST_STEERING, self._command.yaw)))
         wanted, present = self._command.x / self._radius, self._wheel.velocity
-        rate = self._accelerated(wanted, present, dt)
+        rate = self._compute_wheel_rate(wanted, present, dt)
         self._wheel.drive(rate, self._torque)
         return rate == wanted
 
-    def _accelerated(self, wanted: float, present: float, dt: float) -> float:
+    def _compute_wheel_rate(self, wanted: float, present: float, dt: float) -> float:
         """The rate of the wheel after `dt` s, rad/s."""
         if self._acceleration > 0.0:
             slower = abs(wanted) < abs(present) and wanted * present >= 0.0

@@ -102,14 +102,14 @@ class ArduPilot(Plugin):
         """Find the sensor by its name, below the model of the plugin or with the scopes above."""
         imus = {f"{link}::{sensor.name}": (link, sensor) for link, sensor in self.context.sensors()
                 if sensor.type == "imu"}
-        found = imus.get(self._nested(name)) or next(
+        found = imus.get(self._scope_sensor(name)) or next(
             (imu for own, imu in imus.items()
              if name in (imu[1].name, own) or name.endswith(f"::{own}")), None)
         if found is None:
             raise PluginError(f"the model has no sensor of type imu named '{name}'")
         self._imu, self._mount = self.context.link(found[0]), found[1].pose
 
-    def _nested(self, name: str) -> str:
+    def _scope_sensor(self, name: str) -> str:
         """The name of a sensor of the plugin's nested model in the outermost model; "" for none."""
         link, _, sensor = name.rpartition("::")
         try:
@@ -150,7 +150,7 @@ class ArduPilot(Plugin):
 
     def _await_packet(self) -> None:
         """Follow ArduPilot from its first packet on."""
-        floats = self._received(0.0)
+        floats = self._receive_packet(0.0)
         if floats is not None:
             self._last_ns = self.context.now_ns
             self._before = self._velocity()
@@ -159,7 +159,7 @@ class ArduPilot(Plugin):
 
     def _step(self) -> None:
         """Follow the command of this step, and answer with the state."""
-        floats = self._received(_WAIT_S)
+        floats = self._receive_packet(_WAIT_S)
         if floats is None:
             self._misses += 1
             if self._misses > self._most_misses:
@@ -179,7 +179,7 @@ class ArduPilot(Plugin):
         except OSError as fault:   # no listener yet, or a full buffer: the next one counts
             self.context.info(f"a state was not sent to ArduPilot: {fault}")
 
-    def _received(self, wait: float) -> Optional[List[float]]:
+    def _receive_packet(self, wait: float) -> Optional[List[float]]:
         """The last packet that has come, waiting `wait` s for one; None without one."""
         assert self._socket is not None
         if not select.select([self._socket], [], [], wait)[0]:

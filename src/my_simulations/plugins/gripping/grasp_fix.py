@@ -122,7 +122,7 @@ class GraspFix(Plugin):
                 self._count(arm, {name: [_mean(presses) for presses in by_finger.values()]
                                   for name, by_finger in pressed.items()
                                   if name.partition("::")[0] in models})
-            elif arm.held.partition("::")[0] not in models or self._opened(arm):
+            elif arm.held.partition("::")[0] not in models or self._has_opened(arm):
                 self._drop_object(arm)
 
     def _sample_on(self, touches: bool) -> None:
@@ -141,12 +141,12 @@ class GraspFix(Plugin):
         free = [arm for arm in self._arms if not arm.held]
         contacts = self.context.contacts() if free else []
         for arm in free:
-            for name, by_finger in self._pressed(arm, contacts).items():
+            for name, by_finger in self._collect_presses(arm, contacts).items():
                 known = arm.pressed.setdefault(name, {})
                 for finger, press in by_finger.items():
                     known.setdefault(finger, []).append(press)
 
-    def _pressed(self, arm: Arm, contacts: list) -> Dict[str, Dict[str, FingerForce]]:
+    def _collect_presses(self, arm: Arm, contacts: list) -> Dict[str, Dict[str, FingerForce]]:
         """What presses movable links of other models, by their names and by those of fingers."""
         prefix, models = f"{self.context.model}::", self.context.models()
         parts = {self.context.scoped(name): name for name in arm.fingers}
@@ -168,7 +168,7 @@ class GraspFix(Plugin):
         return found
 
     def _count(self, arm: Arm, pressed: Dict[str, List[FingerForce]]) -> None:
-        gripped = {name for name, presses in pressed.items() if self._opposed(presses)}
+        gripped = {name for name, presses in pressed.items() if self._are_opposed(presses)}
         for name in gripped | set(arm.counts):
             arm.counts[name] = min(self._most, arm.counts.get(name, 0) + 1) if name in gripped \
                 else arm.counts[name] - 1
@@ -178,7 +178,7 @@ class GraspFix(Plugin):
                 self._hold(arm, name, pressed[name])
                 return
 
-    def _opposed(self, presses: List[FingerForce]) -> bool:
+    def _are_opposed(self, presses: List[FingerForce]) -> bool:
         for n, one in enumerate(presses):
             for other in presses[n + 1:]:
                 less, more = sorted((norm(one.force), norm(other.force)))
@@ -204,7 +204,7 @@ class GraspFix(Plugin):
                                      scale(press.force, 1.0 / norm(press.force)))))
         context.info(f"arm '{arm.name}' holds {name}")
 
-    def _opened(self, arm: Arm) -> bool:
+    def _has_opened(self, arm: Arm) -> bool:
         """Whether a finger has gone back from where it held, against the way it pressed."""
         palm = inverse(self.context.link(arm.palm).pose)
         for finger, mark, place, way in arm.marks:

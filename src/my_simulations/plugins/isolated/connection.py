@@ -114,8 +114,8 @@ class Connection:
             raise PluginError(f"'{name}' was used in a thread of the plugin; only functions that"
                               " the simulator calls can use the context")
         self.send(Query(self._pop_handle_calls(), name,
-                      tuple(self._packed(name, one) for one in arguments),
-                      {key: self._packed(name, one) for key, one in named.items()}))
+                      tuple(self._pack_argument(name, one) for one in arguments),
+                      {key: self._pack_argument(name, one) for key, one in named.items()}))
         while True:
             message = self.receive()
             if isinstance(message, Call):
@@ -128,14 +128,14 @@ class Connection:
             assert isinstance(message, Value)
             return message.value
 
-    def _packed(self, name: str, argument: Any) -> Any:
+    def _pack_argument(self, name: str, argument: Any) -> Any:
         if callable(argument):
             return Function(self._number(argument, name))
         number = getattr(argument, "number", None)
         if isinstance(number, int) and type(argument).__name__.startswith("Remote"):
             return Reference(number)
         if isinstance(argument, list):
-            return [self._packed(name, one) for one in argument]
+            return [self._pack_argument(name, one) for one in argument]
         return argument
 
     def _number(self, function: Callable[..., Any], name: str) -> int:

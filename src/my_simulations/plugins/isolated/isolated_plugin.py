@@ -134,8 +134,8 @@ class IsolatedPlugin(Plugin):
             return getattr(context, name)
         if name not in METHODS and name not in HANDLES:
             raise AttributeError(f"the context has no '{name}'")
-        arguments = [self._unpacked(name, one) for one in query.arguments]
-        named = {key: self._unpacked(name, one) for key, one in query.named.items()}
+        arguments = [self._unpack_argument(name, one) for one in query.arguments]
+        named = {key: self._unpack_argument(name, one) for key, one in query.named.items()}
         if name in METHODS:
             return getattr(context, name)(*arguments, **named)
         return self._handle(HANDLES[name], getattr(context, name)(*arguments, **named))
@@ -149,14 +149,14 @@ class IsolatedPlugin(Plugin):
         return HandleMade(self._made, kind, {
             name: getattr(handle, name) for name in facts.get(kind, ())}, _state(kind, handle))
 
-    def _unpacked(self, name: str, argument: Any) -> Any:
+    def _unpack_argument(self, name: str, argument: Any) -> Any:
         if isinstance(argument, Function):
             return self._function(name, argument.number)
         if isinstance(argument, Reference):
             return self._handles[argument.number][1]
         if isinstance(argument, (list, tuple)) and any(
                 isinstance(one, Reference) for one in argument):
-            return [self._unpacked(name, one) for one in argument]
+            return [self._unpack_argument(name, one) for one in argument]
         return argument
 
     def _function(self, name: str, number: int) -> Callable[..., None]:

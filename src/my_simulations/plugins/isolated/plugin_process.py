@@ -106,7 +106,7 @@ class PluginProcess:
             raise ProcessEndedError(
                 f"its process received no messages for {_SEND_S:g} s") from None
         except OSError:
-            raise self._lost() from None
+            raise self._make_ended_error() from None
 
     def receive(self, limits: CallLimits, while_waiting: Callable[[float], bool]) -> Any:
         """The next message; waits for it.
@@ -127,9 +127,9 @@ class PluginProcess:
                 if self._received or time.monotonic() < first_look:
                     continue   # else it sends a part of a message now and then
             if begun is None:   # from the first look on, as all calls that are watched
-                begun, used_before = time.monotonic(), self._used()
+                begun, used_before = time.monotonic(), self._read_processor_time()
             waited = time.monotonic() - begun
-            self._check(limits, waited, self._used() - used_before)
+            self._check(limits, waited, self._read_processor_time() - used_before)
             look_s = 0.0 if while_waiting(waited) else _LOOK_S
         return self._received.popleft()
 
@@ -137,7 +137,7 @@ class PluginProcess:
         try:
             self._received += self._wire.receive(0.0, rest=0.0)
         except EOFError as fault:
-            raise self._lost(str(fault)) from None
+            raise self._make_ended_error(str(fault)) from None
 
     def end(self) -> None:
         """Have the process end; it is killed with all that it has started if it does not."""
@@ -155,7 +155,7 @@ class PluginProcess:
         """Whether the process runs, or has ended and `end` was not called."""
         return not self._ended and not self._has_ended()
 
-    def _used(self) -> float:
+    def _read_processor_time(self) -> float:
         """Processor time of the process, s."""
         try:
             return time.clock_gettime((~self.pid << 3) | _SCHEDULED_CLOCK)
@@ -182,10 +182,10 @@ class PluginProcess:
         found = previous = ""   # the process writes line by line: wait until its place stays
         while time.monotonic() < deadline and not (found and found == previous):
             time.sleep(0.01)
-            previous, found = found, self._traced(before)
+            previous, found = found, self._read_at(before)
         return found
 
-    def _traced(self, since: int) -> str:
+    def _read_at(self, since: int) -> str:
         """As `_where`, of the trace that begins at `since`, bytes."""
         descriptor = self._trace.fileno()   # its offset is the process's, too: it is not moved
         size = os.fstat(descriptor).st_size
@@ -197,7 +197,7 @@ class PluginProcess:
         frame = innermost_of_plugin(frames)
         return f" (in {frame.name}, {frame.filename}:{frame.lineno})"
 
-    def _lost(self, damage: str = "") -> ProcessEndedError:
+    def _make_ended_error(self, damage: str = "") -> ProcessEndedError:
         """Why the socket has ended."""
         ended = self._await_end(_TRACE_S)
         self._kill()
@@ -208,8 +208,8 @@ class PluginProcess:
         if status < 0:
             hint = "; the memory of the machine may be exhausted" * (status == -signal.SIGKILL)
             return ProcessEndedError(f"its process was ended by {signal_name(-status)}{hint}"
-                                     f"{self._traced(0)}")
-        return ProcessEndedError(f"its process ended with exit status {status}{self._traced(0)}")
+                                     f"{self._read_at(0)}")
+        return ProcessEndedError(f"its process ended with exit status {status}{self._read_at(0)}")
 
     def _kill(self) -> None:
         """Kill the process and all that it has started, unless it was waited for."""

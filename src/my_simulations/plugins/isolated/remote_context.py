@@ -144,19 +144,19 @@ class RemoteContext:
         return self._connection.readings.step
 
     def every(self, hertz: float, call: Callable[[], None]) -> RemoteCallHandle:
-        return self._scheduled("every", hertz, call)
+        return self._schedule_call("every", hertz, call)
 
     def observe(self, hertz: float, call: Callable[[], None], topics: Sequence[Any] = (),
                 **options: Any) -> RemoteCallHandle:
-        return self._scheduled("observe", hertz, call, list(topics), **options)
+        return self._schedule_call("observe", hertz, call, list(topics), **options)
 
     def once(self, ns: int, call: Callable[[], None]) -> RemoteCallHandle:
-        return self._scheduled("once", ns, call)
+        return self._schedule_call("once", ns, call)
 
     def on_world_change(self, call: Callable[[], None]) -> RemoteCallHandle:
-        return self._scheduled("on_world_change", call)
+        return self._schedule_call("on_world_change", call)
 
-    def _scheduled(self, name: str, *arguments: Any, **named: Any) -> RemoteCallHandle:
+    def _schedule_call(self, name: str, *arguments: Any, **named: Any) -> RemoteCallHandle:
         made: RemoteCallHandle = self._handle(name, *arguments, **named)
         return made
 
@@ -207,14 +207,14 @@ class RemoteContext:
 
     def subscribe(self, name: str, kind: str, call: Callable[[Any], None],
                   queue: int = 1) -> RemoteCallHandle:
-        return self._scheduled("subscribe", name, kind, call, queue)
+        return self._schedule_call("subscribe", name, kind, call, queue)
 
     def serve(self, name: str, kind: str, call: Callable[[Any, Any], None]) -> RemoteCallHandle:
         def answer(request: Any, response: Any) -> Any:
             call(request, response)
             return response
 
-        return self._scheduled("serve", name, kind, answer)
+        return self._schedule_call("serve", name, kind, answer)
 
     def transform(self, parent: str, child: str, pose: Pose) -> None:
         self._call_handle("transform", str(parent), str(child), check_pose(pose, "a transform"))

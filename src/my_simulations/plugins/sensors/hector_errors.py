@@ -52,14 +52,14 @@ class SensorErrors:
             size * draw for size, draw in zip(self.drift, self._draw(ns, _FIRST_DRIFT))]
         self._shifts = [0.0] * self._width
         number = ns // self._stride_ns
-        self._ends = (number, begin, self._stepped(number + 1, begin))
+        self._ends = (number, begin, self._step_drift(number + 1, begin))
         self.current = begin
 
     @property
     def has_drift(self) -> bool:
         return any(self.drift)
 
-    def _stepped(self, number: int, before: Sequence[float]) -> List[float]:
+    def _step_drift(self, number: int, before: Sequence[float]) -> List[float]:
         """The drift a stride after `before`, at the end of stride `number`."""
         if not self.has_drift:
             return list(before)
@@ -72,7 +72,7 @@ class SensorErrors:
         number, begin, end = self._ends
         while number < ns // self._stride_ns:
             number, begin = number + 1, end
-            end = self._stepped(number + 1, begin)
+            end = self._step_drift(number + 1, begin)
         self._ends = (number, begin, end)
         part = (ns - number * self._stride_ns) / self._stride_ns
         return [a + part * (b - a) for a, b in zip(begin, end)]

@@ -36,13 +36,13 @@ class Points(RayPlugin):
         self._range_noise = SampledNoise(context, self._ray.noise, "range")
         self._noise = Noise(NoiseSpec(GAUSSIAN, stddev=p.number("gaussianNoise", 0.0)),
                             context.seed, f"{context.model}::{context.sensor_link}::points")
-        self._frame = self._named(p.text("frameName", "/world"))
+        self._frame = self._resolve_frame(p.text("frameName", "/world"))
         self._topic = context.publish(p.text("topicName") or self.usual_topic, self.message_type)
         self._directions: Optional[Any] = None
         assert context.sensor is not None
         self.follow(context.sensor.update_rate)
 
-    def _named(self, frame: str) -> str:
+    def _resolve_frame(self, frame: str) -> str:
         return add_tf_prefix(self.context, frame)
 
     def reset(self) -> None:
@@ -122,10 +122,10 @@ class Velodyne(Points):
         self._organized = p.flag("organize_cloud", False)
         self._rings: Optional[Any] = None
 
-    def _named(self, frame: str) -> str:
+    def _resolve_frame(self, frame: str) -> str:
         """A namespace other than `/` comes before `tf_prefix` (velodyne_gazebo_plugins)."""
         namespace = self.context.parameters.text("robotNamespace").strip("/")
-        return resolve_frame(namespace, frame) if namespace else super()._named(frame)
+        return resolve_frame(namespace, frame) if namespace else super()._resolve_frame(frame)
 
     def _message(self, head: Any, ranges: Any, retro: Any, ns: int) -> Any:
         import numpy as np

@@ -25,7 +25,7 @@ class PointCloudOutput(Points):
 
     message_type = "sensor_msgs/PointCloud2"
 
-    def _named(self, frame: str) -> str:
+    def _resolve_frame(self, frame: str) -> str:
         return frame.lstrip("/")
 
     def _message(self, head: Any, ranges: Any, retro: Any, ns: int) -> Any:

@@ -26,7 +26,7 @@ class Buoyancy(Plugin):
         """Find volumes and their centres."""
         context, p = self.context, self.context.parameters
         self._density = p.number("fluid_density", _WATER)
-        given = self._given(p.children("link"))
+        given = self._read_volumes(p.children("link"))
         self._floats: List[Tuple[Link, float, Vec3]] = []
         for spec in context.description.links:
             found = given.get(spec.name) or self._volume(spec)
@@ -39,7 +39,7 @@ class Buoyancy(Plugin):
         """Forces ended with the reset."""
         self.update()
 
-    def _given(self, blocks: "List[Parameters]") -> Dict[str, Tuple[float, Vec3]]:
+    def _read_volumes(self, blocks: "List[Parameters]") -> Dict[str, Tuple[float, Vec3]]:
         """Return volume and centre by link; report invalid ones, which collisions replace."""
         found: Dict[str, Tuple[float, Vec3]] = {}
         names = {link.name for link in self.context.description.links}

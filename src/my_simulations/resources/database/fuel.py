@@ -68,7 +68,7 @@ class FuelModels:
         caches = [os.path.expanduser(cache) for cache in dict.fromkeys(named)]
         servers = [f"https://{host}" for host in KNOWN_HOSTS]
         for cache in caches:
-            servers += _configured(os.path.join(cache, "config.yaml"))
+            servers += _read_configured_servers(os.path.join(cache, "config.yaml"))
         return cls(caches, servers, progress)
 
     def begin(self) -> None:
@@ -225,7 +225,7 @@ def _with_own_addresses(folder: str, uri: FuelUri) -> str:
     return folder
 
 
-def _configured(path: str) -> List[str]:
+def _read_configured_servers(path: str) -> List[str]:
     """Scheme and host of the servers in a `config.yaml`."""
     try:
         with open(path, encoding="utf-8", errors="replace") as stream:

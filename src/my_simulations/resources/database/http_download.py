@@ -83,13 +83,13 @@ class _DamagedDownloadError(ResourceError):
 def _once(url: str, into: IO[bytes], largest: int, until: float,
           progress: Optional[Callable[[int, int], None]]) -> "Message[str, str]":
     request = urllib.request.Request(url, headers={"Accept-Encoding": "identity"})
-    with urllib.request.urlopen(request, timeout=_left(url, until)) as answer:
+    with urllib.request.urlopen(request, timeout=_compute_seconds_left(url, until)) as answer:
         expected = _length(answer.headers.get("Content-Length"))
         if expected > largest:
             raise HttpError(f"{url} has {expected} bytes, the limit is {largest}")
         sums, done = hashlib.md5(), 0
         while True:
-            _set_timeout(answer, _left(url, until))
+            _set_timeout(answer, _compute_seconds_left(url, until))
             # read1 returns what is there, so that a slow server cannot outlast the deadline.
             chunk = answer.read1(_CHUNK)
             if not chunk:
@@ -122,7 +122,7 @@ def _length(text: Optional[str]) -> int:
     return int(text) if text and text.isdigit() else 0
 
 
-def _left(url: str, until: float) -> float:
+def _compute_seconds_left(url: str, until: float) -> float:
     _check_time(url, until)
     return max(0.01, until - time.monotonic())
 

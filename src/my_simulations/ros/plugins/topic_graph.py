@@ -83,14 +83,14 @@ class TopicGraph(RosGraph):
         made = self._type(kind, "msg")
 
         def take(message: Any) -> None:
-            read = _decoded(message, made) if isinstance(message, rospy.AnyMsg) else message
+            read = _decode_message(message, made) if isinstance(message, rospy.AnyMsg) else message
             if read is not None:
                 call(read)
 
         return TopicSubscription(rospy.Subscriber(name, made, take, tcp_nodelay=True))
 
 
-def _decoded(message: rospy.AnyMsg, made: Any) -> Any:
+def _decode_message(message: rospy.AnyMsg, made: Any) -> Any:
     """A message whose first subscriber in this process asked for any type; None for other types."""
     if message._connection_header.get("md5sum") != made._md5sum:
         return None

@@ -75,7 +75,7 @@ class JointServices:
                                    f"{'axis' if count == 1 else 'axes'}")
             if not all(math.isfinite(value) for value in values):
                 raise CommandError(f"{name} contains NaN or infinity: {tuple(values)}")
-        axes = [_changed(axis, config, number) for number, axis in enumerate(_axes(joint)[:count])]
+        axes = [_set_axis(axis, config, number) for number, axis in enumerate(_axes(joint)[:count])]
         if any(getattr(config, name) for name in ACTING):
             self._simulator.joints.edit(f"{owner}::{joint.name}", _with_axes(joint, axes))
         idle = [name for name in ODE_ONLY if getattr(config, name)]
@@ -127,7 +127,7 @@ def _is_continuous(joint: Joint) -> bool:
         axis.lower <= -INFINITE and axis.upper >= INFINITE for axis in _axes(joint))
 
 
-def _changed(axis: JointAxis, config: Any, number: int) -> JointAxis:
+def _set_axis(axis: JointAxis, config: Any, number: int) -> JointAxis:
     """The axis with what the request says about it."""
     def given(name: str, low: float, high: float, default: float) -> float:
         values = getattr(config, name)

@@ -56,7 +56,7 @@ class ModelServices:
 
     def spawn_urdf(self, request: Any, _response: Any) -> str:
         """Spawn a URDF model; any other root element is rejected (Gazebo behaviour)."""
-        document = self._parsed(request, "")
+        document = self._parse_document(request, "")
         if document.root_tag != "robot":
             raise CommandError("Failure - entity format is invalid. The root element of a URDF is "
                                f"<robot>, here it is <{document.root_tag}>; use spawn_sdf_model for"
@@ -64,15 +64,15 @@ class ModelServices:
         return self._spawn(request, document, self._attribute_options(request, document))
 
     def spawn_sdf(self, request: Any, _response: Any) -> str:
-        document = self._parsed(request, "")
+        document = self._parse_document(request, "")
         return self._spawn(request, document, self._attribute_options(request, document))
 
     def spawn_object(self, request: Any, _response: Any) -> str:
         """A document of either format, with the options of our own tools."""
-        return self._spawn(request, self._parsed(request, request.file),
+        return self._spawn(request, self._parse_document(request, request.file),
                            SpawnOptions(request.replace, request.file, request.launch_pid))
 
-    def _parsed(self, request: Any, file: str) -> ParsedDocument:
+    def _parse_document(self, request: Any, file: str) -> ParsedDocument:
         check_name(request.model_name)
         return parse_document(request.model_xml, self._resolver, _label(request, file))
 

@@ -71,7 +71,7 @@ class StepSelector:
         if self._period_ns:
             found = self._periodic(first, step, sim_ns, went_back)
         else:
-            found = self._thinned(first, step, sim_ns, now)
+            found = self._thin_steps(first, step, sim_ns, now)
         if found:
             self._published_ns = found[-1]
         return found
@@ -92,8 +92,8 @@ class StepSelector:
                 last = at
         return found[-int(BURST):]
 
-    def _thinned(self, first: int, step: int, sim_ns: Callable[[int], int],
-                 now: float) -> List[int]:
+    def _thin_steps(self, first: int, step: int, sim_ns: Callable[[int], int],
+                    now: float) -> List[int]:
         missed = step - first + 1
         allowed = max(1, self._bucket.available(now))
         stride = -(-missed // allowed)

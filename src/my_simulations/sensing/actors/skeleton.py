@@ -100,7 +100,7 @@ class Skeleton:
         x (Gazebo behaviour).
         """
         world = self._world(at, on_path)
-        return [_skinned(part, world, self._factor) for part in self._figure.parts]
+        return [_skin_surface(part, world, self._factor) for part in self._figure.parts]
 
     def _world(self, at: Optional[float], on_path: bool) -> np.ndarray:
         """(n, 4, 4) figure from node, in the file's unit."""
@@ -121,7 +121,7 @@ class Skeleton:
         return world
 
 
-def _skinned(part: FigurePart, world: np.ndarray, factor: float) -> Surface:
+def _skin_surface(part: FigurePart, world: np.ndarray, factor: float) -> Surface:
     """Linear blend skinning."""
     shape, skin = part.part, part.skin
     if skin is None:

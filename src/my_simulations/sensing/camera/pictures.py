@@ -22,13 +22,13 @@ def read_picture(picture: Any) -> Optional[np.ndarray]:
     """uint8 (h, w, 4), the lowest row first, of a path or a PIL image; None if unreadable."""
     if not isinstance(picture, str):
         return pixels_of(picture, LARGEST)
-    path = _found(picture)
+    path = _find_picture(picture)
     return None if path is None else read(path, LARGEST)
 
 
 def state_of(picture: str) -> Optional[Tuple[str, int, int]]:
     """The file that `read_picture` would read, its time, ns, and its size; None without one."""
-    path = _found(picture)
+    path = _find_picture(picture)
     try:
         status = None if path is None else os.stat(path)
     except OSError:
@@ -36,7 +36,7 @@ def state_of(picture: str) -> Optional[Tuple[str, int, int]]:
     return None if path is None or status is None else (path, status.st_mtime_ns, status.st_size)
 
 
-def _found(picture: str) -> Optional[str]:
+def _find_picture(picture: str) -> Optional[str]:
     return existing_path(picture) or next(
         (hit for hit in map(existing_path, mesh_image_candidates(picture, [])) if hit), None)
 

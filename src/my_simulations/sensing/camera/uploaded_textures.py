@@ -44,7 +44,7 @@ class Textures:
             if pixels is None and surface.picture is not None:
                 self._trouble(f"the picture {surface.picture} cannot be read: cameras see its "
                               "material without")
-            self._made[key] = None if pixels is None else self._uploaded(pixels)
+            self._made[key] = None if pixels is None else self._upload_pixels(pixels)
             if isinstance(key, int):
                 # Another picture may get its id then; what draws it keeps the picture until then.
                 weakref.finalize(surface.picture, self._gone.append, key)
@@ -81,7 +81,7 @@ class Textures:
         texture = self.of(Surface(picture=layer.texture or None, pattern=layer.pattern))
         if texture is None and None not in self._made:
             grey = [round(255 * part) for part in GREY]
-            self._made[None] = self._uploaded(np.array([[grey]], dtype=np.uint8))
+            self._made[None] = self._upload_pixels(np.array([[grey]], dtype=np.uint8))
         return self._made[None] if texture is None else texture
 
     def bumps_of(self, layer: TerrainLayer) -> Any:
@@ -96,7 +96,7 @@ class Textures:
             if pixels is None:
                 self._trouble(f"the picture {layer.normal} cannot be read: cameras see its "
                               "terrain without")
-            self._made[key] = None if pixels is None else self._uploaded(pixels, 0)
+            self._made[key] = None if pixels is None else self._upload_pixels(pixels, 0)
         return self._made[key]
 
     def cutting(self, surface: Surface) -> Any:
@@ -109,7 +109,7 @@ class Textures:
         texture = self.of(surface)
         return texture if texture is not None and texture.extra else None
 
-    def _uploaded(self, pixels: np.ndarray, form: int = _SRGB) -> Any:
+    def _upload_pixels(self, pixels: np.ndarray, form: int = _SRGB) -> Any:
         """`form`: of OpenGL; 0 for numbers as they are."""
         height, width = pixels.shape[:2]
         texture = self._context.texture((width, height), 4, np.ascontiguousarray(pixels).tobytes(),

@@ -141,7 +141,7 @@ class _Writer:
     def model_or_include(self, parent: Any, model: Model) -> None:
         """`<model>`, or the `<include>` of an unchanged included model."""
         bare = self._included(model) if self._included is not None and model.uri else None
-        added = _added(model, bare) if bare is not None else None
+        added = _find_additions(model, bare) if bare is not None else None
         if bare is None or added is None:
             self.model(parent, model)
             return
@@ -237,7 +237,7 @@ def _direction(xyz: Vec3) -> Vec3:
     return (round(xyz[0], 14), round(xyz[1], 14), round(xyz[2], 14))
 
 
-def _added(model: Model, bare: Model) -> Optional[Tuple[List[PluginSpec], List[str]]]:
+def _find_additions(model: Model, bare: Model) -> Optional[Tuple[List[PluginSpec], List[str]]]:
     """The plugins and XML that an include adds to its model; None if more than that differs."""
     kept = model.plugins[:len(bare.plugins)]
     extra = [xml for xml in model.extra if has_prefix(xml) and xml not in bare.extra]

@@ -44,9 +44,9 @@ def stable_pose_text(pose: Pose, of_path: bool = False) -> str:
 @functools.lru_cache(maxsize=1024)
 def _stable_rpy(orientation: Quat) -> Vec3:
     """Roll, pitch and yaw (rad) that stay the same when they are read and written again."""
-    angles = _rounded(rpy_from_quat(orientation))
+    angles = _round_angles(rpy_from_quat(orientation))
     if _read_again(angles) != angles:
-        angles = _rounded(_locked(angles))
+        angles = _round_angles(_snap_pitch(angles))
     seen: List[Vec3] = []
     # Near a pitch of 90 degrees the error is larger; it converges after a few conversions.
     while angles not in seen and len(seen) < _MOST_ROUNDS:
@@ -58,10 +58,10 @@ def _stable_rpy(orientation: Quat) -> Vec3:
 
 
 def _read_again(angles: Vec3) -> Vec3:
-    return _rounded(rpy_from_quat(quat_from_rpy(*angles)))
+    return _round_angles(rpy_from_quat(quat_from_rpy(*angles)))
 
 
-def _locked(angles: Vec3) -> Vec3:
+def _snap_pitch(angles: Vec3) -> Vec3:
     """Angles within 2e-9 rad of a pitch of 90 degrees, set to exactly that, with roll 0.
 
     There only rounding errors separate yaw and roll, which would never converge.
@@ -73,7 +73,7 @@ def _locked(angles: Vec3) -> Vec3:
     return (0.0, math.copysign(math.pi / 2, pitch), math.remainder(turn, 2.0 * math.pi))
 
 
-def _rounded(angles: Vec3) -> Vec3:
+def _round_angles(angles: Vec3) -> Vec3:
     """Angles rounded to 1e-14 rad; roll and yaw more coarsely near a pitch of 90 degrees."""
     lost = -math.log10(max(math.cos(angles[1]), 1e-5))
     digits = 14 - math.floor(lost)
